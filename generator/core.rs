@@ -65,8 +65,8 @@ impl Core {
     /// Builds and checks the design.
     ///
     /// # Errors
-    /// The mistakes of the description; constraints with a clock that the pipeline is not made for; a style of ROMs that
-    /// there are not.
+    /// The mistakes of the description; results that depend on earlier ones, or that the contract's model never shows;
+    /// constraints with a clock that the pipeline is not made for; a style of ROMs that there are not.
     pub fn new(device: Device, config: Config) -> Result<Self> {
         let design = device
             .design(&config)
@@ -77,6 +77,7 @@ impl Core {
         package::check_rom_style(&config, &design)?;
         device.check_golden(&config)?;
         let contract = (device.contract)(&config);
+        device.check_contract(&config, &design, contract.as_ref())?;
         Ok(Self { device, config, design, contract })
     }
 

@@ -98,6 +98,37 @@ impl Device {
         );
         Ok(())
     }
+
+    /// Refuses a device of whose results the contract cannot speak.
+    ///
+    /// # Errors
+    /// They depend on what an earlier computation left, or are never shown.
+    pub fn check_contract(
+        &self,
+        config: &Config,
+        design: &Design,
+        contract: &dyn Contract,
+    ) -> Result<()> {
+        contract.check().map_err(anyhow::Error::msg)?;
+        let carried = if design.pipeline.is_some() {
+            // It could not have been made.
+            None
+        } else if config.flag(OPERANDS_BUFFERED) {
+            // What a buffer holds is an operand, and nothing that an earlier computation left.
+            let designer = Designer::new(&config.name);
+            (self.describe)(&designer, config);
+            pipeline::carried(&designer.finish()?)
+        } else {
+            pipeline::carried(design)
+        };
+        match carried {
+            None => Ok(()),
+            Some(carried) => Err(anyhow::Error::new(Diagnostics(vec![carried])).context(format!(
+                "the contract of `{}` is of one point at a time: accuracy, proofs and pipelines",
+                self.name
+            ))),
+        }
+    }
 }
 
 /// Devices by the modules that describe and predict them, each with its name and summary.

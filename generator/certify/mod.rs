@@ -35,7 +35,7 @@ use exact::{Branch, Setting};
 pub use find::bound;
 use formula::Real;
 use hardware::{Hardware, Value, Variables};
-pub use proof::{Outcome, ensure_works, prove};
+pub use proof::{Outcome, prove};
 use script::Script;
 use terms::{Id, Term, Terms};
 

@@ -17,33 +17,6 @@ pub enum Outcome {
     Open(String),
 }
 
-/// Statements with what Gappa says of them.
-const TRIALS: [(&str, bool); 2] = [
-    ("# True: 1 is the greatest.\n{ x in [0, 1] -> x in [0, 1] }\n", true),
-    ("# False for x = 1.\n{ x in [0, 1] -> x in [0, 0.5] }\n", false),
-];
-
-/// Asks Gappa for proofs of what holds and of what does not, since its exit code is all that a proof rests on.
-///
-/// # Errors
-/// It does not tell them apart; it does not run.
-pub fn ensure_works(gappa: &Tool, limit: Duration) -> Result<()> {
-    let dir = Directory::new().context("cannot make a temporary directory")?;
-    for (script, holds) in TRIALS {
-        fs::write(dir.path().join("trial.g"), script).context("cannot write a script for Gappa")?;
-        let run = gappa.run(["trial.g"], dir.path(), limit)?;
-        if run.status.success() != holds {
-            let (does, what) =
-                if holds { ("refuses", "holds") } else { ("accepts", "does not hold") };
-            let said = run.output.lines().next().map_or_else(String::new, |it| format!(": {it}"));
-            bail!(
-                "`{gappa}` {does} a statement that {what}, so that it is no Gappa that works{said}"
-            );
-        }
-    }
-    Ok(())
-}
-
 /// Has one of the statement's scripts accepted by Gappa, and with `coq` its proof by Coq's kernel.
 ///
 /// # Errors

@@ -10,10 +10,12 @@
 mod carry_out;
 mod facts;
 mod lowest;
+mod module;
 mod solver;
 mod term;
 #[cfg(test)]
 mod tests;
+mod text;
 mod trial;
 mod wholes;
 
@@ -34,6 +36,8 @@ use term::{Id, Term, Terms};
 use trial::Pair;
 use wholes::Wholes;
 
+pub use text::{TextProof, TextVerdict, compare_text};
+
 /// Points that go through both cores before anything is proved.
 const TRIALS: usize = 400;
 
@@ -47,8 +51,17 @@ pub enum Verdict {
     Equal(Proof),
     /// An output differs.
     Different(Difference),
-    /// The solver does not decide it; why.
-    Open(String),
+    /// The solver does not decide it, and no point was found that differs.
+    Open(Open),
+}
+
+/// Why the solver does not decide a question.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Open {
+    /// It answers that it does not know, or with values of products and words that are not those of any point.
+    Unknown,
+    /// It was stopped at its time limit.
+    Limit,
 }
 
 /// What a proof consists of.
@@ -182,7 +195,7 @@ struct Comparison<'p> {
 enum Answer {
     Equal,
     Different(Difference),
-    Open,
+    Open(Open),
 }
 
 impl<'p> Comparison<'p> {
@@ -214,10 +227,7 @@ impl<'p> Comparison<'p> {
             match self.follow(&core, way, &stages, &mut ways)? {
                 Answer::Equal => {}
                 Answer::Different(difference) => return Ok(Verdict::Different(difference)),
-                Answer::Open => {
-                    let why = "the solver found no proof within its time limit, and no point that differs";
-                    return Ok(Verdict::Open(why.to_owned()));
-                }
+                Answer::Open(open) => return Ok(Verdict::Open(open)),
             }
         }
         let cone = self.terms.cone(self.results_of(&stages));
@@ -405,7 +415,7 @@ impl<'p> Comparison<'p> {
                 }
                 Answer::Different(difference) => return Ok(Answer::Different(difference)),
                 // The results may be equal all the same.
-                Answer::Open => {}
+                Answer::Open(_) => {}
             }
         }
         Ok(Answer::Equal)
@@ -498,7 +508,7 @@ impl<'p> Comparison<'p> {
         wanted.push(differ);
         match self.ask(wanted)? {
             Said::Never => Ok(Answer::Equal),
-            Said::Nothing => Ok(Answer::Open),
+            Said::Nothing(open) => Ok(Answer::Open(open)),
             Said::For(values) => {
                 let of = |operand: &Id| {
                     values.iter().find(|(id, _)| id == operand).map_or(0, |&(_, bits)| bits)
@@ -509,7 +519,7 @@ impl<'p> Comparison<'p> {
                     None => tried(self.pair, Some(&operands))?,
                     found => found,
                 };
-                Ok(difference.map_or(Answer::Open, Answer::Different))
+                Ok(difference.map_or(Answer::Open(Open::Unknown), Answer::Different))
             }
         }
     }

@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, bail};
 
+use super::Open;
 use super::carry_out::Product;
 use super::facts;
 use super::term::{ADDRESS, Id, Term, Terms};
@@ -18,8 +19,8 @@ pub enum Said {
     Never,
     /// They are for these values of unknowns, as far as products and memories are not known.
     For(Vec<(Id, u64)>),
-    /// Nothing within the limit.
-    Nothing,
+    /// Neither.
+    Nothing(Open),
 }
 
 /// An SMT solver, and how long it may take.
@@ -58,13 +59,13 @@ impl<'a> Solver<'a> {
         let left = self.end.saturating_duration_since(Instant::now());
         let run = match self.tool.run(["question.smt2"], self.dir.path(), left) {
             Ok(run) => run,
-            Err(error) if error.is::<LimitReached>() => return Ok(Said::Nothing),
+            Err(error) if error.is::<LimitReached>() => return Ok(Said::Nothing(Open::Limit)),
             Err(error) => return Err(error),
         };
         match run.output.lines().next().map(str::trim) {
             Some("unsat") => Ok(Said::Never),
             Some("sat") => Ok(Said::For(values(terms, &run.output))),
-            Some("unknown") => Ok(Said::Nothing),
+            Some("unknown") => Ok(Said::Nothing(Open::Unknown)),
             _ => bail!("`{}` does not answer: {}", self.tool, run.output.trim()),
         }
     }

@@ -70,6 +70,8 @@ pub struct Terms {
     unknowns: u32,
     /// The contents of memories, each once.
     pub memories: Vec<Vec<u64>>,
+    /// What is beyond them, by memory and address.
+    beyond: HashMap<(usize, Id), Id>,
 }
 
 impl Term {
@@ -165,6 +167,16 @@ impl Terms {
         }
         self.memories.push(words.to_vec());
         self.memories.len() - 1
+    }
+
+    /// A word that a memory does not have: any, the same for the same address.
+    pub fn beyond(&mut self, memory: usize, address: Id, width: u32) -> Id {
+        if let Some(&word) = self.beyond.get(&(memory, address)) {
+            return word;
+        }
+        let word = self.unknown(width);
+        self.beyond.insert((memory, address), word);
+        word
     }
 
     /// With zeros above it, or cut: of this width.

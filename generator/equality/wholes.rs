@@ -50,7 +50,7 @@ pub fn agree(terms: &Terms, one: Id, other: Id) -> bool {
 }
 
 /// Values of a cone's terms for numbers at random in place of the unknowns.
-fn samples(terms: &Terms, cone: &[Id]) -> impl Iterator<Item = HashMap<Id, u64>> {
+pub fn samples(terms: &Terms, cone: &[Id]) -> impl Iterator<Item = HashMap<Id, u64>> {
     let mut random = ChaCha8Rng::seed_from_u64(2);
     (0..SAMPLES).map(move |_| {
         let key = random.next_u64();

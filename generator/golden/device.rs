@@ -51,6 +51,9 @@ use super::{Bound, Contract, Model, Operand, Output, Sweep, Term};
 /// More clocks than any computation takes.
 const LONGEST: u32 = 1 << 20;
 
+/// In the place of a result that is never shown.
+const NEVER: i64 = i64::MAX >> 1;
+
 /// A device that is described by its microinstructions.
 pub struct Device<D> {
     model: Clocked<D>,
@@ -153,17 +156,9 @@ struct OfModel<D, F> {
     formula: F,
 }
 
-impl<D: Datapath, F: Formula> Contract for OfModel<D, F> {
-    fn operands(&self) -> &[Operand] {
-        &self.device.operands
-    }
-
-    fn outputs(&self) -> &[Output] {
-        &self.device.outputs
-    }
-
-    /// A device that never shows the result has what it shows after a million clocks.
-    fn results(&self, operands: &[i64], index: u64, raw: &mut Vec<i64>) {
+impl<D: Datapath, F> OfModel<D, F> {
+    /// The raw outputs with the result of a number, from power-up; none if it is never shown.
+    fn shown(&self, operands: &[i64], index: u64) -> Option<Vec<i64>> {
         let mut model = self.device.model.clone();
         let strobes = |strobe: u64| {
             let pairs = self.device.operands.iter().zip(operands);
@@ -176,14 +171,49 @@ impl<D: Datapath, F: Formula> Contract for OfModel<D, F> {
         for _ in 0..LONGEST {
             if model.is_valid() {
                 if left == 0 {
-                    break;
+                    let shown = self.shown.iter().zip(&self.device.outputs);
+                    let raw = |(&at, output): (&usize, &Output)| {
+                        output.format.raw(model.values()[at]) as i64
+                    };
+                    return Some(shown.map(raw).collect());
                 }
                 left -= 1;
             }
             model.clock(&rest);
         }
-        let shown = self.shown.iter().zip(&self.device.outputs);
-        raw.extend(shown.map(|(&at, output)| output.format.raw(model.values()[at]) as i64));
+        None
+    }
+}
+
+impl<D: Datapath, F: Formula> Contract for OfModel<D, F> {
+    fn operands(&self) -> &[Operand] {
+        &self.device.operands
+    }
+
+    fn outputs(&self) -> &[Output] {
+        &self.device.outputs
+    }
+
+    /// Of a result that is never shown there is a number further off than any bound.
+    fn results(&self, operands: &[i64], index: u64, raw: &mut Vec<i64>) {
+        match self.shown(operands, index) {
+            Some(shown) => raw.extend(shown),
+            None => raw.extend(self.shown.iter().map(|_| NEVER)),
+        }
+    }
+
+    fn check(&self) -> Result<(), String> {
+        let ends: [fn(&Operand) -> i64; 2] = [|it| it.domain.0, |it| it.domain.1];
+        for end in ends {
+            let operands: Vec<i64> = self.device.operands.iter().map(end).collect();
+            if self.shown(&operands, 0).is_none() {
+                return Err(format!(
+                    "the golden model shows no result within {LONGEST} clocks for the operands {operands:?}: one of its \
+                     microinstructions must be `valid()`, and each `repeat_while` must end"
+                ));
+            }
+        }
+        Ok(())
     }
 
     fn exact(&self, operands: &[i64], _: u64, values: &mut Vec<[f64; 2]>) {

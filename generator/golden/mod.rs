@@ -134,6 +134,14 @@ pub trait Contract: Send + Sync {
     /// where a computation has several.
     fn results(&self, operands: &[i64], index: u64, raw: &mut Vec<i64>);
 
+    /// Refuses a contract whose results are never shown.
+    ///
+    /// # Errors
+    /// Why, with a remedy.
+    fn check(&self) -> Result<(), String> {
+        Ok(())
+    }
+
     /// Appends, for each output, what the formula says in f64, unrounded, at the raw (that is, quantised) operands,
     /// twice. Where the formula jumps and fixed point may come out on its other side, these are the values on both
     /// sides. An error is taken from the nearer.

@@ -23,14 +23,17 @@ use crate::base::transient::Child;
 mod bench;
 mod capture;
 mod difference;
+mod elaborate;
 pub mod gates;
 mod lint;
 mod proof;
 pub mod synthesis;
+mod trial;
 
 pub use bench::{BenchOutcome, BuiltBench, Simulator, Waveform, run_bench};
 use capture::Capture;
 pub use difference::{BenchDifference, bench_waveform};
+pub use elaborate::elaborate;
 pub use lint::lint;
 pub use proof::{PROOF_LIMITS, prove};
 

@@ -26,6 +26,7 @@ pub const DESIGN: Check = Check {
     id: "design",
     title: "Design rules",
     question: "Is every net driven once, every width explicit, every value within its interval, and is there no loop?",
+    reads: "the netlist, of which the files are made",
     tools: &[],
     steps: |_| 1,
     run: |subject, _, _| {
@@ -61,6 +62,7 @@ pub const LOCKSTEP: Check = Check {
     id: "lockstep",
     title: "Golden model against simulation",
     question: "Has every register and output the value that the golden model predicts, on every clock?",
+    reads: "the netlist and the golden model",
     tools: &[],
     steps: points,
     run: |subject, _, progress| lockstep(subject, progress),
@@ -105,6 +107,7 @@ pub const CONTRACT: Check = Check {
     id: "contract",
     title: "Golden model against the formula",
     question: "Is no output further from the formula in f64 than the stated bound, for any operands?",
+    reads: "the golden model, which the check of it against simulation ties to the netlist",
     tools: &[],
     steps: |subject| match evaluations(subject) {
         all if is_short(subject, all) => all,
@@ -136,7 +139,7 @@ fn contract(subject: &Subject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Result<Fi
     let contract = subject.core.contract.as_ref();
     if !contract.bound().is_stated() {
         let why = "The contract states no bound: `glint certify` finds one where it can.";
-        return Ok(Finding::without(Verdict::NotCovered, why));
+        return Ok(Finding::without(Verdict::NotApplicable, why));
     }
     let all = evaluations(subject);
     if !is_short(subject, all) {
@@ -205,6 +208,7 @@ pub const CLOCKS: Check = Check {
     id: "clocks",
     title: "Golden model against simulation, every operand",
     question: "Has every register and output the value that the golden model predicts, on every clock, for every combination of operands?",
+    reads: "the netlist and the golden model",
     tools: &[],
     steps: |subject| {
         let clocks = subject.core.clocks();
@@ -213,7 +217,7 @@ pub const CLOCKS: Check = Check {
     run: |subject, _, progress| {
         let clocks = subject.core.clocks()?;
         if clocks.count() == 0 {
-            return Ok(Finding::without(Verdict::NotCovered, clocks.omits()));
+            return Ok(Finding::without(Verdict::NotApplicable, clocks.omits()));
         }
         let differs = clocks.check((0..clocks.blocks()).collect(), progress)?;
         let failures = match differs {
@@ -235,6 +239,7 @@ pub const MUTATION: Check = Check {
     id: "mutation",
     title: "Faults in the netlist",
     question: "Does the test notice each of the faults that are planted in the netlist, one at a time?",
+    reads: "the netlist and the golden model",
     tools: &[],
     steps: |subject| match subject.core.design.pipeline {
         None => Faults::of(&subject.core.design).len() as u64,
@@ -243,7 +248,7 @@ pub const MUTATION: Check = Check {
     run: |subject, _, progress| {
         if subject.core.design.pipeline.is_some() {
             let why = "Of a pipeline this check plants none; `glint mutate` does.";
-            return Ok(Finding::without(Verdict::NotCovered, why));
+            return Ok(Finding::without(Verdict::NotApplicable, why));
         }
         let faults = Faults::of(&subject.core.design);
         let found = mutate::run(subject.core, faults.iter(), &|| progress(1))?;

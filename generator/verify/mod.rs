@@ -2,7 +2,8 @@
 //!
 //! A [`Check`] asks one question, with the tools that it names, and gives a [`Finding`]: the answer, over
 //! which domain it holds, and what it leaves open. The checks are independent of each other: none knows what
-//! another found. What they found is the same whenever it is found with the same tools; how long it
+//! another found. Those that read text read the files that `generate` writes, of which the record has the digests; what a
+//! check reads else it says. What they found is the same whenever it is found with the same tools; how long it
 //! took stands apart, in [`CheckTime`].
 
 mod inside;
@@ -12,7 +13,9 @@ pub mod page;
 #[cfg(test)]
 mod tests;
 
+use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
 use anyhow::Result;
@@ -20,6 +23,7 @@ use serde::Serialize;
 
 use crate::base::input;
 use crate::core::Core;
+use crate::package::{self, OutputFile};
 use crate::tools::Tool;
 
 /// A configuration to be verified.
@@ -32,6 +36,41 @@ pub struct Subject<'a> {
     pub effort: Effort,
     /// Where records of `cosim --exhaustive --json` are.
     pub proofs: &'a Path,
+    files: OnceLock<Vec<OutputFile>>,
+}
+
+impl<'a> Subject<'a> {
+    /// What has not been looked at yet.
+    pub fn new(path: &'a str, core: &'a Core, effort: Effort, proofs: &'a Path) -> Self {
+        Self { path, core, effort, proofs, files: OnceLock::new() }
+    }
+
+    /// Every file that `generate` writes.
+    fn files(&self) -> Result<&[OutputFile]> {
+        if let Some(files) = self.files.get() {
+            return Ok(files);
+        }
+        let files = self.core.files(self.path, self.core.shipped_vectors()?)?;
+        Ok(self.files.get_or_init(|| files))
+    }
+
+    /// Those of the core that tools read for a target, pairs of a plain name and contents.
+    fn sources(&self, target: &str) -> Result<Vec<(String, String)>> {
+        let own = self.core.verilog()?;
+        let is_own = |file: &&OutputFile| {
+            file.path.starts_with("rtl_out/") && own.iter().any(|(name, _)| name == file.name())
+        };
+        Ok(package::sources_for(self.files()?.iter().filter(is_own).cloned().collect(), target))
+    }
+}
+
+/// A file that a record speaks of.
+#[derive(Clone, Debug, Serialize)]
+pub struct FileDigest {
+    /// As `generate` names it.
+    pub path: String,
+    /// SHA-256 in hexadecimal.
+    pub sha256: String,
 }
 
 /// How much a verification does.
@@ -46,7 +85,7 @@ pub struct Effort {
 }
 
 /// What a check says.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
     /// It holds for everything in the domain.
@@ -55,15 +94,19 @@ pub enum Verdict {
     Passed,
     /// It does not hold.
     Failed,
-    /// The check says nothing of this configuration, was left out on purpose, or is a second proof of what another
-    /// check shows and did not succeed; why is said.
-    NotCovered,
-    /// It was run, and its test is too weak to say that it holds.
+    /// It was run to its end and does not say whether it holds: the test is too weak, or the solver answers unknown.
     Undecided,
-    /// The check could not be run to its end: a tool is missing, it reached a limit, or it takes more than this
-    /// effort allows.
+    /// It reached a limit of time or memory.
+    LimitReached,
+    /// The check could not be run: a tool is missing, or it takes more than this effort allows.
     #[default]
     NotRun,
+    /// It is a second proof of what another check shows, and did not succeed; why is said.
+    Unconfirmed,
+    /// It was left out on purpose.
+    LeftOut,
+    /// It asks nothing of this configuration.
+    NotApplicable,
 }
 
 impl Verdict {
@@ -73,9 +116,24 @@ impl Verdict {
             Self::Proved => "proved",
             Self::Passed => "passed",
             Self::Failed => "FAILED",
-            Self::NotCovered => "not covered",
             Self::Undecided => "undecided",
+            Self::LimitReached => "limit reached",
             Self::NotRun => "not run",
+            Self::Unconfirmed => "not confirmed",
+            Self::LeftOut => "left out",
+            Self::NotApplicable => "not applicable",
+        }
+    }
+
+    /// What it makes of the answers of all checks.
+    fn conclusion(self) -> Conclusion {
+        match self {
+            Self::Failed => Conclusion::Failed,
+            Self::Undecided | Self::LimitReached | Self::NotRun => Conclusion::Incomplete,
+            Self::LeftOut => Conclusion::InPart,
+            Self::Proved | Self::Passed | Self::Unconfirmed | Self::NotApplicable => {
+                Conclusion::Verified
+            }
         }
     }
 }
@@ -135,6 +193,8 @@ pub struct Check {
     pub title: &'static str,
     /// What it compares with what.
     pub question: &'static str,
+    /// What it reads.
+    pub reads: &'static str,
     /// The tools outside Glint that it runs.
     tools: &'static [&'static str],
     /// How many steps its progress has.
@@ -143,7 +203,7 @@ pub struct Check {
 }
 
 /// All checks: first those that need nothing but Glint.
-pub const CHECKS: [&Check; 14] = [
+pub const CHECKS: [&Check; 15] = [
     &inside::DESIGN,
     &inside::LOCKSTEP,
     &inside::CLOCKS,
@@ -151,6 +211,7 @@ pub const CHECKS: [&Check; 14] = [
     &inside::MUTATION,
     &outside::CERTIFICATE,
     &outside::EQUALITY,
+    &outside::TEXT,
     &outside::LINT,
     &outside::ICARUS,
     &outside::VERILATOR,
@@ -180,7 +241,7 @@ impl Check {
 
     /// What is said of it where it is not run on purpose.
     pub fn left_out(&self, why: &str) -> Answer {
-        let finding = Finding::without(Verdict::NotCovered, why);
+        let finding = Finding::without(Verdict::LeftOut, why);
         self.answer(Vec::new(), finding, Duration::ZERO)
     }
 
@@ -189,6 +250,7 @@ impl Check {
             check: self.id,
             title: self.title,
             question: self.question,
+            reads: self.reads,
             tools,
             finding,
             timing: CheckTime { check: self.id, seconds: took.as_secs_f64() },
@@ -211,7 +273,9 @@ impl Check {
         // A tool that does not tell its version will say more about it when it is run.
         let versions = tools.iter().filter_map(|tool| tool.version().ok());
         let versions = versions.collect();
-        let finding = (self.run)(subject, &tools, progress)
+        let limit = subject.effort.time_limit;
+        let finding = (tools.iter().try_for_each(|tool| tool.ensure_works(limit)))
+            .and_then(|()| (self.run)(subject, &tools, progress))
             .unwrap_or_else(|error| Finding::default().failures(vec![format!("{error:#}")]));
         (versions, finding)
     }
@@ -226,6 +290,8 @@ pub struct Answer {
     pub title: &'static str,
     /// [`Check::question`].
     pub question: &'static str,
+    /// [`Check::reads`].
+    pub reads: &'static str,
     /// Versions of the tools outside Glint.
     pub tools: Vec<String>,
     /// What was found.
@@ -245,13 +311,15 @@ pub struct CheckTime {
     pub seconds: f64,
 }
 
-/// What all checks say together.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+/// What all checks say together; the worst of their verdicts decides.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Conclusion {
-    /// Every check that covers the configuration was run, and all of them hold.
+    /// Every check that asks something of the configuration was run, and all of them hold.
     Verified,
-    /// Nothing failed, but a check could not be run, or decides nothing.
+    /// Every check that was not left out on purpose was run, and all of them hold.
+    InPart,
+    /// Nothing failed, but a check could not be run to its end, or decides nothing.
     Incomplete,
     /// Something does not hold.
     Failed,
@@ -260,18 +328,15 @@ pub enum Conclusion {
 impl Conclusion {
     /// Of some answers.
     pub fn of(answers: &[Answer]) -> Self {
-        let any = |verdict| answers.iter().any(|it| it.finding.verdict == verdict);
-        match (any(Verdict::Failed), any(Verdict::NotRun) || any(Verdict::Undecided)) {
-            (true, _) => Self::Failed,
-            (false, true) => Self::Incomplete,
-            (false, false) => Self::Verified,
-        }
+        let verdicts = answers.iter().map(|answer| answer.finding.verdict.conclusion());
+        verdicts.max().unwrap_or(Self::Incomplete)
     }
 
     /// For people.
     pub fn words(self) -> &'static str {
         match self {
             Self::Verified => "verified",
+            Self::InPart => "verified in part",
             Self::Incomplete => "incomplete",
             Self::Failed => "FAILED",
         }
@@ -291,10 +356,14 @@ pub struct Record {
     pub device: &'static str,
     /// SHA-256 of the configuration with all its keys.
     pub configuration: String,
+    /// Each Verilog and memory file that `generate` writes; none where golden model and simulation do not agree on the bench.
+    pub files: Vec<FileDigest>,
     /// Whether everything was done, however long it takes.
     pub full: bool,
     /// What all checks say together.
     pub conclusion: Conclusion,
+    /// How many checks say what.
+    pub counts: BTreeMap<Verdict, usize>,
     /// In the order in which they were run.
     pub checks: Vec<Answer>,
 }
@@ -302,14 +371,24 @@ pub struct Record {
 impl Record {
     /// Of the answers of all checks.
     pub fn new(subject: &Subject<'_>, checks: Vec<Answer>) -> Self {
+        let mut counts = BTreeMap::new();
+        let of_text = |file: &&OutputFile| [".v", ".mem"].iter().any(|it| file.path.ends_with(it));
+        let files = subject.files().unwrap_or_default().iter().filter(of_text);
+        let digest = |file: &OutputFile| FileDigest {
+            path: file.path.clone(),
+            sha256: package::digest(file.contents.as_bytes()),
+        };
+        checks.iter().for_each(|it| *counts.entry(it.finding.verdict).or_insert(0) += 1);
         Self {
             glint: env!("CARGO_PKG_VERSION"),
             config: input::label(subject.path),
             name: subject.core.config.name.clone(),
             device: subject.core.device.name,
             configuration: subject.core.digest(),
+            files: files.map(digest).collect(),
             full: subject.effort.full,
             conclusion: Conclusion::of(&checks),
+            counts,
             checks,
         }
     }

@@ -7,6 +7,7 @@ use anyhow::{Context, Result};
 use rayon::prelude::*;
 
 use super::{Check, Finding, Subject, Verdict};
+use crate::base::input;
 use crate::base::text::{counted, grouped};
 use crate::base::transient::Directory;
 use crate::certify::{self, Outcome, statements};
@@ -15,7 +16,9 @@ use crate::equality;
 use crate::package;
 use crate::tools::gates;
 use crate::tools::synthesis::{FAMILIES, Family, synthesise};
-use crate::tools::{LimitReached, Limits, PROOF_LIMITS, Simulator, lint, prove, run_bench};
+use crate::tools::{
+    LimitReached, Limits, PROOF_LIMITS, Simulator, elaborate, lint, prove, run_bench,
+};
 
 /// Results of a bench, and with full effort.
 const POINTS: [u64; 2] = [200, 20_000];
@@ -37,6 +40,7 @@ pub const CERTIFICATE: Check = Check {
     id: "certificate",
     title: "Proof of the error bound",
     question: "Does the bound of the contract follow from the netlist and the microprogram, for all operands?",
+    reads: "the netlist and the microprogram",
     tools: &["gappa"],
     steps: |_| 1,
     run: |subject, tools, _| {
@@ -44,7 +48,7 @@ pub const CERTIFICATE: Check = Check {
         if design.pipeline.is_some() {
             let why =
                 "It is made of a microprogram: see the sequential core of the same description.";
-            return Ok(Finding::without(Verdict::NotCovered, why));
+            return Ok(Finding::without(Verdict::NotApplicable, why));
         }
         let own = if subject.effort.full { subject.effort.time_limit } else { STATEMENT };
         let limit = own.min(subject.effort.time_limit);
@@ -52,7 +56,7 @@ pub const CERTIFICATE: Check = Check {
             Ok(statements) => statements,
             Err(step) => {
                 let why = format!("Gappa is not asked: {step}.");
-                return Ok(Finding::without(Verdict::NotCovered, why));
+                return Ok(Finding::without(Verdict::Unconfirmed, why));
             }
         };
         let outcome = |statement| (statement, certify::prove(&tools[0], None, statement, limit));
@@ -67,7 +71,7 @@ pub const CERTIFICATE: Check = Check {
                 limit.as_secs(),
                 statements.len()
             );
-            return Ok(Finding::without(Verdict::NotCovered, why));
+            return Ok(Finding::without(Verdict::Unconfirmed, why));
         }
         Ok(Finding::new(
             Verdict::Proved,
@@ -87,13 +91,14 @@ pub const EQUALITY: Check = Check {
     id: "equality",
     title: "Equal to the sequential core",
     question: "Does the pipeline show for every point what the sequential core of the same description shows?",
+    reads: "the netlists of pipeline and sequential core",
     tools: &["z3"],
     steps: |_| 1,
     run: |subject, tools, _| {
         let (core, effort) = (subject.core, subject.effort);
         if core.design.pipeline.is_none() {
-            let why = "It is the sequential core.".to_owned();
-            return Ok(Finding::without(Verdict::NotCovered, why));
+            let why = "It is the sequential core.";
+            return Ok(Finding::without(Verdict::NotApplicable, why));
         }
         let sequential = core.device.sequential(&core.config)?;
         let limit = if effort.full { effort.time_limit } else { EQUAL.min(effort.time_limit) };
@@ -112,24 +117,88 @@ pub const EQUALITY: Check = Check {
             equality::Verdict::Different(difference) => {
                 Finding::default().failures(vec![difference.to_string()])
             }
-            equality::Verdict::Open(why) => {
-                Finding::without(Verdict::NotCovered, format!("It is not decided: {why}."))
-            }
+            equality::Verdict::Open(open) => undecided(subject, open, limit),
         })
     },
 };
+
+/// The emitted Verilog of a pipeline and its netlist.
+pub const TEXT: Check = Check {
+    id: "text",
+    title: "Emitted Verilog equal to the netlist",
+    question: "Does the emitted Verilog of the pipeline, memories of delay lines and all, show for every point what its netlist shows?",
+    reads: "the Verilog and memory files of the core, and the netlist",
+    tools: &["yosys", "z3"],
+    steps: |_| 1,
+    run: |subject, tools, _| {
+        let (core, effort) = (subject.core, subject.effort);
+        if core.design.pipeline.is_none() {
+            let why = "It is asked of pipelines; the Verilog of a microprogram is simulated.";
+            return Ok(Finding::without(Verdict::NotApplicable, why));
+        }
+        let limit = if effort.full { effort.time_limit } else { EQUAL.min(effort.time_limit) };
+        let text =
+            elaborate(&tools[0], &subject.sources("")?, &core.config.name, effort.time_limit)?;
+        Ok(match equality::compare_text(&core.design, &text, &tools[1], limit)? {
+            equality::TextVerdict::Equal(proof) => Finding::new(
+                Verdict::Proved,
+                "every point, stalls too, from any state of registers, valid bits and memories after a reset",
+                format!(
+                    "{} of the text equal those of the netlist{}; the check above has the netlist.",
+                    counted(proof.outputs, "output"),
+                    match proof.delays.len() {
+                        0 => String::new(),
+                        memories => format!(
+                            ", and {} delay by a fixed number of clocks",
+                            counted(memories, "memory port")
+                        ),
+                    }
+                ),
+            )
+            .open("Resets between points, which the handshake's proof has; how other tools than Yosys read the text."),
+            equality::TextVerdict::Different(difference) => {
+                Finding::default().failures(vec![difference])
+            }
+            equality::TextVerdict::Open(open) => undecided(subject, open, limit),
+            equality::TextVerdict::Unread(why) => Finding::without(Verdict::Undecided, format!("{why}.")),
+        })
+    },
+};
+
+/// What is said where the solver proves nothing and no point is found that differs.
+fn undecided(subject: &Subject<'_>, open: equality::Open, limit: Duration) -> Finding {
+    let limit = limit.as_secs();
+    match open {
+        equality::Open::Unknown => Finding::without(
+            Verdict::Undecided,
+            "Unknown: z3 gives up or proposes values of products that there are not, and no point was found that differs.",
+        ),
+        equality::Open::Limit => Finding {
+            complete_with: Some(format!(
+                "glint verify {} --full --time-limit {}",
+                input::label(subject.path),
+                limit.saturating_mul(10)
+            )),
+            ..Finding::without(
+                Verdict::LimitReached,
+                format!("z3 has no proof within {limit} s, and no point was found that differs."),
+            )
+        },
+    }
+}
 
 /// The emitted text.
 pub const LINT: Check = Check {
     id: "lint",
     title: "Lint",
     question: "Have linters at their strictest nothing to say about the emitted Verilog?",
+    reads: "the Verilog and memory files of the core",
     tools: &["iverilog", "verilator"],
     steps: |_| 1,
     run: |subject, tools, _| {
         let dir = Directory::new().context("cannot make a directory for the linters")?;
         let mut sources = Vec::new();
-        for (name, contents) in subject.core.verilog()? {
+        for (name, contents) in subject.sources("")? {
             fs::write(dir.path().join(&name), contents)
                 .with_context(|| format!("cannot write `{name}` for the linters"))?;
             if name.ends_with(".v") {
@@ -158,6 +227,7 @@ pub const ICARUS: Check = Check {
     id: "icarus",
     title: "Emitted Verilog in Icarus Verilog",
     question: "Does the emitted Verilog give, on every clock, the outputs on which golden model and simulation agree?",
+    reads: "the Verilog and memory files of the core, and the shipped bench with other points",
     tools: &["iverilog", "vvp"],
     steps: |_| 1,
     run: |subject, _, _| bench(subject, Simulator::Icarus),
@@ -168,6 +238,7 @@ pub const VERILATOR: Check = Check {
     id: "verilator",
     title: "Emitted Verilog in Verilator",
     question: ICARUS.question,
+    reads: "the Verilog and memory files of the core, and the shipped bench with other points",
     tools: &["verilator"],
     steps: |_| 1,
     run: |subject, _, _| bench(subject, Simulator::Verilator),
@@ -197,6 +268,7 @@ pub const SYNTHESIS: Check = Check {
     id: "synthesis",
     title: "Synthesis",
     question: "Is the emitted Verilog synthesised for each family of FPGAs, and what does it take?",
+    reads: "the Verilog and memory files of the core",
     tools: &["yosys"],
     steps: |_| FAMILIES.len() as u64,
     run: |subject, tools, progress| {
@@ -226,6 +298,7 @@ pub const FORMAL: Check = Check {
     id: "formal",
     title: "Proof of the handshake",
     question: "Do valid, busy and done come exactly when they should, for all inputs and from any state, and are operands stable meanwhile?",
+    reads: "the files as they are, from which products and ROMs of the datapath are cut",
     tools: &["yosys", "yosys-smtbmc", "z3"],
     steps: |_| 1,
     run: |subject, _, _| {
@@ -257,9 +330,7 @@ pub const FORMAL: Check = Check {
         for module in &proofs {
             if let Err(error) = prove(&flat, module, limits) {
                 return match error.downcast_ref::<LimitReached>() {
-                    Some(_) => {
-                        Ok(Finding::without(Verdict::NotRun, format!("Undecided: {error:#}")))
-                    }
+                    Some(_) => Ok(Finding::without(Verdict::LimitReached, format!("{error:#}"))),
                     None => Err(error),
                 };
             }
@@ -280,6 +351,7 @@ pub const COCOTB: Check = Check {
     id: "cocotb",
     title: "Emitted Verilog driven from Python",
     question: "Does the core do what its manifest says, for a bench in Python that knows nothing else of it?",
+    reads: "the files as they are",
     tools: &["python3", "iverilog"],
     steps: |_| 1,
     run: |subject, tools, _| {
@@ -317,9 +389,7 @@ pub const COCOTB: Check = Check {
 /// Everything that is emitted, in a directory of its own.
 fn written(subject: &Subject<'_>) -> Result<Directory> {
     let dir = Directory::new().context("cannot make a directory for what is emitted")?;
-    let vectors = subject.core.shipped_vectors()?;
-    let files = subject.core.files(subject.path, vectors)?;
-    for file in files.iter().chain([&package::driver()]) {
+    for file in subject.files()?.iter().chain([&package::driver()]) {
         let path = dir.path().join(&file.path);
         path.parent()
             .map_or(Ok(()), fs::create_dir_all)
@@ -334,6 +404,7 @@ pub const GATES: Check = Check {
     id: "gates",
     title: "Netlists at gate level",
     question: "Do the netlists that synthesis makes for FPGAs, ROM contents and all, pass the bench of their source?",
+    reads: "netlists that Yosys makes of the Verilog and memory files of the core, and the shipped bench with other points",
     tools: &["yosys", "iverilog", "vvp"],
     steps: |_| simulated().count() as u64,
     run: |subject, tools, progress| {

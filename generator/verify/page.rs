@@ -29,29 +29,18 @@ struct View<'a> {
 /// # Errors
 /// A template that fails.
 pub fn page(record: &Record, timings: &[CheckTime]) -> Result<String> {
-    let count = |verdict: Verdict| {
-        let checks = record.checks.iter();
-        let count = checks.filter(|it| it.finding.verdict == verdict).count();
-        (class(verdict), verdict.words(), count)
-    };
-    let all = [
-        Verdict::Proved,
-        Verdict::Passed,
-        Verdict::Failed,
-        Verdict::NotCovered,
-        Verdict::Undecided,
-        Verdict::NotRun,
-    ];
+    let counts = record.counts.iter();
     let checks = record.checks.iter();
     let page = Page {
         marker: MARKER,
         record,
         class: match record.conclusion {
             Conclusion::Verified => "verified",
+            Conclusion::InPart => "in-part",
             Conclusion::Incomplete => "incomplete",
             Conclusion::Failed => "failed",
         },
-        counts: all.map(count).into_iter().filter(|it| it.2 > 0).collect(),
+        counts: counts.map(|(&it, &count)| (class(it), it.words(), count)).collect(),
         checks: checks
             .clone()
             .map(|answer| View { answer, class: class(answer.finding.verdict) })
@@ -72,8 +61,11 @@ fn class(verdict: Verdict) -> &'static str {
         Verdict::Proved => "proved",
         Verdict::Passed => "passed",
         Verdict::Failed => "failed",
-        Verdict::NotCovered => "not-covered",
         Verdict::Undecided => "undecided",
+        Verdict::LimitReached => "limit-reached",
         Verdict::NotRun => "not-run",
+        Verdict::Unconfirmed => "unconfirmed",
+        Verdict::LeftOut => "left-out",
+        Verdict::NotApplicable => "not-applicable",
     }
 }

@@ -20,7 +20,7 @@ fn core() -> Core {
 /// What the checks that need nothing but Glint say.
 fn verified(core: &Core) -> Record {
     let effort = Effort { full: false, without_tools: true, time_limit: Duration::from_secs(1) };
-    let subject = Subject { path: "core.toml", core, effort, proofs: Path::new("proofs") };
+    let subject = Subject::new("core.toml", core, effort, Path::new("proofs"));
     let checks = CHECKS.iter().filter(|check| !check.is_outside());
     let answers = checks.map(|check| check.run(&subject, &|_| ())).collect();
     Record::new(&subject, answers)
@@ -29,6 +29,25 @@ fn verified(core: &Core) -> Record {
 fn finding<'a>(record: &'a Record, check: &str) -> &'a Finding {
     let answer = record.checks.iter().find(|answer| answer.check == check);
     &answer.expect("a check").finding
+}
+
+#[test]
+fn the_worst_verdict_decides() {
+    let answer =
+        |verdict| CHECKS[0].answer(Vec::new(), Finding::without(verdict, ""), Duration::ZERO);
+    for (verdict, conclusion) in [
+        (Verdict::Passed, Conclusion::Verified),
+        (Verdict::NotApplicable, Conclusion::Verified),
+        (Verdict::Unconfirmed, Conclusion::Verified),
+        (Verdict::LeftOut, Conclusion::InPart),
+        (Verdict::Undecided, Conclusion::Incomplete),
+        (Verdict::LimitReached, Conclusion::Incomplete),
+        (Verdict::NotRun, Conclusion::Incomplete),
+        (Verdict::Failed, Conclusion::Failed),
+    ] {
+        let both = [answer(Verdict::Proved), answer(verdict)];
+        assert_eq!(Conclusion::of(&both), conclusion, "{verdict:?}");
+    }
 }
 
 #[test]

@@ -10,11 +10,15 @@ mod dot_product;
 mod normaliser;
 
 use dot_product::DOT_PRODUCT;
-use glint::config::{Config, parse, sample};
+use glint::config::{Config, Problems, Schema, parse, sample};
 use glint::core::Core;
 use glint::cosim::exhaustive::{Clocks, Proof, Shard, State};
 use glint::cosim::trial;
+use glint::dsl::{Designer, end, step, valid};
+use glint::fixed::Format;
 use glint::golden::Contract;
+use glint::golden::device::{self, Formula};
+use glint::golden::frame::{Datapath, Frame, Slot, idle, step as execute};
 use glint::registry::Device;
 use normaliser::NORMALISER;
 
@@ -170,5 +174,75 @@ fn vectors_by_hand() {
         raw.clear();
         core.contract.results(&operands, 0, &mut raw);
         assert_eq!(raw, [expected], "{operands:?}");
+    }
+}
+
+/// A sum of two points, this and the one before.
+struct Sum {
+    x: Slot,
+    before: Slot,
+    sum: Slot,
+}
+
+impl Datapath for Sum {}
+
+impl Formula for Sum {
+    fn exact(&self, x: &[f64]) -> Vec<f64> {
+        vec![x[0]]
+    }
+}
+
+fn sum_model(shows: bool) -> device::Device<Sum> {
+    let mut frame = Frame::default();
+    let it = Sum {
+        x: frame.operand("x", Format::unsigned(8, 0)),
+        before: frame.register("earlier", Format::unsigned(8, 0)),
+        sum: frame.register("sum", Format::unsigned(9, 0)),
+    };
+    frame.shows("sum_out", it.sum);
+    let add = execute(|it: &Sum, s| {
+        s[it.sum] = s[it.before] + s[it.x];
+        s[it.before] = s[it.x];
+    });
+    let result = if shows { idle().valid() } else { idle() };
+    frame.device(it, [idle(), add, result.end()])
+}
+
+fn sum_of(shows: bool) -> Box<dyn Contract> {
+    let slot = sum_model(shows);
+    let mut frame = Frame::default();
+    let at = frame.hidden();
+    slot.contract(Sum { x: at, before: at, sum: at })
+}
+
+/// Every command builds the core first.
+#[test]
+fn results_that_depend_on_the_past_and_results_that_never_come_are_refused() {
+    let sum = Device {
+        name: "sum",
+        summary: "",
+        schema: || Schema { device: "sum", keys: vec![], check: |_: &Config, _: &mut Problems| {} },
+        describe: |d: &Designer, _| {
+            let x = d.operand("x", Format::unsigned(8, 0)).q();
+            let before = d.register("earlier", Format::unsigned(8, 0));
+            let sum = d.register("sum", Format::unsigned(9, 0));
+            sum.takes(d.add("both", before.q(), x));
+            before.takes(x);
+            d.output("sum_out", sum.q());
+            let add = step("add", [sum.load(), before.load()]);
+            d.microprogram([step("idle", []), add, step("result", [valid(), end()])]);
+        },
+        model: |_| sum_model(true).model(),
+        contract: |_| sum_of(true),
+    };
+    let silent = Device { contract: |_| sum_of(false), ..sum };
+    for (device, expected) in [
+        (sum, "`sum_out` depends on what `earlier` held before the computation; load `earlier`"),
+        (silent, "shows no result within"),
+    ] {
+        let config = Config::defaults(&(device.schema)(), "sum");
+        let Err(error) = Core::new(device, config) else { panic!("{expected}: accepted") };
+        let text = format!("{error:#}");
+        assert!(text.contains(expected), "{text}");
     }
 }

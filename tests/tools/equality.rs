@@ -1,16 +1,18 @@
 //! Pipelines against the sequential cores that they are made of, by an SMT solver: proved as they are, refuted with a fault.
 
+use std::cell::Cell;
 use std::time::Duration;
 
 use glint::core::Core;
 use glint::dsl::{Designer, end, step, valid};
-use glint::equality::{Verdict, compare};
+use glint::equality::{Open, TextVerdict, Verdict, compare, compare_text};
 use glint::fixed::Format;
 use glint::hdl::netlist::{Design, Driver, NetId, Op};
 use glint::hdl::pipeline::{Delays, Goal, Options, TARGETS, pipeline};
-use glint::tools::Tool;
+use glint::tools::{Tool, elaborate};
+use regex::Regex;
 
-use crate::common::cores::{all_configurations, configuration};
+use crate::common::cores::{all_configurations, configuration, configuration_with};
 
 /// A number that no test at random meets.
 const NUMBER: u64 = 0x5_a5a5;
@@ -156,4 +158,85 @@ fn the_solver_finds_the_point_that_differs() {
     };
     assert_eq!(difference.operands, [("x".to_owned(), NUMBER)]);
     assert_eq!([difference.sequential, difference.pipeline], [NUMBER.pow(2), 7]);
+}
+
+/// z3 gives up of the first, and has no time for the second.
+#[test]
+fn what_the_solver_leaves_open_is_unknown_or_a_limit() {
+    let wide = "\n[difference]\nfraction = 27\n";
+    let core = configuration_with("configs/quadratic_pipelined.toml", wide);
+    assert_eq!(verdict(&sequential(&core), &core.design), Verdict::Open(Open::Unknown));
+    let core = configuration("configs/cosine_power_pipelined.toml");
+    let z3 = Tool::find("z3").unwrap_or_else(|error| panic!("{error}"));
+    let limited = compare(&sequential(&core), &core.design, &z3, Duration::from_millis(1));
+    assert_eq!(limited.expect("a verdict"), Verdict::Open(Open::Limit));
+}
+
+/// What is said of the text of a pipeline, which is changed.
+fn of_text(core: &Core, change: impl Fn(&str) -> String) -> TextVerdict {
+    let [yosys, z3] = ["yosys", "z3"].map(|name| Tool::find(name).expect("a tool"));
+    let limit = Duration::from_secs(900);
+    let mut files = core.verilog().expect("Verilog");
+    for (_, text) in files.iter_mut().filter(|(name, _)| name.ends_with(".v")) {
+        *text = change(&with_reset(text));
+    }
+    let text = elaborate(&yosys, &files, &core.config.name, limit).expect("a netlist");
+    compare_text(&core.design, &text, &z3, limit).expect("a verdict")
+}
+
+/// With counters of slots that a reset clears.
+fn with_reset(text: &str) -> String {
+    let clocked = Regex::new(r"if \(advance\) begin\n\s+(slot_of_\d+) <=").expect("a pattern");
+    clocked.replace_all(text, "if (!rst_n) $1 <= 0; else $0").into_owned()
+}
+
+#[test]
+fn the_text_of_every_pipeline_is_proved_equal_to_its_netlist() {
+    let mut delays = 0;
+    for (path, core) in all_configurations() {
+        if core.design.pipeline.is_none() {
+            continue;
+        }
+        match of_text(&core, str::to_owned) {
+            TextVerdict::Equal(proof) => {
+                assert!(proof.outputs > 0 && proof.registers > 0, "{path}: {proof:?}");
+                delays += proof.delays.len();
+            }
+            other => panic!("{path}: {other:?}"),
+        }
+    }
+    assert!(delays > 8, "{delays}");
+}
+
+/// In operators, operands, choices, enables, bits, and in the memory of a delay line.
+#[test]
+fn a_fault_in_the_text_is_not_proved() {
+    let core = configuration("configs/cosine_power_pipelined.toml");
+    let (planted, mut faults) = (Cell::new(0), 0);
+    for (was, is) in [
+        ("COS_GAMMA_MOST - cos_gamma", "COS_GAMMA_MOST - cos_gamma - 1"),
+        ("if (advance) begin", "if (in_valid) begin"),
+        ("~accumulator", "accumulator"),
+        (" : 16'd0", " : 16'h8000"),
+        ("[31:16];", "[30:15];"),
+        // Of a delay line, as a module or in place.
+        ("slot == LAST", "slot == LAST - 1'b1"),
+        ("else if (enable) slot", "else slot"),
+        ("words[slot] <= entering", "words[slot] <= ~entering"),
+        ("leaving <= words[slot]", "leaving <= words[0]"),
+        ("slot_of_7 == 3'd6", "slot_of_7 == 3'd5"),
+        ("<= {red, green", "<= {green, red"),
+        ("<= delay_s0_s8[slot_of_7]", "<= delay_s0_s8[0]"),
+    ] {
+        let verdict = of_text(&core, |text| {
+            planted.set(planted.get() + u32::from(text.contains(was)));
+            text.replacen(was, is, 1)
+        });
+        // The others find nothing to replace.
+        if planted.replace(0) > 0 {
+            faults += 1;
+            assert!(!matches!(verdict, TextVerdict::Equal(_)), "{was}");
+        }
+    }
+    assert!(faults > 6, "{faults}");
 }

@@ -132,7 +132,7 @@ fn verify_proves_the_wrappers() {
     let core = configuration("configs/cosine_power.toml");
     let check = CHECKS.iter().find(|check| check.id == "formal").expect("the check");
     let effort = Effort { full: false, without_tools: false, time_limit: LIMIT };
-    let subject = Subject { path: "core.toml", core: &core, effort, proofs: Path::new("proofs") };
+    let subject = Subject::new("core.toml", &core, effort, Path::new("proofs"));
     let finding = check.run(&subject, &|_| ()).finding;
     assert_eq!(finding.verdict, Verdict::Proved, "{}", finding.words);
     for wrapper in ["axis", "registers", "wb"] {

@@ -10,7 +10,7 @@ use serde_json::json;
 
 use super::load_sequential;
 use crate::base::input;
-use crate::certify::{self, Outcome, Statement, ensure_works, prove, questions, statements};
+use crate::certify::{self, Outcome, Statement, prove, questions, statements};
 use crate::cli::own_file::OwnFile;
 use crate::cli::{Configs, Output, progress, say, tables};
 use crate::golden::Contract;
@@ -60,7 +60,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
         bail!("`{}` is no directory: give another directory with --out", out.display());
     }
     let gappa = Tool::find("gappa")?;
-    ensure_works(&gappa, limit)?;
+    gappa.ensure_works(limit)?;
     let coq = arguments.coq.then(|| Tool::find("coqc")).transpose()?;
     let mut list = Vec::new();
     let mut whole = true;

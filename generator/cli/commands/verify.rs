@@ -19,8 +19,9 @@ use crate::verify::{
 /// Writes `DIR/<name>.html`, one page that needs no network, and `DIR/<name>.json` with the same for scripts: what was
 /// shown, by which check, over which domain, with which tools, and what is left open. Both are the same whenever they are
 /// made with the same tools, but for the page's last section: how long each check took, which `DIR/<name>.timings.json` has too.
-/// The exit code is 0 only if every check that covers the configuration, and that --without-tools does not leave out,
-/// was run and holds: a tool that is missing leaves the verification incomplete. So does a proof of the accuracy
+/// The exit code is 0 only if every check that asks something of the configuration, and that --without-tools does not leave
+/// out, was run to its end and holds: a tool that is missing, a solver that answers unknown or a time limit that is reached
+/// leaves the verification incomplete. So does a proof of the accuracy
 /// contract that takes more than some seconds, unless --full makes it or its record is in --proofs: that is found
 /// by the configuration's digest and checked again in part.
 #[derive(Args)]
@@ -86,7 +87,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     let mut verified = true;
     for (one, files) in loaded.iter().zip(files) {
         let (record, timings) = one_configuration(output, one, arguments)?;
-        verified &= record.conclusion == Conclusion::Verified;
+        verified &= record.conclusion <= Conclusion::InPart;
         let written = files.write(&record, &timings)?;
         if output.json {
             list.push(json!({ "written": written, "record": record }));
@@ -112,7 +113,7 @@ fn one_configuration(
         without_tools: arguments.without_tools,
         time_limit: arguments.time_limit.get(),
     };
-    let subject = Subject { path: &one.path, core: &one.core, effort, proofs: &arguments.proofs };
+    let subject = Subject::new(&one.path, &one.core, effort, &arguments.proofs);
     let mut answers: Vec<Answer> = Vec::new();
     for check in CHECKS {
         if check.is_outside() && arguments.without_tools {
@@ -131,30 +132,20 @@ fn one_configuration(
     Ok((Record::new(&subject, answers), timings))
 }
 
-/// What all checks say together: what was left out, what could not be run, and the command that completes it.
+/// What all checks say together, which of them say what but that it holds, and the command that completes it.
 fn print_conclusion(one: &Loaded, record: &Record) {
     let with = |verdict| record.checks.iter().filter(move |it| it.finding.verdict == verdict);
-    let titles = |verdict| with(verdict).map(|answer| answer.title).collect::<Vec<_>>().join(", ");
+    let counts = record.counts.iter();
+    let counts: Vec<String> = counts.map(|(it, count)| format!("{count} {}", it.words())).collect();
     let words = record.conclusion.words();
-    tables::print_line(&match record.conclusion {
-        Conclusion::Incomplete => {
-            let mut line = format!("{}: {words}", one.path);
-            for verdict in [Verdict::NotRun, Verdict::Undecided] {
-                if with(verdict).count() > 0 {
-                    line += &format!("; {}: {}", verdict.words(), titles(verdict));
-                }
-            }
-            line
-        }
-        _ => format!("{}: {words}", one.path),
-    });
-    for command in with(Verdict::NotRun).filter_map(|it| it.finding.complete_with.as_ref()) {
-        say!("  complete it with: {}", command.replacen(&record.config, &one.path, 1));
+    tables::print_line(&format!("{}: {words}: {}", one.path, counts.join(", ")));
+    let holds = |it: &Verdict| matches!(it, Verdict::Proved | Verdict::Passed | Verdict::Failed);
+    for &verdict in record.counts.keys().filter(|it| !holds(it)) {
+        let titles: Vec<&str> = with(verdict).map(|answer| answer.title).collect();
+        tables::print_line(&format!("  {}: {}", verdict.words(), titles.join(", ")));
     }
-    match with(Verdict::NotCovered).count() {
-        0 => (),
-        1 => tables::print_line("  1 check above says nothing of it"),
-        count => say!("  {count} checks above say nothing of it"),
+    for command in record.checks.iter().filter_map(|it| it.finding.complete_with.as_ref()) {
+        say!("  complete it with: {}", command.replacen(&record.config, &one.path, 1));
     }
 }
 

@@ -25,7 +25,7 @@ use crate::hdl::netlist::{Design, NetId};
 
 pub use graph::{Cell, Graph, Node};
 pub use target::{TARGETS, Target};
-pub use unroll::{Line, Unrolled, Walked, unroll, unroll_line};
+pub use unroll::{Line, Unrolled, Walked, carried, unroll, unroll_line};
 
 /// What is asked of the schedule.
 #[derive(Clone, Copy, Debug, PartialEq)]

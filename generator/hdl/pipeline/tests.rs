@@ -111,6 +111,9 @@ fn what_an_earlier_computation_left_cannot_be_a_result() {
     });
     let text = refused(&design, Goal::ClockMhz(100.0));
     assert!(text.contains("`total_out` depends on what `total` held before"), "{text}");
+    let carried = super::carried(&design).expect("a state between points").to_string();
+    assert!(carried.contains("has a state between points"), "{carried}");
+    assert!(super::carried(&power()).is_none());
 }
 
 /// The fourth power of an operand, by two products.

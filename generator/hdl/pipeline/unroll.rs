@@ -101,7 +101,25 @@ enum Iterations {
     InPowers,
 }
 
+/// The result that depends on what an earlier computation has left, in words; none where no result does, or where the
+/// microprogram cannot be executed to its results so.
+pub fn carried(design: &Design) -> Option<Diagnostic> {
+    let (executor, results) = executed(design, Iterations::InPowers).ok()?;
+    executor.determined(&results, "has a state between points, which nothing here speaks of").err()
+}
+
 fn run(design: &Design, iterations: Iterations) -> Result<Unrolled, Diagnostic> {
+    let (mut executor, results) = executed(design, iterations)?;
+    executor.determined(&results, "cannot be a pipeline")?;
+    executor.unrolled.results = results;
+    Ok(executor.unrolled)
+}
+
+/// The execution to the results, and these.
+fn executed(
+    design: &Design,
+    iterations: Iterations,
+) -> Result<(Executor<'_>, Vec<(NetId, NetId)>), Diagnostic> {
     let mut executor = Executor::new(design, iterations);
     let state = executor.power_up();
     let state = executor.start(&state);
@@ -115,9 +133,7 @@ fn run(design: &Design, iterations: Iterations) -> Result<Unrolled, Diagnostic> 
             place,
         ));
     };
-    executor.determined(&results)?;
-    executor.unrolled.results = results;
-    Ok(executor.unrolled)
+    Ok((executor, results))
 }
 
 impl<'a> Executor<'a> {
@@ -401,14 +417,15 @@ impl<'a> Executor<'a> {
     }
 
     /// No result depends on what an earlier computation has left.
-    fn determined(&self, results: &[(NetId, NetId)]) -> Result<(), Diagnostic> {
+    fn determined(&self, results: &[(NetId, NetId)], what: &str) -> Result<(), Diagnostic> {
         let graph = &self.unrolled.graph;
         for &(port, value) in results {
             for id in graph.cone([value]) {
                 if let Cell::Unknown(register) = &graph.node(id).cell {
                     return Err(Diagnostic::new(
                         format!(
-                            "`{}` cannot be a pipeline: `{}` depends on what `{register}` held before the computation",
+                            "`{}` {what}: `{}` depends on what `{register}` held before the computation; load \
+                             `{register}` in each before it is read",
                             self.design.name,
                             self.design.net(port).name
                         ),

@@ -30,7 +30,8 @@ fn page_and_record_are_the_same_every_time_but_for_the_timings() {
     let dir = dir();
     let verify = [&WITHOUT_TOOLS[..], &["--out", "made"]].concat();
     let run = dir.glint(&verify).quiet();
-    assert!(run.out.contains("core.toml: verified"), "{}", run.out);
+    assert!(run.out.contains("core.toml: verified in part: "), "{}", run.out);
+    assert!(run.out.contains("  left out: Proof of the error bound, "), "{}", run.out);
     let made = || {
         let page = dir.read("made/core.html");
         let (before, after) = page.split_once("id=\"timings\"").expect("timings");
@@ -49,8 +50,22 @@ fn page_and_record_are_the_same_every_time_but_for_the_timings() {
     assert!(!page.contains(&here) && !record.contains(&here));
 
     let found = dir.json("made/core.json");
-    assert_eq!(found["conclusion"], "verified");
+    assert_eq!(found["conclusion"], "in-part");
+    assert!(page.contains("badge in-part\">verified in part"), "the headline is green");
     assert_eq!(found["full"], false);
+    // The digests are those of the files that `generate` writes.
+    dir.glint(["generate", "core.toml"]).good();
+    let files = found["files"].as_array().expect("files");
+    assert!(files.iter().any(|file| file["path"] == "rtl_out/core/core.v"), "{files:?}");
+    for file in files {
+        let [path, digest] = ["path", "sha256"].map(|it| file[it].as_str().expect("text"));
+        assert_eq!(glint::package::digest(dir.read(path).as_bytes()), digest, "{path}");
+        assert!(page.contains(digest), "{path}");
+    }
+    let checks = found["checks"].as_array().map_or(0, Vec::len) as u64;
+    let counts = found["counts"].as_object().expect("counts");
+    assert_eq!(counts.values().filter_map(Value::as_u64).sum::<u64>(), checks);
+    assert_eq!(counts["left-out"], 10);
     let verdicts = verdicts(&found);
     for expected in [
         ("design", "proved"),
@@ -61,12 +76,12 @@ fn page_and_record_are_the_same_every_time_but_for_the_timings() {
     ] {
         assert!(verdicts.contains(&expected), "{verdicts:?}");
     }
-    assert!(verdicts.contains(&("icarus", "not-covered")), "{verdicts:?}");
+    assert!(verdicts.contains(&("icarus", "left-out")), "{verdicts:?}");
     assert!(page.contains("--without-tools leaves it out."));
     assert_eq!(again.json()["configurations"][0]["record"], found);
     let timings = dir.json("made/core.timings.json");
     assert_eq!(timings["seconds"].as_array().map(Vec::len), Some(verdicts.len()));
-    assert_eq!(dir.files().len(), 4);
+    assert_eq!(dir.files().keys().filter(|it| it.starts_with("made")).count(), 3);
 }
 
 #[test]
@@ -101,7 +116,8 @@ fn a_contract_that_was_not_swept_is_not_verified() {
     assert_eq!(run.code, 1, "{run:?}");
     for part in [
         "Golden model against the formula: not run",
-        "core.toml: incomplete; not run: Golden model against the formula",
+        "core.toml: incomplete: ",
+        "  not run: Golden model against the formula\n",
         "complete it with: glint verify core.toml --full --without-tools",
     ] {
         assert!(run.out.contains(part), "{}", run.out);
@@ -170,6 +186,24 @@ fn a_tool_that_does_not_do_its_work_is_a_failure() {
     let verdicts = verdicts(found);
     assert!(verdicts.contains(&("verilator", "failed")), "{verdicts:?}");
     assert!(run.out.contains("no such licence"), "{}", run.out);
+}
+
+/// They exit with 0 and say nothing.
+#[cfg(unix)]
+#[test]
+fn silent_tools_show_nothing() {
+    let dir = dir();
+    for tool in ["iverilog", "vvp", "verilator", "yosys", "yosys-smtbmc", "z3", "python3", "gappa"]
+    {
+        dir.script(&format!("bin/{tool}"), "exit 0");
+    }
+    let run =
+        Run::of(dir.command().args(["verify", "core.toml"]).env("PATH", dir.at("bin")).output());
+    assert_eq!(run.code, 1, "{run:?}");
+    let found = dir.json("verification/core.json");
+    for (check, verdict) in &verdicts(&found)[5..] {
+        assert_eq!(*verdict, "failed", "{check}");
+    }
 }
 
 #[test]

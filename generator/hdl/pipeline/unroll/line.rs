@@ -100,7 +100,7 @@ impl Points<'_> {
             from_first.registers[number] = begun.registers[number];
         }
         let results = self.shown(&from_first, &successors(design, *first), delay - 1)?;
-        self.executor.determined(&results)?;
+        self.executor.determined(&results, "cannot be a pipeline")?;
         self.executor.unrolled.results = results;
         let walk = held(&begun).into_iter().zip(before).zip(held(&gone));
         let walk = walk.map(|((first, before), next)| Walked { first, before, next }).collect();

@@ -1,0 +1,548 @@
+//! A flat module, as Yosys reads it from Verilog, clock by clock on terms.
+//!
+//! Its cells mean what Yosys documents of them. A bit that is not determined is any bit, a new one wherever it is read, and so
+//! is a word beyond the contents of a memory.
+
+use std::collections::HashMap;
+
+use anyhow::{Context, Result, bail, ensure};
+use serde_json::Value;
+
+use super::term::{ADDRESS, Id, Term, Terms};
+use crate::base::fixed::MAX_WIDTH;
+
+/// A bit of a connection.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Bit {
+    Wire(usize),
+    Known(bool),
+    Any,
+}
+
+type Bits = Vec<Bit>;
+
+/// What drives wires in the same clock.
+enum What {
+    Cell {
+        kind: String,
+        signed: [bool; 2],
+    },
+    /// A word of a memory that is never written.
+    Word(Vec<u64>),
+    /// A word of one that is.
+    Read(Read),
+}
+
+/// A port by which a memory is read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Read {
+    pub memory: usize,
+    pub port: usize,
+}
+
+struct Cell {
+    what: What,
+    inputs: [Bits; 3],
+    output: Bits,
+}
+
+struct Register {
+    data: Bits,
+    output: Bits,
+}
+
+/// A memory that is written.
+pub struct Memory {
+    /// Read ports.
+    pub reads: Vec<Read>,
+    width: usize,
+    addresses: Vec<Bits>,
+    write: Write,
+}
+
+struct Write {
+    address: Bits,
+    data: Bits,
+    enable: Bits,
+}
+
+/// A module.
+pub struct Module {
+    inputs: Vec<(String, Bits)>,
+    outputs: Vec<(String, Bits)>,
+    /// Each after what it reads.
+    cells: Vec<Cell>,
+    registers: Vec<Register>,
+    pub memories: Vec<Memory>,
+    wires: usize,
+}
+
+/// What every wire carries: a bit of a term.
+pub struct Values(Vec<Option<(Id, u32)>>);
+
+/// What the registers hold, each in terms of at most 64 bits, the lowest first.
+pub type Held = Vec<Vec<Id>>;
+
+fn bits(value: &Value) -> Result<Bits> {
+    let bits = value.as_array().context("a connection of the netlist has no bits")?;
+    let bit = |bit: &Value| {
+        Ok(match (bit.as_u64(), bit.as_str()) {
+            (Some(wire), _) => Bit::Wire(wire as usize),
+            (_, Some("0")) => Bit::Known(false),
+            (_, Some("1")) => Bit::Known(true),
+            (_, Some("x" | "z")) => Bit::Any,
+            _ => bail!("a bit of the netlist is `{bit}`"),
+        })
+    };
+    bits.iter().map(bit).collect()
+}
+
+/// A parameter, which Yosys writes in binary.
+fn number(value: &Value) -> Result<usize> {
+    let text = value.as_str().and_then(|text| usize::from_str_radix(text, 2).ok());
+    text.or(value.as_u64().map(|it| it as usize)).context("a parameter of the netlist is no number")
+}
+
+impl Module {
+    /// Reads a module of Yosys's JSON.
+    ///
+    /// # Errors
+    /// It has a cell that is not known here, or what is no clocked circuit with the one clock `clk`.
+    pub fn new(json: &Value) -> Result<Self> {
+        let mut module = Self {
+            inputs: Vec::new(),
+            outputs: Vec::new(),
+            cells: Vec::new(),
+            registers: Vec::new(),
+            memories: Vec::new(),
+            wires: 0,
+        };
+        let ports = json["ports"].as_object().context("the netlist of the text has no ports")?;
+        for (name, port) in ports {
+            let port_bits = bits(&port["bits"])?;
+            match port["direction"].as_str() {
+                Some("input") => module.inputs.push((name.clone(), port_bits)),
+                Some("output") => module.outputs.push((name.clone(), port_bits)),
+                _ => bail!("the port `{name}` of the text has another direction than in or out"),
+            }
+        }
+        let clock = module.inputs.iter().position(|(name, _)| name == "clk");
+        let clock = clock.map(|at| module.inputs.remove(at).1).context("the text has no `clk`")?;
+        let cells = json["cells"].as_object().context("the netlist of the text has no cells")?;
+        for (name, cell) in cells {
+            module.add(cell, &clock).with_context(|| format!("the cell `{name}` of the text"))?;
+        }
+        module.order()?;
+        Ok(module)
+    }
+
+    fn add(&mut self, cell: &Value, clock: &Bits) -> Result<()> {
+        let kind = cell["type"].as_str().unwrap_or_default();
+        let parameter = |name: &str| &cell["parameters"][name];
+        let optional = |name: &str| match &cell["connections"][name] {
+            Value::Null => Ok(Bits::new()),
+            connection => bits(connection),
+        };
+        match kind {
+            "$dff" => {
+                ensure!(
+                    optional("CLK")? == *clock && number(parameter("CLK_POLARITY"))? == 1,
+                    "it does not change at the rising edge of `clk`"
+                );
+                self.registers.push(Register { data: optional("D")?, output: optional("Q")? });
+            }
+            "$mem_v2" => self.add_memory(cell, clock)?,
+            _ => {
+                let signed = |name| number(parameter(name)).is_ok_and(|signed| signed == 1);
+                self.cells.push(Cell {
+                    what: What::Cell {
+                        kind: kind.to_owned(),
+                        signed: [signed("A_SIGNED"), signed("B_SIGNED")],
+                    },
+                    inputs: [optional("A")?, optional("B")?, optional("S")?],
+                    output: optional("Y")?,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    fn add_memory(&mut self, cell: &Value, clock: &Bits) -> Result<()> {
+        let parameter = |name: &str| number(&cell["parameters"][name]);
+        let connection = |name: &str| bits(&cell["connections"][name]);
+        let (width, places) = (parameter("WIDTH")?, parameter("ABITS")?);
+        let [reads, writes] = [parameter("RD_PORTS")?, parameter("WR_PORTS")?];
+        let [read, addresses] = [connection("RD_DATA")?, connection("RD_ADDR")?];
+        let clocked = cell["parameters"]["RD_CLK_ENABLE"].as_str().unwrap_or("1");
+        ensure!(!clocked.contains('1'), "it is read by a clocked port");
+        ensure!(parameter("OFFSET")? == 0, "it does not begin at address 0");
+        let part = |all: &Bits, at: usize, width: usize| all[at * width..(at + 1) * width].to_vec();
+        let contents = if writes == 0 { words(cell, width)? } else { Vec::new() };
+        let memory = self.memories.len();
+        let mut ports = Vec::new();
+        for port in 0..reads {
+            let what = match writes {
+                0 => What::Word(contents.clone()),
+                _ => What::Read(Read { memory, port }),
+            };
+            ports.push(Read { memory, port });
+            self.cells.push(Cell {
+                what,
+                inputs: [part(&addresses, port, places), Bits::new(), Bits::new()],
+                output: part(&read, port, width),
+            });
+        }
+        if writes > 0 {
+            ensure!(writes == 1, "it is written by {writes} ports");
+            ensure!(
+                connection("WR_CLK")? == *clock && parameter("WR_CLK_POLARITY")? == 1,
+                "it is not written at the rising edge of `clk`"
+            );
+            self.memories.push(Memory {
+                addresses: (0..reads).map(|port| part(&addresses, port, places)).collect(),
+                reads: ports,
+                width,
+                write: Write {
+                    address: connection("WR_ADDR")?,
+                    data: connection("WR_DATA")?,
+                    enable: connection("WR_EN")?,
+                },
+            });
+        }
+        Ok(())
+    }
+
+    /// Puts each cell after those whose output it reads.
+    fn order(&mut self) -> Result<()> {
+        let all = |cell: &Cell| cell.inputs.iter().flatten().copied().collect::<Bits>();
+        let registers = self.registers.iter().map(|it| (&it.output, &it.data));
+        let ports = self.inputs.iter().chain(&self.outputs).map(|(_, bits)| (bits, bits));
+        let used = registers.chain(ports).flat_map(|(a, b)| a.iter().chain(b)).copied();
+        let of_cells =
+            self.cells.iter().flat_map(|cell| all(cell).into_iter().chain(cell.output.clone()));
+        let of_memories = self.memories.iter().map(|it| &it.write);
+        let of_memories =
+            of_memories.flat_map(|it| it.address.iter().chain(&it.data).chain(&it.enable)).copied();
+        let wire = |bit| if let Bit::Wire(wire) = bit { Some(wire) } else { None };
+        self.wires = used
+            .chain(of_cells)
+            .chain(of_memories)
+            .filter_map(wire)
+            .max()
+            .map_or(0, |most| most + 1);
+        let mut driver = vec![None; self.wires];
+        for (at, cell) in self.cells.iter().enumerate() {
+            cell.output.iter().copied().filter_map(wire).for_each(|it| driver[it] = Some(at));
+        }
+        let mut place = vec![0; self.cells.len()];
+        // A cell that is open waits for one that it reads.
+        let (mut open, mut done) = (vec![false; self.cells.len()], 0);
+        for root in 0..self.cells.len() {
+            let mut pending = vec![root];
+            while let Some(&at) = pending.last() {
+                if place[at] > 0 {
+                    pending.pop();
+                    continue;
+                }
+                let before = all(&self.cells[at]).into_iter().filter_map(wire);
+                let before = before.filter_map(|it| driver[it]).find(|&it| place[it] == 0);
+                match before {
+                    Some(before) => {
+                        ensure!(!open[at] || !open[before], "the text has a combinational loop");
+                        open[at] = true;
+                        pending.push(before);
+                    }
+                    None => {
+                        done += 1;
+                        place[at] = done;
+                        open[at] = false;
+                        pending.pop();
+                    }
+                }
+            }
+        }
+        let mut cells: Vec<_> = place.into_iter().zip(self.cells.drain(..)).collect();
+        cells.sort_by_key(|&(place, _)| place);
+        self.cells = cells.into_iter().map(|(_, cell)| cell).collect();
+        Ok(())
+    }
+
+    /// Nothing is known.
+    pub fn power_up(&self, terms: &mut Terms) -> Held {
+        self.registers.iter().map(|it| unknown(terms, it.output.len())).collect()
+    }
+
+    /// What every wire carries, with what the inputs and the read ports of memories that are written give.
+    ///
+    /// # Errors
+    /// A cell that is not known here, or wider than terms are.
+    pub fn settle(
+        &self,
+        terms: &mut Terms,
+        held: &Held,
+        mut input: impl FnMut(&mut Terms, &str, u32) -> Id,
+        mut read: impl FnMut(&mut Terms, Read) -> Vec<Id>,
+    ) -> Result<Values> {
+        let mut values = Values(vec![None; self.wires]);
+        for (name, bits) in &self.inputs {
+            ensure!(bits.len() <= MAX_WIDTH as usize, "the port `{name}` has more than 64 bits");
+            let id = input(terms, name, bits.len() as u32);
+            values.set(bits, &[id]);
+        }
+        for (register, held) in self.registers.iter().zip(held) {
+            values.set(&register.output, held);
+        }
+        for cell in &self.cells {
+            let result = match &cell.what {
+                What::Read(port) => read(terms, *port),
+                What::Word(words) => vec![values.rom(terms, cell, words)?],
+                What::Cell { kind, signed } => values
+                    .cell(terms, cell, kind, *signed)
+                    .with_context(|| format!("a cell `{kind}` of the text"))?,
+            };
+            values.set(&cell.output, &result);
+        }
+        Ok(values)
+    }
+
+    /// The rising edge.
+    pub fn edge(&self, terms: &mut Terms, values: &Values) -> Held {
+        self.registers.iter().map(|it| values.columns(terms, &it.data)).collect()
+    }
+
+    /// The outputs by name.
+    pub fn shown(&self, terms: &mut Terms, values: &Values) -> HashMap<String, Id> {
+        let outputs = self.outputs.iter();
+        outputs.map(|(name, bits)| (name.clone(), values.word(terms, bits))).collect()
+    }
+}
+
+impl Memory {
+    /// Any word.
+    pub fn any(&self, terms: &mut Terms) -> Vec<Id> {
+        unknown(terms, self.width)
+    }
+
+    /// What is written.
+    pub fn written(&self, terms: &mut Terms, values: &Values) -> Vec<Id> {
+        values.columns(terms, &self.write.data)
+    }
+
+    /// Address and enable of the write port, and the address of each read port.
+    pub fn control(&self, terms: &mut Terms, values: &Values) -> Vec<Id> {
+        let write = values.columns(terms, &self.write.enable);
+        let addresses = [&self.write.address].into_iter().chain(&self.addresses);
+        let addresses: Vec<Id> = addresses.map(|bits| values.word(terms, bits)).collect();
+        addresses.into_iter().chain(write).collect()
+    }
+}
+
+fn unknown(terms: &mut Terms, width: usize) -> Vec<Id> {
+    let columns = (0..width).step_by(MAX_WIDTH as usize);
+    columns.map(|at| terms.unknown((width - at).min(MAX_WIDTH as usize) as u32)).collect()
+}
+
+/// The contents of a memory that is never written.
+fn words(cell: &Value, width: usize) -> Result<Vec<u64>> {
+    let contents = cell["parameters"]["INIT"].as_str().unwrap_or_default();
+    ensure!(width <= MAX_WIDTH as usize, "its words have more than 64 bits");
+    let words = contents.as_bytes().rchunks(width).map(|word| {
+        let word = std::str::from_utf8(word).ok().and_then(|it| u64::from_str_radix(it, 2).ok());
+        word.context("it is never written, and has words without contents")
+    });
+    let words = words.collect::<Result<Vec<u64>>>()?;
+    ensure!(words.len() == number(&cell["parameters"]["SIZE"])?, "its contents have another size");
+    Ok(words)
+}
+
+impl Values {
+    fn set(&mut self, bits: &Bits, columns: &[Id]) {
+        for (at, bit) in bits.iter().enumerate() {
+            if let Bit::Wire(wire) = *bit {
+                let (column, place) = (at / MAX_WIDTH as usize, at as u32 % MAX_WIDTH);
+                self.0[wire] = columns.get(column).map(|&id| (id, place));
+            }
+        }
+    }
+
+    /// What some bits carry, in terms of at most 64.
+    fn columns(&self, terms: &mut Terms, bits: &Bits) -> Vec<Id> {
+        bits.chunks(MAX_WIDTH as usize).map(|bits| self.word(terms, bits)).collect()
+    }
+
+    /// What at most 64 bits carry. Copies of a highest bit are an extension by a sign.
+    fn word(&self, terms: &mut Terms, bits: &[Bit]) -> Id {
+        let copies = bits.iter().rev().take_while(|bit| Some(*bit) == bits.last()).count();
+        if copies > 1 && matches!(bits.last(), Some(Bit::Wire(_))) {
+            let own = self.word(terms, &bits[..=bits.len() - copies]);
+            return terms.sign_extended(own, bits.len() as u32);
+        }
+        let mut word = None;
+        let mut at = 0;
+        while at < bits.len() {
+            let (part, width) = self.run(terms, &bits[at..]);
+            word = Some(match word {
+                None => part,
+                Some(lower) => terms.make(Term::Join(part, lower), (at + width) as u32),
+            });
+            at += width;
+        }
+        word.unwrap_or_else(|| terms.constant(0, 1))
+    }
+
+    /// The lowest bits that stand beside each other in one term, and how many they are.
+    fn run(&self, terms: &mut Terms, bits: &[Bit]) -> (Id, usize) {
+        let source = |bit: Bit| if let Bit::Wire(wire) = bit { self.0[wire] } else { None };
+        let first = source(bits[0]);
+        let follows = |&(at, bit): &(usize, &Bit)| match (bits[0], first) {
+            (_, Some((id, low))) => source(*bit) == Some((id, low + at as u32)),
+            (Bit::Known(_), _) => matches!(bit, Bit::Known(_)),
+            _ => source(*bit).is_none() && !matches!(bit, Bit::Known(_)),
+        };
+        let width = bits.iter().enumerate().take_while(follows).count();
+        let id = match (bits[0], first) {
+            (_, Some((id, low))) => terms.slice(id, low, width as u32),
+            (Bit::Known(_), _) => {
+                let ones = bits[..width].iter().enumerate();
+                let ones = ones.filter(|(_, bit)| **bit == Bit::Known(true));
+                let pattern = ones.fold(0, |pattern, (at, _)| pattern | 1 << at);
+                terms.constant(pattern, width as u32)
+            }
+            _ => terms.unknown(width as u32),
+        };
+        (id, width)
+    }
+
+    fn rom(&self, terms: &mut Terms, cell: &Cell, words: &[u64]) -> Result<Id> {
+        let width = cell.output.len() as u32;
+        let address = self.word(terms, &cell.inputs[0]);
+        let address = terms.resized(address, ADDRESS);
+        let memory = terms.memory(words);
+        let word = terms.make(Term::Word { memory, address }, width);
+        if cell.inputs[0].len() < 32 && words.len() >= 1 << cell.inputs[0].len() {
+            return Ok(word);
+        }
+        let size = terms.constant(words.len() as u64, ADDRESS);
+        let inside = terms.make(Term::Less(address, size), 1);
+        let beyond = terms.beyond(memory, address, width);
+        Ok(terms.choice(inside, word, beyond))
+    }
+
+    /// The result of a cell.
+    fn cell(
+        &self,
+        terms: &mut Terms,
+        cell: &Cell,
+        kind: &str,
+        signed: [bool; 2],
+    ) -> Result<Vec<Id>> {
+        let [a, b, s] = &cell.inputs;
+        let width = cell.output.len();
+        let extended = |terms: &mut Terms, bits: &Bits, signed: bool, width: usize| {
+            ensure!(bits.len().max(width) <= MAX_WIDTH as usize, "it has more than 64 bits");
+            let word = self.word(terms, bits);
+            Ok(match signed && width > bits.len() {
+                true => terms.sign_extended(word, width as u32),
+                false => terms.resized(word, width as u32),
+            })
+        };
+        let both = signed == [true; 2];
+        let of = |terms: &mut Terms, width: usize| -> Result<[Id; 2]> {
+            Ok([extended(terms, a, both, width)?, extended(terms, b, both, width)?])
+        };
+        let truth = |terms: &mut Terms, bits: &Bits| {
+            let columns = self.columns(terms, bits);
+            let any = columns.into_iter().map(|column| {
+                let zero = terms.constant(0, terms.width(column));
+                let none = terms.equal(column, zero);
+                terms.not(none)
+            });
+            let any: Vec<Id> = any.collect();
+            let or = |terms: &mut Terms, a, b| terms.make(Term::Or(a, b), 1);
+            any.into_iter().reduce(|a, b| or(terms, a, b)).context("it has no input")
+        };
+        let widest = a.len().max(b.len());
+        let bit = match kind {
+            "$mux" => {
+                let condition = self.word(terms, s);
+                let [a, b] = [a, b].map(|bits| self.columns(terms, bits));
+                return Ok((a.into_iter().zip(b))
+                    .map(|(a, b)| terms.choice(condition, b, a))
+                    .collect());
+            }
+            "$pmux" => {
+                let mut chosen = self.columns(terms, a);
+                for (at, condition) in s.iter().enumerate().rev() {
+                    let condition = self.word(terms, &[*condition]);
+                    let input = self.columns(terms, &b[at * width..(at + 1) * width].to_vec());
+                    for (chosen, input) in chosen.iter_mut().zip(input) {
+                        *chosen = terms.choice(condition, input, *chosen);
+                    }
+                }
+                return Ok(chosen);
+            }
+            "$not" => {
+                let a = extended(terms, a, signed[0], width)?;
+                return Ok(vec![terms.not(a)]);
+            }
+            "$pos" => return Ok(vec![extended(terms, a, signed[0], width)?]),
+            "$neg" => {
+                let (a, zero) =
+                    (extended(terms, a, signed[0], width)?, terms.constant(0, width as u32));
+                return Ok(vec![terms.make(Term::Sub(zero, a), width as u32)]);
+            }
+            "$and" | "$or" | "$xor" | "$xnor" | "$add" | "$sub" => {
+                let [a, b] = of(terms, width)?;
+                let op = match kind {
+                    "$and" => Term::And,
+                    "$or" => Term::Or,
+                    "$add" => Term::Add,
+                    "$sub" => Term::Sub,
+                    _ => Term::Xor,
+                };
+                let word = terms.make(op(a, b), width as u32);
+                return Ok(vec![if kind == "$xnor" { terms.not(word) } else { word }]);
+            }
+            "$mul" => {
+                ensure!(width <= MAX_WIDTH as usize, "it has more than 64 bits");
+                let [a, b] = of(terms, MAX_WIDTH as usize)?;
+                let product = terms.make(Term::Product(a, b), MAX_WIDTH);
+                return Ok(vec![terms.slice(product, 0, width as u32)]);
+            }
+            "$eq" | "$ne" => {
+                let [a, b] = of(terms, widest)?;
+                let equal = terms.equal(a, b);
+                if kind == "$eq" { equal } else { terms.not(equal) }
+            }
+            "$lt" | "$le" | "$gt" | "$ge" => {
+                let [a, b] = of(terms, widest)?;
+                let [a, b] = if matches!(kind, "$lt" | "$ge") { [a, b] } else { [b, a] };
+                let less = if both { Term::SignedLess(a, b) } else { Term::Less(a, b) };
+                let less = terms.make(less, 1);
+                if matches!(kind, "$lt" | "$gt") { less } else { terms.not(less) }
+            }
+            "$reduce_or" | "$reduce_bool" => truth(terms, a)?,
+            "$logic_not" => {
+                let any = truth(terms, a)?;
+                terms.not(any)
+            }
+            "$logic_and" | "$logic_or" => {
+                let (a, b) = (truth(terms, a)?, truth(terms, b)?);
+                let op = if kind == "$logic_and" { Term::And } else { Term::Or };
+                terms.make(op(a, b), 1)
+            }
+            "$reduce_and" => {
+                let mut all = terms.constant(1, 1);
+                for column in self.columns(terms, a) {
+                    let ones = terms.constant(u64::MAX, terms.width(column));
+                    let full = terms.equal(column, ones);
+                    all = terms.make(Term::And(all, full), 1);
+                }
+                all
+            }
+            _ => bail!("is not known here"),
+        };
+        ensure!(width <= MAX_WIDTH as usize, "it has more than 64 bits");
+        Ok(vec![terms.resized(bit, width as u32)])
+    }
+}
