@@ -24,6 +24,7 @@ use crate::config::Config;
 use crate::hdl::netlist::{Design, NetId};
 
 pub use graph::{Cell, Graph, Node};
+use schedule::{Refusal, Unreachable};
 pub use target::{TARGETS, Target};
 pub use unroll::{Line, Unrolled, Walked, carried, unroll, unroll_line};
 
@@ -106,9 +107,17 @@ pub fn pipeline(sequential: &Design, options: &Options) -> Result<Design, Diagno
         Diagnostics(vec![Diagnostic::new(message, place).of_key(key, remedy)])
     };
     let (name, target) = (&sequential.name, options.target.name);
+    let unsolved = |why: String, at: Option<NetId>| {
+        let message = format!("`{name}` has no schedule: {why}; this is a mistake of Glint's");
+        let remedy = "ask for another pipeline.clock_mhz or pipeline.stages";
+        wrong("pipeline.clock_mhz", message, remedy.to_owned(), at)
+    };
     let schedule = match options.goal {
-        Goal::ClockMhz(clock) => problems.for_period(1000.0 / clock).map_err(|unreachable| {
-            let (limiting, period) = (unreachable.limiting, unreachable.period);
+        Goal::ClockMhz(clock) => problems.for_period(1000.0 / clock).map_err(|refusal| {
+            let Unreachable { limiting, period } = match refusal {
+                Refusal::Unreachable(unreachable) => unreachable,
+                Refusal::Unsolved(why, at) => return unsolved(why, at),
+            };
             let nearest = schedule::megahertz(period);
             let message = format!(
                 "`{name}` cannot run at {clock} MHz: `{}` alone takes {period:.2} ns on {target}, which allows {nearest} MHz at \
@@ -135,7 +144,10 @@ pub fn pipeline(sequential: &Design, options: &Options) -> Result<Design, Diagno
                 let limiting = problems.fastest().map(|it| it.limiting);
                 return Err(wrong(key, message, remedy, limiting));
             }
-            let schedule = problems.for_stages(stages);
+            let schedule = problems.for_stages(stages).map_err(|refusal| match refusal {
+                Refusal::Unsolved(why, at) => unsolved(why, at),
+                Refusal::Unreachable(it) => unsolved("no clock is slow enough".to_owned(), Some(it.limiting)),
+            })?;
             if schedule.latency > stages {
                 let least = schedule.latency;
                 let plural = if stages == 1 { "" } else { "s" };

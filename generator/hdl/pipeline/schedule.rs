@@ -28,6 +28,15 @@ pub struct Schedule {
     pub logic: Vec<f64>,
 }
 
+/// Why there is no schedule.
+#[derive(Clone, Debug)]
+pub enum Refusal {
+    /// The clock cannot be met.
+    Unreachable(Unreachable),
+    /// The solver failed, or its solution breaks a constraint: what is wrong, and the node that stands wrong.
+    Unsolved(String, Option<NetId>),
+}
+
 /// What a clock cannot be met for.
 #[derive(Clone, Debug)]
 pub struct Unreachable {
@@ -183,20 +192,25 @@ impl<'a> Problems<'a> {
     /// can be.
     ///
     /// # Errors
-    /// An operation takes longer than the period.
-    pub fn for_period(&self, period: f64) -> Result<Schedule, Unreachable> {
+    /// An operation takes longer than the period; the solver fails.
+    pub fn for_period(&self, period: f64) -> Result<Schedule, Refusal> {
         match self.fastest() {
-            Some(unreachable) if unreachable.period > period + 1e-9 => return Err(unreachable),
+            Some(unreachable) if unreachable.period > period + 1e-9 => {
+                return Err(Refusal::Unreachable(unreachable));
+            }
             _ => {}
         }
         let differences = self.differences(period);
         let latency = self.latency(&differences);
-        Ok(self.solve(&differences, latency, period))
+        self.solve(&differences, latency, period)
     }
 
     /// The schedule of this number of stages with the shortest period. With more than there are of use the
     /// period is that of the slowest operation.
-    pub fn for_stages(&self, stages: usize) -> Schedule {
+    ///
+    /// # Errors
+    /// The solver fails.
+    pub fn for_stages(&self, stages: usize) -> Result<Schedule, Refusal> {
         let fastest = self.fastest().map_or(0.0, |it| it.period);
         let fits = |period: f64| self.latency(&self.differences(period)) <= stages;
         let all = self.delay.iter().chain(&self.setup).sum::<f64>();
@@ -307,17 +321,55 @@ impl<'a> Problems<'a> {
         earliest
     }
 
-    fn solve(&self, differences: &[Difference], latency: usize, period: f64) -> Schedule {
+    /// The last stage that a node can stand in: operands are there from the beginning, and results need a boundary behind them.
+    fn last_stage(&self, id: usize, latency: usize) -> usize {
+        if matches!(self.graph.nodes[id].cell, Cell::Operand(_)) { 0 } else { latency - 1 }
+    }
+
+    /// Checks that stages keep every constraint, whoever found them.
+    ///
+    /// # Errors
+    /// The first that they break.
+    fn verify(
+        &self,
+        differences: &[Difference],
+        stage: &[usize],
+        latency: usize,
+    ) -> Result<(), Refusal> {
+        let name = |id: NetId| &self.graph.node(id).label.name;
+        for &id in &self.live {
+            let (at, last) = (stage[id.index()], self.last_stage(id.index(), latency));
+            if at > last {
+                let message = format!("`{}` stands in stage {at}, behind stage {last}", name(id));
+                return Err(Refusal::Unsolved(message, Some(id)));
+            }
+        }
+        for &(from, to, apart) in differences {
+            let (first, second) = (stage[from.index()], stage[to.index()]);
+            if second < first + apart {
+                let message = format!(
+                    "`{}` stands in stage {second}, and `{}`, on which it depends, in stage {first}: \
+                     the least distance is {apart}",
+                    name(to),
+                    name(from)
+                );
+                return Err(Refusal::Unsolved(message, Some(to)));
+            }
+        }
+        Ok(())
+    }
+
+    fn solve(
+        &self,
+        differences: &[Difference],
+        latency: usize,
+        period: f64,
+    ) -> Result<Schedule, Refusal> {
         let mut problem = Problem::new(OptimizationDirection::Minimize);
         let last = latency as f64;
-        let stage: Vec<_> = self
-            .graph
-            .nodes
-            .iter()
-            .map(|node| {
-                let most = if matches!(node.cell, Cell::Operand(_)) { 0.0 } else { last - 1.0 };
-                problem.add_var(0.0, (0.0, most))
-            })
+        let nodes = 0..self.graph.nodes.len();
+        let stage: Vec<_> = nodes
+            .map(|id| problem.add_var(0.0, (0.0, self.last_stage(id, latency) as f64)))
             .collect();
         for &(from, to, apart) in differences {
             let (from, to) = (stage[from.index()], stage[to.index()]);
@@ -351,16 +403,19 @@ impl<'a> Problems<'a> {
                 problem.add_constraint(terms, ComparisonOp::Ge, 1.0 + self.apart(user) as f64);
             }
         }
-        let earliest = self.earliest(differences);
         let stage: Vec<usize> = match problem.solve() {
             Ok(SolveOutcome::Solution(solution)) => {
                 stage.iter().map(|&it| solution.var_value(it).round() as usize).collect()
             }
-            // The earliest stages are a solution; the solver has none only for reasons of its own.
-            _ => earliest,
+            Ok(_) => {
+                let message = "the linear program has no solution".to_owned();
+                return Err(Refusal::Unsolved(message, None));
+            }
+            Err(error) => return Err(Refusal::Unsolved(error.to_string(), None)),
         };
+        self.verify(differences, &stage, latency)?;
         let logic = self.logic(&stage, latency);
-        Schedule { stage, latency, period, logic }
+        Ok(Schedule { stage, latency, period, logic })
     }
 
     /// What takes a node, through wires.
@@ -437,5 +492,53 @@ impl<'a> Problems<'a> {
     /// Whether the clock makes a node: a word of a block memory, or a product in the register of a multiplier.
     pub fn is_clocked(&self, id: NetId) -> bool {
         self.clocked[id.index()].is_some()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::fixed::Format;
+    use crate::hdl::dsl::{fixture, step};
+    use crate::hdl::pipeline::unroll;
+
+    #[test]
+    fn a_schedule_that_breaks_a_constraint_is_refused() {
+        let design = fixture::design(|d| {
+            let a = d.operand("a", Format::unsigned(8, 0)).q();
+            let square = d.mul("square", a, a);
+            let fourth = d.mul("fourth", square, square);
+            let y = d.register("y", fourth.format());
+            y.takes(fourth);
+            d.output("y_out", y.q());
+            vec![step("load", [y.load()])]
+        });
+        let unrolled = unroll::unroll(&design).unwrap_or_else(|wrong| panic!("{wrong}"));
+        let results: Vec<NetId> = unrolled.results.iter().map(|&(_, value)| value).collect();
+        let target = Target::named("ecp5").expect("a target");
+        let problems = Problems::new(&unrolled.graph, target, None, &results);
+        let period = problems.fastest().expect("an operation").period;
+        let schedule = problems.for_period(period).expect("a schedule");
+        let differences = problems.differences(period);
+        let refused = |node: NetId, at: usize| {
+            let mut stage = schedule.stage.clone();
+            stage[node.index()] = at;
+            match problems.verify(&differences, &stage, schedule.latency) {
+                Err(Refusal::Unsolved(why, place)) => Some((why, place)),
+                _ => None,
+            }
+        };
+        let apart: Vec<_> = differences.iter().filter(|(.., apart)| *apart > 0).collect();
+        assert!(!apart.is_empty());
+        for &&(from, to, apart) in &apart {
+            assert!(refused(to, schedule.stage[to.index()]).is_none());
+            let (why, place) = refused(to, schedule.stage[from.index()] + apart - 1).expect("why");
+            let name = &unrolled.graph.node(to).label.name;
+            assert!(place == Some(to) && why.contains(&format!("`{name}`")), "{why}");
+        }
+        for &id in problems.live() {
+            let (_, place) = refused(id, schedule.latency).expect("behind the last stage");
+            assert_eq!(place, Some(id));
+        }
     }
 }
