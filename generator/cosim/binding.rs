@@ -88,7 +88,7 @@ impl<'a> Binding<'a> {
             busy,
             valid,
             overlaps: design.control.overlaps.then_some(done),
-            ports: Arc::new(Ports::new(design)),
+            ports: Arc::new(Ports::new(design)?),
             address: design.register(design.control.address).q,
             points,
             stimulus,
@@ -102,9 +102,7 @@ impl<'a> Binding<'a> {
         for (name, raw) in held {
             self.points.hold(name, *raw);
         }
-        let mut ports = Ports::new(self.design);
-        ports.hold(held);
-        self.ports = Arc::new(ports);
+        Arc::make_mut(&mut self.ports).hold(held);
         self
     }
 
@@ -117,7 +115,7 @@ impl<'a> Binding<'a> {
 
     /// Computations with these raw operands, in the order of the contract.
     pub(super) fn listed(&self, computations: &[Vec<i64>]) -> Combinations {
-        let mut ports = Ports::new(self.design);
+        let mut ports = Ports::clone(&self.ports);
         let names = self.measure.contract.operands().iter().map(|operand| operand.name.as_str());
         ports.list(names, computations);
         Combinations::new(Arc::new(ports), 0, computations.len() as u64)

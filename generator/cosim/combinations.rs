@@ -7,15 +7,17 @@
 
 use std::sync::Arc;
 
+use anyhow::{Context, Result};
+
 use super::outcome::Course;
 use crate::base::fixed::mask;
-use crate::hdl::netlist::{Design, NetId, Role};
+use crate::hdl::netlist::{Design, Role};
 
 /// Odd, and without a pattern in its bits: 2^64 by the golden ratio.
 const SCATTER: u64 = 0x9e37_79b9_7f4a_7c15;
 
 /// Where a device takes what.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Ports {
     reset: usize,
     start: usize,
@@ -26,7 +28,7 @@ pub(super) struct Ports {
 }
 
 /// An operand among the inputs.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Port {
     name: String,
     data: usize,
@@ -39,35 +41,32 @@ struct Port {
 
 impl Ports {
     /// The ports of a design, in its order.
-    pub(super) fn new(design: &Design) -> Self {
-        let inputs: Vec<NetId> = design.inputs().map(|port| port.net).collect();
-        let position = |net| inputs.iter().position(|&input| input == net).unwrap_or(0);
-        let mut ports = Self {
-            reset: 0,
-            start: 0,
-            inputs: inputs.len(),
-            operands: Vec::new(),
-            listed: Vec::new(),
+    ///
+    /// # Errors
+    /// The design has no reset, nothing that begins a computation, or an operand whose strobe is no input.
+    pub(super) fn new(design: &Design) -> Result<Self> {
+        let named = |name: &str, wanted: fn(Role) -> bool| {
+            let at = design.inputs().position(|port| wanted(port.role));
+            at.with_context(|| format!("`{}` has no input `{name}`", design.name))
         };
-        for port in design.inputs() {
-            let data = position(port.net);
-            match port.role {
-                Role::Reset => ports.reset = data,
-                Role::Start => ports.start = data,
-                Role::Operand { .. } | Role::Point => ports.operands.push(Port {
-                    name: design.net(port.net).name.clone(),
-                    data,
-                    strobe: match port.role {
-                        Role::Operand { strobe } => Some(position(strobe)),
-                        _ => None,
-                    },
-                    width: design.net(port.net).format.width(),
-                    held: None,
-                }),
-                _ => {}
-            }
+        let mut operands = Vec::new();
+        for (data, port) in design.inputs().enumerate() {
+            let strobe = match port.role {
+                Role::Operand { strobe } => Some(design.input_position(strobe)?),
+                Role::Point => None,
+                _ => continue,
+            };
+            let net = design.net(port.net);
+            let (name, width) = (net.name.clone(), net.format.width());
+            operands.push(Port { name, data, strobe, width, held: None });
         }
-        ports
+        Ok(Self {
+            reset: named("rst_n", |role| role == Role::Reset)?,
+            start: named("start", |role| matches!(role, Role::Start | Role::InValid))?,
+            inputs: design.inputs().count(),
+            operands,
+            listed: Vec::new(),
+        })
     }
 
     /// Gives the places raw values of operands, in the order of these names.

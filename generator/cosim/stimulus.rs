@@ -14,7 +14,7 @@ use anyhow::{Result, ensure};
 use super::points::Points;
 use super::random::Random;
 use crate::base::fixed::{Format, mask};
-use crate::hdl::netlist::{Design, NetId, Role};
+use crate::hdl::netlist::{Design, Role};
 
 /// Resets come within 2⁰, 2¹, … clocks after a start, in equal parts up to this many powers: as long as
 /// the longest line.
@@ -67,31 +67,20 @@ impl Stimulus {
     /// The inputs of `design` in the order of its ports; the operands are those of `points`.
     ///
     /// # Errors
-    /// An operand of `points` that the design does not have.
+    /// An operand of `points` that the design does not have; a design without a handshake, or with a strobe that is no input.
     pub fn new(design: &Design, points: &Points, seed: u64) -> Result<Self> {
-        let names: Vec<&str> =
-            design.inputs().map(|port| design.net(port.net).name.as_str()).collect();
-        let position = |net: NetId| {
-            let name = &design.net(net).name;
-            names.iter().position(|other| other == name).unwrap_or(0)
-        };
+        let handshake = design.handshake()?;
         let mut driven = Vec::new();
-        let (mut reset, mut start) = (0, 0);
-        for port in design.inputs() {
-            match port.role {
-                Role::Reset => reset = position(port.net),
-                Role::Start => start = position(port.net),
-                Role::Operand { strobe } => {
-                    let net = design.net(port.net);
-                    let mut known = points.operands().iter();
-                    driven.push(Driven {
-                        data: position(port.net),
-                        strobe: position(strobe),
-                        format: net.format,
-                        at: known.position(|operand| operand.name == net.name),
-                    });
-                }
-                _ => {}
+        for (data, port) in design.inputs().enumerate() {
+            if let Role::Operand { strobe } = port.role {
+                let net = design.net(port.net);
+                let mut known = points.operands().iter();
+                driven.push(Driven {
+                    data,
+                    strobe: design.input_position(strobe)?,
+                    format: net.format,
+                    at: known.position(|operand| operand.name == net.name),
+                });
             }
         }
         for (at, operand) in points.operands().iter().enumerate() {
@@ -101,10 +90,10 @@ impl Stimulus {
         Ok(Self {
             random: Random::new(seed),
             operands: driven,
-            reset,
-            start,
+            reset: design.input_position(handshake.reset)?,
+            start: design.input_position(handshake.start)?,
             phase: Phase::Reset(2),
-            inputs: vec![0; names.len()],
+            inputs: vec![0; design.inputs().count()],
             idle: false,
             next: vec![0; points.operands().len()],
             written: vec![0; points.operands().len()],
@@ -356,6 +345,19 @@ mod tests {
             }
         }
         events
+    }
+
+    #[test]
+    fn a_strobe_that_is_no_input_is_refused() {
+        let (pulse, mut design) = (Pulse::single(false), design());
+        let busy = design.handshake().unwrap().busy;
+        let operand = |role: Role| matches!(role, Role::Operand { .. });
+        let port = design.ports.iter_mut().find(|port| operand(port.role)).unwrap();
+        port.role = Role::Operand { strobe: busy };
+        let error = Stimulus::new(&design, &Points::new(&pulse), 1).err().unwrap();
+        assert_eq!(error.to_string(), "`busy` is no input of `device`");
+        let error = super::super::combinations::Ports::new(&design).err().unwrap();
+        assert_eq!(error.to_string(), "`busy` is no input of `device`");
     }
 
     #[test]

@@ -103,7 +103,7 @@ impl<'a> Clocks<'a> {
                 Self { ports, architecture: Architecture::Sequential(binding) }
             }
             Some(pipeline) => Self {
-                ports: Arc::new(Ports::new(design)),
+                ports: Arc::new(Ports::new(design)?),
                 architecture: Architecture::Pipelined(Pipelined::new(
                     design, pipeline, model, contract, 0,
                 )?),
@@ -113,7 +113,7 @@ impl<'a> Clocks<'a> {
 
     /// The same with some operands held at raw values: the combinations are those of the others.
     #[must_use]
-    pub fn holding(self, held: &[(String, i64)]) -> Self {
+    pub fn holding(mut self, held: &[(String, i64)]) -> Self {
         match self.architecture {
             Architecture::Sequential(binding) => {
                 let binding = binding.holding(held);
@@ -121,10 +121,9 @@ impl<'a> Clocks<'a> {
                 Self { ports, architecture: Architecture::Sequential(binding) }
             }
             Architecture::Pipelined(pipelined) => {
-                let mut ports = Ports::new(pipelined.design());
-                ports.hold(held);
+                Arc::make_mut(&mut self.ports).hold(held);
                 let architecture = Architecture::Pipelined(pipelined.holding(held));
-                Self { ports: Arc::new(ports), architecture }
+                Self { ports: self.ports, architecture }
             }
         }
     }

@@ -188,10 +188,6 @@ impl<'a> Pipelined<'a> {
         Ok(Self { setup, seed })
     }
 
-    pub(super) fn design(&self) -> &'a Design {
-        self.setup.design
-    }
-
     /// The same with some operands held at raw values.
     pub(super) fn holding(mut self, held: &[(String, i64)]) -> Self {
         for (name, raw) in held {

@@ -27,6 +27,15 @@ impl Role {
 }
 
 impl Design {
+    /// The position of a net among the inputs.
+    ///
+    /// # Errors
+    /// The net is no input.
+    pub fn input_position(&self, net: NetId) -> Result<usize> {
+        let at = self.inputs().position(|port| port.net == net);
+        at.with_context(|| format!("`{}` is no input of `{}`", self.net(net).name, self.name))
+    }
+
     /// The ports of the handshake.
     ///
     /// # Errors
