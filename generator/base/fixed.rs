@@ -68,7 +68,7 @@ impl Format {
 
     /// The largest raw value; of a format that no net can have, of those of an `i128`.
     pub fn max_raw(self) -> i128 {
-        i128::MAX >> 127u32.saturating_sub(self.width() - u32::from(self.signed))
+        i128::MAX >> 127u32.saturating_sub(self.width().saturating_sub(u32::from(self.signed)))
     }
 
     /// The smallest and the largest raw value.
@@ -239,6 +239,7 @@ mod tests {
         assert_eq!(Format::unsigned(300, 0).range(), (0, i128::MAX));
         assert_eq!(Format::signed(300, 0).range(), (i128::MIN, i128::MAX));
         assert_eq!(Format::signed(126, 0).range(), (-(1 << 126), (1 << 126) - 1));
+        assert_eq!(Format::signed(3, -4).max_raw(), 0);
         // 2^200 times smaller, no number is near 1 or below -1.
         assert_eq!([Rounding::Truncate, Rounding::Nearest].map(|it| it.shift(-5, 200)), [-1, 0]);
         assert_eq!(Rounding::Nearest.shift(i128::MAX, 127), 1);
