@@ -8,6 +8,9 @@ use anyhow::{Context, Result, anyhow};
 use criterion::{Criterion, criterion_group, criterion_main};
 use glint::config;
 use glint::core::Core;
+use glint::dsl::{Designer, end, step, valid};
+use glint::fixed::{Format, Overflow, Rounding};
+use glint::hdl::netlist::Design;
 use glint::package::OutputFile;
 use glint::registry::Registry;
 
@@ -47,5 +50,33 @@ fn all(criterion: &mut Criterion) {
     });
 }
 
-criterion_group!(benches, all);
+/// A chain of sums and narrowings between two registers: about 20 000 nets, as unrolled arithmetic has them.
+fn long_chain() -> Design {
+    let d = Designer::new("chain");
+    let format = Format::unsigned(8, 0);
+    let x = d.operand("x", format).q();
+    let mut last = x;
+    for number in 0..6_600 {
+        let sum = d.add(&format!("sum{number}"), last, x);
+        last = d.narrow(&format!("part{number}"), sum, format, Rounding::Truncate, Overflow::Wrap);
+    }
+    let y = d.register("y", format);
+    y.takes(last);
+    d.output("y_out", y.q());
+    let wait = (0..3).map(|at| step(&format!("wait{at}"), []));
+    let end = [step("load", [y.load()]), step("shown", [valid(), end()])];
+    d.microprogram([step("idle", [])].into_iter().chain(wait).chain(end));
+    d.finish().expect("a right description")
+}
+
+fn large(criterion: &mut Criterion) {
+    let nets = long_chain().nets.len();
+    let mut group = criterion.benchmark_group("large");
+    group.sample_size(10);
+    group.bench_function(format!("describe and finish {nets} nets"), |bencher| {
+        bencher.iter(|| black_box(long_chain()));
+    });
+}
+
+criterion_group!(benches, all, large);
 criterion_main!(benches);

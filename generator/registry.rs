@@ -45,7 +45,10 @@ impl Device {
         let sequential = self.sequential(config)?;
         match pipeline::options(config) {
             None => Ok(sequential),
-            Some(options) => pipeline::pipeline(&sequential, &options),
+            Some(options) => {
+                let design = pipeline::pipeline(&sequential, &options)?;
+                Ok(Design { warnings: sequential.warnings, ..design })
+            }
         }
     }
 
@@ -61,6 +64,9 @@ impl Device {
         (self.describe)(&designer, config);
         if config.flag(OUTPUT_REGISTERED) {
             designer.register_outputs();
+        }
+        if config.choice("operands.logic") == "combinational" {
+            designer.keep_operand_logic();
         }
         designer.finish()
     }

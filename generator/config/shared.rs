@@ -84,6 +84,13 @@ static KEYS: LazyLock<Vec<Key>> = LazyLock::new(|| {
             "Buffers that take operands while a point is computed. The next one then begins in the clock after the last of this one.",
         )
         .only_when("architecture", "sequential"),
+        Key::choice(
+            "operands.logic",
+            "registered",
+            &["registered", "combinational"],
+            "Logic of operands alone: with registers in it where there is a clock to spare, or without.",
+        )
+        .only_when("architecture", "sequential"),
         Key::flag(
             "interface.stream",
             false,

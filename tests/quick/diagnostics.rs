@@ -2,6 +2,7 @@
 
 use glint::dsl::{Designer, Setting, end, jump_if, loop_while, next, step, valid};
 use glint::fixed::{Format, Overflow, Rounding};
+use glint::hdl::blocks::divider::Divider;
 
 const BYTE: Format = Format::unsigned(0, 8);
 
@@ -233,7 +234,7 @@ fn products_taken_under_another_selection() {
     d.microprogram([
         step("idle", []),
         step("wrong", [first.pick(b.q()), y.load()]),
-        step("end", [end()]),
+        step("end", [valid(), end()]),
     ]);
     finish(d).are(["microinstruction `wrong` loads `y` with the product of (a), but selects (b)"]);
 }
@@ -258,7 +259,7 @@ fn products_held_from_another_selection() {
             step("idle", []),
             step("settle", before),
             step("load", [first.pick(b.q()), y.load()]),
-            step("end", [end()]),
+            step("end", [valid(), end()]),
         ]);
         finish(d)
     };
@@ -433,6 +434,93 @@ fn valid_in_the_microinstruction_that_loads_the_result() {
         ]
     })
     .are([]);
+}
+
+#[test]
+fn results_without_valid_and_muxes_without_a_choice() {
+    program(|_, load| vec![step("idle", []), step("load", [load]), step("end", [end()])]).are([
+        "no microinstruction raises valid, so that nobody knows when `y_out` is there: put \
+             `valid()` into the one in which it is",
+    ]);
+    mistakes(|d| {
+        let x = d.operand("other", BYTE).q();
+        d.output("out", d.mux("m", [x, d.not("inverted", x)]).out());
+    })
+    .are(["no microinstruction picks an input by `m_select` (`other_reg`, `inverted`): let one \
+             `pick` what the mux passes on, or leave the mux out"]);
+}
+
+/// The warnings of a small device that says more than it needs to.
+fn warnings(more: impl FnOnce(&Designer) -> Vec<Setting>) -> Found {
+    let d = Designer::new("device");
+    let x = d.operand("x", BYTE);
+    let y = d.register("y", BYTE);
+    y.takes(x.q());
+    d.output("y_out", y.q());
+    let load = more(&d).into_iter().chain([y.load()]);
+    d.microprogram([step("idle", []), step("load", load), step("result", [valid(), end()])]);
+    let design = d.finish().unwrap_or_else(|mistakes| panic!("{mistakes}"));
+    for warning in &design.warnings {
+        assert_eq!(warning.location.file(), file!(), "{warning}");
+    }
+    Found(design.warnings.into_iter().map(|warning| warning.message).collect())
+}
+
+#[test]
+fn what_no_output_depends_on() {
+    warnings(|_| Vec::new()).are([]);
+    // Of the logic before a register, or before a sum, that is not used there is no word.
+    warnings(|d| {
+        let a = d.operand("a", BYTE).q();
+        d.output("a_out", a);
+        let unread = d.register("unread", Format::unsigned(1, 8));
+        unread.takes(d.add("taken", a, a));
+        let _ = d.not("inverted", d.add("sum", a, a));
+        let address = a.read_as(Format::unsigned(8, 0));
+        let _ = d.rom("table", address, BYTE, &[1; 256], false);
+        vec![unread.load()]
+    })
+    .are([
+        "`unread` is not used: no output depends on it",
+        "`inverted` is not used: no output depends on it",
+        "`table_word` is not used: no output depends on it",
+    ]);
+}
+
+#[test]
+fn muxes_that_choose_nothing() {
+    warnings(|d| {
+        let a = d.operand("a", BYTE).q();
+        let b = d.operand("b", BYTE).q();
+        d.output("same", d.choose("twice", a.bit(0), [b, b]));
+        let one = d.raw_constant("one", 1, Format::BIT);
+        d.output("known", d.choose("second", one, [a, b]));
+        let m = d.mux("m", [a, b, d.not("inverted", a)]);
+        d.output("m_out", m.out());
+        vec![m.pick(b)]
+    })
+    .are([
+        "`twice` always passes `b_reg` on: it is no mux",
+        "`second` always passes `b_reg` on: it is no mux",
+        "no microinstruction selects `inverted` by `m_select`",
+    ]);
+}
+
+#[test]
+fn operands_with_a_sign() {
+    mistakes(|d| {
+        let a = d.operand("a", Format::signed(2, 0)).q();
+        let b = d.operand("b", Format::unsigned(2, 0)).q();
+        d.output("word", d.concat("pair", b, a));
+        let _ = Divider::new(d, "ratio", b, a, 1);
+    })
+    .are([
+        "`pair` puts `a_reg`, which is s2.0, beside other bits as a number without a sign: read \
+         its bits as one (`read_as`), or join them (`join`)",
+        "divider `ratio` gives 1 bits: ask for two or more",
+        "divider `ratio`: `a_reg` has values from -4 to 3 ulp: divide magnitudes, or narrow it to \
+         a format without a sign, which saturates at 0",
+    ]);
 }
 
 /// A loop around the load of `y`, as long as `condition` says.

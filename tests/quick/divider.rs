@@ -135,16 +135,6 @@ fn points_are_aligned() {
     }
 }
 
-#[test]
-fn negative_operands_are_refused() {
-    let d = Designer::new("ratio");
-    let a = d.operand("a", Format::signed(4, 0));
-    let b = d.operand("b", Format::unsigned(4, 0));
-    let _ = Divider::new(&d, "ratio", a.q(), b.q(), 5);
-    let told = d.finish().expect_err("a mistake").to_string();
-    assert!(told.contains("operands are not negative"), "{told}");
-}
-
 /// Ends of both operands, and one step within them; cos γ is signed here.
 #[test]
 fn edges_of_schlick() {

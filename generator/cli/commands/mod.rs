@@ -155,6 +155,9 @@ fn load_one(registry: &Registry, schemas: &[config::Schema], path: &Path) -> Res
         }
         if problems.is_empty() { error.context(format!("`{name}`")) } else { problems.into() }
     })?;
+    for warning in &core.design.warnings {
+        failure::warn(&format!("{name}: {} ({})", warning.message, warning.location));
+    }
     Ok(Loaded { path: name, core, locations })
 }
 

@@ -57,12 +57,18 @@ impl<'d> Divider<'d> {
         bits: i32,
     ) -> Self {
         let part = |suffix: &str| format!("{name}_{suffix}");
-        if bits < 2 || dividend.range().0 < 0 || divisor.range().0 < 0 {
-            d.error(format!(
-                "divider `{name}`: `{}` / `{}` to {bits} bits; operands are not negative, and two bits are the least",
-                dividend.name(),
-                divisor.name()
-            ));
+        if bits < 2 {
+            d.error(format!("divider `{name}` gives {bits} bits: ask for two or more"));
+        }
+        for operand in [dividend, divisor] {
+            let (low, high) = operand.range();
+            if low < 0 {
+                d.error(format!(
+                    "divider `{name}`: `{}` has values from {low} to {high} ulp: divide magnitudes, or narrow it to a format \
+                     without a sign, which saturates at 0",
+                    operand.name()
+                ));
+            }
         }
         let bits = bits.max(2);
         let frac = dividend.format().frac.max(divisor.format().frac);

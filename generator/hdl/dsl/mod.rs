@@ -79,7 +79,7 @@ mod shared;
 mod signal;
 
 use std::cell::RefCell;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::panic::Location;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -131,16 +131,23 @@ pub(crate) struct Inner {
     design: Design,
     views: HashMap<NetId, SelectedProduct>,
     program: Option<Program>,
+    /// The fields that a microinstruction sets.
+    picked: HashSet<FieldId>,
     /// What `valid` follows, and how many clocks later, when no microinstruction raises it.
     valid: Option<(NetId, u32)>,
     /// Whether results that are logic get registers.
     registers_outputs: bool,
+    /// Whether logic that depends on operands alone gets registers.
+    registers_operand_logic: bool,
     /// Of operands with buffers, what loads the operand registers from them.
     taken: Option<NetId>,
     /// The numbers of the lines of `valid_word` and of `go_on` in the source's figure.
     sequencer_lines: Option<[u16; 2]>,
     diagnostics: Vec<Diagnostic>,
-    names: HashMap<String, u32>,
+    /// The names of all nets.
+    names: HashSet<String>,
+    /// How many nets that the DSL added wanted the same name.
+    counts: HashMap<String, u32>,
     partition: Partition,
 }
 
@@ -155,12 +162,15 @@ impl Designer {
             design: Design::empty(name),
             views: HashMap::new(),
             program: None,
+            picked: HashSet::new(),
             valid: None,
             registers_outputs: false,
+            registers_operand_logic: true,
             taken: None,
             sequencer_lines: None,
             diagnostics: Vec::new(),
-            names: HashMap::new(),
+            names: HashSet::new(),
+            counts: HashMap::new(),
             partition: Partition::Control,
         };
         static DESIGNERS: AtomicU64 = AtomicU64::new(0);
@@ -340,6 +350,12 @@ impl Designer {
         self.inner.borrow_mut().registers_outputs = true;
     }
 
+    /// Leaves logic that depends on operands alone as it is described, without the registers that [`Designer::finish`] puts
+    /// into it where there is a clock to spare. The key `operands.logic` asks for it.
+    pub fn keep_operand_logic(&self) {
+        self.inner.borrow_mut().registers_operand_logic = false;
+    }
+
     /// Puts a buffer in front of every operand register. Writes go into the buffers, at any time; `start` takes them into
     /// the registers, and is heard in the last clock of a computation too, so that no clock is lost between two.
     /// To be called before the first operand is declared. The key `operands.buffered` asks for it.
@@ -366,7 +382,7 @@ impl Designer {
         });
     }
 
-    /// The finished design, assembled and checked.
+    /// The finished design, assembled and checked. What it says and no output needs are its [`Design::warnings`].
     ///
     /// # Errors
     /// Every mistake of the description, each with the signals and the Rust source line.
@@ -387,17 +403,21 @@ impl Designer {
             let location = self.net(self.start).location;
             self.report(Diagnostic::new("the design has no microprogram".to_owned(), location));
         }
-        let Inner { mut design, views, mut diagnostics, .. } = self.inner.into_inner();
+        let Inner { mut design, views, picked, mut diagnostics, registers_operand_logic, .. } =
+            self.inner.into_inner();
         if diagnostics.is_empty() {
             diagnostics = design.verify();
         }
         if diagnostics.is_empty() {
-            diagnostics = rules::check(&design, &views);
+            diagnostics = rules::check(&design, &views, &picked);
         }
         if !diagnostics.is_empty() {
             return Err(Diagnostics(diagnostics));
         }
-        register_held(&mut design);
+        design.warnings = rules::warnings(&design);
+        if registers_operand_logic {
+            register_held(&mut design);
+        }
         Ok(design)
     }
 }

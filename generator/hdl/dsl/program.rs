@@ -1,5 +1,6 @@
 //! The microprogram: microinstructions as lists of settings, lowered to the values of fields.
 
+use std::collections::HashSet;
 use std::panic::Location;
 
 use super::sequencer::{SequenceFields, Sequencer};
@@ -194,6 +195,13 @@ pub(crate) fn assemble(d: &Designer, program: &Program) {
     if foreign(d, steps) {
         return;
     }
+    let field = |setting: &Setting| match setting.kind {
+        Kind::Field { field, .. } => Some(field),
+        _ => None,
+    };
+    let picked = steps.iter().flat_map(|step| step.settings.iter().filter_map(field));
+    let picked: HashSet<FieldId> = picked.collect();
+    d.with(|inner| inner.picked = picked);
     let mut loops: Vec<(NetId, usize)> = Vec::new();
     let sequences: Vec<Sequence> = steps.iter().map(|step| sequence(d, steps, step)).collect();
     for sequence in &sequences {

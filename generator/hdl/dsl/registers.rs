@@ -204,11 +204,9 @@ impl Designer {
 
     pub(crate) fn connect(&self, q: NetId, data: NetId, enable: Option<NetId>) {
         self.with(|inner| {
-            if let Some(register) =
-                inner.design.registers.iter_mut().find(|register| register.q == q)
-            {
-                register.data = Some(data);
-                register.enable = enable;
+            if let Driver::Register(id) = inner.design.net(q).driver {
+                let register = &mut inner.design.registers[id.index()];
+                (register.data, register.enable) = (Some(data), enable);
             }
         });
     }
@@ -282,10 +280,8 @@ impl<'d> Register<'d> {
     pub fn takes(self, data: Signal<'d>) {
         let d = self.q.designer();
         let net = d.net(self.q.id());
-        let taken = d.with(|inner| {
-            inner.design.registers.iter().any(|r| r.q == self.q.id() && r.data.is_some())
-        });
-        if taken {
+        let taken = |id| d.with(|inner| inner.design.register(id).data.is_some());
+        if matches!(net.driver, Driver::Register(id) if taken(id)) {
             d.error_at(
                 format!("`{}` has two drivers: `{}` is the second", net.name, data.name()),
                 [("the register", net.location)],

@@ -40,16 +40,15 @@ impl Designer {
         range: Interval,
         driver: Driver,
     ) -> NetId {
-        let name = self.with(|inner| {
-            let taken = |name: &str| inner.design.nets.iter().any(|net| net.name == name);
-            if !taken(name) {
+        let name = self.with(|Inner { names, counts, .. }| {
+            if !names.contains(name) {
                 return name.to_owned();
             }
-            let count = inner.names.entry(name.to_owned()).or_insert(1);
+            let count = counts.entry(name.to_owned()).or_insert(1);
             loop {
                 *count += 1;
                 let candidate = format!("{name}_{count}");
-                if !inner.design.nets.iter().any(|net| net.name == candidate) {
+                if !names.contains(&candidate) {
                     return candidate;
                 }
             }
@@ -109,6 +108,7 @@ impl Designer {
         let location = Location::caller();
         self.with(|inner| {
             let net = Net::new(name.to_owned(), format, driver, location);
+            inner.names.insert(name.to_owned());
             inner.design.add_net(Net { range, named, partition: inner.partition, ..net })
         })
     }

@@ -59,6 +59,8 @@ impl<'d> Signal<'d> {
     pub fn named(self, name: &str) -> Self {
         self.designer.with(|inner| {
             let net = &mut inner.design.nets[self.id.index()];
+            inner.names.remove(&net.name);
+            inner.names.insert(name.to_owned());
             name.clone_into(&mut net.name);
             net.named = true;
         });
@@ -304,10 +306,22 @@ impl Designer {
         self.signal(net)
     }
 
-    /// `high` and `low` side by side, by wiring: an address made of two parts. Integers without a sign.
+    /// `high` and `low` side by side, by wiring: an address made of two parts. Integers without a sign; a signed part is
+    /// an error, because its bits would be read as another number.
     #[track_caller]
     pub fn concat<'d>(&'d self, name: &str, high: Signal<'d>, low: Signal<'d>) -> Signal<'d> {
-        let (high, low) = (self.own(high), self.own(low));
+        let (mut high, mut low) = (self.own(high), self.own(low));
+        for part in [&mut high, &mut low] {
+            let have = part.format();
+            if have.signed {
+                self.error(format!(
+                    "`{name}` puts `{}`, which is {have}, beside other bits as a number without a sign: read its bits as one \
+                     (`read_as`), or join them (`join`)",
+                    part.name()
+                ));
+                *part = part.read_as(Format::unsigned(have.width() as i32, 0));
+            }
+        }
         let width = low.format().width();
         let format = Format::unsigned((high.format().width() + width) as i32, 0);
         let (from, to) = (high.range().0 << width, high.range().1 << width);

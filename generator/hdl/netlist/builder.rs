@@ -19,6 +19,7 @@ impl Design {
             ports: Vec::new(),
             control: Control::none(),
             pipeline: None,
+            warnings: Vec::new(),
         }
     }
 

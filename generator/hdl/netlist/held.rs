@@ -5,6 +5,8 @@
 //! `start`, to the one that first takes it. Registers within it shorten the paths of those clocks and cost none.
 //! Outputs, which follow the operand registers at once, and what the first microinstruction takes stay without.
 
+use std::collections::{BTreeMap, BTreeSet, HashSet};
+
 use super::needed::needed;
 use super::{Design, Driver, NetId, Op, RegId, RegisterKind, Sequence};
 
@@ -17,8 +19,11 @@ pub fn register_held(design: &mut Design) {
     if microprogram.iter().any(|it| it.sequence == Sequence::WaitStart) {
         return;
     }
-    for (net, readers) in Steady::of(design).best() {
-        let q = add_register(design, net);
+    let steady = Steady::of(design);
+    let cut = steady.cut(steady.best());
+    let mut taken: HashSet<String> = design.nets.iter().map(|net| net.name.clone()).collect();
+    for (net, readers) in cut {
+        let q = add_register(design, net, &mut taken);
         for reader in readers {
             match reader {
                 Reader::Register(register) => design.registers[register.index()].data = Some(q),
@@ -33,7 +38,10 @@ pub fn register_held(design: &mut Design) {
     }
 }
 
-/// Who reads a net.
+/// The places that the search tries at a time, of the first register on a path and of the second.
+const TRIED: usize = 32;
+
+/// A cell or a register that reads a net.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Reader {
     /// The data input of a register.
@@ -42,25 +50,46 @@ enum Reader {
     Cell(NetId),
 }
 
+/// Where a path is cut: cells that settle by the first place are computed in clock 0, by the second in clock 1,
+/// others in clock 2. In hundredths of a nanosecond after the operands, in ascending order; the third is always 0.
+type Places = [u32; 3];
+
+/// When a cell is computed, or a register loaded: not before clock k + 1 if place k is below number k.
+type Thresholds = [u32; 3];
+
+/// The thresholds of what is computed in any clock, up to the one in which it is first needed.
+fn until(needed: usize, thresholds: Thresholds) -> Thresholds {
+    std::array::from_fn(|clock| if needed > clock { thresholds[clock] } else { 0 })
+}
+
+/// The clock, counted from that of the first microinstruction, from which on something is computed.
+fn clock(thresholds: Thresholds, places: Places) -> usize {
+    thresholds.iter().zip(places).filter(|(threshold, place)| place < *threshold).count()
+}
+
+/// A cell that reads nets.
+struct Cell {
+    net: NetId,
+    /// In hundredths of a nanosecond.
+    delay: u32,
+    /// What it reads, without constants.
+    operands: Vec<NetId>,
+}
+
 /// What depends on operands alone, and who reads it.
 struct Steady<'a> {
     design: &'a Design,
-    /// All nets, each after those that it depends on within a clock.
-    order: Vec<NetId>,
-    /// Whether a net depends on operand registers and constants alone, and on one operand at least.
-    steady: Vec<bool>,
-    readers: Vec<Vec<Reader>>,
-    /// The clock, counted from that of the first microinstruction, in which a net's value first matters.
-    needed: Vec<usize>,
-    /// The estimated delay from the operand registers to a steady net, in hundredths of a nanosecond.
-    arrival: Vec<u32>,
+    /// All cells, each after those that it depends on within a clock.
+    cells: Vec<Cell>,
+    /// By number of the net.
+    thresholds: Vec<Thresholds>,
+    /// The nets that a register may follow: they depend on operand registers and constants alone, and are more than wiring.
+    holds: Vec<bool>,
+    /// The registers that read a net as their data.
+    registers: Vec<(RegId, NetId, Thresholds)>,
+    /// The estimated delays from the operand registers to the nets that need not settle in clock 0, in ascending order.
+    places: Vec<u32>,
 }
-
-/// The nets that are followed by a register, each with the readers that take the register in its place.
-type Cut = Vec<(NetId, Vec<Reader>)>;
-
-/// The clocks from which on each net may be computed of what registers hold: by number of the net.
-type Levels = Vec<usize>;
 
 impl<'a> Steady<'a> {
     fn of(design: &'a Design) -> Self {
@@ -68,31 +97,27 @@ impl<'a> Steady<'a> {
             unreachable!("a verified design has no combinational loop")
         };
         let count = design.nets.len();
-        let mut it = Self {
-            design,
-            steady: vec![false; count],
-            readers: vec![Vec::new(); count],
-            needed: needed(design),
-            arrival: vec![0; count],
-            order,
-        };
-        for at in 0..it.order.len() {
-            let net = it.order[at];
-            let constant = |of: &NetId| matches!(design.net(*of).driver, Driver::Constant(_));
+        let needed = needed(design);
+        // Whether a net depends on operand registers and constants alone, and on one operand at least.
+        let mut steady = vec![false; count];
+        let mut arrival = vec![0; count];
+        let mut cells = Vec::new();
+        for net in order {
             match &design.net(net).driver {
                 Driver::Register(id) => {
-                    it.steady[net.index()] = design.register(*id).kind == RegisterKind::Operand;
+                    steady[net.index()] = design.register(*id).kind == RegisterKind::Operand;
                 }
                 Driver::Op(op) => {
                     let mut operands = op.operands();
                     operands.sort_unstable();
                     operands.dedup();
-                    operands.retain(|of| !constant(of));
-                    it.steady[net.index()] =
-                        !operands.is_empty() && operands.iter().all(|of| it.steady[of.index()]);
-                    let before = operands.iter().map(|of| it.arrival[of.index()]).max();
-                    it.arrival[net.index()] = before.unwrap_or(0) + delay(design, op);
-                    operands.iter().for_each(|of| it.readers[of.index()].push(Reader::Cell(net)));
+                    operands.retain(|of| !matches!(design.net(*of).driver, Driver::Constant(_)));
+                    steady[net.index()] =
+                        !operands.is_empty() && operands.iter().all(|of| steady[of.index()]);
+                    let before = operands.iter().map(|of| arrival[of.index()]).max();
+                    let delay = delay(design, op);
+                    arrival[net.index()] = before.unwrap_or(0) + delay;
+                    cells.push(Cell { net, delay, operands });
                 }
                 Driver::Constant(_)
                 | Driver::Rom(_)
@@ -101,124 +126,127 @@ impl<'a> Steady<'a> {
                 | Driver::Undriven => {}
             }
         }
-        for (number, register) in design.registers.iter().enumerate() {
-            if let Some(data) = register.data {
-                it.readers[data.index()].push(Reader::Register(RegId(number as u32)));
+        let mut thresholds = vec![[0; 3]; count];
+        // The earliest reader of each net.
+        let mut read: Vec<Option<Thresholds>> = vec![None; count];
+        let note = |read: &mut Vec<Option<Thresholds>>, of: NetId, by: Thresholds| {
+            let earliest = read[of.index()].unwrap_or([u32::MAX; 3]);
+            read[of.index()] = Some(std::array::from_fn(|at| earliest[at].min(by[at])));
+        };
+        let loaded = design.registers.iter().enumerate().filter_map(|(number, register)| {
+            let data = register.data?;
+            let by = register.enable.map_or([0; 3], |_| until(needed[data.index()], [u32::MAX; 3]));
+            Some((RegId(number as u32), data, by))
+        });
+        let registers: Vec<_> = loaded.collect();
+        for (_, data, by) in &registers {
+            note(&mut read, *data, *by);
+        }
+        for cell in cells.iter().rev() {
+            let at = cell.net.index();
+            let wiring = matches!(
+                &design.net(cell.net).driver,
+                Driver::Op(Op::Relabel(_) | Op::Extend(_) | Op::Concat(_))
+            );
+            // Wiring stands with those that read it, so that registers hold no copies.
+            let wanted = match (steady[at], wiring) {
+                (false, _) => [u32::MAX; 3],
+                (true, true) => read[at].unwrap_or([0; 3]),
+                (true, false) => [arrival[at], arrival[at], 0],
+            };
+            thresholds[at] = until(needed[at], wanted);
+            for &of in &cell.operands {
+                note(&mut read, of, thresholds[at]);
             }
         }
-        it
+        let is_cell = |at: usize| matches!(design.nets[at].driver, Driver::Op(_));
+        let holds = (0..count).map(|at| steady[at] && is_cell(at) && arrival[at] > 0).collect();
+        let late = (0..count).filter(|&at| steady[at] && needed[at] > 0).map(|at| arrival[at]);
+        let places: BTreeSet<u32> = late.chain([0]).collect();
+        let places = places.into_iter().collect();
+        Self { design, cells, thresholds, holds, registers, places }
     }
 
-    /// The registers to insert.
-    fn best(&self) -> Cut {
-        let mut places: Vec<u32> = self
-            .design
-            .iter()
-            .filter(|(net, _)| self.steady[net.index()] && self.needed[net.index()] > 0)
-            .map(|(net, _)| self.arrival[net.index()])
-            .collect();
-        places.push(0);
-        places.sort_unstable();
-        places.dedup();
-        let mut best: Option<((u32, u32), Cut)> = None;
-        for (at, &first) in places.iter().enumerate() {
-            for &second in &places[at..] {
-                let levels = self.levels(first, second);
-                let cut = self.cut(&levels);
-                let bits = cut.iter().map(|(net, _)| self.design.width(*net)).sum();
-                let cost = (self.longest(&cut), bits);
-                if best.as_ref().is_none_or(|(least, _)| cost < *least) {
-                    best = Some((cost, cut));
-                }
+    /// The best places: of all pairs while there are few, else of pairs that lie evenly, and again between the
+    /// neighbours of the best of these.
+    fn best(&self) -> Places {
+        let mut windows = [(0, self.places.len() - 1); 2];
+        loop {
+            let tried = windows.map(|(low, high)| {
+                let count = (high - low + 1).min(TRIED);
+                let spread = move |at: usize| low + at * (high - low) / (count - 1).max(1);
+                (0..count).map(spread).collect::<Vec<_>>()
+            });
+            let pairs = tried[0].iter().flat_map(|&first| {
+                let later = tried[1].iter().filter(move |&&second| second >= first);
+                later.map(move |&second| [first, second])
+            });
+            let best = pairs.min_by_key(|&pair| self.cost(self.at(pair))).unwrap_or([0, 0]);
+            if windows.iter().all(|(low, high)| high - low < TRIED) {
+                return self.at(best);
             }
-        }
-        best.map_or_else(Vec::new, |(_, cut)| cut)
-    }
-
-    /// Cells that settle by `first` are computed in clock 0, by `second` in clock 1, others in clock 2; none
-    /// later than it is needed. Wiring stands with those that read it, so that registers hold no copies.
-    fn levels(&self, first: u32, second: u32) -> Levels {
-        let mut levels = vec![0; self.design.nets.len()];
-        for &net in &self.order {
-            let arrival = self.arrival[net.index()];
-            let wanted = usize::from(arrival > first) + usize::from(arrival > second);
-            let own = self.steady[net.index()] && !self.is_operand(net);
-            levels[net.index()] = if own { wanted.min(self.needed[net.index()]) } else { 0 };
-        }
-        for &net in self.order.iter().rev() {
-            let driver = &self.design.net(net).driver;
-            if self.steady[net.index()]
-                && matches!(driver, Driver::Op(Op::Relabel(_) | Op::Extend(_) | Op::Concat(_)))
-            {
-                let readers = self.readers[net.index()].iter();
-                let latest = readers.map(|&reader| self.level_of(reader, &levels)).min();
-                levels[net.index()] = latest.unwrap_or(0).min(self.needed[net.index()]);
-            }
-        }
-        levels
-    }
-
-    fn is_operand(&self, net: NetId) -> bool {
-        matches!(self.design.net(net).driver, Driver::Register(_))
-    }
-
-    /// The clock from which on a reader computes. What is not steady takes its operands when it needs them.
-    fn level_of(&self, reader: Reader, levels: &Levels) -> usize {
-        match reader {
-            Reader::Cell(cell) if self.steady[cell.index()] => levels[cell.index()],
-            Reader::Cell(cell) => self.needed[cell.index()].min(3),
-            Reader::Register(register) => {
-                let q = self.design.register(register);
-                match q.data {
-                    Some(data) if q.enable.is_some() => self.needed[data.index()].min(3),
-                    _ => 0,
-                }
+            for ((window, tried), best) in windows.iter_mut().zip(tried).zip(best) {
+                let at = tried.partition_point(|&it| it < best);
+                *window = (tried[at.saturating_sub(1)], tried[(at + 1).min(tried.len() - 1)]);
             }
         }
     }
 
-    /// Steady cells, not operand registers, whose readers compute in a later clock.
-    fn cut(&self, levels: &Levels) -> Cut {
-        let mut cut = Vec::new();
-        for (net, _) in self.design.iter() {
-            if !self.steady[net.index()] || self.is_operand(net) || self.arrival[net.index()] == 0 {
-                continue;
+    fn at(&self, [first, second]: [usize; 2]) -> Places {
+        [self.places[first], self.places[second], 0]
+    }
+
+    /// Whether a register between a net and what reads it from a clock on costs no time.
+    fn is_cut(&self, net: NetId, by: usize, places: Places) -> bool {
+        self.holds[net.index()] && by > clock(self.thresholds[net.index()], places)
+    }
+
+    /// The longest path that starts at an operand register or at an inserted one, in hundredths of a nanosecond, and the
+    /// bits of the inserted registers.
+    fn cost(&self, places: Places) -> (u32, u32) {
+        let mut arrival: Vec<Option<u32>> = vec![None; self.thresholds.len()];
+        let mut held = vec![false; self.thresholds.len()];
+        for register in &self.design.registers {
+            if register.kind == RegisterKind::Operand {
+                arrival[register.q.index()] = Some(0);
             }
-            let readers = self.readers[net.index()].iter().copied();
-            let later: Vec<Reader> = readers
-                .filter(|&reader| self.level_of(reader, levels) > levels[net.index()])
-                .collect();
-            if !later.is_empty() {
-                cut.push((net, later));
+        }
+        let mut longest = 0;
+        for cell in &self.cells {
+            let own = clock(self.thresholds[cell.net.index()], places);
+            let mut start = None;
+            for &of in &cell.operands {
+                let cut = self.is_cut(of, own, places);
+                held[of.index()] |= cut;
+                start = start.max(if cut { Some(0) } else { arrival[of.index()] });
+            }
+            let end = start.map(|before| before + cell.delay);
+            arrival[cell.net.index()] = end;
+            longest = longest.max(end.unwrap_or(0));
+        }
+        for &(_, data, by) in &self.registers {
+            held[data.index()] |= self.is_cut(data, clock(by, places), places);
+        }
+        let nets = held.iter().zip(&self.design.nets).filter(|(held, _)| **held);
+        (longest, nets.map(|(_, net)| net.format.width()).sum())
+    }
+
+    /// The nets that are followed by a register, each with the readers that take the register in its place: those
+    /// that compute in a later clock.
+    fn cut(&self, places: Places) -> BTreeMap<NetId, Vec<Reader>> {
+        let cells = self.cells.iter().flat_map(|cell| {
+            let own = self.thresholds[cell.net.index()];
+            cell.operands.iter().map(move |&of| (of, Reader::Cell(cell.net), own))
+        });
+        let registers =
+            self.registers.iter().map(|&(id, data, by)| (data, Reader::Register(id), by));
+        let mut cut = BTreeMap::<NetId, Vec<Reader>>::new();
+        for (of, reader, by) in cells.chain(registers) {
+            if self.is_cut(of, clock(by, places), places) {
+                cut.entry(of).or_default().push(reader);
             }
         }
         cut
-    }
-
-    /// The longest path that starts at an operand register or at an inserted one, in hundredths of a nanosecond.
-    fn longest(&self, cut: &Cut) -> u32 {
-        let mut arrival: Vec<Option<u32>> = vec![None; self.design.nets.len()];
-        let mut longest = 0;
-        for &net in &self.order {
-            match &self.design.net(net).driver {
-                Driver::Register(_) if self.steady[net.index()] => arrival[net.index()] = Some(0),
-                Driver::Op(op) => {
-                    let starts = op.operands().into_iter().filter_map(|of| {
-                        let held = cut.iter().find(|(net, _)| *net == of);
-                        if held.is_some_and(|(_, to)| to.contains(&Reader::Cell(net))) {
-                            Some(0)
-                        } else {
-                            arrival[of.index()]
-                        }
-                    });
-                    let own = delay(self.design, op);
-                    arrival[net.index()] = starts.max().map(|before| before + own);
-                }
-                _ => {}
-            }
-            longest = longest.max(arrival[net.index()].unwrap_or(0));
-        }
-        longest
     }
 }
 
@@ -256,12 +284,11 @@ fn ends_in_a_sum(design: &Design, net: NetId) -> bool {
     }
 }
 
-/// A register that takes `net` on every clock; the net that it drives.
-fn add_register(design: &mut Design, net: NetId) -> NetId {
+/// Adds a register that takes `net` on every clock; returns the net that it drives.
+fn add_register(design: &mut Design, net: NetId, taken: &mut HashSet<String>) -> NetId {
     let of = design.net(net).clone();
-    let taken = |name: &String| design.nets.iter().any(|net| net.name == *name);
     let mut name = format!("{}_held", of.name);
-    while taken(&name) {
+    while !taken.insert(name.clone()) {
         name.push('_');
     }
     // It holds 0 from power-up to the first clock.
@@ -275,11 +302,56 @@ fn add_register(design: &mut Design, net: NetId) -> NetId {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::base::fixed::Format;
+    use crate::base::fixed::{Format, Overflow, Rounding};
     use crate::hdl::dsl::{Designer, Step, end, hold, step, valid, wait_for_start};
     use crate::hdl::netlist::Interpreter;
 
     const BYTE: Format = Format::unsigned(8, 0);
+
+    /// A chain with thousands of places for each of two registers, which all pairs would never come to an end with.
+    #[test]
+    fn a_long_chain_is_cut_in_three() {
+        let d = Designer::new("chain");
+        let x = d.operand("x", BYTE);
+        let mut last = x.q();
+        for number in 0..3000 {
+            let sum = d.add(&format!("sum{number}"), last, x.q());
+            let name = format!("part{number}");
+            last = d.narrow(&name, sum, BYTE, Rounding::Truncate, Overflow::Wrap);
+        }
+        let y = d.register("y", BYTE);
+        y.takes(last);
+        d.output("y_out", y.q());
+        let settle = (0..3).map(|at| step(&format!("settle{at}"), []));
+        let load = step("load", [y.load()]);
+        let steps = [step("idle", [])].into_iter().chain(settle);
+        d.microprogram(steps.chain([load, step("shown", [valid(), end()])]));
+        let design = d.finish().unwrap_or_else(|mistakes| panic!("{mistakes}"));
+        let name = |net: &crate::hdl::netlist::Net| {
+            let number = net.name.strip_suffix("_held")?.trim_matches(char::is_alphabetic);
+            number.parse::<u32>().ok()
+        };
+        let mut held: Vec<u32> = design.nets.iter().filter_map(name).collect();
+        held.sort_unstable();
+        let [first, .., second] = held[..] else { panic!("{held:?}") };
+        assert!((990..1010).contains(&first) && (1990..2010).contains(&second), "{held:?}");
+        assert!(held.len() <= 4, "{held:?}");
+    }
+
+    #[test]
+    fn operand_logic_can_be_kept() {
+        let d = Designer::new("device");
+        d.keep_operand_logic();
+        let a = d.operand("a", BYTE).q();
+        let y = d.register("y", Format::unsigned(32, 0));
+        let square = d.mul("square", a, a);
+        y.takes(d.mul("fourth", square, square));
+        d.output("y_out", y.q());
+        let load = step("load", [y.load()]);
+        d.microprogram([step("idle", []), load, step("shown", [valid(), end()])]);
+        let design = d.finish().unwrap_or_else(|mistakes| panic!("{mistakes}"));
+        assert!(design.nets.iter().all(|net| !net.name.ends_with("_held")));
+    }
 
     /// The sum of two operands is on an output at once, its cube in a register by the microprogram's load.
     fn device(program: fn(Step, Step) -> Vec<Step>) -> Design {

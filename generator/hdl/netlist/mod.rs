@@ -28,7 +28,7 @@ mod pipeline;
 pub mod termination;
 mod verify;
 
-use crate::base::diagnostic::SourceLocation;
+use crate::base::diagnostic::{Diagnostic, SourceLocation};
 use crate::base::fixed::Format;
 use crate::base::interval::Interval;
 pub use cell::Op;
@@ -282,6 +282,8 @@ pub struct Design {
     pub control: Control,
     /// The stages, of a pipeline.
     pub pipeline: Option<Pipeline>,
+    /// What the description says and no output needs.
+    pub warnings: Vec<Diagnostic>,
 }
 
 impl Design {

@@ -3,17 +3,24 @@
 mod operands;
 mod products;
 mod program;
+mod unused;
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use super::SelectedProduct;
 use crate::base::diagnostic::Diagnostic;
-use crate::hdl::netlist::{Design, NetId};
+use crate::hdl::netlist::{Design, FieldId, NetId};
+pub(super) use unused::warnings;
 
-/// Every rule that `design` breaks; `views` are the products that a selection gives their meaning.
-pub(super) fn check(design: &Design, views: &HashMap<NetId, SelectedProduct>) -> Vec<Diagnostic> {
+/// Every rule that `design` breaks; `views` are the products that a selection gives their meaning, `picked` the select
+/// lines of which a microinstruction makes a choice.
+pub(super) fn check(
+    design: &Design,
+    views: &HashMap<NetId, SelectedProduct>,
+    picked: &HashSet<FieldId>,
+) -> Vec<Diagnostic> {
     let mut found = products::check(design, views);
-    found.extend(program::check(design));
+    found.extend(program::check(design, picked));
     found.extend(operands::check(design));
     found
 }

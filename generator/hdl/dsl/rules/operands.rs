@@ -21,9 +21,13 @@ pub(super) fn check(design: &Design) -> Vec<Diagnostic> {
 }
 
 /// All nets on which outputs depend, in any number of clocks.
-fn used(design: &Design) -> HashSet<NetId> {
-    let outputs = design.ports.iter().filter(|port| !port.role.is_input());
-    reached(outputs.map(|port| port.net), |id| match design.net(id).driver {
+pub(super) fn used(design: &Design) -> HashSet<NetId> {
+    reached(design.outputs().map(|port| port.net), |id| read_by(design, id))
+}
+
+/// The nets on which a net depends, within a clock or through a register or a memory.
+pub(super) fn read_by(design: &Design, id: NetId) -> Vec<NetId> {
+    match design.net(id).driver {
         Driver::Register(register) => {
             let register = design.register(register);
             register.data.into_iter().chain(register.enable).collect()
@@ -33,5 +37,5 @@ fn used(design: &Design) -> HashSet<NetId> {
             [rom.address].into_iter().chain(rom.enable).collect()
         }
         _ => design.combinational_inputs(id),
-    })
+    }
 }

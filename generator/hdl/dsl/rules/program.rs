@@ -1,17 +1,57 @@
-//! What a microprogram must not do: raise `valid` before the result is there, and go round a loop for ever.
+//! What a microprogram must not do: raise `valid` never, or before the result is there, leave a mux alone, and go round a
+//! loop for ever.
 
 use std::collections::HashSet;
 
 use crate::base::cone::reached;
 use crate::base::diagnostic::Diagnostic;
 use crate::hdl::netlist::{
-    Control, Design, Driver, NetId, Op, RegId, RegisterKind, Role, Sequence, setting_of,
+    Control, Design, Driver, FieldId, FieldKind, NetId, Op, RegId, RegisterKind, Role, Sequence,
+    setting_of,
 };
 
-/// Microinstructions that raise `valid` too early, and loops that nothing in them ends.
-pub(super) fn check(design: &Design) -> Vec<Diagnostic> {
+/// Microinstructions that raise `valid` too early, or none that does, select lines without a choice, and loops that
+/// nothing in them ends.
+pub(super) fn check(design: &Design, picked: &HashSet<FieldId>) -> Vec<Diagnostic> {
     let mut found = early(design);
+    found.extend(silent(design));
+    found.extend(unpicked(design, picked));
     found.extend(endless(design));
+    found
+}
+
+/// A microprogram that never says when its results are there.
+fn silent(design: &Design) -> Option<Diagnostic> {
+    let control = &design.control;
+    let result = design.port(|role| role == Role::Result)?;
+    let valid = design.port(|role| role == Role::Valid)?.net;
+    let mut raised = control.microprogram.iter().map(|it| setting_of(design, it, valid));
+    raised.all(|raised| raised == Some(0)).then(|| {
+        let message = format!(
+            "no microinstruction raises valid, so that nobody knows when `{}` is there: put `valid()` into the one in which \
+             it is",
+            design.net(result.net).name
+        );
+        Diagnostic::new(message, design.rom(control.rom).location)
+    })
+}
+
+/// Select lines of which no microinstruction makes a choice.
+fn unpicked(design: &Design, picked: &HashSet<FieldId>) -> Vec<Diagnostic> {
+    let mut found = Vec::new();
+    for (at, field) in design.control.fields.iter().enumerate() {
+        if let FieldKind::Select(choices) = &field.kind
+            && !picked.contains(&FieldId(at as u32))
+        {
+            let message = format!(
+                "no microinstruction picks an input by `{}` (`{}`): let one `pick` what the mux passes on, or leave the mux \
+                 out",
+                field.name,
+                choices.join("`, `")
+            );
+            found.push(Diagnostic::new(message, design.net(field.net).location));
+        }
+    }
     found
 }
 

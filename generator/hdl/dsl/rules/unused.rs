@@ -1,0 +1,69 @@
+//! Warnings of a description that is right, and says more than the device needs.
+
+use super::operands::{read_by, used};
+use crate::base::cone::reached;
+use crate::base::diagnostic::Diagnostic;
+use crate::hdl::netlist::{Design, Driver, FieldKind, Net, NetId, Op, Partition};
+
+/// Logic that no output depends on, muxes that always pass on the same, and choices that no microinstruction makes.
+pub(in crate::hdl::dsl) fn warnings(design: &Design) -> Vec<Diagnostic> {
+    let mut found = dead(design);
+    found.extend(constant(design));
+    found.extend(unmade(design));
+    found
+}
+
+/// Registers, memories and named cells that no output depends on. Of cells that only such logic reads there is no word.
+fn dead(design: &Design) -> Vec<Diagnostic> {
+    let used = used(design);
+    let is_logic =
+        |net: &Net| matches!(net.driver, Driver::Register(_) | Driver::Rom(_) | Driver::Op(_));
+    let described =
+        design.iter().filter(|(_, net)| net.named && net.partition == Partition::Datapath);
+    let dead: Vec<(NetId, &Net)> =
+        described.filter(|(id, net)| is_logic(net) && !used.contains(id)).collect();
+    let inputs = dead.iter().flat_map(|(id, _)| read_by(design, *id));
+    let read = reached(inputs, |id| design.combinational_inputs(id));
+    let ends = dead
+        .into_iter()
+        .filter(|(id, net)| matches!(net.driver, Driver::Register(_)) || !read.contains(id));
+    let message = |net: &Net| format!("`{}` is not used: no output depends on it", net.name);
+    ends.map(|(_, net)| Diagnostic::new(message(net), net.location)).collect()
+}
+
+/// Muxes that are selected by a constant, or whose inputs are all the same.
+fn constant(design: &Design) -> Vec<Diagnostic> {
+    let mut found = Vec::new();
+    for (_, net) in design.iter().filter(|(_, net)| net.named) {
+        let Driver::Op(Op::Mux { select, inputs }) = &net.driver else { continue };
+        let (low, high) = design.net(*select).range;
+        let passed = match low == high {
+            true => inputs.get(low as usize).or(inputs.last()),
+            false => inputs.first().filter(|first| inputs.iter().all(|input| input == *first)),
+        };
+        if let Some(passed) = passed {
+            let name = &design.net(*passed).name;
+            let message = format!("`{}` always passes `{name}` on: it is no mux", net.name);
+            found.push(Diagnostic::new(message, net.location));
+        }
+    }
+    found
+}
+
+/// Choices of select lines that no microinstruction makes.
+fn unmade(design: &Design) -> Vec<Diagnostic> {
+    let control = &design.control;
+    let mut found = Vec::new();
+    for (at, field) in control.fields.iter().enumerate() {
+        let FieldKind::Select(choices) = &field.kind else { continue };
+        let made = |choice: u64| control.microprogram.iter().any(|it| it.values[at] == choice);
+        let unmade = (0..).zip(choices).filter(|(number, _)| !made(*number));
+        let names: Vec<&str> = unmade.map(|(_, name)| name.as_str()).collect();
+        if !names.is_empty() {
+            let names = names.join("`, `");
+            let message = format!("no microinstruction selects `{names}` by `{}`", field.name);
+            found.push(Diagnostic::new(message, design.net(field.net).location));
+        }
+    }
+    found
+}
