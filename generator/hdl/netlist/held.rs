@@ -308,7 +308,7 @@ mod tests {
 
     const BYTE: Format = Format::unsigned(8, 0);
 
-    /// A chain with thousands of places for each of two registers, which all pairs would never come to an end with.
+    /// A chain with thousands of places for each of two registers: to try all pairs would never end.
     #[test]
     fn a_long_chain_is_cut_in_three() {
         let d = Designer::new("chain");
@@ -333,9 +333,9 @@ mod tests {
         };
         let mut held: Vec<u32> = design.nets.iter().filter_map(name).collect();
         held.sort_unstable();
-        let [first, .., second] = held[..] else { panic!("{held:?}") };
+        // In the last clock the register takes what the third has.
+        let [first, second, 2999] = held[..] else { panic!("{held:?}") };
         assert!((990..1010).contains(&first) && (1990..2010).contains(&second), "{held:?}");
-        assert!(held.len() <= 4, "{held:?}");
     }
 
     #[test]
