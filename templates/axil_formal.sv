@@ -72,6 +72,7 @@ module ${ name }$_axil_formal (
     (* hierconn *) wire \dut.read_answer ;
     (* hierconn *) wire \dut.read_error ;
     (* hierconn *) wire [31:0] \dut.read_data ;
+<% include "registers_inside.sv" %>
 
     // The reset comes first; the state before it is arbitrary.
     always @* if ($initstate) assume (!aresetn);
@@ -130,6 +131,14 @@ module ${ name }$_axil_formal (
                 && (s_axil_bready || !s_axil_bvalid)));
         assert (dut.read == (s_axil_arvalid && !s_axil_arready
                 && (s_axil_rready || !s_axil_rvalid)));
+        // What reaches them is the request.
+        assert (\dut.registers.rst_n == aresetn && irq == \dut.registers.irq );
+        if (dut.write) begin
+            assert (\dut.registers.write_at == s_axil_awaddr[${ address_high }$:2]);
+            assert (\dut.registers.write_data == s_axil_wdata);
+            assert (\dut.registers.write_bytes == s_axil_wstrb);
+        end
+        if (dut.read) assert (\dut.registers.read_at == s_axil_araddr[${ address_high }$:2]);
         // The answer is that of the registers.
         if (dut.write_taken || s_axil_bvalid) assert (s_axil_bresp == {write_failed, 1'b0});
         if (s_axil_arready || s_axil_rvalid) assert (s_axil_rresp == {read_failed, 1'b0});

@@ -1,8 +1,9 @@
 // ${ name }$_axis_formal: what is proved of ${ name }$_axis
 //
 // For formal tools alone. All inputs are free, the sender's too. The core is abstracted to its
-// handshake and its ${ last }$ stages: a point has any results. To prove it, from a directory that
-// holds the files of both folders:
+// handshake, which ${ name }$_formal.sv proves of it: a point leaves its ${ stages }$ stages in the order in
+// which they came, with any results. To prove it, from a directory that holds the files of both
+// folders:
 //   $ yosys -q ${ name }$_axis_formal.ys
 //   $ yosys-smtbmc -s z3 --unroll -t 3 ${ name }$_axis_formal.smt2
 //   $ yosys-smtbmc -s z3 --unroll -i -t 2 ${ name }$_axis_formal.smt2
@@ -17,36 +18,17 @@ module ${ name }$ (
 <%- endfor %>
 );
     (* anyseq *) reg [${ raw_high }$:0] any;
-<%- for stage in stages %>
-    reg valid_${ stage.number }$;
-    reg [${ raw_high }$:0] data_${ stage.number }$;
-<%- endfor %>
-    assign in_ready = out_ready | ~valid_${ last }$;
-    assign out_valid = valid_${ last }$;
+    reg [${ stages - 1 }$:0] points;  // the stages that have one, the first in bit 0
+    reg [${ raw_high }$:0] shown;
+    assign in_ready = out_ready | ~points[${ stages - 1 }$];
+    assign out_valid = points[${ stages - 1 }$];
     always @(posedge clk) begin
-        if (!rst_n) begin
-<%- for stage in stages %>
-            valid_${ stage.number }$ <= 1'b0;
-<%- endfor %>
-        end else if (in_ready) begin
-            valid_1 <= in_valid;
-<%- for stage in stages %>
-<%- if stage.number > 1 %>
-            valid_${ stage.number }$ <= valid_${ stage.number - 1 }$;
-<%- endif %>
-<%- endfor %>
-        end
-        if (in_ready) begin
-            data_1 <= any;
-<%- for stage in stages %>
-<%- if stage.number > 1 %>
-            data_${ stage.number }$ <= data_${ stage.number - 1 }$;
-<%- endif %>
-<%- endfor %>
-        end
+        if (!rst_n) points <= 0;
+        else if (in_ready) points <= {points, in_valid};
+        if (in_ready) shown <= any;
     end
 <%- for result in raw %>
-    assign ${ result.name }$ = data_${ last }$[${ result.low + result.width - 1 }$:${ result.low }$];
+    assign ${ result.name }$ = shown[${ result.low + result.width - 1 }$:${ result.low }$];
 <%- endfor %>
 endmodule
 
@@ -88,60 +70,49 @@ module ${ name }$_axis_formal (
     // The reset comes first; the state before it is arbitrary.
     always @* if ($initstate) assume (!aresetn);
 
-    // Points taken and given, modulo more than there can be under way.
-    localparam COUNT = ${ count_bits }$;
-    reg [COUNT-1:0] taken;
-    reg [COUNT-1:0] given;
-    wire accept = s_axis_tvalid && s_axis_tready;
     wire give = m_axis_tvalid && m_axis_tready;
+    wire leaves = dut.core.out_valid && dut.core.out_ready;
+
+    // One of the points, whichever, on its way through the stages.
+    (* anyseq *) reg marks;
+    reg was_marked;
+    wire marked = marks && !was_marked && s_axis_tvalid && s_axis_tready;
+    reg [${ stages - 1 }$:0] mark;
+    reg [${ user_bits }$:0] its_side;
     always @(posedge aclk) begin
         if (!aresetn) begin
-            taken <= 0;
-            given <= 0;
+            was_marked <= 0;
+            mark <= 0;
         end else begin
-            taken <= taken + accept;
-            given <= given + give;
+            if (marked) was_marked <= 1;
+            if (s_axis_tready) mark <= {mark, marked};
         end
+        if (marked) its_side <= {s_axis_tlast, s_axis_tuser};
     end
 
-    // One of them, whichever, and what belongs to it.
-    (* anyconst *) reg [COUNT-1:0] chosen;
-    reg [${ user_bits }$:0] its_side;
-    reg [${ raw_high }$:0] its_raw;
-    always @(posedge aclk) begin
-        if (accept && taken == chosen) begin
-            its_side <= {s_axis_tlast, s_axis_tuser};
-            its_raw <= dut.core.any;
-        end
-    end
-<%- for result in raw %>
-    wire ${ result.range }$ its_${ result.name }$ = its_raw[${ result.low + result.width - 1 }$:${ result.low }$];
-<%- endfor %>
-    wire [${ out_high }$:0] its_results = {
+    // Points that left the core and that were given, modulo more than there can be between, and one
+    // of them, whichever.
+    reg [1:0] left;
+    reg [1:0] given;
+    (* anyconst *) reg [1:0] chosen;
+    reg [${ user_bits }$:0] its_last_side;
+    reg [${ out_high }$:0] its_results;
+    wire [${ out_high }$:0] results = {
 <%- for line in packed %>
         ${ line }$
 <%- endfor %>
     };
-
-    // The numbers of the points, which travel with them, and the one that is next in each place.
-    reg [COUNT-1:0] offered_number;
-    reg [COUNT-1:0] held_number;
-    wire [COUNT-1:0] next_held = given + m_axis_tvalid;
-    wire [COUNT-1:0] next_${ last }$ = dut.held ? held_number + 1'd1 : next_held;
-<%- for stage in stages %>
-    reg [COUNT-1:0] number_${ stage.number }$;
-    wire [COUNT-1:0] next_${ stage.number - 1 }$ = dut.core.valid_${ stage.number }$ ? number_${ stage.number }$ + 1'd1 : next_${ stage.number }$;
-<%- endfor %>
     always @(posedge aclk) begin
-        if (m_axis_tready || !m_axis_tvalid) offered_number <= dut.held ? held_number : number_${ last }$;
-        if (!dut.held) held_number <= number_${ last }$;
-        if (s_axis_tready) begin
-            number_1 <= taken;
-<%- for stage in stages %>
-<%- if stage.number > 1 %>
-            number_${ stage.number }$ <= number_${ stage.number - 1 }$;
-<%- endif %>
-<%- endfor %>
+        if (!aresetn) begin
+            left <= 0;
+            given <= 0;
+        end else begin
+            left <= left + leaves;
+            given <= given + give;
+        end
+        if (leaves && left == chosen) begin
+            its_last_side <= dut.results_side;
+            its_results <= results;
         end
     end
 
@@ -154,45 +125,46 @@ module ${ name }$_axis_formal (
                 assert (m_axis_tuser == $past(m_axis_tuser));
                 assert (m_axis_tlast == $past(m_axis_tlast));
             end
-            // An offer does not wait for the receiver, nor the sender while transfers are taken.
-            if ($past(dut.core.valid_${ last }$ && !dut.held)) assert (m_axis_tvalid);
-            if ($past(m_axis_tready)) assert (s_axis_tready);
+            // Progress: what leaves the core is offered in the next clock, for the receiver or not,
+            // and the core moves in the clock after a transfer is taken or could have been.
+            if ($past(leaves)) assert (m_axis_tvalid);
+            if ($past(m_axis_tready || !m_axis_tvalid)) assert (dut.core.out_ready);
         end else begin
-            assert (!m_axis_tvalid);
+            assert (!m_axis_tvalid && dut.core.out_ready);
         end
-        // The core computes with what is sent.
+        // The core computes with what is sent, when it is sent.
+        assert (dut.core.rst_n == aresetn);
+        assert (dut.core.in_valid == s_axis_tvalid);
+        assert (dut.core.in_ready == s_axis_tready);
 <%- for check in checks %>
         assert (${ check }$);
 <%- endfor %>
+        // tuser and tlast move with their point.
+        if (mark[${ stages - 1 }$]) assert (dut.core.out_valid && dut.results_side == its_side);
         // What is given is what the core computed, in its order, and tuser and tlast with it.
         if (give && given == chosen) begin
             assert (m_axis_tdata == its_results);
-            assert ({m_axis_tlast, m_axis_tuser} == its_side);
+            assert ({m_axis_tlast, m_axis_tuser} == its_last_side);
         end
-
     end
 
-    // Inductive invariants: every point is in one place, in the order in which they came.
+    // Inductive invariants.
     always @* if (!$initstate) begin
-        assert (taken == next_0);
-        assert (!dut.held || m_axis_tvalid);
-        if (m_axis_tvalid) assert (offered_number == given);
+        assert ((mark & ~dut.core.points) == 0);
+        if (!was_marked) assert (mark == 0);
+<%- for stage in sides %>
+        if (mark[${ loop.index0 }$]) assert (dut.side[${ stage.high }$:${ stage.low }$] == its_side);
+<%- endfor %>
+        assert (left - given == {1'b0, dut.held} + m_axis_tvalid);
+        if (dut.held) assert (m_axis_tvalid);
         if (m_axis_tvalid && given == chosen) begin
             assert (m_axis_tdata == its_results);
-            assert ({m_axis_tlast, m_axis_tuser} == its_side);
+            assert ({m_axis_tlast, m_axis_tuser} == its_last_side);
         end
-        if (dut.held) assert (held_number == next_held);
-        if (dut.held && held_number == chosen) begin
+        if (dut.held && given + 2'd1 == chosen) begin
             assert (dut.held_results == its_results);
-            assert (dut.held_side == its_side);
+            assert (dut.held_side == its_last_side);
         end
-<%- for stage in stages %>
-        if (dut.core.valid_${ stage.number }$) assert (number_${ stage.number }$ == next_${ stage.number }$);
-        if (dut.core.valid_${ stage.number }$ && number_${ stage.number }$ == chosen) begin
-            assert (dut.core.data_${ stage.number }$ == its_raw);
-            assert (dut.side[${ stage.side_high }$:${ stage.side_low }$] == its_side);
-        end
-<%- endfor %>
     end
 endmodule
 

@@ -1,7 +1,7 @@
 // ${ name }$: self-checking bench of ${ module }$
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -o ${ name }$ ${ module }$*.v
+//   $ iverilog -g2012 -s ${ name }$ -o ${ name }$ ${ module }$*.v
 //   $ ./${ name }$
 // or, with Verilator 5,
 //   $ verilator --binary --timing --top-module ${ name }$ ${ module }$*.v

@@ -20,6 +20,9 @@ Generated files belong to their user, without conditions.
 """
 
 from pathlib import Path
+<%- if registers.is_some() %>
+from types import SimpleNamespace
+<%- endif %>
 
 from litex.gen import *
 <%- if registers.is_some() %>
@@ -134,7 +137,10 @@ class ${ class }$Stream(LiteXModule):
 
 
 class ${ class }$Registers(LiteXModule):
-    """The core behind its own registers: `bus` for `soc.bus.add_slave`, and `irq`, a level."""
+    """The core behind its own registers: `bus` for `soc.bus.add_slave`, and `irq`, a level.
+
+    `soc.irq.add` takes it by the name that it has in the system.
+    """
 
     def __init__(self, platform, rtl=RTL):
 <%- if *bus == Bus::AxiLite %>
@@ -143,6 +149,8 @@ class ${ class }$Registers(LiteXModule):
         self.bus = bus = wishbone.Interface(data_width=32, address_width=32, addressing="byte")
 <%- endif %>
         self.irq = Signal()
+        # Where the system looks for the interrupt of a module. Its registers enable and clear it.
+        self.ev = SimpleNamespace(irq=self.irq)
 
         # # #
 

@@ -84,7 +84,7 @@ module ${ name }$_registers_formal (
             write_word >= ${ control_number }$ && write_word <= ${ last_operand_number }$;
     wire is_result =
             read_word >= ${ first_result_number }$ && read_word <= ${ last_result_number }$;
-    wire asks_start = write_mapped && (dut.start_on_write && write_word == dut.start_word
+    wire asks_start = write_mapped && (dut.start_on_write && write_word == dut.start_word && write_bytes != 0
             || write_word == ${ control_number }$ && write_bytes[0] && write_data[0]);
 
     always @* if (!$initstate) begin
@@ -98,6 +98,7 @@ module ${ name }$_registers_formal (
         // What is not in the map, and nothing else, is an error.
         assert (write_error == !write_mapped);
         assert (read_error == (read_word >= WORDS));
+        assert (dut.core.rst_n == rst_n);
         assert (irq == (dut.interrupt_enable && dut.interrupt_pending));
         // What was written is what the core computes with.
 <%- for operand in operands %>
@@ -116,13 +117,12 @@ module ${ name }$_registers_formal (
     wire took_enable = took && took_word == ${ control_number + 1 }$;
     wire took_pending = took && took_word == ${ control_number + 2 }$;
     always @(posedge clk) if (!$initstate && $past(!$initstate)) begin
-        // A register is read in the clock after its request; operands are as they were written.
+        // A register is read in the clock after its request, all of its bits; operands as they were
+        // written, and results as 0 before the first.
         if ($past(read_error)) assert (read_data == 0);
         if ($past(read_answer && is_result)) assert (!dut.core.run);
-<%- for word in operand_words %>
-        if ($past(read_word) == ${ word.number }$) begin
-            assert (read_data[${ word.width - 1 }$:0] == dut.operand_${ word.name }$${ word.bits }$);
-        end
+<%- for (number, value) in reads %>
+        if ($past(read_word) == ${ number }$) assert (read_data == ${ value }$);
 <%- endfor %>
     end
     always @(posedge clk) if (!$initstate && $past(!$initstate) && $past(rst_n)) begin

@@ -15,7 +15,7 @@ set part ${ part }$
 if {[llength $argv] > 0} { set module [lindex $argv 0] }
 if {[llength $argv] > 1} { set part [lindex $argv 1] }
 
-# The modules: Verilog, clock, reset, level of the reset, and bus interfaces.
+# The modules: Verilog, clock, reset, level of the reset, bus interfaces, and interrupts.
 set modules [dict create]
 <%- for top in tops %>
 dict set modules ${ top.module }$ {
@@ -25,9 +25,10 @@ dict set modules ${ top.module }$ {
 <%- endfor %>
     } ${ top.clock }$ ${ top.reset }$ <% if top.reset_level == 0 %>ACTIVE_LOW<% else %>ACTIVE_HIGH<% endif %>
 <%- match top.face %>
-<%- when Face::Stream %> {s_axis m_axis}
-<%- when Face::Registers(Bus::AxiLite) %> {s_axil}
-<%- when _ %> {}
+<%- when Face::Stream %> {s_axis m_axis} {}
+<%- when Face::Registers(Bus::AxiLite) %> {s_axil} {irq interrupt}
+<%- when Face::Registers(Bus::Wishbone) %> {} {irq interrupt}
+<%- when Face::Core %> {} {}
 <%- endmatch %>
 }
 <%- endfor %>
@@ -36,7 +37,7 @@ if {![dict exists $modules $module]} {
     puts stderr "there is no module $module; there are: [join [dict keys $modules] {, }]"
     exit 1
 }
-lassign [dict get $modules $module] verilog clock reset level busses
+lassign [dict get $modules $module] verilog clock reset level busses interrupts
 set out [file join [pwd] [set module]_ip]
 if {[file exists $out]} {
     puts stderr "$out is there already; move it away"
@@ -62,7 +63,7 @@ set_property display_name $module $core
 set_property description "${ title }$" $core
 
 # Names such as aclk are found by themselves.
-foreach {port kind} [list $clock clock $reset reset] {
+foreach {port kind} [list $clock clock $reset reset {*}$interrupts] {
     if {[llength [ipx::get_bus_interfaces $port -of_objects $core]] == 0} {
         ipx::infer_bus_interface $port xilinx.com:signal:[set kind]_rtl:1.0 $core
     }
@@ -71,6 +72,10 @@ set interface [ipx::get_bus_interfaces $reset -of_objects $core]
 set_property value $level [ipx::add_bus_parameter POLARITY $interface]
 foreach bus $busses { ipx::associate_bus_interfaces -busif $bus -clock $clock $core }
 ipx::associate_bus_interfaces -clock $clock -reset $reset $core
+foreach {port kind} $interrupts {
+    set interface [ipx::get_bus_interfaces $port -of_objects $core]
+    set_property value LEVEL_HIGH [ipx::add_bus_parameter SENSITIVITY $interface]
+}
 
 ipx::create_xgui_files $core
 ipx::update_checksums $core

@@ -51,6 +51,7 @@ module ${ name }$_wb_formal (
     (* hierconn *) wire \dut.read_answer ;
     (* hierconn *) wire \dut.read_error ;
     (* hierconn *) wire [31:0] \dut.registers.read_data ;
+<% include "registers_inside.sv" %>
 
     // The reset comes first; the state before it is arbitrary.
     always @* if ($initstate) assume (wb_rst_i);
@@ -61,6 +62,14 @@ module ${ name }$_wb_formal (
         assert (!(wb_ack_o && wb_err_o));
         assert (dut.write == (wb_cyc_i && wb_stb_i && wb_we_i && !answered));
         assert (dut.read == (wb_cyc_i && wb_stb_i && !wb_we_i && !answered));
+        // What reaches them is the request.
+        assert (\dut.registers.rst_n == !wb_rst_i && irq == \dut.registers.irq );
+        if (dut.write) begin
+            assert (\dut.registers.write_at == wb_adr_i[${ address_high }$:2]);
+            assert (\dut.registers.write_data == wb_dat_i);
+            assert (\dut.registers.write_bytes == wb_sel_i);
+        end
+        if (dut.read) assert (\dut.registers.read_at == wb_adr_i[${ address_high }$:2]);
         // The data are those of the registers, which show them in the clock after their answer.
         assert (wb_dat_o == \dut.registers.read_data );
     end

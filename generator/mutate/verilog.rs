@@ -203,6 +203,44 @@ impl Text {
         Ok(text)
     }
 
+    /// The fault-free text of what stands around a core, with the shipped benches and proofs of it.
+    ///
+    /// # Errors
+    /// Golden model and simulation differ; the design cannot be written.
+    pub fn of_wrappers(core: &Core) -> Result<Self> {
+        let name = &core.config.name;
+        let mut text =
+            Self { files: Vec::new(), longer: Vec::new(), top: name.clone(), modules: Vec::new() };
+        for file in core.files(&format!("{name}.toml"), core.shipped_vectors()?)? {
+            let read = [".v", ".mem", ".sv", ".ys"].iter().any(|it| file.path.ends_with(it));
+            let wrapper = ["_axis.", "_axis_buffer.", "_registers.", "_axil.", "_wb."]
+                .iter()
+                .any(|part| file.path == format!("rtl_out/{name}/{name}{part}v"));
+            if wrapper {
+                text.modules.push(text.files.len());
+            }
+            let own = file.path.split('/').count() == 3 && !file.path.starts_with("software/");
+            if read && own {
+                text.files.push((file.name().to_owned(), file.contents));
+            }
+        }
+        Ok(text)
+    }
+
+    /// All files, each with its plain name.
+    pub fn files(&self) -> &[(String, String)] {
+        &self.files
+    }
+
+    /// All files, with a fault.
+    pub fn planted(&self, fault: &TextFault) -> Vec<(String, String)> {
+        let mut files = self.files.clone();
+        let lines = files[fault.file].1.lines().enumerate();
+        let lines = lines.map(|(at, line)| if at == fault.line { &fault.text } else { line });
+        files[fault.file].1 = lines.fold(String::new(), |text, line| text + line + "\n");
+        files
+    }
+
     /// Every fault, in the order of the text.
     pub fn faults(&self) -> Vec<TextFault> {
         let mut faults = Vec::new();
@@ -244,10 +282,7 @@ impl Text {
     }
 
     fn found(&self, fault: &TextFault, verilator: &Tool, limit: Duration) -> Result<TextFound> {
-        let mut files = self.files.clone();
-        let lines = files[fault.file].1.lines().enumerate();
-        let lines = lines.map(|(at, line)| if at == fault.line { &fault.text } else { line });
-        files[fault.file].1 = lines.fold(String::new(), |text, line| text + line + "\n");
+        let files = self.planted(fault);
         let is_linted = self.is_linted(&files, verilator, limit)?;
         let (shipped, bench) = self.benches(&files, limit)?;
         let verdict = match (shipped, bench) {

@@ -205,7 +205,7 @@ fn vector_file(design: &Design, title: &str, ports: &[&Port], rows: &[Vec<u64>])
 }
 
 /// The values side by side, the first on top, in hexadecimal digits.
-fn packed(row: &[u64], widths: &[u32]) -> String {
+pub(super) fn packed(row: &[u64], widths: &[u32]) -> String {
     let total: u32 = widths.iter().sum();
     let mut digits = vec![0u8; total.div_ceil(4) as usize];
     let last = digits.len() - 1;

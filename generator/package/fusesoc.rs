@@ -15,7 +15,8 @@ struct DeviceCore<'a> {
     name: &'a str,
     description: String,
     sources: Sources<'a>,
-    testbench: bool,
+    /// The benches beside the core's own, without `_tb`; none without it.
+    benches: Option<&'a [String]>,
     /// That of `<name>.xdc` and `<name>.sdc`, if there are any.
     clock_mhz: Option<f64>,
     version: &'a str,
@@ -55,7 +56,8 @@ struct BenchCore<'a> {
     version: &'a str,
     licence: &'a str,
     bench: &'a str,
-    vectors: &'a [String],
+    /// Its vectors, and the benches of wrappers with theirs.
+    others: &'a [String],
 }
 
 /// `<name>.core`; with a simulation target if there is a bench. File names are relative to it.
@@ -66,7 +68,7 @@ pub fn device(
     design: &Design,
     inputs: &EmitInputs,
     sources: Sources,
-    testbench: bool,
+    benches: Option<&[String]>,
 ) -> Result<String> {
     // A YAML string in single quotes; a quote in it is doubled.
     let description = ascii(&design.about.title).replace('\'', "''");
@@ -74,7 +76,7 @@ pub fn device(
         name: &design.name,
         description,
         sources,
-        testbench,
+        benches,
         clock_mhz: inputs.around.clock_mhz,
         version: &inputs.around.version,
         licence: &inputs.around.licence,
@@ -89,8 +91,8 @@ pub fn bench(
     design: &Design,
     inputs: &EmitInputs,
     bench: &str,
-    vectors: &[String],
+    others: &[String],
 ) -> Result<String> {
     let (version, licence) = (&inputs.around.version, &inputs.around.licence);
-    super::render(&BenchCore { name: &design.name, version, licence, bench, vectors })
+    super::render(&BenchCore { name: &design.name, version, licence, bench, others })
 }

@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 
 use super::facts::{self, Port, Rom};
 use super::fusesoc::Sources;
+use super::map::{Map, Register};
 use super::{Computation, ContractFacts, EmitInputs, OutputFile, Quantity, Timing, digest};
 use crate::hdl::netlist::{Design, Pipeline, RegId};
 use crate::hdl::verilog::naming::Naming;
@@ -43,6 +44,8 @@ struct Manifest<'a> {
     accuracy: Option<Value>,
     #[serde(skip_serializing_if = "Option::is_none")]
     computations: Option<Computations<'a>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    registers: Option<Vec<Value>>,
 }
 
 /// Computations, and what the numbers of each stand for.
@@ -70,6 +73,8 @@ pub struct Files<'a> {
     pub constraints: &'a [String],
     /// Scripts and descriptions for vendors' tools, or nothing.
     pub scripts: &'a [String],
+    /// The registers on a bus, or nothing.
+    pub map: Option<&'a Map>,
 }
 
 /// The manifest as text, with the digests of all `others`.
@@ -117,8 +122,19 @@ pub fn contents(
         }),
         accuracy: inputs.accuracy.as_ref().map(accuracy),
         computations: computations(design, inputs)?,
+        registers: files.map.map(|map| map.registers.iter().map(register).collect()),
     };
     Ok(serde_json::to_string_pretty(&manifest)? + "\n")
+}
+
+fn register(register: &Register) -> Value {
+    let bits = register.bits.iter();
+    let bits = bits.map(|it| json!({ "name": it.name, "low": it.low, "width": it.width }));
+    json!({
+        "name": register.name,
+        "offset": register.offset(),
+        "bits": bits.collect::<Vec<Value>>(),
+    })
 }
 
 fn listed(files: &Files) -> Value {

@@ -345,7 +345,8 @@ fn of_results(results: &[Placed], design: &Design) -> Vec<Register> {
     }
     let of_result = |result: &Placed| {
         let part = result.parts[0];
-        bits(&result.name, (part.at, part.width), Access::Read, 0, &doc(design, &result.name))
+        let width = if result.format.signed { part.width.next_multiple_of(8) } else { part.width };
+        bits(&result.name, (part.at, width), Access::Read, 0, &doc(design, &result.name))
     };
     vec![Register {
         name: "results".to_owned(),
@@ -365,7 +366,12 @@ fn own(port: &Placed, access: Access, doc: &str) -> Vec<Register> {
                 format!("{doc}, bits {} to {}", part.low, part.low + part.width - 1),
             ),
         };
-        let value = bits("value", (0, part.width), access, 0, "raw");
+        // A result is read with copies of its sign; an operand as it was written.
+        let (width, raw) = match access {
+            Access::Read if port.format.signed => (WORD, "raw, with copies of the sign"),
+            _ => (part.width, "raw"),
+        };
+        let value = bits("value", (0, width), access, 0, raw);
         Register { name, place: part.place, doc, bits: vec![value] }
     };
     port.parts.iter().enumerate().map(register).collect()

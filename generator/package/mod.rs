@@ -184,10 +184,14 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
         None => None,
     };
     let registers = map.as_ref().map(|(bus, map)| (*bus, map));
-    let wrap::Wrappers { rtl: wrappers, formal } = wrap::wrappers(design, inputs, registers)?;
+    let wrap::Wrappers { rtl: wrappers, formal, benches } =
+        wrap::wrappers(design, inputs, registers)?;
     let mut testbench = Vec::new();
     if let Some(vectors) = &inputs.vectors {
         testbench = bench::files(design, &naming, vectors)?;
+        let (python, benches): (Vec<_>, Vec<_>) =
+            benches.into_iter().partition(|(file, _)| file.ends_with(".py"));
+        testbench.extend(benches);
         let names = names_of(&testbench);
         testbench.push((
             format!("{name}_tb.core"),
@@ -204,6 +208,7 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
         testbench.splice(0..0, formal);
         if let (Some(example), Some(accuracy)) = (&inputs.example, &inputs.accuracy) {
             testbench.insert(0, cocotb::bench(design, example, accuracy)?);
+            testbench.splice(1..1, python);
         }
     }
 
@@ -246,8 +251,15 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
         software: &names_of(&software),
         constraints: &names_of(&constraints),
         scripts: &names_of(&scripts),
+        map: map.map(|(_, map)| map),
     };
-    let core = fusesoc::device(design, inputs, sources, !testbench.is_empty())?;
+    let wrapper_bench = |file: &String| {
+        let bench = file.strip_prefix(name)?.strip_prefix('_')?.strip_suffix("_tb.v")?;
+        Some(bench.to_owned())
+    };
+    let wrapper_benches: Vec<String> = bench_names.iter().filter_map(wrapper_bench).collect();
+    let benches = (!testbench.is_empty()).then_some(&wrapper_benches[..]);
+    let core = fusesoc::device(design, inputs, sources, benches)?;
     let mut all: Vec<OutputFile> = rtl
         .into_iter()
         .chain(primitives)

@@ -67,6 +67,16 @@ pub enum Bus {
     Wishbone,
 }
 
+impl Bus {
+    /// The end of the name of a module on it.
+    pub fn suffix(self) -> &'static str {
+        match self {
+            Self::AxiLite => "axil",
+            Self::Wishbone => "wb",
+        }
+    }
+}
+
 /// What is put around a core.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surroundings {

@@ -114,12 +114,12 @@ pub fn tops(
         });
     }
     if let Some((bus, map)) = map {
-        let (suffix, clock, reset, reset_level, ports) = match bus {
-            Bus::AxiLite => ("axil", "aclk", "aresetn", 0, axi_lite_ports(map.address_bits())),
-            Bus::Wishbone => ("wb", "wb_clk_i", "wb_rst_i", 1, wishbone_ports(map.address_bits())),
+        let (clock, reset, reset_level, ports) = match bus {
+            Bus::AxiLite => ("aclk", "aresetn", 0, axi_lite_ports(map.address_bits())),
+            Bus::Wishbone => ("wb_clk_i", "wb_rst_i", 1, wishbone_ports(map.address_bits())),
         };
         tops.push(Top {
-            module: format!("{name}_{suffix}"),
+            module: format!("{name}_{}", bus.suffix()),
             face: Face::Registers(bus),
             clock,
             reset: reset.to_owned(),

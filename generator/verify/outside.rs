@@ -32,6 +32,9 @@ const EQUAL: Duration = Duration::from_secs(300);
 /// The version of cocotb that the benches in Python are written for.
 const COCOTB_VERSION: &str = "2.1.0";
 
+/// What follows the name of the core in those of the modules that a system can instantiate.
+const TOPS: [&str; 4] = ["", "_axis", "_axil", "_wb"];
+
 /// Results of a bench around a netlist.
 const GATE_POINTS: u64 = 40;
 
@@ -197,20 +200,24 @@ pub const LINT: Check = Check {
     steps: |_| 1,
     run: |subject, tools, _| {
         let dir = Directory::new().context("cannot make a directory for the linters")?;
+        let (name, limit) = (&subject.core.config.name, subject.effort.time_limit);
         let mut sources = Vec::new();
-        for (name, contents) in subject.sources("")? {
+        let rtl = subject.files()?.iter().filter(|file| file.path.starts_with("rtl_out/"));
+        for (name, contents) in package::sources(rtl.cloned().collect()) {
             fs::write(dir.path().join(&name), contents)
                 .with_context(|| format!("cannot write `{name}` for the linters"))?;
             if name.ends_with(".v") {
                 sources.push(name);
             }
         }
-        let (name, limit) = (&subject.core.config.name, subject.effort.time_limit);
         let mut failures = Vec::new();
-        for tool in tools {
-            let remarks = lint(tool, dir.path(), &sources, name, limit)?;
-            if !remarks.trim().is_empty() {
-                failures.push(format!("{tool}: {}", remarks.trim()));
+        let tops = TOPS.map(|top| format!("{name}{top}"));
+        for top in tops.iter().filter(|top| sources.contains(&format!("{top}.v"))) {
+            for tool in tools {
+                let remarks = lint(tool, dir.path(), &sources, top, limit)?;
+                if !remarks.trim().is_empty() {
+                    failures.push(format!("{tool}: {}", remarks.trim()));
+                }
             }
         }
         Ok(Finding::new(
@@ -250,10 +257,14 @@ fn bench(subject: &Subject<'_>, simulator: Simulator) -> Result<Finding> {
     let vectors = core.vectors(points, BENCH_SEED)?;
     let clocks = vectors.inputs.len() as u64;
     let files = package::sources(core.files(subject.path, vectors)?);
-    let top = format!("{}_tb", core.config.name);
-    let outcome = run_bench(simulator, &files, &top, effort.time_limit)?;
-    let failures =
-        if outcome.passed { Vec::new() } else { vec![outcome.transcript.trim().to_owned()] };
+    let mut failures = Vec::new();
+    let tops = TOPS.map(|top| format!("{}{top}_tb", core.config.name));
+    for top in tops.iter().filter(|top| files.iter().any(|(it, _)| *it == format!("{top}.v"))) {
+        let outcome = run_bench(simulator, &files, top, effort.time_limit)?;
+        if !outcome.passed {
+            failures.push(outcome.transcript.trim().to_owned());
+        }
+    }
     Ok(Finding::new(
         Verdict::Passed,
         format!("{} results in {} clocks (seed {BENCH_SEED})", grouped(points), grouped(clocks)),
@@ -369,17 +380,23 @@ pub const COCOTB: Check = Check {
         }
         let dir = written(subject)?;
         let name = &subject.core.config.name;
-        let bench = format!("testbench/{name}/test_{name}.py");
-        let run = python.run([&bench], dir.path(), limit)?;
-        let verdict = run.output.lines().rev().find(|line| line.contains(&format!("{name}: ")));
-        let failures = match (run.status.success(), verdict) {
-            (true, Some(_)) => Vec::new(),
-            _ => vec![run.output.trim().to_owned()],
-        };
+        let benches = TOPS.map(|top| format!("testbench/{name}/test_{name}{top}.py"));
+        let benches: Vec<&String> =
+            benches.iter().filter(|bench| dir.path().join(bench).exists()).collect();
+        let (mut verdicts, mut failures) = (Vec::new(), Vec::new());
+        for bench in &benches {
+            let run = python.run([bench], dir.path(), limit)?;
+            let verdict = run.output.lines().rev().find(|line| line.starts_with("PASS "));
+            match verdict.filter(|_| run.status.success()) {
+                Some(verdict) => verdicts.push(verdict.to_owned()),
+                None => failures.push(run.output.trim().to_owned()),
+            }
+        }
+        let benches: Vec<&str> = benches.into_iter().map(String::as_str).collect();
         Ok(Finding::new(
             Verdict::Passed,
-            format!("{bench}, with cocotb {}", version.output.trim()),
-            verdict.unwrap_or_default(),
+            format!("{}, with cocotb {}", benches.join(", "), version.output.trim()),
+            verdicts.join("; "),
         )
         .failures(failures)
         .open("Operands that were not drawn."))

@@ -25,10 +25,12 @@ struct Component<'a> {
     memories: &'a [String],
 }
 
-/// A bus interface, of a bus definition that ARM has published.
+/// A bus interface, of a bus definition that ARM has published, or of an interrupt AMD.
 struct BusInterface {
     name: &'static str,
-    /// Of the definition.
+    /// Vendor and library of the definition, as attributes.
+    definition: &'static str,
+    /// The name of the definition.
     bus: &'static str,
     version: &'static str,
     is_slave: bool,
@@ -36,6 +38,15 @@ struct BusInterface {
     mapped: bool,
     /// Name in the definition, and port.
     ports: Vec<(String, String)>,
+}
+
+const AMBA: &str = "vendor=\"amba.com\" library=\"AMBA4\"";
+const INTERRUPT: &str = "vendor=\"xilinx.com\" library=\"signal\"";
+
+impl BusInterface {
+    fn is_interrupt(&self) -> bool {
+        self.definition == INTERRUPT
+    }
 }
 
 impl Component<'_> {
@@ -103,6 +114,19 @@ pub fn files(
     tops.iter().map(component).collect()
 }
 
+/// The interrupt, a level. IEEE 1685-2014 has none of its own, and Vivado's is known to other tools too.
+fn interrupt() -> BusInterface {
+    BusInterface {
+        name: "irq",
+        definition: INTERRUPT,
+        bus: "interrupt",
+        version: "1.0",
+        is_slave: false,
+        mapped: false,
+        ports: vec![("INTERRUPT".to_owned(), "irq".to_owned())],
+    }
+}
+
 /// The buses of a module. Wishbone has no definition that its makers have published.
 fn buses(top: &Top) -> Vec<BusInterface> {
     let ports = |name: &str| -> Vec<(String, String)> {
@@ -116,6 +140,7 @@ fn buses(top: &Top) -> Vec<BusInterface> {
     };
     let stream = |name, is_slave| BusInterface {
         name,
+        definition: AMBA,
         bus: "AXI4Stream",
         version: "r0p0_1",
         is_slave,
@@ -124,15 +149,20 @@ fn buses(top: &Top) -> Vec<BusInterface> {
     };
     match top.face {
         Face::Stream => vec![stream("s_axis", true), stream("m_axis", false)],
-        Face::Registers(Bus::AxiLite) => vec![BusInterface {
-            name: "s_axil",
-            bus: "AXI4-Lite",
-            version: "r0p0_0",
-            is_slave: true,
-            mapped: true,
-            ports: ports("s_axil"),
-        }],
-        Face::Core | Face::Registers(Bus::Wishbone) => Vec::new(),
+        Face::Registers(Bus::AxiLite) => {
+            let registers = BusInterface {
+                name: "s_axil",
+                definition: AMBA,
+                bus: "AXI4-Lite",
+                version: "r0p0_0",
+                is_slave: true,
+                mapped: true,
+                ports: ports("s_axil"),
+            };
+            vec![registers, interrupt()]
+        }
+        Face::Registers(Bus::Wishbone) => vec![interrupt()],
+        Face::Core => Vec::new(),
     }
 }
 

@@ -1,7 +1,9 @@
 //! What stands between a core and a system: wrappers in Verilog, and what is proved of them.
 
+mod bench;
 pub(super) mod fields;
 mod pipeline;
+mod points;
 mod registers;
 mod stream;
 mod words;
@@ -23,6 +25,8 @@ pub struct Wrappers {
     pub rtl: Vec<(String, String)>,
     /// What is proved of it, for formal tools alone.
     pub formal: Vec<(String, String)>,
+    /// Benches and the points for them.
+    pub benches: Vec<(String, String)>,
 }
 
 /// The wrappers that the configuration asks for; the map is that of the registers.
@@ -47,6 +51,9 @@ pub fn wrappers(
     }
     if let Some((bus, map)) = map {
         add(registers::wrapper(design, inputs, bus, map)?);
+    }
+    if let Some(vectors) = &inputs.vectors {
+        made.benches = bench::benches(design, inputs, map, vectors)?;
     }
     Ok(made)
 }

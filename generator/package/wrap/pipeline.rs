@@ -7,7 +7,7 @@ use super::fields::{Field, bits, operands, packed, padding, results, sink};
 use super::{Wrappers, connected, script, seen_inside, stub_ports};
 use crate::hdl::netlist::{Design, Pipeline, Role};
 use crate::hdl::verilog::rows::separated;
-use crate::hdl::verilog::text::{literal, range};
+use crate::hdl::verilog::text::literal;
 use crate::package::{EmitInputs, render};
 
 #[derive(Template)]
@@ -29,18 +29,15 @@ struct Wrapper<'a> {
     unused: Vec<String>,
 }
 
-/// A stage of the core that stands in for any, and where the proof finds what travels through it.
-struct Stage {
-    number: u32,
-    /// The lowest and the highest bit of tlast and tuser of its point among those of all stages.
-    side_low: u32,
-    side_high: u32,
+/// The lowest and the highest bit of tlast and tuser of a stage's point among those of all stages.
+struct Side {
+    low: u32,
+    high: u32,
 }
 
 /// A result among the bits of all, without those that fill bytes.
 struct Raw<'a> {
     name: &'a str,
-    range: String,
     low: u32,
     width: u32,
 }
@@ -52,7 +49,6 @@ struct Formal<'a> {
     in_high: u32,
     out_high: u32,
     user_bits: u32,
-    count_bits: u32,
     stub_ports: Vec<String>,
     raw: Vec<Raw<'a>>,
     raw_high: u32,
@@ -60,8 +56,8 @@ struct Formal<'a> {
     checks: Vec<String>,
     /// Declarations of what the proof sees of the inside.
     inside: Vec<String>,
-    last: usize,
-    stages: Vec<Stage>,
+    stages: usize,
+    sides: Vec<Side>,
 }
 
 /// The wrapper, and what is proved of it.
@@ -108,7 +104,8 @@ pub fn wrapper(design: &Design, pipeline: &Pipeline, inputs: &EmitInputs) -> Res
         results: &results,
     };
     let rtl = vec![(format!("{name}_axis.v"), render(&view)?)];
-    Ok(Wrappers { rtl, formal: formal(design, pipeline, inputs, (&operands, &results))? })
+    let formal = formal(design, pipeline, inputs, (&operands, &results))?;
+    Ok(Wrappers { rtl, formal, ..Wrappers::default() })
 }
 
 fn formal(
@@ -121,16 +118,10 @@ fn formal(
     let stages = pipeline.stages.len();
     let user = inputs.around.user_bits;
     let side = user + 1;
-    let stage = |number, low| Stage { number, side_low: low, side_high: low + user };
     let mut raw_bits = 0;
     let mut raw = Vec::new();
     for field in results {
-        raw.push(Raw {
-            name: &field.name,
-            range: range(field.width),
-            low: raw_bits,
-            width: field.width,
-        });
+        raw.push(Raw { name: &field.name, low: raw_bits, width: field.width });
         raw_bits += field.width;
     }
     let mut nets = vec![
@@ -138,31 +129,28 @@ fn formal(
         ("held_results".to_owned(), bits(results)?),
         ("held_side".to_owned(), side),
         ("side".to_owned(), stages as u32 * side),
-        ("core.any".to_owned(), raw_bits),
+        ("results_side".to_owned(), side),
+        ("core.points".to_owned(), stages as u32),
     ];
-    nets.extend(operands.iter().map(|field| (format!("core.{}", field.name), field.width)));
-    for stage in 1..=stages {
-        nets.push((format!("core.valid_{stage}"), 1));
-        nets.push((format!("core.data_{stage}"), raw_bits));
-    }
+    let handshake = ["rst_n", "in_valid", "in_ready", "out_valid", "out_ready"];
+    nets.extend(handshake.map(|port| (format!("core.{port}"), 1)));
+    let ports = operands.iter().chain(results);
+    nets.extend(ports.map(|field| (format!("core.{}", field.name), field.width)));
     let check = |field: &Field| format!("dut.core.{} == s_axis_tdata{}", field.name, field.bits());
     let view = Formal {
         name,
         in_high: bits(operands)? - 1,
         out_high: bits(results)? - 1,
         user_bits: user,
-        // Points can be in every stage, offered, and behind the one that is offered.
-        count_bits: u32::BITS - (stages as u32 + 2).leading_zeros(),
         stub_ports: stub_ports(design),
         raw,
         raw_high: raw_bits - 1,
-        packed: separated(packed(results, "its_")),
+        packed: separated(packed(results, "dut.core.")),
         checks: operands.iter().map(check).collect(),
         inside: nets.into_iter().map(seen_inside).collect(),
-        last: stages,
-        stages: (1..=stages as u32)
-            .rev()
-            .map(|number| stage(number, (number - 1) * side))
+        stages,
+        sides: (0..stages as u32)
+            .map(|stage| Side { low: stage * side, high: stage * side + user })
             .collect(),
     };
     Ok(vec![

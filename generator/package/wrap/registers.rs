@@ -9,7 +9,7 @@ use super::words::{Word, constants, select, within, words};
 use super::{Wrappers, connected, core_wire, script, seen_inside, stub_free, stub_ports};
 use crate::hdl::netlist::{Design, Role};
 use crate::hdl::verilog::text::{comment, literal, range};
-use crate::package::map::{self, Map, Placed};
+use crate::package::map::{self, Bits, Map, Part, Placed, Register};
 use crate::package::surroundings::Bus;
 use crate::package::{EmitInputs, render};
 
@@ -30,14 +30,6 @@ struct Lane {
     /// Of the operand, and of the data.
     bits: String,
     data: String,
-}
-
-/// An operand's part in a register.
-struct OperandWord {
-    number: u32,
-    name: String,
-    width: u32,
-    bits: String,
 }
 
 #[derive(Template)]
@@ -79,7 +71,8 @@ struct Formal<'a> {
     first_result_number: u32,
     last_result_number: u32,
     operands: Vec<Operand>,
-    operand_words: Vec<OperandWord>,
+    /// The place of each register, and what is read there.
+    reads: Vec<(u32, String)>,
     stub_ports: Vec<String>,
     stub_free: Vec<String>,
     /// Declarations of what the proof sees of the inside.
@@ -123,20 +116,18 @@ struct WishboneFormal<'a> {
 pub fn wrapper(design: &Design, inputs: &EmitInputs, bus: Bus, map: &Map) -> Result<Wrappers> {
     let (name, regenerate) = (design.name.as_str(), inputs.config.as_str());
     let address_high = map.address_bits() - 1;
-    let (suffix, rtl, formal) = match bus {
+    let (rtl, formal) = match bus {
         Bus::AxiLite => (
-            "axil",
             render(&AxiLite { name, regenerate, address_high })?,
             render(&AxiLiteFormal { name, address_high })?,
         ),
         Bus::Wishbone => (
-            "wb",
             render(&Wishbone { name, regenerate, address_high })?,
             render(&WishboneFormal { name, address_high })?,
         ),
     };
     let registers = format!("{name}_registers");
-    let bus = format!("{name}_{suffix}");
+    let bus = format!("{name}_{}", bus.suffix());
     Ok(Wrappers {
         rtl: vec![
             (format!("{bus}.v"), rtl),
@@ -148,6 +139,7 @@ pub fn wrapper(design: &Design, inputs: &EmitInputs, bus: Bus, map: &Map) -> Res
             (format!("{registers}_formal.sv"), render(&proof(design, map))?),
             (format!("{registers}_formal.ys"), script(&registers)?),
         ],
+        ..Wrappers::default()
     })
 }
 
@@ -251,6 +243,61 @@ fn operands(map: &Map) -> Vec<Operand> {
     map.operands.iter().map(operand).collect()
 }
 
+/// What is read of a register, by the map alone: its bits where they stand, and 0 between them.
+fn read(map: &Map, register: &Register) -> String {
+    let mut parts = Vec::new();
+    let mut above = 32;
+    for bits in register.bits.iter().rev() {
+        let end = bits.low + bits.width;
+        if end < above {
+            parts.push(literal(0, above - end));
+        }
+        parts.push(source(map, register, bits));
+        above = bits.low;
+    }
+    if above > 0 {
+        parts.push(literal(0, above));
+    }
+    let value = format!("{{{}}}", parts.join(", "));
+    if register.place > map.last_operand() {
+        format!("($past(dut.finished) ? {value} : 0)")
+    } else {
+        value
+    }
+}
+
+/// The nets behind some bits, as wide as these.
+fn source(map: &Map, register: &Register, bits: &Bits) -> String {
+    if register.place < map::CONSTANTS {
+        return literal(bits.reset, bits.width);
+    }
+    match (register.name.as_str(), bits.name.as_str()) {
+        ("status", "busy") => "dut.start | dut.core.run".to_owned(),
+        ("status", _) => "dut.finished".to_owned(),
+        ("control", "start") => literal(0, bits.width),
+        ("control", name) => format!("dut.{name}"),
+        ("interrupt_enable" | "interrupt_pending", _) => format!("dut.{}", register.name),
+        _ => {
+            let is_operand = register.place <= map.last_operand();
+            let ports = if is_operand { &map.operands } else { &map.results };
+            let here = |part: &&Part| (part.place, part.at) == (register.place, bits.low);
+            let part = |port: &'_ Placed| port.parts.iter().find(here).copied();
+            let found = ports.iter().find_map(|port| Some((port, part(port)?)));
+            let Some((port, part)) = found else { return literal(0, bits.width) };
+            let (width, high) = (port.format.width(), part.low + part.width - 1);
+            let net = if is_operand { "dut.operand_" } else { "dut.core." };
+            let net = format!("{net}{}", port.name);
+            let all = format!("{net}{}", select(width, part.low, high));
+            match bits.width - part.width {
+                0 => all,
+                copies => {
+                    format!("{{{copies}{{{net}{}}}}}, {all}", select(width, width - 1, width - 1))
+                }
+            }
+        }
+    }
+}
+
 fn proof<'a>(design: &'a Design, map: &Map) -> Formal<'a> {
     let word_bits = map.address_bits() - 2;
     let own = [
@@ -262,6 +309,7 @@ fn proof<'a>(design: &'a Design, map: &Map) -> Formal<'a> {
         ("finished", 1),
         ("core.run", 1),
         ("core.ends", 1),
+        ("core.rst_n", 1),
     ];
     let mut inside: Vec<(String, u32)> =
         own.into_iter().map(|(net, width)| (net.to_owned(), width)).collect();
@@ -270,14 +318,9 @@ fn proof<'a>(design: &'a Design, map: &Map) -> Formal<'a> {
         inside.push((format!("operand_{}", operand.name), width));
         inside.push((format!("core.{}", operand.name), width));
     }
-    let operand_words = map.operands.iter().flat_map(|operand| {
-        operand.parts.iter().map(|part| OperandWord {
-            number: part.place,
-            name: operand.name.clone(),
-            width: part.width,
-            bits: select(operand.format.width(), part.low, part.low + part.width - 1),
-        })
-    });
+    inside.extend(
+        map.results.iter().map(|result| (format!("core.{}", result.name), result.format.width())),
+    );
     Formal {
         name: &design.name,
         address_high: map.address_bits() - 1,
@@ -288,7 +331,7 @@ fn proof<'a>(design: &'a Design, map: &Map) -> Formal<'a> {
         first_result_number: map.last_operand() + 1,
         last_result_number: map.last(),
         operands: operands(map),
-        operand_words: operand_words.collect(),
+        reads: map.registers.iter().map(|register| (register.place, read(map, register))).collect(),
         stub_ports: stub_ports(design),
         stub_free: stub_free(design),
         inside: inside.into_iter().map(seen_inside).collect(),

@@ -104,7 +104,8 @@ struct Formal<'a> {
 /// A core without the handshake of a microprogram, or without operands or results.
 pub fn wrapper(design: &Design, inputs: &EmitInputs) -> Result<Wrappers> {
     design.handshake()?;
-    Ok(Wrappers { rtl: modules(design, inputs)?, formal: formal(design, inputs)? })
+    let (rtl, formal) = (modules(design, inputs)?, formal(design, inputs)?);
+    Ok(Wrappers { rtl, formal, ..Wrappers::default() })
 }
 
 fn modules(design: &Design, inputs: &EmitInputs) -> Result<Vec<(String, String)>> {
@@ -214,6 +215,7 @@ fn inside(
         ("operands_user", user),
         ("user", user),
         ("core.computing", 1),
+        ("core.run", 1),
     ]
     .map(|(net, width)| (net.to_owned(), width))
     .into();

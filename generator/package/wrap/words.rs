@@ -13,6 +13,8 @@ pub struct Word {
     pub index: String,
     /// An expression of 32 bits.
     pub read: String,
+    /// It is there after a computation; until then 0 is read.
+    pub is_result: bool,
 }
 
 /// Whether an address is one of these places: comparisons of its upper bits, which take no adder as
@@ -69,14 +71,15 @@ pub fn words(design: &Design, map: &Map) -> Vec<Word> {
     for operand in &map.operands {
         let parts = operand.parts.iter();
         reads.extend(
-            parts.map(|part| extended(operand, part, &format!("operand_{}", operand.name))),
+            parts.map(|part| extended(operand, part, &format!("operand_{}", operand.name), false)),
         );
     }
     if map.last() > map.last_operand() + 1 || map.results.len() == 1 {
         for result in &map.results {
             let parts = result.parts.iter();
-            reads
-                .extend(parts.map(|part| extended(result, part, &format!("core_{}", result.name))));
+            reads.extend(
+                parts.map(|part| extended(result, part, &format!("core_{}", result.name), true)),
+            );
         }
     } else {
         let fields = results(design);
@@ -87,23 +90,28 @@ pub fn words(design: &Design, map: &Map) -> Vec<Word> {
         }
         reads.push(format!("{{{}}}", parts.join(", ")));
     }
-    let word =
-        |(number, read): (u64, String)| Word { number, index: literal(number, word_bits), read };
+    let word = |(number, read): (u64, String)| Word {
+        number,
+        index: literal(number, word_bits),
+        read,
+        is_result: number > u64::from(map.last_operand()),
+    };
     (u64::from(map::CONSTANTS)..).zip(reads).map(word).collect()
 }
 
-/// A part of a port in 32 bits, with copies of the sign.
-fn extended(port: &Placed, part: &Part, net: &str) -> String {
+/// A part of a port in 32 bits, of a result with copies of the sign.
+fn extended(port: &Placed, part: &Part, net: &str, is_result: bool) -> String {
     let width = port.format.width();
     let bits = format!("{net}{}", select(width, part.low, part.low + part.width - 1));
+    let signed = is_result && port.format.signed;
     let top = match width {
         1 => net.to_owned(),
         _ => format!("{net}[{}]", width - 1),
     };
     match 32 - part.width {
         0 => bits,
-        1 if port.format.signed => format!("{{{top}, {bits}}}"),
-        pad if port.format.signed => format!("{{{{{pad}{{{top}}}}}, {bits}}}"),
+        1 if signed => format!("{{{top}, {bits}}}"),
+        pad if signed => format!("{{{{{pad}{{{top}}}}}, {bits}}}"),
         pad => format!("{{{}, {bits}}}", literal(0, pad)),
     }
 }

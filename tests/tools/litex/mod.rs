@@ -28,7 +28,7 @@ fn system(name: &str, keys: &str, face: &str) -> Vec<(String, String)> {
     let own = ["soc.v", "tb.v"].map(|name| dir.path().join(name));
     own.iter()
         .map(|path| file(path))
-        .chain(sources.lines().map(|line| file(Path::new(line))))
+        .chain(sources.lines().map(|line| file(&dir.path().join(line))))
         .collect()
 }
 
@@ -37,6 +37,7 @@ fn litex_builds_systems_that_compute() {
     [
         ("threshold_levels", "", "core"),
         ("cosine_power", "registers = \"wishbone\"\n", "registers"),
+        ("cosine_power", "registers = \"wishbone\"\n", "cpu"),
         ("cosine_power", "stream = true\n", "stream"),
         ("cosine_power_pipelined", "stream = true\n", "stream"),
     ]

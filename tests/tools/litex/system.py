@@ -2,8 +2,9 @@
 
     python system.py DIRECTORY NAME FACE
 
-DIRECTORY is where `glint generate` wrote; FACE is `core`, `stream` or `registers`. In the current directory this writes
-soc.v, tb.v and sources.txt, a path a line. The bench computes the points of the manifest.
+DIRECTORY is where `glint generate` wrote; FACE is `core`, `stream`, `registers`, or `cpu`: registers with a processor in
+place of the bench's accesses. In the current directory this writes soc.v, tb.v and sources.txt, a path a line. The bench
+computes the points of the manifest.
 """
 
 import importlib.util
@@ -18,6 +19,7 @@ from litex.build.sim import SimPlatform
 from litex.soc.integration.soc import SoCRegion
 from litex.soc.integration.soc_core import SoCMini
 from litex.soc.interconnect import wishbone
+from litex.soc.interconnect.csr import CSRStorage
 
 POINTS = 12
 
@@ -43,6 +45,7 @@ def pads(face: str, widths: tuple[int, int, int]) -> list:
     return [
         ("sys_clk", 0, Pins(1)),
         ("sys_rst", 0, Pins(1)),
+        ("verdict", 0, Pins(2)),
         ("host", 0, *bus),
         ("sink", 0, *one, Subsignal("data", Pins(data)), Subsignal("user", Pins(user))),
         ("source", 0, *one, Subsignal("data", Pins(out)), Subsignal("user", Pins(user))),
@@ -52,10 +55,21 @@ def pads(face: str, widths: tuple[int, int, int]) -> list:
 class System(SoCMini):
     """The core as a user of LiteX would have it."""
 
-    def __init__(self, platform, make, face: str) -> None:
+    def __init__(self, platform, make, face: str, program: list[int]) -> None:
         self.crg = CRG(platform.request("sys_clk"), rst=platform.request("sys_rst"))
-        super().__init__(platform, clk_freq=int(1e6), ident="", with_timer=False, with_uart=False)
+        processor = {"cpu_type": "picorv32", "integrated_rom_size": 0x4000, "integrated_rom_init": program}
+        super().__init__(platform, clk_freq=int(1e6), ident="", **(processor if program else {}))
         self.core = make(platform)
+        if face in ("registers", "cpu"):
+            # Without a processor LiteX takes any place for one of peripherals, its own too.
+            origin = 0x1000_0000 if face == "registers" else None
+            region = SoCRegion(origin=origin, size=0x1000, cached=False)
+            self.bus.add_slave("core", self.core.bus, region)
+        if face == "cpu":
+            self.irq.add("core")
+            self.verdict = CSRStorage(2)
+            self.comb += platform.request("verdict").eq(self.verdict.storage)
+            return
         if face == "stream":
             sink, source = platform.request("sink"), platform.request("source")
             for name in ("valid", "data", "user", "last"):
@@ -66,9 +80,6 @@ class System(SoCMini):
                 self.core.source.ready.eq(source.ready),
             ]
             return
-        if face == "registers":
-            region = SoCRegion(origin=0x1000_0000, size=0x1000, cached=False)
-            self.bus.add_slave("shade", self.core.bus, region)
         host = platform.request("host")
         master = wishbone.Interface(data_width=32, address_width=32, addressing="byte")
         self.bus.add_master("host", master)
@@ -150,6 +161,16 @@ STREAM = """
         rst = 0;
 """
 
+CPU = """
+    wire [1:0] verdict;
+    {top} dut (.sys_clk(clk), .sys_rst(rst), .verdict(verdict));
+    initial begin
+        repeat (4) @(negedge clk);
+        rst = 0;
+        wait (verdict[0]);
+        failures = verdict[1];
+"""
+
 TAIL = """
         if (failures != 0) begin $display("FAIL: %0d", failures); $fatal; end
         $display("PASS: {points} points");
@@ -169,6 +190,35 @@ def packed(ports: list[dict], values: list[int]) -> int:
     return word
 
 
+def li(register: int, word: int) -> list[int]:
+    """Puts a constant into a register of RV32I: lui, addi."""
+    return [(word + 0x800) & 0xFFFFF000 | register << 7 | 0x37,
+            (word & 0xFFF) << 20 | register << 15 | register << 7 | 0x13]
+
+
+def program(accesses: list[tuple[str, int, int]], interrupt: int, verdict: int) -> list[int]:
+    """Does the accesses, waits for an interrupt where they say so, and tells whether all was right."""
+    words = li(8, 0)
+    for what, at, word in accesses:
+        if what == "wait":
+            # waitirq x7, an instruction of PicoRV32
+            words += [0x0800_0000 | 7 << 7 | 0x0B, *li(6, 1 << interrupt)]
+        else:
+            words += [*li(5, at), *li(6, word)]
+            # sw x6, 0(x5), or lw x7, 0(x5)
+            words += [6 << 20 | 5 << 15 | 2 << 12 | 0x23] if what == "write" else []
+            words += [5 << 15 | 2 << 12 | 7 << 7 | 0x03] if what == "read" else []
+        if what != "write":
+            # xor x7, x7, x6; or x8, x8, x7
+            words += [6 << 20 | 7 << 15 | 4 << 12 | 7 << 7 | 0x33,
+                      7 << 20 | 8 << 15 | 6 << 12 | 8 << 7 | 0x33]
+    # sltu x6, x0, x8: 1 where anything was wrong; bit 1 of the verdict, of which bit 0 is set.
+    words += [8 << 20 | 3 << 12 | 6 << 7 | 0x33, 1 << 20 | 6 << 15 | 1 << 12 | 6 << 7 | 0x13,
+              1 << 20 | 6 << 15 | 6 << 12 | 6 << 7 | 0x13]
+    # sw x6, 0(x5); the jump to itself ends it.
+    return [*words, *li(5, verdict), 6 << 20 | 5 << 15 | 2 << 12 | 0x23, 0x6F]
+
+
 def main() -> None:
     """Write the system and its bench."""
     directory, name, face = Path(sys.argv[1]), sys.argv[2], sys.argv[3]
@@ -179,27 +229,47 @@ def main() -> None:
     results = [ports[name] for name in table["results"]]
     bits = [sum((p["width"] + 7) // 8 * 8 for p in side) for side in (operands, results)]
     module = generated(directory, name)
-    kind = {"core": "Core", "stream": "Stream", "registers": "Registers"}[face]
+    kind = {"core": "Core", "stream": "Stream"}.get(face, "Registers")
     (make,) = [getattr(module, it) for it in dir(module) if re.fullmatch(rf"[A-Z]\w+{kind}", it)
                and getattr(module, it).__module__ == "generated"]
-    platform = SimPlatform("SIM", pads(face, (bits[0], 1, bits[1])))
-    system = System(platform, make, face)
-    system.finalize()
-    verilog = platform.get_verilog(system, name="soc")
-    Path("soc.v").write_text(str(verilog))
-    Path("sources.txt").write_text("".join(f"{source[0]}\n" for source in platform.sources))
-    lines = []
     points = table["points"][:POINTS]
+
+    def build(program: list[int]) -> System:
+        platform = SimPlatform("SIM", pads(face, (bits[0], 1, bits[1])))
+        system = System(platform, make, face, program)
+        system.finalize()
+        verilog = platform.get_verilog(system, name="soc")
+        Path("soc.v").write_text(verilog.main_source)
+        for name, data in verilog.data_files.items():
+            Path(name).write_text(data)
+        sources = [source[0] for source in platform.sources] + list(verilog.data_files)
+        Path("sources.txt").write_text("".join(f"{source}\n" for source in sources))
+        return system
+
+    # What it is made of does not depend on the program.
+    system = build([0x6F] if face == "cpu" else [])
+    lines = []
     at = {}
     if face == "core":
         region = system.csr.regions["core"]
         at = {csr.name: region.origin + 4 * index for index, csr in enumerate(region.obj)}
-    elif face == "registers":
+    elif face in ("registers", "cpu"):
+        base = system.bus.regions["core"].origin
         header = (directory / "software" / name / f"{name}_registers.h").read_text()
         prefix = name.upper()
         for found in re.finditer(rf"#define {prefix}_REG_(\w+) (0x[0-9a-f]+)u", header):
-            at[found[1].lower()] = 0x1000_0000 + int(found[2], 16)
-    for point in points:
+            at[found[1].lower()] = base + int(found[2], 16)
+    if face == "cpu":
+        accesses = [("read", at["id"], 0x474C_4E54), ("write", at["interrupt_enable"], 1)]
+        for point in points:
+            values = zip(operands, point["operands"], strict=True)
+            accesses += [("write", at[port["name"]], value & 0xFFFF_FFFF) for port, value in values]
+            accesses += [("write", at["control"], 1), ("wait", 0, 0)]
+            accesses += [("read", at["results"], packed(results, point["results"][0]))]
+        verdict = next(region for region in system.csr.regions.values()
+                       if any(csr.name == "verdict" for csr in region.obj))
+        build(program(accesses, system.irq.locs["core"], verdict.origin))
+    for point in points if face != "cpu" else []:
         if face == "stream":
             lines.append(f"send({bits[0]}'h{packed(operands, point['operands']):x}, 1'b1);")
             lines.append(f"receive({bits[1]}'h{packed(results, point['results'][0]):x}, 1'b1);")
@@ -219,7 +289,7 @@ def main() -> None:
             lines.append(f"expect_word(32'h{at['results']:x}, 32'h{word:x});")
     body = "".join(f"        {line}\n" for line in lines)
     head = STREAM.format(top="soc", inputs=bits[0] - 1, outputs=bits[1] - 1, users=0)
-    head = head if face == "stream" else BUS.format(top="soc")
+    head = head if face == "stream" else (CPU if face == "cpu" else BUS).format(top="soc")
     Path("tb.v").write_text(HEAD + head + body + TAIL.format(points=len(points)))
 
 

@@ -113,8 +113,15 @@ fn vivado_packages_ip() {
         assert!(told.contains(call), "{call}{told}");
     }
     assert!(told.ends_with("ipx::save_core core0\nclose_project\n"), "{told}");
+    assert!(!told.contains("interrupt"), "{told}");
     let (ok, told) = calls(dir.path(), script, &["cosine_power_wb"], "");
     assert!(ok && told.contains("set_property value ACTIVE_HIGH parameter0\n"), "{told}");
+    for call in [
+        "ipx::infer_bus_interface irq xilinx.com:signal:interrupt_rtl:1.0 core0\n",
+        "set_property value LEVEL_HIGH parameter0\n",
+    ] {
+        assert!(told.contains(call), "{call}{told}");
+    }
     assert!(
         told.contains("infer_bus_interface wb_clk_i xilinx.com:signal:clock_rtl:1.0"),
         "{told}"

@@ -1,5 +1,7 @@
 //! Wrappers around cores: clean Verilog, proved, and with the bus models of others.
 
+mod planted;
+
 use std::fs;
 
 use crate::common::cores::{Emitted, all_configurations, configuration_between};
@@ -167,8 +169,7 @@ const CONVERSIONS: &str = include_str!("conversions.c");
 
 /// The same in Rust.
 const RUST_CONVERSIONS: &str = r#"
-#[deny(warnings)]
-#[allow(dead_code)]
+#![deny(warnings)]
 #[path = "cosine_power_registers.rs"]
 mod registers;
 use registers::{cos_gamma_from_fixed, exponent_from_fixed};

@@ -1,0 +1,77 @@
+    reg [31:0] awaddr = 32'd0;
+    reg awvalid = 1'b0;
+    wire awready;
+    reg [31:0] wdata = 32'd0;
+    reg [3:0] wstrb = 4'd0;
+    reg wvalid = 1'b0;
+    wire wready;
+    wire [1:0] bresp;
+    wire bvalid;
+    reg bready = 1'b0;
+    reg [31:0] araddr = 32'd0;
+    reg arvalid = 1'b0;
+    wire arready;
+    wire [31:0] rdata;
+    wire [1:0] rresp;
+    wire rvalid;
+    reg rready = 1'b0;
+    reg address_taken;
+    reg data_taken;
+    ${ top }$ dut (
+        .aclk(clk),
+        .aresetn(~reset),
+        .s_axil_awaddr(awaddr[${ address_high }$:0]),
+        .s_axil_awprot(random[14:12]),
+        .s_axil_awvalid(awvalid),
+        .s_axil_awready(awready),
+        .s_axil_wdata(wdata),
+        .s_axil_wstrb(wstrb),
+        .s_axil_wvalid(wvalid),
+        .s_axil_wready(wready),
+        .s_axil_bresp(bresp),
+        .s_axil_bvalid(bvalid),
+        .s_axil_bready(bready),
+        .s_axil_araddr(araddr[${ address_high }$:0]),
+        .s_axil_arprot(random[17:15]),
+        .s_axil_arvalid(arvalid),
+        .s_axil_arready(arready),
+        .s_axil_rdata(rdata),
+        .s_axil_rresp(rresp),
+        .s_axil_rvalid(rvalid),
+        .s_axil_rready(rready),
+        .irq(irq)
+    );
+
+    // A write or a read; address, data and the readiness for the answer come in any order.
+    task access(input [31:0] address, input writes, input [31:0] data, input [3:0] bytes);
+        begin
+            accesses = accesses + 1;
+            random = {random[30:0], random[31] ^ random[21] ^ random[1] ^ random[0]};
+            waited = 0;
+            answered = 1'b0;
+            address_taken = 1'b0;
+            data_taken = ~writes;
+            while (!answered) begin
+                awvalid = writes && !address_taken && waited >= {30'd0, random[1:0]};
+                wvalid = !data_taken && waited >= {30'd0, random[3:2]};
+                arvalid = !writes && !address_taken && waited >= {30'd0, random[1:0]};
+                bready = writes && waited >= {29'd0, random[6:4]};
+                rready = !writes && waited >= {29'd0, random[6:4]};
+                awaddr = awvalid ? address | {30'd0, random[9:8]} : ~address;
+                araddr = arvalid ? address | {30'd0, random[9:8]} : ~address;
+                wdata = wvalid ? data : ~data;
+                wstrb = wvalid ? bytes : ~bytes;
+                wait_a_clock;
+                check((bvalid & rvalid) === 1'b0, "two answers");
+                if (bvalid || rvalid) check(address_taken && data_taken, "an answer too early");
+                if (awvalid && awready || arvalid && arready) address_taken = 1'b1;
+                if (wvalid && wready) data_taken = 1'b1;
+                answered = bvalid && bready || rvalid && rready;
+                failed = writes ? bresp[1] : rresp[1];
+                got = rdata;
+                if (answered) check((writes ? bresp[0] : rresp[0]) === 1'b0, "the response");
+                @(negedge clk);
+            end
+            {awvalid, wvalid, arvalid, bready, rready} = 5'd0;
+        end
+    endtask

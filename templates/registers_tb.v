@@ -1,0 +1,265 @@
+// ${ top }$_tb: self-checking bench of ${ top }$
+//
+// Run it with any simulator from a directory that holds the files of both folders, for example
+//   $ iverilog -g2012 -s ${ top }$_tb -o ${ top }$_tb ${ name }$*.v
+//   $ ./${ top }$_tb
+// or, with Verilator 5,
+//   $ verilator --binary --timing --top-module ${ top }$_tb ${ name }$*.v
+//   $ obj_dir/V${ top }$_tb
+// The points of ${ name }$_tb are written and started in turn in each way that there is, and the results
+// are read. Inputs change on the falling edge of the clock; outputs are read just before the rising
+// edge.
+//
+// Generated files belong to their user, without conditions.
+
+`default_nettype none
+
+module ${ top }$_tb #(
+    parameter SENT_FILE     = "${ name }$_sent.mem",
+    parameter RECEIVED_FILE = "${ name }$_received.mem"
+);
+    localparam POINTS   = ${ points }$;
+    localparam EVERY    = ${ every }$;  // one of so many is computed
+    localparam PARTS    = ${ parts.len() }$;  // registers of operands
+    localparam RESULTS  = ${ results.len() }$;  // registers of results
+    localparam WORDS    = ${ words }$;  // registers
+    localparam LIMIT    = ${ limit }$;  // clocks until an answer
+    localparam REPORTED = 20;  // differences that are printed
+    localparam [31:0] STATUS = 32'h10, CONTROL = 32'h14, ENABLE = 32'h18, PENDING = 32'h1c;
+
+    reg [${ in_high }$:0] sent [0:POINTS-1];
+    reg [${ out_high }$:0] received [0:POINTS-1];
+    reg [${ in_high }$:0] point;
+    reg [${ out_high }$:0] result;
+
+    // Initial values stand here: see ${ name }$_tb.
+    reg clk = 1'b0;
+    reg reset = 1'b1;
+    reg irq_enabled = 1'b0;
+    reg answered;
+    reg failed;
+    reg [31:0] got;
+    reg [31:0] random = 32'd1;
+    integer number = 0;
+    integer part = 0;
+    integer waited = 0;
+    integer errors = 0;
+    integer accesses = 0;
+    wire irq;
+    always #5 clk = ~clk;
+
+    task check(input right, input string what);
+        if (right !== 1'b1) begin
+            if (errors < REPORTED) $display("point %0d, access %0d: %0s", number, accesses, what);
+            errors = errors + 1;
+        end
+    endtask
+
+    task verdict;
+        begin
+            if (errors != 0) begin
+                $display("FAIL ${ top }$: %0d differences", errors);
+                $fatal;
+            end
+            $display("PASS ${ top }$: %0d accesses, no difference", accesses);
+            $finish;
+        end
+    endtask
+
+    // A clock, to just before its rising edge; outputs are as they are then.
+    task wait_a_clock;
+        begin
+            waited = waited + 1;
+            if (waited > LIMIT) begin
+                check(1'b0, "no answer");
+                verdict;
+            end
+            #4;
+        end
+    endtask
+
+<%- if wishbone %>
+<% include "wb_tb.v" %>
+<%- else %>
+<% include "axil_tb.v" %>
+<%- endif %>
+
+    function [31:0] part_at(input integer number);
+        case (number)
+<%- for part in parts %>
+            ${ loop.index0 }$: part_at = ${ part.at }$;
+<%- endfor %>
+            default: part_at = 32'd0;
+        endcase
+    endfunction
+    // What is written, with any bits above the operand, and what is read back.
+    function [31:0] part_word(input integer number);
+        case (number)
+<%- for part in parts %>
+            ${ loop.index0 }$: part_word = ${ part.word }$;
+<%- endfor %>
+            default: part_word = 32'd0;
+        endcase
+    endfunction
+    function [31:0] part_mask(input integer number);
+        case (number)
+<%- for part in parts %>
+            ${ loop.index0 }$: part_mask = ${ part.mask }$;
+<%- endfor %>
+            default: part_mask = 32'd0;
+        endcase
+    endfunction
+    function [31:0] result_at(input integer number);
+        case (number)
+<%- for part in results %>
+            ${ loop.index0 }$: result_at = ${ part.at }$;
+<%- endfor %>
+            default: result_at = 32'd0;
+        endcase
+    endfunction
+    function [31:0] result_word(input integer number);
+        case (number)
+<%- for part in results %>
+            ${ loop.index0 }$: result_word = ${ part.word }$;
+<%- endfor %>
+            default: result_word = 32'd0;
+        endcase
+    endfunction
+
+    task write(input [31:0] address, input [31:0] data, input [3:0] bytes);
+        begin
+            access(address, 1'b1, data, bytes);
+            check(!failed, "a write fails");
+        end
+    endtask
+
+    task expect_word(input [31:0] address, input [31:0] word);
+        begin
+            access(address, 1'b0, 32'd0, 4'hf);
+            check(!failed, "a read fails");
+            if (got !== word && errors < REPORTED) $display("at %h: %h, not %h", address, got, word);
+            check(got === word, "what is read");
+        end
+    endtask
+
+    // Both ways, an error.
+    task expect_error(input [31:0] address, input reads);
+        begin
+            access(address, 1'b1, 32'hffff_ffff, 4'hf);
+            check(failed, "a write does not fail");
+            access(address, 1'b0, 32'd0, 4'hf);
+            check(failed == reads, "whether a read fails");
+        end
+    endtask
+
+    task write_operands;
+        for (part = 0; part < PARTS; part = part + 1) write(part_at(part), part_word(part), 4'hf);
+    endtask
+
+    // Byte by byte, with other data beside each.
+    task write_bytes;
+        for (part = 0; part < PARTS; part = part + 1) begin
+            write(part_at(part), part_word(part) ^ 32'hffff_ff00, 4'b0001);
+            write(part_at(part), part_word(part) ^ 32'hff00_ffff, 4'b0100);
+            write(part_at(part), part_word(part) ^ 32'h00ff_ffff, 4'b1000);
+            write(part_at(part), part_word(part) ^ 32'hffff_00ff, 4'b0010);
+        end
+    endtask
+
+    task expect_operands;
+        for (part = 0; part < PARTS; part = part + 1) begin
+            expect_word(part_at(part), part_word(part) & part_mask(part));
+        end
+    endtask
+
+    task expect_results;
+        for (part = 0; part < RESULTS; part = part + 1) begin
+            expect_word(result_at(part), result_word(part));
+        end
+    endtask
+
+    // The registers as a reset leaves them.
+    task expect_reset;
+        begin
+            point = 0;
+            result = 0;
+<%- for (at, value) in constants %>
+            expect_word(${ at }$, ${ value }$);
+<%- endfor %>
+            expect_operands;
+            expect_results;
+            check(!irq, "an interrupt");
+        end
+    endtask
+
+    // The start word is the part's; nothing starts but by a write of its register with a byte.
+    task start_by_write(input integer chosen);
+        begin
+            write(CONTROL, 32'd2 | part_at(chosen) << 6, 4'b1111);
+            expect_word(CONTROL, 32'd2 | part_at(chosen) << 6);
+            write(part_at(chosen), ~part_word(chosen), 4'b0000);
+            write(CONTROL, 32'd1, 4'b0000);
+            write(CONTROL, 32'd1 | part_at(chosen) << 6, 4'b0010);
+            expect_word(STATUS, 32'd2);
+            write(part_at(chosen), part_word(chosen), number / EVERY % 8 > 3 ? 4'b0001 : 4'b1111);
+        end
+    endtask
+
+    initial begin
+        $readmemh(SENT_FILE, sent);
+        $readmemh(RECEIVED_FILE, received);
+        repeat (3) @(negedge clk);
+        reset = 1'b0;
+        expect_reset;
+<%- for at in read_only %>
+        expect_error(${ at }$, 1'b0);
+<%- endfor %>
+        for (part = WORDS; part < ${ places }$; part = part + 1) expect_error(part << 2, 1'b1);
+        expect_reset;
+        while (number < POINTS) begin
+            point = sent[number];
+            result = received[number];
+            irq_enabled = number / EVERY % 8 > 3;
+            write(ENABLE, {31'd0, irq_enabled}, 4'b0001);
+            write(ENABLE, {31'd0, ~irq_enabled}, 4'b1110);
+            expect_word(ENABLE, {31'd0, irq_enabled});
+            if (number / EVERY % 4 == 1) write_bytes;
+            else write_operands;
+            if (number / EVERY % 2 == 0) expect_operands;
+            if (number / EVERY % 4 == 3) begin
+                start_by_write(number / EVERY / 4 % PARTS);
+            end else begin
+                write(CONTROL, 32'd1, 4'b0001);
+            end
+            if (number / EVERY % 4 == 2) begin
+                // Those of another point do not matter now.
+                point = ~point;
+                write_operands;
+                expect_operands;
+            end
+            expect_results;
+            expect_word(STATUS, 32'd2);
+            check(irq === irq_enabled, "the interrupt");
+            write(PENDING, 32'd0, 4'b1111);
+            write(PENDING, 32'd1, 4'b1110);
+            expect_word(PENDING, 32'd1);
+            write(PENDING, 32'd1, 4'b0001);
+            expect_word(PENDING, 32'd0);
+            check(!irq, "an interrupt that was cleared");
+            write(CONTROL, 32'd0, 4'b0001);
+            expect_results;
+            number = number + EVERY;
+        end
+        // A reset ends what is under way.
+        write(ENABLE, 32'd1, 4'b1111);
+        write(CONTROL, 32'd1, 4'b0001);
+        reset = 1'b1;
+        @(negedge clk);
+        @(negedge clk);
+        reset = 1'b0;
+        expect_reset;
+        verdict;
+    end
+endmodule
+
+`default_nettype wire
