@@ -1,9 +1,10 @@
 // ${ name }$_axis_formal: what is proved of ${ name }$_axis
 //
 // For formal tools alone. All inputs are free, the sender's too. The core is abstracted to its
-// handshake, which ${ name }$_formal.sv proves of it: a point leaves its ${ stages }$ stages in the order in
-// which they came, with any results. To prove it, from a directory that holds the files of both
-// folders:
+// handshake, which
+//   ${ name }$_formal.sv
+// proves of it: points leave its ${ stages }$ stages in the order in which they came, with any results. To
+// prove it, from a directory that holds the files of both folders:
 //   $ yosys -q ${ name }$_axis_formal.ys
 //   $ yosys-smtbmc -s z3 --unroll -t 3 ${ name }$_axis_formal.smt2
 //   $ yosys-smtbmc -s z3 --unroll -i -t 2 ${ name }$_axis_formal.smt2

@@ -122,7 +122,11 @@ module ${ name }$_registers_formal (
         if ($past(read_error)) assert (read_data == 0);
         if ($past(read_answer && is_result)) assert (!dut.core.run);
 <%- for (number, value) in reads %>
-        if ($past(read_word) == ${ number }$) assert (read_data == ${ value }$);
+        if ($past(read_word) == ${ number }$) begin
+<%- for line in value %>
+${ line }$
+<%- endfor %>
+        end
 <%- endfor %>
     end
     always @(posedge clk) if (!$initstate && $past(!$initstate) && $past(rst_n)) begin

@@ -6,9 +6,9 @@
 // or, with Verilator 5,
 //   $ verilator --binary --timing --top-module ${ top }$_tb ${ name }$*.v
 //   $ obj_dir/V${ top }$_tb
-// The points of ${ name }$_tb are written and started in turn in each way that there is, and the results
-// are read. Inputs change on the falling edge of the clock; outputs are read just before the rising
-// edge.
+// The points of the core's bench are written and started in turn in each way that there is, and the
+// results are read. Inputs change on the falling edge of the clock; outputs are read just before the
+// rising edge.
 //
 // Generated files belong to their user, without conditions.
 

@@ -6,9 +6,9 @@
 // or, with Verilator 5,
 //   $ verilator --binary --timing --top-module ${ name }$_axis_tb ${ name }$*.v
 //   $ obj_dir/V${ name }$_axis_tb
-// The points of ${ name }$_tb are sent, and what comes back is compared. By turns nobody pauses, the
-// sender does, the receiver does, and both do; a reset in the midst begins it anew. Inputs change on
-// the falling edge of the clock; outputs are read just before the rising edge.
+// The points of the core's bench are sent, and what comes back is compared. By turns nobody
+// pauses, the sender does, the receiver does, and both do; a reset in the midst begins it anew.
+// Inputs change on the falling edge of the clock; outputs are read just before the rising edge.
 //
 // Generated files belong to their user, without conditions.
 
@@ -25,6 +25,7 @@ module ${ name }$_axis_tb #(
     localparam TURN     = 6 * PAUSE;  // clocks until another one pauses
     localparam ABORTED  = 7 * TURN / 2;  // clocks before the second reset
     localparam LIMIT    = ${ limit }$;  // clocks without a transfer
+    localparam USER     = ${ user_bits }$;
     localparam REPORTED = 20;  // differences that are printed
 
     reg [${ in_high }$:0] sent [0:SENT-1];
@@ -128,7 +129,7 @@ module ${ name }$_axis_tb #(
             #1;
             // What is there without an offer means nothing.
             s_axis_tdata = s_axis_tvalid ? sent[offered % SENT] : ~sent[0];
-            s_axis_tuser = s_axis_tvalid ? sent_users[${ user_bits - 1 }$:0] : ~sent_users[${ user_bits - 1 }$:0];
+            s_axis_tuser = sent_users[${ user_bits - 1 }$:0] ^ {USER{!s_axis_tvalid}};
 <%- if !is_line %>
             s_axis_tlast = sent_marks[31] == s_axis_tvalid;
 <%- endif %>

@@ -1,8 +1,9 @@
 """Drives a core that Glint generated, from Python, by its manifest alone.
 
 `Manifest` reads rtl_out/<name>/<name>.json; `Core` plays the host of a core with a microprogram,
-and `Pipeline` that of one that takes a point a clock. Both check the handshake in every clock; the
-tests below hold for every core of their kind. A bench, such as testbench/<name>/test_<name>.py,
+and `Pipeline` that of one that takes a point a clock. Both check the handshake in every clock.
+`Stream` and `Registers` are the system around a core with that interface. The tests below hold for
+every core of their kind. A bench, such as testbench/<name>/test_<name>.py,
 imports them, adds its own, and has a simulator `run` them.
 
 Inputs change after the falling edge of the clock; outputs are read at the rising edge, as they
@@ -58,7 +59,11 @@ class Manifest:
         facts = json.loads((self.directory / f"{name}.json").read_text(encoding="utf-8"))
         self.ports: dict[str, dict[str, Any]] = {port["name"]: port for port in facts["ports"]}
         self.sources = [self.directory / file for file in facts["files"]["rtl"]]
+        self.wrappers = [self.directory / file for file in facts["files"].get("wrappers", [])]
         self.memories = [self.directory / file for file in facts["files"]["memories"]]
+        self.registers: dict[str, dict[str, Any]] = {
+            register["name"]: register for register in facts.get("registers", [])
+        }
         self.timing: dict[str, int | None] = facts["timing"]
         self.overlaps: bool = facts.get("control", {}).get("operands_buffered", False)
         """Whether `start` is heard in the clock of `done` too."""
@@ -406,6 +411,225 @@ class Pipeline:
         return results
 
 
+class Stream:
+    """Sender and receiver of a core between two AXI4-Streams."""
+
+    def __init__(self, dut: Any, seed: int = 1) -> None:
+        """Take over the inputs of `dut`; what is random follows from `seed`."""
+        self.dut = dut
+        self.manifest = Manifest(dut._name.removesuffix("_axis"))
+        self.random = random.Random(seed)
+        self._operands = [name for name in self.manifest.ports if name in self.manifest.domain]
+        self._results = [
+            name for name, port in self.manifest.ports.items() if port["role"] == "result"
+        ]
+
+    @classmethod
+    async def after_reset(cls, dut: Any, seed: int = 1) -> Stream:
+        """A stream whose clock runs and that has been reset."""
+        stream = cls(dut, seed)
+        Clock(dut.aclk, 10, unit="ns").start(start_high=False)
+        await stream.reset()
+        return stream
+
+    async def reset(self) -> None:
+        """Two clocks of reset."""
+        for _ in range(2):
+            await FallingEdge(self.dut.aclk)
+            self.dut.aresetn.value = 0
+            self.dut.s_axis_tvalid.value = 0
+            self.dut.m_axis_tready.value = 0
+
+    def _bits(self, name: str) -> int:
+        """A port's in its whole bytes."""
+        return -(-self.manifest.ports[name]["width"] // 8) * 8
+
+    def packed(self, operands: Mapping[str, int]) -> int:
+        """The operands side by side, with anything in the bits above them."""
+        word, low = 0, 0
+        for name in self._operands:
+            width, bits = self.manifest.ports[name]["width"], self._bits(name)
+            above = self.random.getrandbits(bits) >> width << width
+            word |= (operands[name] & ((1 << width) - 1) | above) << low
+            low += bits
+        return word
+
+    def unpacked(self, word: int) -> Raw:
+        """The results that are side by side, with copies of their signs."""
+        results = {}
+        for name in self._results:
+            bits = self._bits(name)
+            value = word & ((1 << bits) - 1)
+            negative = self.manifest.ports[name]["signed"] and value >> (bits - 1)
+            results[name] = value - (1 << bits) if negative else value
+            word >>= bits
+        return {name: results[name] for name in self.manifest.outputs}
+
+    async def through(
+        self, points: list[Raw], offer: int = 1, take: int = 1
+    ) -> list[tuple[Raw, int, bool]]:
+        """What comes of these points, with tuser and tlast; tuser is sent as the point's number.
+
+        Points are offered, and transfers taken, once in so many clocks at random.
+        """
+        dut, got = self.dut, []
+        count = sum(self.manifest.result_count(point) for point in points)
+        users = 1 << len(dut.s_axis_tuser)
+        at, offered, waiting = 0, False, None
+        for _ in range(LONGEST):
+            await FallingEdge(dut.aclk)
+            dut.aresetn.value = 1
+            offered = offered or at < len(points) and self.random.randrange(offer) == 0
+            dut.s_axis_tvalid.value = int(offered)
+            dut.s_axis_tuser.value = at % users
+            if offered:
+                dut.s_axis_tdata.value = self.packed(points[at])
+            else:
+                dut.s_axis_tdata.value = self.random.getrandbits(len(dut.s_axis_tdata))
+            if self.manifest.length is None:
+                dut.s_axis_tlast.value = at % 3 == 0
+            ready = self.random.randrange(take) == 0
+            dut.m_axis_tready.value = int(ready)
+            await RisingEdge(dut.aclk)
+            if dut.m_axis_tvalid.value == 1:
+                data, user = int(dut.m_axis_tdata.value), int(dut.m_axis_tuser.value)
+                shown = (self.unpacked(data), user, bool(dut.m_axis_tlast.value))
+                assert waiting in (None, shown), f"{waiting} changed while it waited"
+                waiting = None if ready else shown
+                if ready:
+                    got.append(shown)
+            else:
+                assert waiting is None, f"{waiting} was not taken"
+            if offered and dut.s_axis_tready.value == 1:
+                at, offered = at + 1, False
+            if len(got) == count:
+                return got
+        raise AssertionError(f"{len(got)} transfers of {count} within {LONGEST} clocks")
+
+
+class BusError(Exception):
+    """The answer to an access was an error."""
+
+
+class Registers:
+    """The master of a core behind registers."""
+
+    def __init__(self, dut: Any, seed: int = 1) -> None:
+        """Take over the inputs of `dut`; what is random follows from `seed`."""
+        self.dut = dut
+        self.wishbone = dut._name.endswith("_wb")
+        self.manifest = Manifest(dut._name.rpartition("_")[0])
+        self.random = random.Random(seed)
+        self._clk = dut.wb_clk_i if self.wishbone else dut.aclk
+        self._taken: set[str] = set()
+        """The channels of AXI4-Lite whose part of the request was taken."""
+
+    @classmethod
+    async def after_reset(cls, dut: Any, seed: int = 1) -> Registers:
+        """Registers whose clock runs and that have been reset."""
+        registers = cls(dut, seed)
+        Clock(registers._clk, 10, unit="ns").start(start_high=False)
+        reset, level = (dut.wb_rst_i, 1) if registers.wishbone else (dut.aresetn, 0)
+        registers._idle()
+        reset.value = level
+        for _ in range(3):
+            await FallingEdge(registers._clk)
+        reset.value = 1 - level
+        return registers
+
+    def _idle(self) -> None:
+        names = ("wb_cyc_i", "wb_stb_i") if self.wishbone else tuple(
+            f"s_axil_{name}" for name in ("awvalid", "wvalid", "bready", "arvalid", "rready")
+        )
+        for name in names:
+            getattr(self.dut, name).value = 0
+
+    async def access(self, offset: int, data: int | None = None, lanes: int = 15) -> int:
+        """A write of some byte lanes, or a read; what was read. Raises BusError."""
+        one = self._wishbone if self.wishbone else self._axi_lite
+        for _ in range(LONGEST):
+            await FallingEdge(self._clk)
+            answer = await one(offset, data, lanes)
+            if answer is not None:
+                await FallingEdge(self._clk)
+                self._idle()
+                if answer < 0:
+                    raise BusError(offset)
+                return answer
+        raise AssertionError(f"no answer within {LONGEST} clocks")
+
+    async def _wishbone(self, offset: int, data: int | None, lanes: int) -> int | None:
+        dut = self.dut
+        dut.wb_cyc_i.value = dut.wb_stb_i.value = 1
+        dut.wb_we_i.value = int(data is not None)
+        dut.wb_adr_i.value = offset
+        dut.wb_dat_i.value = data or 0
+        dut.wb_sel_i.value = lanes
+        await RisingEdge(self._clk)
+        if dut.wb_err_o.value == 1:
+            return -1
+        if dut.wb_ack_o.value != 1:
+            return None
+        return 0 if data is not None else int(dut.wb_dat_o.value)
+
+    async def _axi_lite(self, offset: int, data: int | None, lanes: int) -> int | None:
+        dut, writes = self.dut, data is not None
+        channels = ("aw", "w") if writes else ("ar",)
+        for channel in channels:
+            # Once taken, a request is not offered again before the answer.
+            getattr(dut, f"s_axil_{channel}valid").value = int(channel not in self._taken)
+        (dut.s_axil_awaddr if writes else dut.s_axil_araddr).value = offset
+        dut.s_axil_awprot.value = dut.s_axil_arprot.value = 0
+        dut.s_axil_wdata.value, dut.s_axil_wstrb.value = data or 0, lanes
+        ready = self.random.getrandbits(1)
+        (dut.s_axil_bready if writes else dut.s_axil_rready).value = ready
+        await RisingEdge(self._clk)
+        for channel in channels:
+            if getattr(dut, f"s_axil_{channel}ready").value == 1:
+                self._taken.add(channel)
+        if not ready or (dut.s_axil_bvalid if writes else dut.s_axil_rvalid).value != 1:
+            return None
+        self._taken.clear()
+        if (dut.s_axil_bresp if writes else dut.s_axil_rresp).value != 0:
+            return -1
+        return 0 if writes else int(dut.s_axil_rdata.value)
+
+    async def write(self, name: str, value: int, lanes: int = 15) -> None:
+        """Writes a register by name."""
+        await self.access(self.manifest.registers[name]["offset"], value & 0xFFFFFFFF, lanes)
+
+    async def read(self, name: str) -> int:
+        """Reads a register by name."""
+        return await self.access(self.manifest.registers[name]["offset"])
+
+    def parts(self, port: str) -> list[str]:
+        """The registers of a port that has its own, the lowest bits first."""
+        registers = self.manifest.registers
+        return [port] if port in registers else [it for it in registers if it[:-2] == port]
+
+    async def write_operands(self, operands: Mapping[str, int]) -> None:
+        """Writes every operand."""
+        for name, value in operands.items():
+            for number, part in enumerate(self.parts(name)):
+                await self.write(part, value >> 32 * number)
+
+    async def results(self) -> Raw:
+        """The results; the read waits for them."""
+        ports, registers, results = self.manifest.ports, self.manifest.registers, {}
+        for name in self.manifest.outputs:
+            if "results" in registers:
+                (bits,) = (it for it in registers["results"]["bits"] if it["name"] == name)
+                value = await self.read("results") >> bits["low"]
+            else:
+                words = [await self.read(part) for part in self.parts(name)]
+                value = sum(word << 32 * number for number, word in enumerate(words))
+            width = ports[name]["width"]
+            value &= (1 << width) - 1
+            negative = ports[name]["signed"] and value >> (width - 1)
+            results[name] = value - (1 << width) if negative else value
+        return results
+
+
 def outputs(dut: Any, manifest: Manifest) -> Raw:
     """The results as they are on the outputs now."""
     results = {}
@@ -580,20 +804,92 @@ async def random_points_follow_the_formula(dut: Any) -> None:
     dut._log.info("worst error %.3f units, bound %.3f", worst, manifest.bound)
 
 
-def run(name: str) -> None:
-    """Builds core `name` in sim_build/<name>/ and runs its bench; ends the process."""
+@cocotb.test()
+async def streams_carry_every_point(dut: Any) -> None:
+    """Every computation of the manifest, with and without pauses of both sides, and after a reset."""
+    stream = await Stream.after_reset(dut)
+    is_line = stream.manifest.length is not None
+    points = [operands for operands, _ in stream.manifest.computations]
+    wanted = []
+    for number, (_, computation) in enumerate(stream.manifest.computations):
+        user = number % (1 << len(dut.s_axis_tuser))
+        for index, result in enumerate(computation.results, 1):
+            last = index == len(computation.results) if is_line else number % 3 == 0
+            wanted.append((result, user, last))
+    for offer, take in ((1, 1), (1, 40), (40, 1), (3, 2), (1, 200)):
+        got = await stream.through(points, offer, take)
+        assert got == wanted, f"a point in {offer} clocks, a transfer in {take}"
+    first = wanted[: len(stream.manifest.computations[0][1].results)]
+    for clocks in range(1, 20):
+        dut.s_axis_tvalid.value = 1
+        for _ in range(clocks):
+            await FallingEdge(dut.aclk)
+        await stream.reset()
+        assert await stream.through(points[:1]) == first, f"a reset after {clocks} clocks"
+
+
+@cocotb.test()
+async def registers_compute_every_point(dut: Any) -> None:
+    """Every computation of the manifest, started by control and by a write; an interrupt each."""
+    registers = await Registers.after_reset(dut)
+    assert set((await registers.results()).values()) == {0}
+    await registers.write("interrupt_enable", 1)
+    for number, (operands, wanted) in enumerate(registers.manifest.computations):
+        await registers.write("control", 0)
+        await registers.write_operands(operands)
+        name = list(operands)[number % len(operands)]
+        starter = registers.parts(name)[0]
+        if number % 2:
+            start = registers.manifest.registers[starter]["offset"] // 4
+            await registers.write("control", 2 | start << 8)
+            await registers.write(starter, operands[name])
+        else:
+            await registers.write("control", 1)
+        assert [await registers.results()] == wanted.results, f"{operands}: not {wanted.results}"
+        assert await registers.read("status") == 2
+        assert dut.irq.value == 1
+        await registers.write("interrupt_pending", 1)
+        assert dut.irq.value == 0
+
+
+@cocotb.test()
+async def registers_keep_what_is_written(dut: Any) -> None:
+    """Operands read back by bytes; what cannot be written is an error, and changes nothing."""
+    registers = await Registers.after_reset(dut)
+    for name in registers.manifest.domain:
+        for part in registers.parts(name):
+            (bits,) = registers.manifest.registers[part]["bits"]
+            kept = 0
+            for lanes in (1, 2, 4, 8, 0, 15, 6):
+                value = registers.random.getrandbits(32)
+                mask = sum(0xFF << 8 * lane for lane in range(4) if lanes >> lane & 1)
+                await registers.write(part, value, lanes)
+                kept = (kept & ~mask | value & mask) & ((1 << bits["width"]) - 1)
+                assert await registers.read(part) == kept, f"{part} after bytes {lanes:04b}"
+    before = await registers.read("id")
+    try:
+        await registers.write("id", 0)
+    except BusError:
+        assert await registers.read("id") == before
+        return
+    raise AssertionError("a write of `id` is no error")
+
+
+def run(name: str, wrapper: str = "") -> None:
+    """Builds core `name`, or a wrapper, in sim_build/ and runs its bench; ends the process."""
     from cocotb_tools.check_results import get_results
     from cocotb_tools.runner import get_runner
 
     manifest = Manifest(name)
-    place = Path("sim_build") / name
+    top = f"{name}_{wrapper}" if wrapper else name
+    place = Path("sim_build") / top
     place.mkdir(parents=True, exist_ok=True)
     for memory in manifest.memories:
         shutil.copy(memory, place)
     runner = get_runner("icarus")
     runner.build(
-        sources=manifest.sources,
-        hdl_toplevel=name,
+        sources=manifest.sources + (manifest.wrappers if wrapper else []),
+        hdl_toplevel=top,
         build_dir=place,
         build_args=["-g2005", "-Wall"],
         timescale=("1ns", "1ps"),
@@ -601,11 +897,11 @@ def run(name: str) -> None:
     )
     sys.path.insert(0, str(ROOT / "testbench" / name))
     report = runner.test(
-        hdl_toplevel=name, test_module=f"test_{name}", build_dir=place, test_dir=place
+        hdl_toplevel=top, test_module=f"test_{top}", build_dir=place, test_dir=place
     )
     tests, failed = get_results(report)
-    print(f"{'FAIL' if failed or not tests else 'PASS'} {name}: {tests} tests, {failed} failed")
+    print(f"{'FAIL' if failed or not tests else 'PASS'} {top}: {tests} tests, {failed} failed")
     sys.exit(1 if failed or not tests else 0)
 
 
-# sha256 746b78be6331667b4f8158847bf0ab965a61b3e665c470fca528b4c05c891a99
+# sha256 37e284616c2734ba5f3d174619313e38ff791785f0be0ef581c9e72eb12005b1

@@ -15,14 +15,14 @@ set part xc7a35tcsg324-1
 if {[llength $argv] > 0} { set module [lindex $argv 0] }
 if {[llength $argv] > 1} { set part [lindex $argv 1] }
 
-# The modules: Verilog, clock, reset, level of the reset, and bus interfaces.
+# The modules: Verilog, clock, reset, level of the reset, bus interfaces, and interrupts.
 set modules [dict create]
 dict set modules cosine_power {
     {
         cosine_power.v
         cosine_power_control.v
         cosine_power_datapath.v
-    } clk rst_n ACTIVE_LOW {}
+    } clk rst_n ACTIVE_LOW {} {}
 }
 dict set modules cosine_power_axis {
     {
@@ -30,7 +30,7 @@ dict set modules cosine_power_axis {
         cosine_power.v
         cosine_power_control.v
         cosine_power_datapath.v
-    } aclk aresetn ACTIVE_LOW {s_axis m_axis}
+    } aclk aresetn ACTIVE_LOW {s_axis m_axis} {}
 }
 dict set modules cosine_power_wb {
     {
@@ -39,14 +39,14 @@ dict set modules cosine_power_wb {
         cosine_power.v
         cosine_power_control.v
         cosine_power_datapath.v
-    } wb_clk_i wb_rst_i ACTIVE_HIGH {}
+    } wb_clk_i wb_rst_i ACTIVE_HIGH {} {irq interrupt}
 }
 
 if {![dict exists $modules $module]} {
     puts stderr "there is no module $module; there are: [join [dict keys $modules] {, }]"
     exit 1
 }
-lassign [dict get $modules $module] verilog clock reset level busses
+lassign [dict get $modules $module] verilog clock reset level busses interrupts
 set out [file join [pwd] [set module]_ip]
 if {[file exists $out]} {
     puts stderr "$out is there already; move it away"
@@ -70,7 +70,7 @@ set_property display_name $module $core
 set_property description "Specular intensity by the cosine-power function, m = 16" $core
 
 # Names such as aclk are found by themselves.
-foreach {port kind} [list $clock clock $reset reset] {
+foreach {port kind} [list $clock clock $reset reset {*}$interrupts] {
     if {[llength [ipx::get_bus_interfaces $port -of_objects $core]] == 0} {
         ipx::infer_bus_interface $port xilinx.com:signal:[set kind]_rtl:1.0 $core
     }
@@ -79,6 +79,10 @@ set interface [ipx::get_bus_interfaces $reset -of_objects $core]
 set_property value $level [ipx::add_bus_parameter POLARITY $interface]
 foreach bus $busses { ipx::associate_bus_interfaces -busif $bus -clock $clock $core }
 ipx::associate_bus_interfaces -clock $clock -reset $reset $core
+foreach {port kind} $interrupts {
+    set interface [ipx::get_bus_interfaces $port -of_objects $core]
+    set_property value LEVEL_HIGH [ipx::add_bus_parameter SENSITIVITY $interface]
+}
 
 ipx::create_xgui_files $core
 ipx::update_checksums $core

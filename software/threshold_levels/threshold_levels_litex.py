@@ -13,6 +13,7 @@ Generated files belong to their user, without conditions.
 """
 
 from pathlib import Path
+from types import SimpleNamespace
 
 from litex.gen import *
 from litex.soc.interconnect import axi, stream, wishbone
@@ -118,11 +119,16 @@ class ThresholdLevelsStream(LiteXModule):
 
 
 class ThresholdLevelsRegisters(LiteXModule):
-    """The core behind its own registers: `bus` for `soc.bus.add_slave`, and `irq`, a level."""
+    """The core behind its own registers: `bus` for `soc.bus.add_slave`, and `irq`, a level.
+
+    `soc.irq.add` takes it by the name that it has in the system.
+    """
 
     def __init__(self, platform, rtl=RTL):
         self.bus = bus = axi.AXILiteInterface(data_width=32, address_width=32)
         self.irq = Signal()
+        # Where the system looks for the interrupt of a module. Its registers enable and clear it.
+        self.ev = SimpleNamespace(irq=self.irq)
 
         # # #
 

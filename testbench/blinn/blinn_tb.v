@@ -1,7 +1,7 @@
 // blinn_tb: self-checking bench of blinn
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -o blinn_tb blinn*.v
+//   $ iverilog -g2012 -s blinn_tb -o blinn_tb blinn*.v
 //   $ ./blinn_tb
 // or, with Verilator 5,
 //   $ verilator --binary --timing --top-module blinn_tb blinn*.v

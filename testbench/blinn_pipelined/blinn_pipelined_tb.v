@@ -1,7 +1,7 @@
 // blinn_pipelined_tb: self-checking bench of blinn_pipelined
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -o blinn_pipelined_tb blinn_pipelined*.v
+//   $ iverilog -g2012 -s blinn_pipelined_tb -o blinn_pipelined_tb blinn_pipelined*.v
 //   $ ./blinn_pipelined_tb
 // or, with Verilator 5,
 //   $ verilator --binary --timing --top-module blinn_pipelined_tb blinn_pipelined*.v

@@ -1,7 +1,7 @@
 // blinn_small_tb: self-checking bench of blinn_small
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -o blinn_small_tb blinn_small*.v
+//   $ iverilog -g2012 -s blinn_small_tb -o blinn_small_tb blinn_small*.v
 //   $ ./blinn_small_tb
 // or, with Verilator 5,
 //   $ verilator --binary --timing --top-module blinn_small_tb blinn_small*.v

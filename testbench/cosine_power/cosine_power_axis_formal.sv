@@ -100,6 +100,7 @@ module cosine_power_axis_formal (
     (* hierconn *) wire \dut.operands_user ;
     (* hierconn *) wire \dut.user ;
     (* hierconn *) wire \dut.core.computing ;
+    (* hierconn *) wire \dut.core.run ;
     (* hierconn *) wire \dut.operands_last ;
     (* hierconn *) wire \dut.last ;
     (* hierconn *) wire \dut.held ;
@@ -160,8 +161,19 @@ module cosine_power_axis_formal (
         if (dut.valid && computed == chosen) its_results <= {its_user, its_last, results};
     end
 
+    // Clocks in which nothing is taken although the core is idle and what it computed is gone.
+    reg [1:0] waited;
+    wire idle = !dut.core.run && m_axis_tready;
+    always @(posedge aclk) begin
+        if (!aresetn || !idle || s_axis_tready) waited <= 0;
+        else waited <= waited + 1'b1;
+    end
+
     always @(posedge aclk) if (!$initstate) begin
         if ($past(aresetn)) begin
+            // Progress: what is sent waits for the core and for the receiver alone.
+            if ($past(s_axis_tready && !s_axis_tvalid)) assert (s_axis_tready);
+            assert (waited <= 2);
             // What is offered stays, as it is, until it is taken.
             if ($past(m_axis_tvalid && !m_axis_tready)) begin
                 assert (m_axis_tvalid);
@@ -191,6 +203,8 @@ module cosine_power_axis_formal (
     // Inductive invariants.
     always @* if (!$initstate) begin
         assert (!(s_axis_tready && dut.waiting));
+        if (waited != 0) assert (s_axis_tready || dut.waiting && !dut.held);
+        if (waited == 2) assert (s_axis_tready || dut.core.run);
         assert (taken - begun == dut.waiting);
         if (dut.waiting && begun == chosen_line) begin
             assert (dut.operands == its_operands);

@@ -99,6 +99,7 @@ module cosine_power_registers_formal (
     (* hierconn *) wire \dut.finished ;
     (* hierconn *) wire \dut.core.run ;
     (* hierconn *) wire \dut.core.ends ;
+    (* hierconn *) wire \dut.core.rst_n ;
     (* hierconn *) wire [20:0] \dut.operand_cos_gamma ;
     (* hierconn *) wire [20:0] \dut.core.cos_gamma ;
     (* hierconn *) wire [9:0] \dut.operand_exponent ;
@@ -109,6 +110,9 @@ module cosine_power_registers_formal (
     (* hierconn *) wire [7:0] \dut.core.green ;
     (* hierconn *) wire [7:0] \dut.operand_blue ;
     (* hierconn *) wire [7:0] \dut.core.blue ;
+    (* hierconn *) wire [7:0] \dut.core.red_out ;
+    (* hierconn *) wire [7:0] \dut.core.green_out ;
+    (* hierconn *) wire [7:0] \dut.core.blue_out ;
 
     // The reset comes first; the state before it is arbitrary.
     always @* if ($initstate) assume (!rst_n);
@@ -120,7 +124,7 @@ module cosine_power_registers_formal (
             write_word >= 5 && write_word <= 12;
     wire is_result =
             read_word >= 13 && read_word <= 13;
-    wire asks_start = write_mapped && (dut.start_on_write && write_word == dut.start_word
+    wire asks_start = write_mapped && (dut.start_on_write && write_word == dut.start_word && write_bytes != 0
             || write_word == 5 && write_bytes[0] && write_data[0]);
 
     always @* if (!$initstate) begin
@@ -134,6 +138,7 @@ module cosine_power_registers_formal (
         // What is not in the map, and nothing else, is an error.
         assert (write_error == !write_mapped);
         assert (read_error == (read_word >= WORDS));
+        assert (dut.core.rst_n == rst_n);
         assert (irq == (dut.interrupt_enable && dut.interrupt_pending));
         // What was written is what the core computes with.
         assert (dut.core.cos_gamma == dut.operand_cos_gamma);
@@ -154,23 +159,52 @@ module cosine_power_registers_formal (
     wire took_enable = took && took_word == 6;
     wire took_pending = took && took_word == 7;
     always @(posedge clk) if (!$initstate && $past(!$initstate)) begin
-        // A register is read in the clock after its request; operands are as they were written.
+        // A register is read in the clock after its request, all of its bits; operands as they were
+        // written, and results as 0 before the first.
         if ($past(read_error)) assert (read_data == 0);
         if ($past(read_answer && is_result)) assert (!dut.core.run);
+        if ($past(read_word) == 0) begin
+            assert (read_data == {32'h474c4e54});
+        end
+        if ($past(read_word) == 1) begin
+            assert (read_data == {32'd256});
+        end
+        if ($past(read_word) == 2) begin
+            assert (read_data == {32'h30f154fd});
+        end
+        if ($past(read_word) == 3) begin
+            assert (read_data == {16'd0, 8'd3, 8'd5});
+        end
+        if ($past(read_word) == 4) begin
+            assert (read_data == {30'd0, dut.finished, dut.start | dut.core.run});
+        end
+        if ($past(read_word) == 5) begin
+            assert (read_data == {20'd0, dut.start_word, 6'd0, dut.start_on_write, 1'b0});
+        end
+        if ($past(read_word) == 6) begin
+            assert (read_data == {31'd0, dut.interrupt_enable});
+        end
+        if ($past(read_word) == 7) begin
+            assert (read_data == {31'd0, dut.interrupt_pending});
+        end
         if ($past(read_word) == 8) begin
-            assert (read_data[20:0] == dut.operand_cos_gamma);
+            assert (read_data == {11'd0, dut.operand_cos_gamma});
         end
         if ($past(read_word) == 9) begin
-            assert (read_data[9:0] == dut.operand_exponent);
+            assert (read_data == {22'd0, dut.operand_exponent});
         end
         if ($past(read_word) == 10) begin
-            assert (read_data[7:0] == dut.operand_red);
+            assert (read_data == {24'd0, dut.operand_red});
         end
         if ($past(read_word) == 11) begin
-            assert (read_data[7:0] == dut.operand_green);
+            assert (read_data == {24'd0, dut.operand_green});
         end
         if ($past(read_word) == 12) begin
-            assert (read_data[7:0] == dut.operand_blue);
+            assert (read_data == {24'd0, dut.operand_blue});
+        end
+        if ($past(read_word) == 13) begin
+            assert (read_data == ($past(dut.finished) ? {8'd0, dut.core.blue_out,
+                    dut.core.green_out, dut.core.red_out} : 0));
         end
     end
     always @(posedge clk) if (!$initstate && $past(!$initstate) && $past(rst_n)) begin

@@ -1,7 +1,7 @@
 // cosine_power_tb: self-checking bench of cosine_power
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -o cosine_power_tb cosine_power*.v
+//   $ iverilog -g2012 -s cosine_power_tb -o cosine_power_tb cosine_power*.v
 //   $ ./cosine_power_tb
 // or, with Verilator 5,
 //   $ verilator --binary --timing --top-module cosine_power_tb cosine_power*.v

@@ -73,6 +73,12 @@ module cosine_power_wb_formal (
     (* hierconn *) wire \dut.read_answer ;
     (* hierconn *) wire \dut.read_error ;
     (* hierconn *) wire [31:0] \dut.registers.read_data ;
+    (* hierconn *) wire \dut.registers.rst_n ;
+    (* hierconn *) wire \dut.registers.irq ;
+    (* hierconn *) wire [5:2] \dut.registers.write_at ;
+    (* hierconn *) wire [31:0] \dut.registers.write_data ;
+    (* hierconn *) wire [3:0] \dut.registers.write_bytes ;
+    (* hierconn *) wire [5:2] \dut.registers.read_at ;
 
     // The reset comes first; the state before it is arbitrary.
     always @* if ($initstate) assume (wb_rst_i);
@@ -83,6 +89,14 @@ module cosine_power_wb_formal (
         assert (!(wb_ack_o && wb_err_o));
         assert (dut.write == (wb_cyc_i && wb_stb_i && wb_we_i && !answered));
         assert (dut.read == (wb_cyc_i && wb_stb_i && !wb_we_i && !answered));
+        // What reaches them is the request.
+        assert (\dut.registers.rst_n == !wb_rst_i && irq == \dut.registers.irq );
+        if (dut.write) begin
+            assert (\dut.registers.write_at == wb_adr_i[5:2]);
+            assert (\dut.registers.write_data == wb_dat_i);
+            assert (\dut.registers.write_bytes == wb_sel_i);
+        end
+        if (dut.read) assert (\dut.registers.read_at == wb_adr_i[5:2]);
         // The data are those of the registers, which show them in the clock after their answer.
         assert (wb_dat_o == \dut.registers.read_data );
     end

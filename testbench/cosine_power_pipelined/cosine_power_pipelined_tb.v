@@ -1,7 +1,7 @@
 // cosine_power_pipelined_tb: self-checking bench of cosine_power_pipelined
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -o cosine_power_pipelined_tb cosine_power_pipelined*.v
+//   $ iverilog -g2012 -s cosine_power_pipelined_tb -o cosine_power_pipelined_tb cosine_power_pipelined*.v
 //   $ ./cosine_power_pipelined_tb
 // or, with Verilator 5,
 //   $ verilator --binary --timing --top-module cosine_power_pipelined_tb cosine_power_pipelined*.v

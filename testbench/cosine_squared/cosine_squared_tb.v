@@ -1,7 +1,7 @@
 // cosine_squared_tb: self-checking bench of cosine_squared
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -o cosine_squared_tb cosine_squared*.v
+//   $ iverilog -g2012 -s cosine_squared_tb -o cosine_squared_tb cosine_squared*.v
 //   $ ./cosine_squared_tb
 // or, with Verilator 5,
 //   $ verilator --binary --timing --top-module cosine_squared_tb cosine_squared*.v

@@ -1,7 +1,7 @@
 // gauss_tb: self-checking bench of gauss
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -o gauss_tb gauss*.v
+//   $ iverilog -g2012 -s gauss_tb -o gauss_tb gauss*.v
 //   $ ./gauss_tb
 // or, with Verilator 5,
 //   $ verilator --binary --timing --top-module gauss_tb gauss*.v

@@ -1,7 +1,7 @@
 // gauss_pipelined_tb: self-checking bench of gauss_pipelined
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -o gauss_pipelined_tb gauss_pipelined*.v
+//   $ iverilog -g2012 -s gauss_pipelined_tb -o gauss_pipelined_tb gauss_pipelined*.v
 //   $ ./gauss_pipelined_tb
 // or, with Verilator 5,
 //   $ verilator --binary --timing --top-module gauss_pipelined_tb gauss_pipelined*.v

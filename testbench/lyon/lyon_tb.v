@@ -1,7 +1,7 @@
 // lyon_tb: self-checking bench of lyon
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -o lyon_tb lyon*.v
+//   $ iverilog -g2012 -s lyon_tb -o lyon_tb lyon*.v
 //   $ ./lyon_tb
 // or, with Verilator 5,
 //   $ verilator --binary --timing --top-module lyon_tb lyon*.v

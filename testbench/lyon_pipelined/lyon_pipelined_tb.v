@@ -1,7 +1,7 @@
 // lyon_pipelined_tb: self-checking bench of lyon_pipelined
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -o lyon_pipelined_tb lyon_pipelined*.v
+//   $ iverilog -g2012 -s lyon_pipelined_tb -o lyon_pipelined_tb lyon_pipelined*.v
 //   $ ./lyon_pipelined_tb
 // or, with Verilator 5,
 //   $ verilator --binary --timing --top-module lyon_pipelined_tb lyon_pipelined*.v

@@ -1,7 +1,7 @@
 // quad_cosine_tb: self-checking bench of quad_cosine
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -o quad_cosine_tb quad_cosine*.v
+//   $ iverilog -g2012 -s quad_cosine_tb -o quad_cosine_tb quad_cosine*.v
 //   $ ./quad_cosine_tb
 // or, with Verilator 5,
 //   $ verilator --binary --timing --top-module quad_cosine_tb quad_cosine*.v

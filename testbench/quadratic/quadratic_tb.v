@@ -1,7 +1,7 @@
 // quadratic_tb: self-checking bench of quadratic
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -o quadratic_tb quadratic*.v
+//   $ iverilog -g2012 -s quadratic_tb -o quadratic_tb quadratic*.v
 //   $ ./quadratic_tb
 // or, with Verilator 5,
 //   $ verilator --binary --timing --top-module quadratic_tb quadratic*.v

@@ -1,7 +1,7 @@
 // quadratic_pipelined_tb: self-checking bench of quadratic_pipelined
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -o quadratic_pipelined_tb quadratic_pipelined*.v
+//   $ iverilog -g2012 -s quadratic_pipelined_tb -o quadratic_pipelined_tb quadratic_pipelined*.v
 //   $ ./quadratic_pipelined_tb
 // or, with Verilator 5,
 //   $ verilator --binary --timing --top-module quadratic_pipelined_tb quadratic_pipelined*.v

@@ -1,7 +1,7 @@
 // rough_tb: self-checking bench of rough
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -o rough_tb rough*.v
+//   $ iverilog -g2012 -s rough_tb -o rough_tb rough*.v
 //   $ ./rough_tb
 // or, with Verilator 5,
 //   $ verilator --binary --timing --top-module rough_tb rough*.v

@@ -1,7 +1,7 @@
 // rough_pipelined_tb: self-checking bench of rough_pipelined
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -o rough_pipelined_tb rough_pipelined*.v
+//   $ iverilog -g2012 -s rough_pipelined_tb -o rough_pipelined_tb rough_pipelined*.v
 //   $ ./rough_pipelined_tb
 // or, with Verilator 5,
 //   $ verilator --binary --timing --top-module rough_pipelined_tb rough_pipelined*.v

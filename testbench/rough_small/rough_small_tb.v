@@ -1,7 +1,7 @@
 // rough_small_tb: self-checking bench of rough_small
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -o rough_small_tb rough_small*.v
+//   $ iverilog -g2012 -s rough_small_tb -o rough_small_tb rough_small*.v
 //   $ ./rough_small_tb
 // or, with Verilator 5,
 //   $ verilator --binary --timing --top-module rough_small_tb rough_small*.v

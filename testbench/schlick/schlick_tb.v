@@ -1,7 +1,7 @@
 // schlick_tb: self-checking bench of schlick
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -o schlick_tb schlick*.v
+//   $ iverilog -g2012 -s schlick_tb -o schlick_tb schlick*.v
 //   $ ./schlick_tb
 // or, with Verilator 5,
 //   $ verilator --binary --timing --top-module schlick_tb schlick*.v

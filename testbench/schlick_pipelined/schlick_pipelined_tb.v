@@ -1,7 +1,7 @@
 // schlick_pipelined_tb: self-checking bench of schlick_pipelined
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -o schlick_pipelined_tb schlick_pipelined*.v
+//   $ iverilog -g2012 -s schlick_pipelined_tb -o schlick_pipelined_tb schlick_pipelined*.v
 //   $ ./schlick_pipelined_tb
 // or, with Verilator 5,
 //   $ verilator --binary --timing --top-module schlick_pipelined_tb schlick_pipelined*.v

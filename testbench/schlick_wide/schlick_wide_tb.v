@@ -1,7 +1,7 @@
 // schlick_wide_tb: self-checking bench of schlick_wide
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -o schlick_wide_tb schlick_wide*.v
+//   $ iverilog -g2012 -s schlick_wide_tb -o schlick_wide_tb schlick_wide*.v
 //   $ ./schlick_wide_tb
 // or, with Verilator 5,
 //   $ verilator --binary --timing --top-module schlick_wide_tb schlick_wide*.v

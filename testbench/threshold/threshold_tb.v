@@ -1,7 +1,7 @@
 // threshold_tb: self-checking bench of threshold
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -o threshold_tb threshold*.v
+//   $ iverilog -g2012 -s threshold_tb -o threshold_tb threshold*.v
 //   $ ./threshold_tb
 // or, with Verilator 5,
 //   $ verilator --binary --timing --top-module threshold_tb threshold*.v

@@ -94,6 +94,12 @@ module threshold_levels_axil_formal (
     (* hierconn *) wire \dut.read_answer ;
     (* hierconn *) wire \dut.read_error ;
     (* hierconn *) wire [31:0] \dut.read_data ;
+    (* hierconn *) wire \dut.registers.rst_n ;
+    (* hierconn *) wire \dut.registers.irq ;
+    (* hierconn *) wire [5:2] \dut.registers.write_at ;
+    (* hierconn *) wire [31:0] \dut.registers.write_data ;
+    (* hierconn *) wire [3:0] \dut.registers.write_bytes ;
+    (* hierconn *) wire [5:2] \dut.registers.read_at ;
 
     // The reset comes first; the state before it is arbitrary.
     always @* if ($initstate) assume (!aresetn);
@@ -152,6 +158,14 @@ module threshold_levels_axil_formal (
                 && (s_axil_bready || !s_axil_bvalid)));
         assert (dut.read == (s_axil_arvalid && !s_axil_arready
                 && (s_axil_rready || !s_axil_rvalid)));
+        // What reaches them is the request.
+        assert (\dut.registers.rst_n == aresetn && irq == \dut.registers.irq );
+        if (dut.write) begin
+            assert (\dut.registers.write_at == s_axil_awaddr[5:2]);
+            assert (\dut.registers.write_data == s_axil_wdata);
+            assert (\dut.registers.write_bytes == s_axil_wstrb);
+        end
+        if (dut.read) assert (\dut.registers.read_at == s_axil_araddr[5:2]);
         // The answer is that of the registers.
         if (dut.write_taken || s_axil_bvalid) assert (s_axil_bresp == {write_failed, 1'b0});
         if (s_axil_arready || s_axil_rvalid) assert (s_axil_rresp == {read_failed, 1'b0});

@@ -1,7 +1,7 @@
 // threshold_levels_tb: self-checking bench of threshold_levels
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -o threshold_levels_tb threshold_levels*.v
+//   $ iverilog -g2012 -s threshold_levels_tb -o threshold_levels_tb threshold_levels*.v
 //   $ ./threshold_levels_tb
 // or, with Verilator 5,
 //   $ verilator --binary --timing --top-module threshold_levels_tb threshold_levels*.v

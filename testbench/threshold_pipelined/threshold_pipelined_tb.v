@@ -1,7 +1,7 @@
 // threshold_pipelined_tb: self-checking bench of threshold_pipelined
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -o threshold_pipelined_tb threshold_pipelined*.v
+//   $ iverilog -g2012 -s threshold_pipelined_tb -o threshold_pipelined_tb threshold_pipelined*.v
 //   $ ./threshold_pipelined_tb
 // or, with Verilator 5,
 //   $ verilator --binary --timing --top-module threshold_pipelined_tb threshold_pipelined*.v

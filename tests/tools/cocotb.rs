@@ -55,7 +55,7 @@ fn a_bench_of_a_line_with_buffers_passes() {
 
 fn assert_passes(what: &str, core: &Core) {
     let dir = dir(core);
-    let run = run(dir.path(), &core.config.name);
+    let run = run(dir.path(), &core.config.name, &core.config.name);
     let passed = |test: &&str| run.output.contains(&format!("{test} passed"));
     let tests = tests(core);
     let says = format!("PASS {}: {} tests, 0 failed", core.config.name, tests.len());
@@ -115,6 +115,26 @@ fn memory_is_noticed(name: &str, rom: &str, wrong: impl Fn(&str) -> String) {
     assert_noticed(dir.path(), &core, "computations_are_exact", &file);
 }
 
+/// Those of wrappers, by the commands that their heads give.
+#[test]
+fn benches_of_wrappers_pass() {
+    let wrappers = [
+        ("cosine_power", "axis"),
+        ("cosine_power", "wb"),
+        ("threshold_levels", "axil"),
+        ("quad_cosine", "axis"),
+        ("cosine_power_pipelined", "axis"),
+    ];
+    wrappers.par_iter().for_each(|&(name, wrapper)| {
+        let core = configuration(&format!("configs/{name}.toml"));
+        let mut emitted = Emitted::new(&core, 20, 1);
+        emitted.files.push(package::driver());
+        let run = run(emitted.tree().path(), &format!("{name}_{wrapper}"), name);
+        let passed = format!("PASS {name}_{wrapper}: ");
+        assert!(run.status.success() && run.output.contains(&passed), "{}", run.output);
+    });
+}
+
 /// The files of a configuration where the bench expects them.
 fn dir(core: &Core) -> tempfile::TempDir {
     let mut emitted = Emitted::new(core, 1, 1);
@@ -122,9 +142,9 @@ fn dir(core: &Core) -> tempfile::TempDir {
     emitted.tree()
 }
 
-/// Runs the command that the head of the bench gives.
-fn run(dir: &Path, name: &str) -> Run {
-    let bench = format!("testbench/{name}/test_{name}.py");
+/// Runs the command that the head of the bench of a module gives, in the directory of its core.
+fn run(dir: &Path, module: &str, name: &str) -> Run {
+    let bench = format!("testbench/{name}/test_{module}.py");
     let text = fs::read_to_string(dir.join(&bench)).expect("a bench");
     assert!(text.contains(&format!("    $ python {bench}\n")), "{text}");
     tool("python").run([bench], dir, LIMIT).unwrap_or_else(|error| panic!("{error:#}"))
@@ -132,7 +152,7 @@ fn run(dir: &Path, name: &str) -> Run {
 
 fn assert_noticed(dir: &Path, core: &Core, test: &str, what: &str) {
     let (name, count) = (&core.config.name, tests(core).len());
-    let run = run(dir, name);
+    let run = run(dir, name, name);
     let says = |word: &str| run.output.lines().any(|line| line.starts_with(word));
     assert!(
         !run.status.success()

@@ -126,17 +126,24 @@ fn emitted(core: &Core) -> (tempfile::TempDir, String) {
     (emitted.beside(""), emitted.name)
 }
 
-/// `glint verify` proves what is emitted around a core too.
+/// `glint verify` proves, lints and simulates what is emitted around a core too.
 #[test]
-fn verify_proves_the_wrappers() {
+fn verify_covers_the_wrappers() {
     let core = configuration("configs/cosine_power.toml");
-    let check = CHECKS.iter().find(|check| check.id == "formal").expect("the check");
     let effort = Effort { full: false, without_tools: false, time_limit: LIMIT };
     let subject = Subject::new("core.toml", &core, effort, Path::new("proofs"));
-    let finding = check.run(&subject, &|_| ()).finding;
+    let run = |id: &str| {
+        let check = CHECKS.iter().find(|check| check.id == id).expect("the check");
+        check.run(&subject, &|_| ()).finding
+    };
+    let finding = run("formal");
     assert_eq!(finding.verdict, Verdict::Proved, "{}", finding.words);
     for wrapper in ["axis", "registers", "wb"] {
         let file = format!("cosine_power_{wrapper}_formal.sv");
         assert!(finding.words.contains(&file), "{}", finding.words);
+    }
+    for id in ["lint", "icarus", "verilator"] {
+        let finding = run(id);
+        assert_eq!(finding.verdict, Verdict::Passed, "{id}: {:?}", finding.failures);
     }
 }

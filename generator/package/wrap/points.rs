@@ -142,7 +142,7 @@ fn streamed<'a>(rows: impl Iterator<Item = Row<'a>>) -> Option<Vec<Point>> {
 pub fn sent(points: &[Point], operands: &[Field]) -> String {
     let word = |(number, point): (usize, &Point)| {
         let above = |field: &Field| if number % 2 == 1 { !mask(field.width) } else { 0 };
-        word(&point.operands, operands, above, 0)
+        word(&point.operands, operands, above, None)
     };
     points.iter().enumerate().map(word).collect()
 }
@@ -163,7 +163,8 @@ pub fn received(points: &[Point], results: &[Field], is_line: bool) -> String {
                 Some(true) => !mask(field.width),
                 _ => 0,
             };
-            text += &word(result, results, above, u64::from(is_line && number == last));
+            let last = is_line.then_some(u64::from(number == last));
+            text += &word(result, results, above, last);
         }
     }
     text
@@ -174,13 +175,15 @@ fn word(
     values: &[u64],
     fields: &[Field],
     mut above: impl FnMut(&Field) -> u64,
-    top: u64,
+    top: Option<u64>,
 ) -> String {
     let whole = |(value, field): (&u64, &Field)| (value | above(field)) & mask(field.padded());
     let mut row: Vec<u64> = values.iter().zip(fields).map(whole).collect();
     let mut widths: Vec<u32> = fields.iter().map(Field::padded).collect();
-    row.push(top);
-    widths.push(4);
+    if let Some(top) = top {
+        row.push(top);
+        widths.push(4);
+    }
     row.reverse();
     widths.reverse();
     packed(&row, &widths) + "\n"

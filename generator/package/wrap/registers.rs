@@ -8,7 +8,7 @@ use super::fields::sink;
 use super::words::{Word, constants, select, within, words};
 use super::{Wrappers, connected, core_wire, script, seen_inside, stub_free, stub_ports};
 use crate::hdl::netlist::{Design, Role};
-use crate::hdl::verilog::text::{comment, literal, range};
+use crate::hdl::verilog::text::{comment, literal, range, statement};
 use crate::package::map::{self, Bits, Map, Part, Placed, Register};
 use crate::package::surroundings::Bus;
 use crate::package::{EmitInputs, render};
@@ -72,7 +72,7 @@ struct Formal<'a> {
     last_result_number: u32,
     operands: Vec<Operand>,
     /// The place of each register, and what is read there.
-    reads: Vec<(u32, String)>,
+    reads: Vec<(u32, Vec<String>)>,
     stub_ports: Vec<String>,
     stub_free: Vec<String>,
     /// Declarations of what the proof sees of the inside.
@@ -244,7 +244,7 @@ fn operands(map: &Map) -> Vec<Operand> {
 }
 
 /// What is read of a register, by the map alone: its bits where they stand, and 0 between them.
-fn read(map: &Map, register: &Register) -> String {
+fn read(map: &Map, register: &Register) -> Vec<String> {
     let mut parts = Vec::new();
     let mut above = 32;
     for bits in register.bits.iter().rev() {
@@ -259,11 +259,12 @@ fn read(map: &Map, register: &Register) -> String {
         parts.push(literal(0, above));
     }
     let value = format!("{{{}}}", parts.join(", "));
-    if register.place > map.last_operand() {
+    let value = if register.place > map.last_operand() {
         format!("($past(dut.finished) ? {value} : 0)")
     } else {
         value
-    }
+    };
+    statement(12, &format!("assert (read_data == {value});"))
 }
 
 /// The nets behind some bits, as wide as these.

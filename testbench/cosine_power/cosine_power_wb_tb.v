@@ -1,0 +1,330 @@
+// cosine_power_wb_tb: self-checking bench of cosine_power_wb
+//
+// Run it with any simulator from a directory that holds the files of both folders, for example
+//   $ iverilog -g2012 -s cosine_power_wb_tb -o cosine_power_wb_tb cosine_power*.v
+//   $ ./cosine_power_wb_tb
+// or, with Verilator 5,
+//   $ verilator --binary --timing --top-module cosine_power_wb_tb cosine_power*.v
+//   $ obj_dir/Vcosine_power_wb_tb
+// The points of the core's bench are written and started in turn in each way that there is, and the
+// results are read. Inputs change on the falling edge of the clock; outputs are read just before the
+// rising edge.
+//
+// Generated files belong to their user, without conditions.
+
+`default_nettype none
+
+module cosine_power_wb_tb #(
+    parameter SENT_FILE     = "cosine_power_sent.mem",
+    parameter RECEIVED_FILE = "cosine_power_received.mem"
+);
+    localparam POINTS   = 116;
+    localparam EVERY    = 1;  // one of so many is computed
+    localparam PARTS    = 5;  // registers of operands
+    localparam RESULTS  = 1;  // registers of results
+    localparam WORDS    = 14;  // registers
+    localparam LIMIT    = 1164;  // clocks until an answer
+    localparam REPORTED = 20;  // differences that are printed
+    localparam [31:0] STATUS = 32'h10, CONTROL = 32'h14, ENABLE = 32'h18, PENDING = 32'h1c;
+
+    reg [63:0] sent [0:POINTS-1];
+    reg [23:0] received [0:POINTS-1];
+    reg [63:0] point;
+    reg [23:0] result;
+
+    // Initial values stand here: see cosine_power_tb.
+    reg clk = 1'b0;
+    reg reset = 1'b1;
+    reg irq_enabled = 1'b0;
+    reg answered;
+    reg failed;
+    reg [31:0] got;
+    reg [31:0] random = 32'd1;
+    integer number = 0;
+    integer part = 0;
+    integer waited = 0;
+    integer errors = 0;
+    integer accesses = 0;
+    wire irq;
+    always #5 clk = ~clk;
+
+    task check(input right, input string what);
+        if (right !== 1'b1) begin
+            if (errors < REPORTED) $display("point %0d, access %0d: %0s", number, accesses, what);
+            errors = errors + 1;
+        end
+    endtask
+
+    task verdict;
+        begin
+            if (errors != 0) begin
+                $display("FAIL cosine_power_wb: %0d differences", errors);
+                $fatal;
+            end
+            $display("PASS cosine_power_wb: %0d accesses, no difference", accesses);
+            $finish;
+        end
+    endtask
+
+    // A clock, to just before its rising edge; outputs are as they are then.
+    task wait_a_clock;
+        begin
+            waited = waited + 1;
+            if (waited > LIMIT) begin
+                check(1'b0, "no answer");
+                verdict;
+            end
+            #4;
+        end
+    endtask
+    reg cyc = 1'b0;
+    reg stb = 1'b0;
+    reg [31:0] adr = 32'd0;
+    reg we = 1'b0;
+    reg [31:0] dat = 32'd0;
+    reg [3:0] sel = 4'd0;
+    wire [31:0] dat_o;
+    wire ack;
+    wire err;
+    cosine_power_wb dut (
+        .wb_clk_i(clk),
+        .wb_rst_i(reset),
+        .wb_cyc_i(cyc),
+        .wb_stb_i(stb),
+        .wb_we_i(we),
+        .wb_adr_i(adr[5:0]),
+        .wb_dat_i(dat),
+        .wb_sel_i(sel),
+        .wb_dat_o(dat_o),
+        .wb_ack_o(ack),
+        .wb_err_o(err),
+        .irq(irq)
+    );
+
+    // A cycle, after clocks with one of its two signals alone.
+    task access(input [31:0] address, input writes, input [31:0] data, input [3:0] bytes);
+        begin
+            accesses = accesses + 1;
+            random = {random[30:0], random[31] ^ random[21] ^ random[1] ^ random[0]};
+            waited = 0;
+            answered = 1'b0;
+            adr = address | {30'd0, random[9:8]};
+            we = writes;
+            dat = data;
+            sel = bytes;
+            repeat ({30'd0, random[1:0]}) begin
+                cyc = random[2];
+                stb = ~random[2];
+                wait_a_clock;
+                check(!ack && !err, "an answer without a request");
+                @(negedge clk);
+            end
+            cyc = 1'b1;
+            stb = 1'b1;
+            while (!answered) begin
+                wait_a_clock;
+                check((ack & err) === 1'b0, "two answers");
+                answered = ack | err;
+                failed = err;
+                got = dat_o;
+                @(negedge clk);
+            end
+            // The master may go on at once.
+            cyc = random[3];
+            stb = 1'b0;
+            we = random[4];
+            adr = ~address;
+            dat = ~data;
+            sel = ~bytes;
+        end
+    endtask
+
+    function [31:0] part_at(input integer number);
+        case (number)
+            0: part_at = 32'h20;
+            1: part_at = 32'h24;
+            2: part_at = 32'h28;
+            3: part_at = 32'h2c;
+            4: part_at = 32'h30;
+            default: part_at = 32'd0;
+        endcase
+    endfunction
+    // What is written, with any bits above the operand, and what is read back.
+    function [31:0] part_word(input integer number);
+        case (number)
+            0: part_word = {{8{point[0]}}, point[23:0]};
+            1: part_word = {{16{point[0]}}, point[39:24]};
+            2: part_word = {{24{point[0]}}, point[47:40]};
+            3: part_word = {{24{point[0]}}, point[55:48]};
+            4: part_word = {{24{point[0]}}, point[63:56]};
+            default: part_word = 32'd0;
+        endcase
+    endfunction
+    function [31:0] part_mask(input integer number);
+        case (number)
+            0: part_mask = 32'h001fffff;
+            1: part_mask = 32'h000003ff;
+            2: part_mask = 32'h000000ff;
+            3: part_mask = 32'h000000ff;
+            4: part_mask = 32'h000000ff;
+            default: part_mask = 32'd0;
+        endcase
+    endfunction
+    function [31:0] result_at(input integer number);
+        case (number)
+            0: result_at = 32'h34;
+            default: result_at = 32'd0;
+        endcase
+    endfunction
+    function [31:0] result_word(input integer number);
+        case (number)
+            0: result_word = {{8{1'b0}}, result[23:0]};
+            default: result_word = 32'd0;
+        endcase
+    endfunction
+
+    task write(input [31:0] address, input [31:0] data, input [3:0] bytes);
+        begin
+            access(address, 1'b1, data, bytes);
+            check(!failed, "a write fails");
+        end
+    endtask
+
+    task expect_word(input [31:0] address, input [31:0] word);
+        begin
+            access(address, 1'b0, 32'd0, 4'hf);
+            check(!failed, "a read fails");
+            if (got !== word && errors < REPORTED) $display("at %h: %h, not %h", address, got, word);
+            check(got === word, "what is read");
+        end
+    endtask
+
+    // Both ways, an error.
+    task expect_error(input [31:0] address, input reads);
+        begin
+            access(address, 1'b1, 32'hffff_ffff, 4'hf);
+            check(failed, "a write does not fail");
+            access(address, 1'b0, 32'd0, 4'hf);
+            check(failed == reads, "whether a read fails");
+        end
+    endtask
+
+    task write_operands;
+        for (part = 0; part < PARTS; part = part + 1) write(part_at(part), part_word(part), 4'hf);
+    endtask
+
+    // Byte by byte, with other data beside each.
+    task write_bytes;
+        for (part = 0; part < PARTS; part = part + 1) begin
+            write(part_at(part), part_word(part) ^ 32'hffff_ff00, 4'b0001);
+            write(part_at(part), part_word(part) ^ 32'hff00_ffff, 4'b0100);
+            write(part_at(part), part_word(part) ^ 32'h00ff_ffff, 4'b1000);
+            write(part_at(part), part_word(part) ^ 32'hffff_00ff, 4'b0010);
+        end
+    endtask
+
+    task expect_operands;
+        for (part = 0; part < PARTS; part = part + 1) begin
+            expect_word(part_at(part), part_word(part) & part_mask(part));
+        end
+    endtask
+
+    task expect_results;
+        for (part = 0; part < RESULTS; part = part + 1) begin
+            expect_word(result_at(part), result_word(part));
+        end
+    endtask
+
+    // The registers as a reset leaves them.
+    task expect_reset;
+        begin
+            point = 0;
+            result = 0;
+            expect_word(32'h00, 32'h474c4e54);
+            expect_word(32'h04, 32'h00000100);
+            expect_word(32'h08, 32'h30f154fd);
+            expect_word(32'h0c, 32'h00000305);
+            expect_word(32'h10, 32'h00000000);
+            expect_word(32'h14, 32'h00000c00);
+            expect_word(32'h18, 32'h00000000);
+            expect_word(32'h1c, 32'h00000000);
+            expect_operands;
+            expect_results;
+            check(!irq, "an interrupt");
+        end
+    endtask
+
+    // The start word is the part's; nothing starts but by a write of its register with a byte.
+    task start_by_write(input integer chosen);
+        begin
+            write(CONTROL, 32'd2 | part_at(chosen) << 6, 4'b1111);
+            expect_word(CONTROL, 32'd2 | part_at(chosen) << 6);
+            write(part_at(chosen), ~part_word(chosen), 4'b0000);
+            write(CONTROL, 32'd1, 4'b0000);
+            write(CONTROL, 32'd1 | part_at(chosen) << 6, 4'b0010);
+            expect_word(STATUS, 32'd2);
+            write(part_at(chosen), part_word(chosen), number / EVERY % 8 > 3 ? 4'b0001 : 4'b1111);
+        end
+    endtask
+
+    initial begin
+        $readmemh(SENT_FILE, sent);
+        $readmemh(RECEIVED_FILE, received);
+        repeat (3) @(negedge clk);
+        reset = 1'b0;
+        expect_reset;
+        expect_error(32'h00, 1'b0);
+        expect_error(32'h04, 1'b0);
+        expect_error(32'h08, 1'b0);
+        expect_error(32'h0c, 1'b0);
+        expect_error(32'h10, 1'b0);
+        expect_error(32'h34, 1'b0);
+        for (part = WORDS; part < 16; part = part + 1) expect_error(part << 2, 1'b1);
+        expect_reset;
+        while (number < POINTS) begin
+            point = sent[number];
+            result = received[number];
+            irq_enabled = number / EVERY % 8 > 3;
+            write(ENABLE, {31'd0, irq_enabled}, 4'b0001);
+            write(ENABLE, {31'd0, ~irq_enabled}, 4'b1110);
+            expect_word(ENABLE, {31'd0, irq_enabled});
+            if (number / EVERY % 4 == 1) write_bytes;
+            else write_operands;
+            if (number / EVERY % 2 == 0) expect_operands;
+            if (number / EVERY % 4 == 3) begin
+                start_by_write(number / EVERY / 4 % PARTS);
+            end else begin
+                write(CONTROL, 32'd1, 4'b0001);
+            end
+            if (number / EVERY % 4 == 2) begin
+                // Those of another point do not matter now.
+                point = ~point;
+                write_operands;
+                expect_operands;
+            end
+            expect_results;
+            expect_word(STATUS, 32'd2);
+            check(irq === irq_enabled, "the interrupt");
+            write(PENDING, 32'd0, 4'b1111);
+            write(PENDING, 32'd1, 4'b1110);
+            expect_word(PENDING, 32'd1);
+            write(PENDING, 32'd1, 4'b0001);
+            expect_word(PENDING, 32'd0);
+            check(!irq, "an interrupt that was cleared");
+            write(CONTROL, 32'd0, 4'b0001);
+            expect_results;
+            number = number + EVERY;
+        end
+        // A reset ends what is under way.
+        write(ENABLE, 32'd1, 4'b1111);
+        write(CONTROL, 32'd1, 4'b0001);
+        reset = 1'b1;
+        @(negedge clk);
+        @(negedge clk);
+        reset = 1'b0;
+        expect_reset;
+        verdict;
+    end
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,22 @@
+"""cosine_power_wb: bench in Python.
+
+Needs cocotb 2.1 and Icarus Verilog; from the directory that holds rtl_out/ and testbench/:
+
+    $ python testbench/cosine_power/test_cosine_power_wb.py
+
+Generated files belong to their user, without conditions.
+"""
+
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+import glint_cocotb
+from glint_cocotb import (  # noqa: F401 - cocotb runs what is imported here
+    registers_compute_every_point,
+    registers_keep_what_is_written,
+)
+
+if __name__ == "__main__":
+    glint_cocotb.run("cosine_power", "wb")

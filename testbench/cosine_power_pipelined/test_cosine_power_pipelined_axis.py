@@ -1,0 +1,21 @@
+"""cosine_power_pipelined_axis: bench in Python.
+
+Needs cocotb 2.1 and Icarus Verilog; from the directory that holds rtl_out/ and testbench/:
+
+    $ python testbench/cosine_power_pipelined/test_cosine_power_pipelined_axis.py
+
+Generated files belong to their user, without conditions.
+"""
+
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+import glint_cocotb
+from glint_cocotb import (  # noqa: F401 - cocotb runs what is imported here
+    streams_carry_every_point,
+)
+
+if __name__ == "__main__":
+    glint_cocotb.run("cosine_power_pipelined", "axis")

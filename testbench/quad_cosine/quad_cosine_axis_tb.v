@@ -1,0 +1,174 @@
+// quad_cosine_axis_tb: self-checking bench of quad_cosine_axis
+//
+// Run it with any simulator from a directory that holds the files of both folders, for example
+//   $ iverilog -g2012 -s quad_cosine_axis_tb -o quad_cosine_axis_tb quad_cosine*.v
+//   $ ./quad_cosine_axis_tb
+// or, with Verilator 5,
+//   $ verilator --binary --timing --top-module quad_cosine_axis_tb quad_cosine*.v
+//   $ obj_dir/Vquad_cosine_axis_tb
+// The points of the core's bench are sent, and what comes back is compared. By turns nobody
+// pauses, the sender does, the receiver does, and both do; a reset in the midst begins it anew.
+// Inputs change on the falling edge of the clock; outputs are read just before the rising edge.
+//
+// Generated files belong to their user, without conditions.
+
+`default_nettype none
+
+module quad_cosine_axis_tb #(
+    parameter SENT_FILE     = "quad_cosine_sent.mem",
+    parameter RECEIVED_FILE = "quad_cosine_received.mem"
+);
+    localparam SENT     = 1126;
+    localparam RECEIVED = 4096;
+    localparam PASSES   = 1;  // through all of them
+    localparam PAUSE    = 81;  // clocks, at most
+    localparam TURN     = 6 * PAUSE;  // clocks until another one pauses
+    localparam ABORTED  = 7 * TURN / 2;  // clocks before the second reset
+    localparam LIMIT    = 24508;  // clocks without a transfer
+    localparam USER     = 1;
+    localparam REPORTED = 20;  // differences that are printed
+
+    reg [103:0] sent [0:SENT-1];
+    reg [8:0] received [0:RECEIVED-1];
+    reg [8:0] want;
+
+    reg aclk = 1'b0;
+    reg aresetn = 1'b0;
+    reg [103:0] s_axis_tdata;
+    reg [0:0] s_axis_tuser;
+    reg s_axis_tvalid = 1'b0;
+    wire s_axis_tready;
+    wire [7:0] m_axis_tdata;
+    wire [0:0] m_axis_tuser;
+    wire m_axis_tlast;
+    wire m_axis_tvalid;
+    reg m_axis_tready = 1'b0;
+
+    quad_cosine_axis dut (
+        .aclk(aclk),
+        .aresetn(aresetn),
+        .s_axis_tdata(s_axis_tdata),
+        .s_axis_tuser(s_axis_tuser),
+        .s_axis_tvalid(s_axis_tvalid),
+        .s_axis_tready(s_axis_tready),
+        .m_axis_tdata(m_axis_tdata),
+        .m_axis_tuser(m_axis_tuser),
+        .m_axis_tlast(m_axis_tlast),
+        .m_axis_tvalid(m_axis_tvalid),
+        .m_axis_tready(m_axis_tready)
+    );
+
+    // Initial values stand here: see quad_cosine_tb.
+    integer clock = 0;
+    integer offered = 0;  // the number of the next transfer to be sent
+    integer taken = 0;  // of the next to be received
+    integer source = 0;  // of the one that it comes of
+    integer sender_pauses = 0;
+    integer receiver_pauses = 0;
+    integer waited = 0;
+    integer errors = 0;
+    reg was_reset = 1'b0;
+    reg was_offered = 1'b0;
+    reg accepted = 1'b0;
+    reg [9:0] offer = 0;
+    reg over = 1'b0;
+    reg [31:0] random = 32'd1;
+
+    // tlast and tuser of a transfer: the top bit, and all of them over and over.
+    function [31:0] marks(input integer number);
+        marks = (number + 1) * 32'h9e3779b1;
+    endfunction
+    wire [31:0] sent_marks = marks(offered);
+    wire [31:0] taken_marks = marks(source);
+    wire [31:0] sent_users = {1{sent_marks}};
+    wire [31:0] taken_users = {1{taken_marks}};
+
+    task check(input right, input string what);
+        if (right !== 1'b1) begin
+            if (errors < REPORTED) begin
+                $display("clock %0d, transfer %0d: %0s", clock, taken, what);
+            end
+            errors = errors + 1;
+        end
+    endtask
+
+    initial begin
+        $readmemh(SENT_FILE, sent);
+        $readmemh(RECEIVED_FILE, received);
+        while (!over) begin
+            aresetn = clock > 1 && clock != ABORTED;
+            random = {random[30:0], random[31] ^ random[21] ^ random[1] ^ random[0]};
+            if (sender_pauses > 0) sender_pauses = sender_pauses - 1;
+            else if (clock / TURN % 2 == 1 && random[3:0] == 0) begin
+                sender_pauses = {16'd0, random[19:4]} % PAUSE;
+            end
+            if (receiver_pauses > 0) receiver_pauses = receiver_pauses - 1;
+            else if (clock / TURN % 4 > 1 && random[8:5] == 0) begin
+                receiver_pauses = {16'd0, random[30:15]} % PAUSE;
+            end
+            if (accepted) begin
+                s_axis_tvalid = 1'b0;
+                offered = offered + 1;
+            end
+            accepted = 1'b0;
+            if (!aresetn) begin
+                offered = 0;
+                taken = 0;
+                source = 0;
+                s_axis_tvalid = 1'b0;
+            end else if (offered < PASSES * SENT && sender_pauses == 0) begin
+                s_axis_tvalid = 1'b1;
+            end
+            m_axis_tready = receiver_pauses == 0;
+            #1;
+            // What is there without an offer means nothing.
+            s_axis_tdata = s_axis_tvalid ? sent[offered % SENT] : ~sent[0];
+            s_axis_tuser = sent_users[0:0] ^ {USER{!s_axis_tvalid}};
+            #3;
+            if (was_reset) check(!m_axis_tvalid, "an offer after the reset");
+            if (aresetn && !was_reset && clock > 2) begin
+                check(s_axis_tready !== 1'bx && m_axis_tvalid !== 1'bx, "an unknown handshake");
+                if (was_offered) begin
+                    check(m_axis_tvalid && {m_axis_tuser, m_axis_tlast, m_axis_tdata} === offer,
+                            "an offer that changes");
+                end
+            end
+            offer = {m_axis_tuser, m_axis_tlast, m_axis_tdata};
+            was_offered = aresetn && m_axis_tvalid && !m_axis_tready;
+            was_reset = !aresetn && clock > 0;
+            waited = waited + 1;
+            if (aresetn && m_axis_tvalid && m_axis_tready) begin
+                waited = 0;
+                check(taken < PASSES * RECEIVED, "a transfer too many");
+                if (taken < PASSES * RECEIVED) begin
+                    want = received[taken % RECEIVED];
+                    check(m_axis_tdata === want[7:0], "m_axis_tdata");
+                    check(m_axis_tuser === taken_users[0:0], "m_axis_tuser");
+                    check(m_axis_tlast === want[8], "m_axis_tlast");
+                    if (want[8]) source = source + 1;
+                end
+                taken = taken + 1;
+            end
+            if (s_axis_tvalid && s_axis_tready === 1'b1) begin
+                waited = 0;
+                accepted = 1'b1;
+            end
+            over = waited > LIMIT || taken >= PASSES * RECEIVED && waited > PAUSE;
+            clock = clock + 1;
+            #1 aclk = 1'b1;
+            #5 aclk = 1'b0;
+        end
+        if (taken < PASSES * RECEIVED) begin
+            $display("clock %0d: nothing moves after transfer %0d", clock, taken);
+            errors = errors + 1;
+        end
+        if (errors != 0) begin
+            $display("FAIL quad_cosine_axis: %0d differences in %0d clocks", errors, clock);
+            $fatal;
+        end
+        $display("PASS quad_cosine_axis: %0d transfers in %0d clocks, no difference", taken, clock);
+        $finish;
+    end
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,22 @@
+"""threshold_levels_axil: bench in Python.
+
+Needs cocotb 2.1 and Icarus Verilog; from the directory that holds rtl_out/ and testbench/:
+
+    $ python testbench/threshold_levels/test_threshold_levels_axil.py
+
+Generated files belong to their user, without conditions.
+"""
+
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+import glint_cocotb
+from glint_cocotb import (  # noqa: F401 - cocotb runs what is imported here
+    registers_compute_every_point,
+    registers_keep_what_is_written,
+)
+
+if __name__ == "__main__":
+    glint_cocotb.run("threshold_levels", "axil")
