@@ -1,5 +1,6 @@
 //! From a configuration to everything that is made of it.
 
+use std::path::Path;
 use std::time::Duration;
 
 use anyhow::{Context, Result};
@@ -7,7 +8,7 @@ use anyhow::{Context, Result};
 use crate::base::input;
 use crate::config::{Config, Key};
 use crate::cosim::batch::{Engine, Golden, RustHdl, Verilog};
-use crate::cosim::exhaustive::{Clocks, Job, Places};
+use crate::cosim::exhaustive::{Backing, Clocks, Job, Places};
 use crate::cosim::{Lockstep, directed, trial};
 use crate::golden::{Contract, Sweep};
 use crate::hdl::netlist::Design;
@@ -91,6 +92,17 @@ impl Core {
     /// their defaults. A key that comes later, at its default, leaves the digest as it is. SHA-256 in hexadecimal.
     pub fn contract_digest(&self) -> String {
         self.digest_of((self.device.schema)().keys.iter())
+    }
+
+    /// What the bound of the contract rests on; `proofs` is the directory of records.
+    ///
+    /// # Errors
+    /// A record that cannot be read.
+    pub fn backing(&self, proofs: &Path) -> Result<Backing> {
+        if self.device.is_of_catalogue() {
+            return Ok(Backing::Catalogue);
+        }
+        Backing::of_records(proofs, &self.contract_digest(), self.contract.as_ref())
     }
 
     /// Tells this core, whatever its name, from others: as [`Core::contract_digest`], with the architecture. What stands around

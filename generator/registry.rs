@@ -37,6 +37,15 @@ pub struct Device {
 }
 
 impl Device {
+    /// Whether keys and contract are those of a device of the catalogue, where the bound is proved beside the golden model.
+    pub fn is_of_catalogue(&self) -> bool {
+        let catalogue = Registry::catalogue();
+        catalogue.device(self.name).is_some_and(|own| {
+            std::ptr::fn_addr_eq(own.contract, self.contract)
+                && std::ptr::fn_addr_eq(own.schema, self.schema)
+        })
+    }
+
     /// The design that a configuration asks for.
     ///
     /// # Errors

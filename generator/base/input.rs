@@ -43,7 +43,7 @@ pub fn open(path: &Path) -> io::Result<Box<dyn Read>> {
 /// alone, and a directory that is not there has none.
 ///
 /// # Errors
-/// The directory or a file in it cannot be read.
+/// The directory or a file in it cannot be read, or is no JSON.
 pub fn records<T: DeserializeOwned>(directory: &Path) -> Result<Vec<(PathBuf, T)>> {
     let entries = match fs::read_dir(directory) {
         Ok(entries) => entries,
@@ -61,9 +61,21 @@ pub fn records<T: DeserializeOwned>(directory: &Path) -> Result<Vec<(PathBuf, T)
     let mut records = Vec::new();
     for path in paths {
         let bytes = fs::read(&path).with_context(|| format!("cannot read `{}`", path.display()))?;
-        records.extend(serde_json::from_slice(&bytes).ok().map(|record| (path, record)));
+        match serde_json::from_slice(&bytes) {
+            Ok(record) => records.push((path, record)),
+            Err(error) if error.is_data() => {}
+            Err(error) => return Err(error).with_context(|| damaged(&path)),
+        }
     }
     Ok(records)
+}
+
+/// What is said of a record that cannot be understood.
+pub fn damaged(path: &Path) -> String {
+    format!(
+        "the record `{}` is damaged: restore it, move it away, or make it again with the command that wrote it",
+        path.display()
+    )
 }
 
 #[cfg(test)]

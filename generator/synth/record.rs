@@ -36,7 +36,7 @@ impl Record {
     /// directory. Files that are no records are left alone.
     ///
     /// # Errors
-    /// The directory or a file in it cannot be read.
+    /// The directory or a file in it cannot be read; a record is damaged.
     pub fn find(directory: &Path, core: &str) -> Result<Option<Self>> {
         let records = input::records::<Self>(directory)?.into_iter();
         let mut records = records.map(|(_, record)| record);

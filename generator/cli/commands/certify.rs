@@ -13,6 +13,7 @@ use crate::base::input;
 use crate::certify::{self, Outcome, Statement, prove, questions, statements};
 use crate::cli::own_file::OwnFile;
 use crate::cli::{Configs, Output, progress, say, tables};
+use crate::cosim::exhaustive::Certificate;
 use crate::golden::Contract;
 use crate::hdl::netlist::Design;
 use crate::package::digest;
@@ -35,7 +36,7 @@ Examples:
 pub struct Arguments {
     #[command(flatten)]
     configs: Configs,
-    /// Write each script as `DIR/<name>/<output>_<number>.g`
+    /// Write each script as `DIR/<name>/<output>_<number>.g`, and what was proved as `DIR/<name>.json`
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Have Coq check each of Gappa's proofs
@@ -72,6 +73,14 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
             one.contract()?;
         }
         let out = arguments.out.as_ref().map(|out| out.join(&one.core.config.name));
+        let record = OwnFile::record(arguments.out.as_deref(), &one.core.config.name)?;
+        let certificate = |bound, certified| Certificate {
+            glint: env!("CARGO_PKG_VERSION").to_owned(),
+            config: one.path.clone(),
+            contract: one.core.contract_digest(),
+            bound,
+            certified,
+        };
         let stated = if is_stated {
             statements(design, contract, limit).map(|stated| (stated, contract.bound().units))
         } else {
@@ -84,6 +93,9 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
                 // Scripts of an earlier run with other keys would still say that they are accepted.
                 if let Some(directory) = out.filter(|directory| directory.exists()) {
                     write(&directory, &one.path, &[], &[])?;
+                }
+                if let Some(record) = record {
+                    record.write_json(&certificate(contract.bound().units, false))?;
                 }
                 if !output.json {
                     say!("{}: not certified: {step}", one.path);
@@ -115,6 +127,9 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
             })
             .collect();
         whole &= open.is_empty();
+        if let Some(record) = record {
+            record.write_json(&certificate(bound, open.is_empty()))?;
+        }
         if !output.json {
             let by = if arguments.coq {
                 "proved by Gappa and checked by Coq"

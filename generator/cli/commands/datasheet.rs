@@ -9,7 +9,7 @@ use serde_json::json;
 use super::{Loaded, load, yosys};
 use crate::cli::store::{self, Written};
 use crate::cli::{Configs, Output, TimeLimit, progress, say, tables, wrong_usage};
-use crate::cosim::exhaustive::Record;
+use crate::cosim::exhaustive::{PROOFS, Record};
 use crate::package::Seal;
 use crate::pages::datasheet::{self, Subject};
 use crate::registry::Registry;
@@ -37,7 +37,7 @@ pub struct Arguments {
     #[arg(long, value_name = "DIR|FILE.html", default_value = "datasheets")]
     out: PathBuf,
     /// Where records of `cosim --exhaustive --json` are; that of the configuration is found by its digest
-    #[arg(long, value_name = "DIR", default_value = "proofs")]
+    #[arg(long, value_name = "DIR", default_value = PROOFS)]
     proofs: PathBuf,
     /// Where records of `synth --out` are; that of the configuration is found by its digest
     #[arg(long, value_name = "DIR", default_value = synth::DIRECTORY)]
@@ -71,22 +71,24 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     for one in &loaded {
         let (core, contract) = (&one.core, one.core.contract.as_ref());
         let proof = Record::find(&arguments.proofs, &core.contract_digest(), contract)?;
-        records.push((proof, synth::Record::find(&arguments.figures, &core.core_digest())?));
+        let figures = synth::Record::find(&arguments.figures, &core.core_digest())?;
+        records.push((core.backing(&arguments.proofs)?, proof, figures));
         store::may_write(&path(arguments, one, single), Seal::Markup, arguments.force)?;
     }
     let mut notes = Vec::new();
     let wanted = !arguments.no_synthesis;
     let yosys = wanted.then(|| yosys("nothing is synthesised", &mut notes)).flatten();
     let limit = arguments.time_limit.get();
-    let steps = records.iter().map(|(_, it)| datasheet::steps(yosys.is_some() && it.is_none()));
+    let steps = records.iter().map(|(_, _, it)| datasheet::steps(yosys.is_some() && it.is_none()));
     let steps: usize = steps.sum();
     let bar = progress::bar(output, steps as u64, "datasheets");
     bar.tick();
     let mut report = Vec::new();
-    for (one, (proof, figures)) in loaded.iter().zip(records) {
+    for (one, (backing, proof, figures)) in loaded.iter().zip(records) {
         let subject = Subject {
             core: &one.core,
             path: &one.path,
+            backing,
             proof,
             figures,
             synthesis: yosys.as_ref().map(|yosys| (yosys, limit)),

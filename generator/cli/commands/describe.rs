@@ -1,6 +1,6 @@
 //! `describe`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use clap::Args;
@@ -9,6 +9,7 @@ use serde_json::json;
 use super::load;
 use crate::cli::store::{self, Written};
 use crate::cli::{Configs, Output, say, tables};
+use crate::cosim::exhaustive::PROOFS;
 use crate::package::Seal;
 use crate::registry::Registry;
 
@@ -38,7 +39,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     let loaded = load(registry, &arguments.configs.paths)?;
     let mut report = Vec::new();
     for (at, one) in loaded.iter().enumerate() {
-        let page = one.core.page(&one.path);
+        let page = one.core.page(&one.path, Path::new(PROOFS));
         let page = page.with_context(|| format!("`{}`", one.path))?;
         let name = &one.core.config.name;
         let written = match &arguments.out {

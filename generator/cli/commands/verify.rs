@@ -9,6 +9,7 @@ use serde_json::json;
 use super::{Loaded, load};
 use crate::cli::own_file::OwnFile;
 use crate::cli::{Configs, Output, TimeLimit, progress, say, tables};
+use crate::cosim::exhaustive::PROOFS;
 use crate::registry::Registry;
 use crate::verify::{
     Answer, CHECKS, CheckTime, Conclusion, Effort, Record, Subject, Verdict, page,
@@ -44,7 +45,7 @@ pub struct Arguments {
     #[arg(long, value_name = "DIR", default_value = "verification")]
     out: PathBuf,
     /// Where records of `cosim --exhaustive --json` are, which stand for a long proof of the accuracy contract
-    #[arg(long, value_name = "DIR", default_value = "proofs")]
+    #[arg(long, value_name = "DIR", default_value = PROOFS)]
     proofs: PathBuf,
     #[command(flatten)]
     time_limit: TimeLimit<3600>,

@@ -6,6 +6,7 @@
 //! anywhere, in any order, and the outcomes joined: the result does not depend on how the work was divided.
 
 pub mod axis;
+mod backing;
 mod clocks;
 mod job;
 pub mod kept;
@@ -16,12 +17,16 @@ mod record;
 mod tests;
 
 pub use axis::AxisValues;
+pub use backing::{Backing, Certificate};
 pub use clocks::{Clocks, Difference, MOST_BITS, Steps};
 pub use job::{Job, MOST_SHARDS, Progress, Shard, State};
 pub use places::{Peak, Places};
 pub use record::Record;
 
 use crate::golden::{Contract, Sweep};
+
+/// Where records are by default.
+pub const PROOFS: &str = "proofs";
 
 /// What f64 itself may add to an error in units.
 const F64: f64 = 1e-6;

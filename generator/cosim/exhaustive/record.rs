@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 use serde::Deserialize;
 
 use super::{Peak, Places, Proof};
@@ -16,11 +16,7 @@ const SAME: f64 = 1e-9;
 /// What a check found.
 #[derive(Clone, Debug, Deserialize)]
 pub struct Record {
-    /// Tells what was checked: [`crate::core::Core::contract_digest`].
-    #[serde(default)]
-    configuration: String,
     axes: Vec<RecordedAxis>,
-    bound: f64,
     /// Evaluations of f.
     pub evaluations: u64,
     /// Words f times colours; 0 of a device that is no highlight.
@@ -79,7 +75,8 @@ impl RecordedAxis {
 
 #[derive(Deserialize)]
 struct Report {
-    configurations: Vec<Record>,
+    /// Each tells by `configuration` what was checked: [`crate::core::Core::contract_digest`].
+    configurations: Vec<serde_json::Value>,
 }
 
 impl Record {
@@ -87,11 +84,13 @@ impl Record {
     /// such directory. Files that are no records are left alone.
     ///
     /// # Errors
-    /// The directory or a file in it cannot be read; the record's sweep or bound are not those of the contract.
+    /// The directory or a file in it cannot be read, a record is damaged; the record's sweep is not that of the contract.
     pub fn find(directory: &Path, digest: &str, contract: &dyn Contract) -> Result<Option<Self>> {
         for (path, report) in input::records::<Report>(directory)? {
-            let found = report.configurations.into_iter().find(|it| it.configuration == digest);
+            let found = report.configurations.into_iter().find(|it| it["configuration"] == digest);
             if let Some(found) = found {
+                let found: Self =
+                    serde_json::from_value(found).with_context(|| input::damaged(&path))?;
                 let found = Self { path, ..found };
                 found.is_of(contract)?;
                 return Ok(Some(found));
@@ -106,25 +105,40 @@ impl Record {
         Sweep { axes, omits: contract.sweep().omits }
     }
 
-    /// Refuses a record that leaves out a part of the contract's sweep, or has another bound.
+    /// Refuses a record that leaves out a part of the contract's sweep. Its bound is that of its day: what it found is
+    /// held against today's.
     fn is_of(&self, contract: &dyn Contract) -> Result<()> {
         let sweep = contract.sweep();
         let same_axes = self.axes.len() == sweep.axes.len()
             && self.axes.iter().zip(&sweep.axes).all(|(found, axis)| found.covers(axis));
-        let same_bound = (self.bound - contract.bound().units).abs() < SAME;
         anyhow::ensure!(
-            same_axes && same_bound,
-            "the record `{}` is of another version of Glint: its sweep or its bound is not today's; \
+            same_axes,
+            "the record `{}` is of another version of Glint: its sweep is not today's; \
              `glint cosim --exhaustive --json` makes a new one",
             self.path.display()
         );
         Ok(())
     }
 
+    /// Whether the check went through every combination of operands, and what it found is within today's bound. The
+    /// error at its place is computed again.
+    pub fn proves(&self, contract: &dyn Contract) -> bool {
+        let sweep = self.sweep(contract);
+        let is_whole = sweep.omits.is_empty();
+        let places = Places::of_sweep(contract, sweep);
+        let place = self.f.place;
+        let is_same = place < places.count() && (places.error(place) - self.f.error).abs() <= SAME;
+        is_whole && is_same && self.holds && self.proof(contract).failures.is_empty()
+    }
+
+    fn proof(&self, contract: &dyn Contract) -> Proof {
+        let f = Peak { error: self.f.error, place: self.f.place };
+        Proof::new(contract, f, Peak { error: self.colour_units, place: 0 })
+    }
+
     /// The largest errors in words.
     pub fn words(&self, contract: &dyn Contract) -> String {
-        let f = Peak { error: self.f.error, place: self.f.place };
-        Proof::new(contract, f, Peak { error: self.colour_units, place: 0 }).words("")
+        self.proof(contract).words("")
     }
 
     /// How many evaluations [`Record::recheck`] makes if it is to make about `places` of `f`.

@@ -7,6 +7,7 @@ mod table;
 
 use crate::base::fixed::Format;
 use crate::config::{Config, Key, Schema, Value, shared_keys};
+use crate::cosim::exhaustive::Backing;
 use crate::evidence::advice::Advice;
 use crate::golden::{Bound, Contract, Values};
 use crate::hdl::netlist::{Design, Pipeline};
@@ -28,6 +29,8 @@ pub struct PageInputs<'a> {
     pub schema: &'a Schema,
     /// The accuracy contract.
     pub contract: &'a dyn Contract,
+    /// What its bound rests on.
+    pub backing: &'a Backing,
     /// The key that would bring the bound down most.
     pub advice: Option<Advice>,
     /// Clocks.
@@ -68,7 +71,7 @@ pub fn limit(inputs: &PageInputs) -> String {
 }
 
 /// The bound, in sentences.
-pub fn accuracy(contract: &dyn Contract) -> String {
+pub fn accuracy(contract: &dyn Contract, backing: &Backing) -> String {
     let bound = contract.bound();
     if !bound.is_stated() {
         return "The contract states no bound of the error; `glint certify` finds one where it can.".to_owned();
@@ -78,7 +81,7 @@ pub fn accuracy(contract: &dyn Contract) -> String {
     } else {
         "which is outside the contract (less than 1 unit)"
     };
-    let proven = "The bound is proven, not measured; this is what it is made of:";
+    let proven = format!("{}; this is what it is made of:", backing.sentence());
     if contract.highlight().is_none() {
         return format!(
             "An output differs from the formula in f64, unrounded, at the quantised operands, by at most {:.3} units, \

@@ -13,7 +13,7 @@ mod waves;
 use anyhow::Result;
 
 use crate::core::{Core, Through};
-use crate::cosim::exhaustive::Record;
+use crate::cosim::exhaustive::{Backing, Record};
 use crate::evidence::curves::{self, DeviceCurves};
 use crate::evidence::hardware::{self, FamilyUsage, Synthesis};
 use crate::package::{LineClocks, Timing, WorkedExample};
@@ -34,6 +34,8 @@ pub struct Subject<'a> {
     pub core: &'a Core,
     /// The configuration as the command line names it; the page has its label.
     pub path: &'a str,
+    /// What the bound of its contract rests on.
+    pub backing: Backing,
     /// The record of its exhaustive check, where there is one.
     pub proof: Option<Record>,
     /// What `glint synth` has measured of it, where there is a record.

@@ -126,6 +126,7 @@ pub fn page(subject: &Subject, measured: &Measured) -> Result<String> {
         config: &core.config,
         schema: &schema,
         contract,
+        backing: &subject.backing,
         advice: core.advice(),
         timing: &measured.timing,
         example: &measured.example,
@@ -172,7 +173,7 @@ pub fn page(subject: &Subject, measured: &Measured) -> Result<String> {
         timing: timing::drawing(&measured.waves, described(design, measured)).svg()?,
         wavedrom_link: format!("data:application/json;base64,{}", STANDARD.encode(&wavedrom)),
         wavedrom,
-        accuracy: html(&account::accuracy(contract)),
+        accuracy: html(&account::accuracy(contract, &subject.backing)),
         terms: TableView::new("Terms of the bound", &account::terms(&bound)),
         limit: html(&account::limit(&inputs)),
         sweep: html(&account::proof(&inputs)),
@@ -226,7 +227,7 @@ fn glance(subject: &Subject, measured: &Measured) -> Vec<(&'static str, String)>
     };
     let bound = contract.bound();
     let error = if bound.is_stated() {
-        format!("{:.3} units, proven", bound.units)
+        format!("{:.3} units, {}", bound.units, subject.backing)
     } else {
         "no bound is stated".to_owned()
     };

@@ -94,7 +94,7 @@ pub fn page(design: &Design, inputs: &PageInputs) -> Result<String> {
             None => account::clocks(inputs.timing, inputs.line),
             Some(pipeline) => account::pipeline_clocks(pipeline),
         }),
-        accuracy: account::accuracy(inputs.contract),
+        accuracy: account::accuracy(inputs.contract, inputs.backing),
         terms: table(&account::terms(&bound)),
         limit: prose(&account::limit(inputs)),
         proof: prose(&account::proof(inputs)),
