@@ -2,7 +2,9 @@
 //!
 //! Random points seldom meet what rounds unluckily in every step. From points that the stimulus draws each operand, and each
 //! pair of those with a fraction, is moved by powers of two as long as the error grows: of a highlight first that of `f`,
-//! and then that of an output, with its worst colour. What is found is a lower limit of the largest error, and no proof.
+//! and then that of an output, with its worst colour. Around the highest places of f all values of each pair of operands are
+//! looked at, for rounding makes the last steps too rough to climb. What is found is a lower limit of the largest error, and
+//! no proof.
 
 use rayon::prelude::*;
 
@@ -16,6 +18,10 @@ const MOST_COLOURS: i64 = 256;
 
 /// Operands are moved by powers of two below this.
 const MOST_BITS: u32 = 24;
+
+/// How many of the highest places are looked around, and at how many values around each.
+const HIGHEST: usize = 16;
+const AROUND: u64 = 1 << 18;
 
 /// An error of an output, and where.
 #[derive(Clone, Debug, PartialEq)]
@@ -64,21 +70,32 @@ pub fn worst(
 ) -> Option<Reached> {
     let points = Points::new(contract);
     let climber = Climber::new(contract);
-    let reached = (0..starts).into_par_iter().filter_map(|start| {
+    let ends = (0..starts).into_par_iter().map(|start| {
         let mut random = Random::new(seed ^ start.wrapping_mul(0xd134_2543_de82_ef95));
-        let operands = climber.from(points.of_domain(&mut random));
+        let end = climber.from(points.of_domain(&mut random));
         progress();
-        Some((start, Reached::at(contract, operands)?))
+        end
     });
+    let mut ends: Vec<End> = ends.collect();
     // Of errors that are equal that of the first start, whatever the order in which they come.
-    let reached = reached.reduce_with(|(a, first), (b, second)| {
-        let second_is_larger = match second.units.total_cmp(&first.units) {
-            std::cmp::Ordering::Equal => b < a,
-            order => order.is_gt(),
-        };
-        if second_is_larger { (b, second) } else { (a, first) }
-    });
-    reached.map(|(_, reached)| reached)
+    let outputs = ends.iter().filter_map(|end| Reached::at(contract, end.operands.clone()));
+    let climbed = outputs.reduce(larger)?;
+    ends.sort_by(|one, other| other.height.total_cmp(&one.height));
+    let around: Vec<Vec<i64>> = ends[..ends.len().min(HIGHEST)]
+        .par_iter()
+        .map(|end| climber.look_around(end.highest.clone()))
+        .collect();
+    let found = around.into_iter().filter_map(|operands| Reached::at(contract, operands));
+    Some(found.fold(climbed, larger))
+}
+
+/// Where a climb ends.
+struct End {
+    /// The largest error of f of a highlight, else of an output, and the moved operands where it is.
+    height: f64,
+    highest: Vec<i64>,
+    /// Of a highlight with the colour of the largest error of an output that was climbed to from there.
+    operands: Vec<i64>,
 }
 
 struct Climber<'a> {
@@ -114,24 +131,70 @@ impl<'a> Climber<'a> {
         }
     }
 
-    /// The operands of the largest error that is reached from some.
-    fn from(&self, mut operands: Vec<i64>) -> Vec<i64> {
-        let Some(highlight) = self.contract.highlight() else {
-            self.climb(&mut operands, |operands| self.contract.largest_error(operands));
-            return operands;
-        };
+    /// The end of the climb from some operands.
+    fn from(&self, operands: Vec<i64>) -> End {
         // Control operands come first.
-        let mut control = operands;
-        control.truncate(self.domains.len());
-        self.climb(&mut control, |control| of_f(highlight, control));
+        let mut highest = operands;
+        highest.truncate(self.domains.len());
+        let Some(highlight) = self.contract.highlight() else {
+            let height = self.climb(&mut highest, |operands| self.contract.largest_error(operands));
+            return End { height, operands: highest.clone(), highest };
+        };
+        let height = self.climb(&mut highest, |control| of_f(highlight, control));
+        let mut control = highest.clone();
         self.climb(&mut control, |control| self.of_output(highlight, control).0);
+        End { height, highest, operands: self.with_colours(highlight, control) }
+    }
+
+    /// The control operands with the colour that makes the largest error.
+    fn with_colours(&self, highlight: &Highlight, mut control: Vec<i64>) -> Vec<i64> {
         let (_, colour) = self.of_output(highlight, &control);
         control.resize(highlight.operands().len(), colour);
         control
     }
 
-    /// Moves operands as long as that makes `of` larger.
-    fn climb(&self, operands: &mut Vec<i64>, of: impl Fn(&[i64]) -> f64) {
+    /// The operands of the largest error among all values of each pair of operands around some, and around what is found so.
+    fn look_around(&self, mut operands: Vec<i64>) -> Vec<i64> {
+        let highlight = self.contract.highlight();
+        let terms = self.contract.bound().terms;
+        let rounding = terms.iter().find(|term| term.key == "output.rounding");
+        let (rounding, colour) = (rounding.map_or(1.0, |it| it.units), *self.colours.end() as f64);
+        // An output is no further off than f and its own rounding allow.
+        let error = |operands: &[i64], known: f64| match highlight {
+            Some(it) if of_f(it, operands) * colour + rounding <= known => 0.0,
+            Some(it) => self.of_output(it, operands).0,
+            None => self.contract.largest_error(operands),
+        };
+        let pairs = operands.len() * operands.len().saturating_sub(1) / 2;
+        let far = (AROUND / pairs.max(1) as u64).isqrt() as i64 / 2;
+        let near = |at: usize, value: i64| {
+            let (low, high) = self.domains[at];
+            (value - far).max(low)..=(value + far).min(high)
+        };
+        let mut height = error(&operands, 0.0);
+        loop {
+            let before = height;
+            for (a, b) in (0..operands.len()).flat_map(|b| (0..b).map(move |a| (a, b))) {
+                let mut next = operands.clone();
+                for (one, other) in near(a, operands[a])
+                    .flat_map(|one| near(b, operands[b]).map(move |other| (one, other)))
+                    .collect::<Vec<_>>()
+                {
+                    (next[a], next[b]) = (one, other);
+                    let there = error(&next, height);
+                    if there > height {
+                        (height, operands) = (there, next.clone());
+                    }
+                }
+            }
+            if height <= before {
+                return highlight.map_or(operands.clone(), |it| self.with_colours(it, operands));
+            }
+        }
+    }
+
+    /// Moves operands as long as that makes `of` larger; returns how large.
+    fn climb(&self, operands: &mut Vec<i64>, of: impl Fn(&[i64]) -> f64) -> f64 {
         let mut height = of(operands);
         loop {
             let before = height;
@@ -152,7 +215,7 @@ impl<'a> Climber<'a> {
                 }
             }
             if height <= before {
-                return;
+                return height;
             }
         }
     }

@@ -3,6 +3,7 @@
 mod bound;
 mod clock_model;
 mod contract;
+mod pairs;
 #[cfg(test)]
 mod tests;
 

@@ -13,8 +13,9 @@ pub const STYLES: usize = 10;
 /// The library places points on whole units: this many of them make one of the page's at full size.
 const FINE: u32 = 4;
 
-const WIDTH: u32 = 480 * FINE;
-const HEIGHT: u32 = 300 * FINE;
+/// The sizes of a plot.
+pub const WIDTH: u32 = 480 * FINE;
+pub const HEIGHT: u32 = 300 * FINE;
 
 /// Stand-ins for the roles of lines and text; [`themed`] puts classes in their place.
 const INK: RGBColor = RGBColor(1, 0, 0);

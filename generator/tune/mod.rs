@@ -4,7 +4,9 @@
 //! [`tune`] answers keeps the error that was asked for, for every operand of the domain. What a configuration costs is
 //! estimated from its netlist ([`model`]); synthesis confirms the answer.
 //!
-//! Free are the keys that change neither a port nor the formula (`space`); all others are the wish itself.
+//! Free are the keys that change neither a port nor the formula (`space`); all others are the wish itself. Keys that add
+//! microinstructions, as those by which products share a multiplier, are free where the wish says how many points a second are
+//! enough or that DSP blocks are dear, and where nothing else fits the chip.
 
 pub mod model;
 mod search;
@@ -94,10 +96,19 @@ pub fn tune(
     wish: &Wish,
     progress: &(dyn Fn(usize) + Sync),
 ) -> Result<Answer> {
-    let space = Space::new(device, base, fixed)?;
-    Search::new(device, &space, wish, progress)
-        .run(base)
-        .with_context(|| format!("`{}` cannot be tuned", device.name))
+    let slower = wish.rate.is_some() || wish.objective == Objective::Dsps;
+    let run = |slower| -> Result<Answer> {
+        let space = Space::new(device, base, fixed, slower)?;
+        Search::new(device, &space, wish, progress).run(base)
+    };
+    let of_device = || format!("`{}` cannot be tuned", device.name);
+    let answer = run(slower).with_context(of_device)?;
+    let fits = |answer: &Answer| answer.best.cost.excess(wish.target).is_empty();
+    if slower || fits(&answer) {
+        return Ok(answer);
+    }
+    let shared = run(true).with_context(of_device)?;
+    Ok(if fits(&shared) { shared } else { answer })
 }
 
 /// Every configuration of the free keys whose values are given, each with its cost, in the order of the values: for tests
@@ -111,6 +122,6 @@ pub fn exhaustive(
     values: &[(&str, Vec<crate::config::Value>)],
     wish: &Wish,
 ) -> Result<Option<Candidate>> {
-    let space = Space::new(device, base, &[])?;
+    let space = Space::new(device, base, &[], true)?;
     Search::new(device, &space, wish, &|_| ()).exhaustive(base, values)
 }

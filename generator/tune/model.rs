@@ -57,11 +57,11 @@ struct Chip {
     block: (u64, u64),
     /// Synchronous ROMs of fewer bits are look-up tables.
     least_block: u64,
-    /// Look-up tables that the chip has for each DSP block and for each block RAM.
-    worth: (f64, f64),
+    /// A usual chip, and the look-up tables, DSP blocks and block RAMs that it has.
+    name: &'static str,
+    has: [u32; 3],
 }
 
-/// UP5K has 5280 look-up tables, 8 DSP blocks and 30 block RAMs; LFE5U-25F 24288, 28 and 56; XC7A35T 20800, 90 and 100.
 const CHIPS: [Chip; 3] = [
     Chip {
         target: Target::Ice40,
@@ -71,7 +71,8 @@ const CHIPS: [Chip; 3] = [
         multiplier: (16, 16),
         block: (4096, 16),
         least_block: 128,
-        worth: (660.0, 176.0),
+        name: "iCE40 UP5K",
+        has: [5280, 8, 30],
     },
     Chip {
         target: Target::Ecp5,
@@ -81,7 +82,8 @@ const CHIPS: [Chip; 3] = [
         multiplier: (18, 18),
         block: (18_432, 36),
         least_block: 2048,
-        worth: (867.0, 434.0),
+        name: "LFE5U-25F",
+        has: [24_288, 28, 56],
     },
     Chip {
         target: Target::Xilinx7,
@@ -91,7 +93,8 @@ const CHIPS: [Chip; 3] = [
         multiplier: (24, 17),
         block: (18_432, 36),
         least_block: 8192,
-        worth: (231.0, 208.0),
+        name: "XC7A35T",
+        has: [20_800, 90, 100],
     },
 ];
 
@@ -134,8 +137,23 @@ impl Cost {
 
     /// Everything in look-up tables.
     pub fn area(&self, target: Target) -> f64 {
-        let (dsp, block) = chip(target).worth;
+        let [luts, dsps, blocks] = chip(target).has.map(f64::from);
+        let (dsp, block) = ((luts / dsps).round(), (luts / blocks).round());
         self.luts + dsp * self.dsps as f64 + block * self.block_rams as f64
+    }
+
+    /// What a usual chip of the target has too little of, in words; empty where the core fits.
+    pub fn excess(&self, target: Target) -> String {
+        let chip = chip(target);
+        let wanted = [self.luts.ceil() as u64, self.dsps, self.block_rams];
+        let kinds = ["look-up tables", "DSP blocks", "block RAMs"].into_iter().zip(chip.has);
+        let short = kinds.zip(wanted).filter(|((_, has), wanted)| u64::from(*has) < *wanted);
+        let short: Vec<String> =
+            short.map(|((kind, has), wanted)| format!("{wanted} of {has} {kind}")).collect();
+        if short.is_empty() {
+            return String::new();
+        }
+        format!("it does not fit the {}: it takes {}", chip.name, short.join(", "))
     }
 }
 

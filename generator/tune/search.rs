@@ -1,5 +1,6 @@
 //! The search: up until the bound is kept, then down as far as it is.
 
+use std::cmp::Ordering;
 use std::collections::BTreeMap;
 use std::sync::Mutex;
 
@@ -117,6 +118,8 @@ impl<'a> Search<'a> {
         }
         let contract = (self.device.contract)(config);
         let design = self.device.design(config).ok();
+        // What a free key leaves as it is alone, two together may not.
+        let design = design.filter(|design| self.space.holds(design, contract.as_ref()));
         let found = design.map(|design| Candidate {
             config: config.clone(),
             bound: contract.bound(),
@@ -150,25 +153,33 @@ impl<'a> Search<'a> {
         self.wish.clock.unwrap_or_default().max(of_rate.unwrap_or_default())
     }
 
-    /// What is to be small, the most important first; two candidates that are alike in it differ in their text.
-    fn order(&self, candidate: &Candidate) -> (f64, f64, String) {
+    /// What is to be small, the most important first: that it fits the chip, the objective, the error, and bits of ROM. Two
+    /// candidates that are alike in it differ in their text.
+    fn order(&self, candidate: &Candidate) -> ([f64; 5], String) {
+        let (cost, target) = (&candidate.cost, self.wish.target);
+        let excess = if cost.excess(target).is_empty() { 0.0 } else { 1.0 };
+        let (first, second) = (self.objective(candidate), cost.area(target));
+        let small = [excess, first, second, self.error(candidate), cost.rom_bits as f64];
+        (small, candidate.config.to_toml(self.space.schema()))
+    }
+
+    fn objective(&self, candidate: &Candidate) -> f64 {
         let cost = &candidate.cost;
-        let area = cost.area(self.wish.target);
-        let (first, second) = match self.wish.objective {
-            Objective::Area => (area, cost.rom_bits as f64),
-            Objective::Luts => (cost.luts, area),
-            Objective::Dsps => (cost.dsps as f64, area),
-            Objective::Memory => (cost.rom_bits as f64, area),
-        };
-        (first, second, candidate.config.to_toml(self.space.schema()))
+        match self.wish.objective {
+            Objective::Area => cost.area(self.wish.target),
+            Objective::Luts => cost.luts,
+            Objective::Dsps => cost.dsps as f64,
+            Objective::Memory => cost.rom_bits as f64,
+        }
     }
 
     fn smallest(&self, candidates: Vec<Candidate>) -> Option<Candidate> {
         let kept = candidates.into_iter().filter(|candidate| self.keeps(candidate));
-        kept.min_by(|one, other| {
-            let (one, other) = (self.order(one), self.order(other));
-            one.0.total_cmp(&other.0).then(one.1.total_cmp(&other.1)).then(one.2.cmp(&other.2))
-        })
+        kept.map(|one| (self.order(&one), one))
+            .min_by(|(one, _), (other, _)| {
+                one.0.partial_cmp(&other.0).unwrap_or(Ordering::Equal).then(one.1.cmp(&other.1))
+            })
+            .map(|(_, one)| one)
     }
 
     /// The neighbours that differ by this number of changes.
@@ -238,34 +249,39 @@ impl<'a> Search<'a> {
             )
         });
         bail!(
-            "no configuration keeps {} {unit}; the smallest bound that was found is {:.6} {unit}{way}",
+            "no configuration keeps {} {unit}; the smallest bound that was found is {} {unit}{way}",
             self.wish.error,
-            self.error(nearest)
+            above(self.error(nearest), self.wish.error)
         )
     }
 
     /// A smaller neighbour that keeps the wish.
     fn descend(&self, here: &Candidate, changes: usize) -> Option<Candidate> {
         let smallest = self.smallest(self.around(here, changes))?;
-        let (new, old) = (self.order(&smallest), self.order(here));
-        let less = new.0.total_cmp(&old.0).then(new.1.total_cmp(&old.1)).is_lt();
-        less.then_some(smallest)
+        (self.order(&smallest).0 < self.order(here).0).then_some(smallest)
     }
 
     fn front(&self, all: Vec<Candidate>) -> Vec<Candidate> {
         let mut all: Vec<Candidate> = all.into_iter().filter(|it| self.is_fast(it)).collect();
         all.sort_by(|one, other| {
             let by_error = self.error(one).total_cmp(&self.error(other));
-            by_error.then(self.order(one).0.total_cmp(&self.order(other).0))
+            by_error.then(self.objective(one).total_cmp(&self.objective(other)))
         });
         let mut front: Vec<Candidate> = Vec::new();
         for candidate in all {
             let smaller =
-                front.last().is_none_or(|last| self.order(&candidate).0 < self.order(last).0);
+                front.last().is_none_or(|last| self.objective(&candidate) < self.objective(last));
             if smaller {
                 front.push(candidate);
             }
         }
         front
     }
+}
+
+/// A value with as many digits as show that it is above a limit, and six at least.
+fn above(value: f64, limit: f64) -> String {
+    let shown = (6..17).map(|digits| format!("{value:.digits$}"));
+    let is_above = |text: &String| text.parse::<f64>().is_ok_and(|shown| shown > limit);
+    shown.into_iter().find(is_above).unwrap_or_else(|| value.to_string())
 }

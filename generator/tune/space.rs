@@ -1,10 +1,9 @@
 //! Which keys are free, and what lies next to a configuration.
 
 use anyhow::{Context, Result};
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{RngCore, SeedableRng};
 
 use crate::config::{Config, Key, Kind, Schema, Value};
+use crate::cosim::{Points, Random};
 use crate::golden::Contract;
 use crate::hdl::netlist::Design;
 use crate::registry::Device;
@@ -12,37 +11,51 @@ use crate::registry::Device;
 /// Steps by which an integer is changed.
 const STEPS: [i64; 3] = [1, 2, 4];
 
-/// Points at which formulas are compared, drawn from the places that divide each domain into this number of parts.
+/// Points at which formulas are compared, drawn as those of a test are: most of them where the formula is neither 0 nor flat.
 const POINTS: u32 = 600;
-const PLACES: i64 = 12;
 
 /// The free keys of a device.
 pub struct Space {
     schema: Schema,
     free: Vec<&'static str>,
+    outside: Outside,
+    /// Whether microinstructions may be added.
+    slower: bool,
 }
 
 impl Space {
-    /// Those of `base` that change neither ports nor formula, and add no microinstructions, without those in `fixed`.
+    /// The keys of `base` that change neither ports nor formula, and add no microinstructions unless `slower`, without those in
+    /// `fixed`.
     ///
     /// # Errors
     /// `base` makes no design.
-    pub fn new(device: &Device, base: &Config, fixed: &[&str]) -> Result<Self> {
+    pub fn new(device: &Device, base: &Config, fixed: &[&str], slower: bool) -> Result<Self> {
         let schema = (device.schema)();
-        let outside = Outside::new(device, base)?;
+        let design = device.design(base).context("this configuration makes no design")?;
+        let outside = Outside::new(&design, (device.contract)(base).as_ref());
+        let mut space = Self { schema, free: Vec::new(), outside, slower };
         let is_free = |key: &&Key| {
             key.table_and_leaf().0 != "domain"
                 && !fixed.contains(&key.name)
                 && alternatives(key, base.value(key.name)).into_iter().all(|value| {
-                    let changed = with(&schema, base, &[(key.name, value)]);
                     // A value that does not go with the others says nothing.
+                    let changed = space.with(base, &[(key.name, value)]);
                     changed.is_none_or(|config| {
-                        Outside::new(device, &config).is_ok_and(|other| other == outside)
+                        let contract = (device.contract)(&config);
+                        device.design(&config).is_ok_and(|it| space.holds(&it, contract.as_ref()))
                     })
                 })
         };
-        let free = schema.keys.iter().filter(is_free).map(|key| key.name).collect();
-        Ok(Self { schema, free })
+        space.free = space.schema.keys.iter().filter(is_free).map(|key| key.name).collect();
+        Ok(space)
+    }
+
+    /// Whether somebody outside sees the same core, but for its accuracy.
+    pub fn holds(&self, design: &Design, contract: &dyn Contract) -> bool {
+        let own = &self.outside;
+        own.ports == ports(design)
+            && (self.slower || own.microinstructions == design.control.microprogram.len())
+            && own.has_formula(contract)
     }
 
     /// The free keys.
@@ -109,22 +122,31 @@ fn with(schema: &Schema, config: &Config, values: &[(&'static str, Value)]) -> O
 
 /// What somebody outside the core sees: its ports, its microinstructions, each at least a clock of a point, and its
 /// formula at some points.
-#[derive(PartialEq)]
 struct Outside {
     ports: Vec<String>,
     microinstructions: usize,
-    formula: Vec<u64>,
+    points: Vec<Vec<i64>>,
+    formula: Vec<[f64; 2]>,
 }
 
 impl Outside {
-    fn new(device: &Device, config: &Config) -> Result<Self> {
-        let design = device.design(config).context("this configuration makes no design")?;
-        let contract = (device.contract)(config);
-        Ok(Self {
-            ports: ports(&design),
+    fn new(design: &Design, contract: &dyn Contract) -> Self {
+        let (drawn, mut random) = (Points::new(contract), Random::new(1));
+        let points: Vec<Vec<i64>> = (0..POINTS).map(|_| drawn.of_domain(&mut random)).collect();
+        Self {
+            ports: ports(design),
             microinstructions: design.control.microprogram.len(),
-            formula: formula(contract.as_ref()),
-        })
+            formula: formula(contract, &points),
+            points,
+        }
+    }
+
+    /// Whether the formula is this one. Where it jumps, two values are right, which depend on the widths: one of them is the
+    /// formula's.
+    fn has_formula(&self, contract: &dyn Contract) -> bool {
+        let other = formula(contract, &self.points);
+        let same = |(a, b): (&[f64; 2], &[f64; 2])| a.iter().any(|value| b.contains(value));
+        other.len() == self.formula.len() && self.formula.iter().zip(&other).all(same)
     }
 }
 
@@ -133,19 +155,10 @@ fn ports(design: &Design) -> Vec<String> {
     ports.map(|net| format!("{} {}", net.name, net.format)).collect()
 }
 
-/// The formula's values at some operands, spread over the domains.
-fn formula(contract: &dyn Contract) -> Vec<u64> {
-    let mut random = ChaCha8Rng::seed_from_u64(1);
+fn formula(contract: &dyn Contract, points: &[Vec<i64>]) -> Vec<[f64; 2]> {
     let mut values = Vec::new();
-    for _ in 0..POINTS {
-        let place = contract.operands().iter().map(|operand| {
-            let (low, high) = operand.domain;
-            let part = i64::from(random.next_u32()) % (PLACES + 1);
-            low + (high - low) * part / PLACES
-        });
-        contract.exact(&place.collect::<Vec<_>>(), 0, &mut values);
-    }
-    values.into_iter().flatten().map(f64::to_bits).collect()
+    points.iter().for_each(|point| contract.exact(point, 0, &mut values));
+    values
 }
 
 /// The values by which it is seen what a key does: those next to its own, and the ends of its range.

@@ -22,7 +22,9 @@ fn make(path: &str, core: &Core) -> Datasheet {
     let subject = Subject {
         core,
         path,
-        backing: core.backing(Path::new("proofs")).unwrap_or_else(|error| panic!("{path}: {error:?}")),
+        backing: core
+            .backing(Path::new("proofs"))
+            .unwrap_or_else(|error| panic!("{path}: {error:?}")),
         proof: proof.unwrap_or_else(|error| panic!("{path}: {error:?}")),
         figures: synth::Record::find(Path::new(synth::DIRECTORY), &core.core_digest())
             .unwrap_or_else(|error| panic!("{path}: {error:?}")),

@@ -68,7 +68,9 @@ fn rows(page: &str, heading: &str) -> Vec<Vec<String>> {
 
 #[test]
 fn the_page_of_rough_reads_as_the_patent() {
-    let page = configuration("configs/rough.toml").page("configs/rough.toml", Path::new(PROOFS)).expect("a page");
+    let page = configuration("configs/rough.toml")
+        .page("configs/rough.toml", Path::new(PROOFS))
+        .expect("a page");
     // Table 1 of UA 60139: V1 ... V9.
     let table = "000000001 000110001 011000001 011001001 101000001 \
         101000101 111000001 111000101 101000011 000000000";

@@ -31,7 +31,7 @@ const ROOMS: [(&str, &str); 26] = [
     ("mutate", "base golden hdl/netlist hdl/sim package tools cosim core"),
     ("render", "base config golden cosim core"),
     ("evidence", "config golden hdl/netlist tools cosim registry core"),
-    ("tune", "config golden hdl/netlist hdl/pipeline registry synth evidence"),
+    ("tune", "config golden hdl/netlist hdl/pipeline cosim registry synth evidence"),
     (
         "pages",
         "base config golden hdl/netlist hdl/verilog package tools synth cosim core render evidence",

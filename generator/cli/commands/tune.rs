@@ -12,7 +12,7 @@ use serde_json::{Value as Json, json};
 
 use crate::cli::destination::Destination;
 use crate::cli::tables::{self, Column};
-use crate::cli::{Output, number, progress, say, wrong_usage};
+use crate::cli::{Output, failure, number, progress, say, wrong_usage};
 use crate::config::{self, Config, Value};
 use crate::registry::{Device, Registry};
 use crate::synth::Target;
@@ -20,9 +20,10 @@ use crate::tune::{self, Answer, Candidate, ErrorUnit, Objective, Wish};
 
 /// Find the smallest configuration of a device for an error
 ///
-/// The proved bound of the accuracy contract decides, so that the answer keeps the error for every operand of the domain.
-/// Keys that change neither ports nor formula, and add no microinstructions, are searched. Formats, domain and formula stay at
-/// their defaults, or as `--set` states them. Area and clock are estimates that were fitted to synthesis; `glint synth` measures the answer.
+/// The bound of the accuracy contract decides, so that the answer keeps the error for every operand of the domain.
+/// Keys that change neither ports nor formula are searched; those that add microinstructions, such as one multiplier for
+/// several products, with --rate, with --objective dsps, and where nothing else fits the chip. Of equal cost the
+/// smaller error is taken. Formats, domain and formula stay at their defaults, or as `--set` states them. Area and clock are estimates that were fitted to synthesis; `glint synth` measures the answer.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -158,7 +159,11 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     } else if arguments.csv {
         print_csv(&answer)?;
     } else {
-        print(&answer, arguments, &text);
+        print(&device, &answer, arguments, &text);
+    }
+    let excess = answer.best.cost.excess(arguments.target);
+    if !excess.is_empty() {
+        failure::warn(&format!("{}: by the estimate {excess}", arguments.device));
     }
     Ok(true)
 }
@@ -199,24 +204,34 @@ fn base(registry: &Registry, arguments: &Arguments) -> Result<(Device, Config, V
     Ok((*device, config, fixed))
 }
 
+/// Where the bounds come from.
+fn origin(device: &Device) -> &'static str {
+    if device.is_of_catalogue() { "proved" } else { "stated by its author" }
+}
+
 /// The configuration as a file, with what led to it.
 fn toml(device: &Device, best: &Candidate, arguments: &Arguments) -> String {
     let cost = &best.cost;
     let head = format!(
         "# The smallest `{}` within {} {} that `glint tune` found for {}.\n\
-         # Proved bound: {:.6} of f, {:.4} output units. Estimate: {:.0} LUTs, {} DSP blocks, {} block RAMs,\n\
-         # {} bits of ROM, {:.0} MHz; `glint synth` measures.\n",
+         # Bound, {}: {:.6} of f, {:.4} output units. Estimate: {:.0} LUTs, {} DSP blocks, {} block RAMs,\n\
+         # {} bits of ROM, {:.0} MHz; `glint synth` measures.\n{}",
         device.name,
         arguments.error,
         arguments.unit,
         arguments.target.title(),
+        origin(device),
         best.bound.f,
         best.bound.units,
         cost.luts,
         cost.dsps,
         cost.block_rams,
         cost.rom_bits,
-        cost.mhz
+        cost.mhz,
+        match cost.excess(arguments.target).as_str() {
+            "" => String::new(),
+            excess => format!("# By the estimate {excess}.\n"),
+        }
     );
     head + &best.config.to_toml(&(device.schema)())
 }
@@ -230,7 +245,7 @@ fn widths(answer: &Answer, candidate: &Candidate) -> String {
     shown.collect::<Vec<_>>().join(", ")
 }
 
-fn print(answer: &Answer, arguments: &Arguments, text: &str) {
+fn print(device: &Device, answer: &Answer, arguments: &Arguments, text: &str) {
     let columns = [
         Column::numbers("error of f"),
         Column::numbers("output units"),
@@ -258,7 +273,8 @@ fn print(answer: &Answer, arguments: &Arguments, text: &str) {
     });
     tables::print(&columns, rows);
     say!(
-        "Proved bounds; LUTs and MHz are estimates for {}. {} configurations were looked at.",
+        "Bounds are {}; LUTs and MHz are estimates for {}. {} configurations were looked at.",
+        origin(device),
         arguments.target.title(),
         answer.looked_at
     );
@@ -284,6 +300,7 @@ fn as_json(answer: &Answer, arguments: &Arguments, text: &str) -> Json {
             "error_of_f": candidate.bound.f,
             "output_units": candidate.bound.units,
             "cost": candidate.cost,
+            "fits": candidate.cost.excess(arguments.target).is_empty(),
             "clocks_per_point": candidate.clocks,
             "million_points_per_second": candidate.rate(),
             "keys": keys.collect::<serde_json::Map<String, Json>>(),

@@ -57,8 +57,7 @@ impl Backing {
             return Ok(Self::Exhaustive(shown(&record.path)));
         }
         let units = contract.bound().units;
-        let proves =
-            |it: &Certificate| {
+        let proves = |it: &Certificate| {
             it.certified && it.contract == digest && (it.bound - units).abs() <= SAME
         };
         let certificates =

@@ -7,6 +7,7 @@ pub use keys::Keys;
 pub use products::{ProductSlots, Products, Shading, shading};
 
 use std::borrow::Cow;
+use std::sync::OnceLock;
 
 use super::contract::{self, COSINE, ErrorShare};
 use super::{Bound, Contract, Operand, Output, Sweep, nearer};
@@ -118,6 +119,8 @@ pub struct Highlight {
     single: bool,
     products: Products,
     operands: Vec<Operand>,
+    /// Once it was asked for: it may take a search.
+    bound: OnceLock<Bound>,
 }
 
 impl Highlight {
@@ -130,7 +133,8 @@ impl Highlight {
         let mut operands = control;
         operands.extend(products.operands.iter().cloned());
         let single = reflectance.length().is_none();
-        Self { reflectance: Box::new(reflectance), single, products, operands }
+        let bound = OnceLock::new();
+        Self { reflectance: Box::new(reflectance), single, products, operands, bound }
     }
 
     /// The contract of a reflectance with the control operands cos γ and n.
@@ -280,9 +284,12 @@ impl Contract for Highlight {
     }
 
     fn bound(&self) -> Bound {
-        let products = &self.products;
-        let shares = self.reflectance.shares();
-        contract::bound(&shares, products.f.frac as u32, products.bits, products.rounding)
+        let bound = self.bound.get_or_init(|| {
+            let products = &self.products;
+            let shares = self.reflectance.shares();
+            contract::bound(&shares, products.f.frac as u32, products.bits, products.rounding)
+        });
+        bound.clone()
     }
 
     fn remarks(&self) -> Vec<String> {

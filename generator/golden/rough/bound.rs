@@ -16,12 +16,14 @@
 //! instead. Register 13 rounds the square by less than an ulp, or saturates 1.0 to 1.0 − ulp.
 //!
 //! **The maximum.** The quarter circle is cut into equal bins, in each of which the largest error of the
-//! table's entries is known; the smallest γ − dγ of two bins depends on their distance alone. All
-//! pairs of bins are tried.
+//! table's entries is known; the smallest γ − dγ of two bins depends on their distance alone, the smallest γ + dγ on the
+//! sum of their numbers. All pairs of bins are tried. With the clamp, [`super::pairs`] looks into those whose bound is
+//! largest: there what a table's error and roundings allow for does not come together at any operands. The terms are those of
+//! the pair of bins, in proportion.
 
 use std::f64::consts::FRAC_PI_2;
 
-use super::{Kind, Params};
+use super::{Arithmetic, Kind, Params, pairs};
 use crate::base::fixed::{Rounding, exp2};
 use crate::golden::contract::ErrorShare;
 use crate::golden::narrow::rounding_error;
@@ -29,18 +31,18 @@ use crate::golden::sine::{Piece, Sine, TableScheme};
 
 /// Bins of the quarter circle: fine against the narrowest highlight, 3.6° at n = 1000.
 const BINS: usize = 512;
-const BIN: f64 = FRAC_PI_2 / BINS as f64;
+pub const BIN: f64 = FRAC_PI_2 / BINS as f64;
 
 /// A slack that covers the rounding of angles in f64.
-const SLACK: f64 = 1e-9;
+pub const SLACK: f64 = 1e-9;
 
-/// What the error of f is made of with a configuration, whose ROM 18 is `sine`.
-pub fn shares(params: &Params, sine: &Sine) -> Vec<ErrorShare> {
-    match params.arithmetic {
+/// What the error of f is made of.
+pub fn shares(it: &Arithmetic) -> Vec<ErrorShare> {
+    match it.params.arithmetic {
         Kind::Patent => {
             vec![("arithmetic", "words modulo 1.0 wrap where the base is negative", 1.0)]
         }
-        Kind::Exact => exact(params, sine),
+        Kind::Exact => exact(it),
     }
 }
 
@@ -121,53 +123,117 @@ fn bin(angle: f64) -> usize {
     ((angle.max(0.0) / BIN) as usize).min(BINS - 1)
 }
 
-fn exact(params: &Params, sine: &Sine) -> Vec<ErrorShare> {
-    let errors = Errors::new(sine);
-    let deviation = bin(params.deviation.to_radians() + SLACK);
-    let (p, f, s) = (params.product_fraction, params.keys.intensity_fraction, params.sine_fraction);
+/// The bounds of pairs of bins.
+pub struct Analysis {
+    errors: Errors,
+    /// By distance of the bins, or by the sum of their numbers.
+    weights: Vec<Weight>,
+    /// The last bin of dγ.
+    deviation: usize,
+    /// The rounding of registers 11 and 12 together, and of register 13: of the base, and an ulp of the square.
+    products: f64,
+    base: f64,
+    ulp: f64,
+    /// The largest error of the base before its rounding, where the square is not constant.
+    square: f64,
+}
 
-    let cos_cos = rounding_error(2 * params.keys.cosine_fraction, p, params.product_rounding);
-    let mut sin_sin = rounding_error(2 * s, p, params.product_rounding);
-    let largest_product = errors.sines[deviation] + errors.errors[deviation].0;
-    if params.product_rounding == Rounding::Nearest && largest_product >= 1.0 - exp2(-(p as i32)) {
-        // What would round to 1.0 saturates to 1.0 − ulp.
-        sin_sin = sin_sin.max(exp2(-(p as i32)));
-    }
-    let products = cos_cos + sin_sin;
-    let base = rounding_error(p + 1, f, params.intensity_rounding);
-
-    let pairs = || (0..BINS).flat_map(move |i| (0..=deviation).map(move |j| (i, j)));
-    let largest = pairs().map(|(i, j)| errors.product(i, j)).fold(0.0, f64::max);
-    let (_, most) = exponents(params);
-    let anywhere = most / 2.0 * (largest + products) + base;
-    let weights: Vec<Weight> =
-        (0..BINS).map(|distance| Weight::new(params, distance, anywhere)).collect();
-
-    let (mut worst, mut at, mut square) = (0.0, (0, 0), 0.0f64);
-    for (i, j) in pairs() {
-        let weight = &weights[i.abs_diff(j)];
-        let error = errors.product(i, j);
-        if weight.linear * error > worst {
-            (worst, at) = (weight.linear * error, (i, j));
+impl Analysis {
+    fn new(params: &Params, sine: &Sine) -> Self {
+        let errors = Errors::new(sine);
+        let deviation = bin(params.deviation.to_radians() + SLACK);
+        let (p, f) = (params.product_fraction, params.keys.intensity_fraction);
+        let rounding = params.product_rounding;
+        let cos_cos = rounding_error(2 * params.keys.cosine_fraction, p, rounding);
+        let mut sin_sin = rounding_error(2 * params.sine_fraction, p, rounding);
+        let largest_product = errors.sines[deviation] + errors.errors[deviation].0;
+        if rounding == Rounding::Nearest && largest_product >= 1.0 - exp2(-(p as i32)) {
+            // What would round to 1.0 saturates to 1.0 − ulp.
+            sin_sin = sin_sin.max(exp2(-(p as i32)));
         }
-        square = square.max(weight.exponent / 2.0 * (error + products));
+        let base = rounding_error(p + 1, f, params.intensity_rounding);
+        let mut it = Self {
+            errors,
+            weights: Vec::new(),
+            deviation,
+            products: cos_cos + sin_sin,
+            base,
+            ulp: exp2(-(f as i32)),
+            square: 0.0,
+        };
+        let largest = it.pairs().map(|(i, j)| it.errors.product(i, j)).fold(0.0, f64::max);
+        let (_, most) = exponents(params);
+        let anywhere = most / 2.0 * (largest + it.products) + base;
+        it.weights =
+            (0..2 * BINS).map(|distance| Weight::new(params, distance, anywhere)).collect();
+        let square = |(i, j): (usize, usize)| {
+            it.weights[i.abs_diff(j)].exponent / 2.0 * (it.errors.product(i, j) + it.products)
+        };
+        it.square = it.pairs().map(square).fold(0.0, f64::max);
+        it
     }
 
-    let linear = weights[at.0.abs_diff(at.1)].linear;
-    let ulp = exp2(-(f as i32));
+    /// Every bin of γ with every bin of dγ.
+    pub fn pairs(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
+        let deviation = self.deviation;
+        (0..BINS).flat_map(move |i| (0..=deviation).map(move |j| (i, j)))
+    }
+
+    /// The largest sine in a bin.
+    pub fn sine(&self, bin: usize) -> f64 {
+        self.errors.sines[bin]
+    }
+
+    /// The largest error of f in two bins.
+    pub fn bound(&self, i: usize, j: usize, negative: bool) -> f64 {
+        self.bound_of(i, j, negative, self.errors.product(i, j))
+    }
+
+    /// The same where register 12 is off by `error` from the table.
+    pub fn bound_of(&self, i: usize, j: usize, negative: bool, error: f64) -> f64 {
+        let apart = if negative { i.abs_diff(j) } else { i + j };
+        self.rounded(self.weights[apart].linear * (error + self.products))
+    }
+
+    /// The largest error of f where what adder 15 is off by makes n·b times as much.
+    pub fn rounded(&self, linear: f64) -> f64 {
+        let base = self.square + self.base;
+        linear + 2.0 * self.base + self.ulp + base * base
+    }
+}
+
+fn exact(it: &Arithmetic) -> Vec<ErrorShare> {
+    let params = &it.params;
+    let analysis = Analysis::new(params, &it.sine);
+    let of = |&(i, j): &(usize, usize)| analysis.bound(i, j, true);
+    let pairs = analysis.pairs();
+    let at = pairs.reduce(|one, other| if of(&other) > of(&one) { other } else { one });
+    let at = at.unwrap_or_default();
+    let linear = analysis.weights[at.0.abs_diff(at.1)].linear;
+    let base = analysis.square + analysis.base;
     let mut shares: Vec<ErrorShare> = sine_terms(params)
         .iter()
         .enumerate()
         .map(|(k, &(key, what))| {
             let part = |error, shape| split(params, error, shape)[k];
-            (key, what, linear * errors.part(at.0, at.1, part))
+            (key, what, linear * analysis.errors.part(at.0, at.1, part))
         })
         .collect();
+    let twice = 2.0 * analysis.base + analysis.ulp;
     shares.extend([
-        ("product.fraction", "rounding of registers 11 and 12, times n", most * products),
-        ("intensity.fraction", "rounding of register 13, twice", 2.0 * base + ulp),
-        ("domain.exponent_max", "square of the base's error", (square + base) * (square + base)),
+        (
+            "product.fraction",
+            "rounding of registers 11 and 12, times n",
+            linear * analysis.products,
+        ),
+        ("intensity.fraction", "rounding of register 13, twice", twice),
+        ("domain.exponent_max", "square of the base's error", base * base),
     ]);
+    if params.clamp {
+        let sum: f64 = shares.iter().map(|share| share.2).sum();
+        let part = pairs::largest_error(it, &analysis) / sum;
+        shares.iter_mut().for_each(|share| share.2 *= part);
+    }
     shares
 }
 

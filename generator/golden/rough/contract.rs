@@ -24,7 +24,7 @@ impl Params {
     }
 
     /// The domain of cos dγ: from the smallest cosine whose angle is within the deviation.
-    fn cos_dgamma_domain(&self) -> (i64, i64) {
+    pub(super) fn cos_dgamma_domain(&self) -> (i64, i64) {
         let largest = self.largest_cosine();
         let cosine = libm::cos(self.deviation.to_radians());
         (((cosine / self.ulp()).ceil() as i64).min(largest), largest)
@@ -127,6 +127,6 @@ impl Reflectance for Arithmetic {
     }
 
     fn shares(&self) -> Vec<ErrorShare> {
-        bound::shares(&self.params, &self.sine)
+        bound::shares(self)
     }
 }

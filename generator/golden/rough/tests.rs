@@ -154,3 +154,52 @@ fn a_reset_stops_the_words_alone() {
     let names = ["run", "word_address", "reg13_result", "exponent_reg"];
     assert_eq!(values(&model, &names), [0, 0, 31, 4]);
 }
+
+/// The bound is that of every operand, one by one: never below the largest error, and where the search has found that, it.
+#[test]
+fn the_bound_is_the_largest_error_of_all_operands() {
+    let wide = Params {
+        keys: Keys {
+            cosine_fraction: 8,
+            intensity_fraction: 10,
+            exponents: (1, 30),
+            ..Keys::small()
+        },
+        product_fraction: 12,
+        sine_scheme: TableScheme::Segmented { segments: vec![4, 3], slope_fraction: 10 },
+        sine_fraction: 12,
+        ..small()
+    };
+    let nearest = Rounding::Nearest;
+    let all = [
+        Params { product_rounding: nearest, intensity_rounding: nearest, ..wide.clone() },
+        Params { sine_scheme: TableScheme::Direct { address: 7 }, ..wide.clone() },
+        Params {
+            deviation: 90.0,
+            keys: Keys { exponents: (3, 9), ..wide.keys.clone() },
+            ..wide.clone()
+        },
+        Params { sine_fraction: 9, product_fraction: 16, ..wide.clone() },
+        Params { clamp: false, ..wide.clone() },
+        wide,
+    ];
+    let mut met = 0;
+    for params in all {
+        let it = Arithmetic::new(params.clone());
+        let (lowest, one) = (params.cos_dgamma_domain().0, params.largest_cosine());
+        let mut largest = 0.0_f64;
+        for (x, y) in (0..=one).flat_map(|x| (lowest..=one).map(move |y| (x, y))) {
+            for n in params.keys.exponents.0..=params.keys.exponents.1 {
+                for negative in [0, 1] {
+                    let control = [x, y, n, negative];
+                    let f = it.f(&control) as f64 / 1024.0;
+                    largest = largest.max((f - it.reference(&control)).abs());
+                }
+            }
+        }
+        let bound: f64 = it.shares().iter().map(|share| share.2).sum();
+        assert!(bound >= largest, "{bound} is below {largest}");
+        met += usize::from(bound < largest + 2e-9);
+    }
+    assert!(met >= 3, "{met}");
+}

@@ -1,0 +1,187 @@
+//! The largest error of f of `rough`, by branch and bound over pairs of angles.
+//!
+//! **Bounds.** A pair of bins has the bound of the analysis in [`super::bound`]. A pair of operands in them has that with the
+//! errors that the table has at these very operands. Where adder 15 is computed too, its distance D from
+//! cos(γ ± dγ) − 1 is known, and the error of f is at most n·b·D and what the roundings of register 13 add; n·b is largest
+//! at n = 1/q, or at an end of the domain. Of a pair with an n the error itself is computed, as the hardware rounds.
+//!
+//! **The search.** What has a bound no larger than an error that was met is left, for it holds nothing larger; all else
+//! is looked into. When that takes too many steps, the largest bound of what is left is the answer. The answer is never below
+//! nine tenths of the bound that the search begins with: looking for less is not worth the time.
+
+use std::collections::BTreeMap;
+
+use super::Arithmetic;
+use super::bound::{Analysis, BIN, SLACK};
+use crate::base::fixed::exp2;
+use crate::golden::highlight::Reflectance;
+
+/// Pairs of operands that are looked at, and exponents with them.
+const STEPS: u64 = 1 << 21;
+
+/// The part of the first bound below which nothing is looked for.
+const LEAST: f64 = 0.9;
+
+/// What f64 may add to the error of a sine.
+const F64: f64 = 1e-15;
+
+/// A raw cosine.
+struct Cosine {
+    raw: i64,
+    /// Its sine, and how far that of the table is from it.
+    sine: f64,
+    error: f64,
+}
+
+/// A pair of operands with the sign of dγ, and its bound.
+struct Pair {
+    bound: f64,
+    control: [i64; 4],
+    /// How far adder 15 is from what it should be, and what that is below 0.
+    distance: f64,
+    below: f64,
+}
+
+struct Search<'a> {
+    it: &'a Arithmetic,
+    analysis: &'a Analysis,
+    /// Cosines by bin, those with the largest errors first.
+    cosines: BTreeMap<usize, Vec<Cosine>>,
+    /// The largest error that was met, or nine tenths of the first bound.
+    largest: f64,
+    steps: u64,
+}
+
+/// A bound on the error of f, which no pair of angles exceeds.
+pub fn largest_error(it: &Arithmetic, analysis: &Analysis) -> f64 {
+    let mut bins: Vec<(f64, usize, usize, i64)> = Vec::new();
+    let mut first = 0.0_f64;
+    for (i, j) in analysis.pairs() {
+        for negative in [0, 1] {
+            let bound = analysis.bound(i, j, negative == 1);
+            first = first.max(bound);
+            if bound > LEAST * first {
+                bins.push((bound, i, j, negative));
+            }
+        }
+    }
+    bins.sort_by(|one, other| other.0.total_cmp(&one.0));
+    let mut search =
+        Search { it, analysis, cosines: BTreeMap::new(), largest: LEAST * first, steps: STEPS };
+    let mut open: Vec<Pair> = Vec::new();
+    for (bound, i, j, negative) in bins {
+        if bound <= search.largest {
+            break;
+        }
+        if !search.look_into(i, j, negative, &mut open) {
+            // The bins that come later have no larger bound.
+            return (bound + SLACK).min(first);
+        }
+    }
+    open.sort_by(|one, other| other.bound.total_cmp(&one.bound));
+    for pair in open {
+        if pair.bound <= search.largest {
+            break;
+        }
+        if !search.go_through_exponents(&pair) {
+            return (pair.bound + SLACK).min(first);
+        }
+    }
+    (search.largest + SLACK).min(first)
+}
+
+impl Search<'_> {
+    /// Looks at the pairs of operands in two bins, and leaves those whose exponents matter in `open`; false when that takes
+    /// too many steps.
+    fn look_into(&mut self, i: usize, j: usize, negative: i64, open: &mut Vec<Pair>) -> bool {
+        for bin in [i, j] {
+            let cosines = self.cosines_of(bin);
+            self.cosines.entry(bin).or_insert(cosines);
+        }
+        let cosines = std::mem::take(&mut self.cosines);
+        let lowest = self.it.params.cos_dgamma_domain().0;
+        let (analysis, mut within) = (self.analysis, true);
+        'pairs: for x in &cosines[&i] {
+            for y in cosines[&j].iter().filter(|y| y.raw >= lowest) {
+                let error = x.sine * y.error + (analysis.sine(j) + y.error) * x.error;
+                if analysis.bound_of(i, j, negative == 1, error) <= self.largest {
+                    // The errors of those that follow are no larger.
+                    break;
+                }
+                if self.steps == 0 {
+                    within = false;
+                    break 'pairs;
+                }
+                self.steps -= 1;
+                open.extend(self.pair(x, y, negative));
+            }
+        }
+        self.cosines = cosines;
+        within
+    }
+
+    /// The pair, if its bound is larger than the largest error that was met.
+    fn pair(&mut self, x: &Cosine, y: &Cosine, negative: i64) -> Option<Pair> {
+        let (it, params) = (self.it, &self.it.params);
+        let ulp = exp2(-(params.keys.cosine_fraction as i32));
+        let turned = if negative == 1 { x.sine * y.sine } else { -(x.sine * y.sine) };
+        let exact = (x.raw as f64 * ulp) * (y.raw as f64 * ulp) + turned - 1.0;
+        let sin_sin = it.sin_sin(it.sine.at(x.raw), it.sine.at(y.raw));
+        let adder_15 = it.adder_15(it.cos_cos(x.raw, y.raw), sin_sin, negative) as f64;
+        let distance = (adder_15 * exp2(-(params.product_fraction as i32)) - exact).abs();
+        let below = (-exact).max(0.0);
+        let (least, most) = params.keys.exponents;
+        let n = (1.0 / below).clamp(least as f64, most as f64);
+        let bound = self.analysis.rounded(weight(n, below) * distance);
+        if bound <= self.largest {
+            return None;
+        }
+        let control = [x.raw, y.raw, n as i64, negative];
+        self.largest = self.largest.max(self.error(&control));
+        Some(Pair { bound, control, distance, below })
+    }
+
+    /// Computes the error for every n that may have a larger one; false when that takes too many steps.
+    fn go_through_exponents(&mut self, pair: &Pair) -> bool {
+        let (least, most) = self.it.params.keys.exponents;
+        let [x, y, _, negative] = pair.control;
+        for n in (least..=most).rev() {
+            let bound = self.analysis.rounded(weight(n as f64, pair.below) * pair.distance);
+            if bound > self.largest {
+                if self.steps == 0 {
+                    return false;
+                }
+                self.steps -= 1;
+                self.largest = self.largest.max(self.error(&[x, y, n, negative]));
+            }
+        }
+        true
+    }
+
+    fn error(&self, control: &[i64]) -> f64 {
+        let f = self.it.f(control) as f64 * exp2(-(self.it.params.keys.intensity_fraction as i32));
+        (f - self.it.reference(control)).abs()
+    }
+
+    /// The cosines of angles in a bin, and one more at each end.
+    fn cosines_of(&self, bin: usize) -> Vec<Cosine> {
+        let params = &self.it.params;
+        let one = 1_i64 << params.keys.cosine_fraction;
+        let raw = |edge: usize| libm::cos(edge as f64 * BIN) * one as f64;
+        let (low, high) = (raw(bin + 1).floor() as i64 - 1, raw(bin).ceil() as i64 + 1);
+        let unit = exp2(-(params.sine_fraction as i32));
+        let cosines = (low.max(0)..=high.min(params.largest_cosine())).map(|raw| {
+            let sine = ((one * one - raw * raw) as f64).sqrt() / one as f64;
+            let error = (self.it.sine.at(raw) as f64 * unit - sine).abs() + F64;
+            Cosine { raw, sine, error }
+        });
+        let mut cosines: Vec<Cosine> = cosines.collect();
+        cosines.sort_by(|one, other| other.error.total_cmp(&one.error));
+        cosines
+    }
+}
+
+/// n·b where cos(γ ± dγ) is this much below 1.
+fn weight(n: f64, below: f64) -> f64 {
+    n * (1.0 - n * below / 2.0).max(0.0)
+}
