@@ -58,7 +58,7 @@ pub fn bound(gappa: &Tool, asked: &[Statement], limit: Duration) -> Result<Resul
     for (answer, one) in largest {
         let holds = |bound: f64| -> Result<bool> {
             let outcome = prove(gappa, None, &one.within(bound), limit.min(TRY))?;
-            Ok(matches!(outcome, Outcome::Proved(_)))
+            Ok(matches!(outcome, Outcome::Proved(..)))
         };
         if answer <= bound || holds(bound)? {
             continue;

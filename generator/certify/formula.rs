@@ -1,6 +1,9 @@
 //! A contract's formula as a tree: the expressions that the Python benches evaluate, parsed.
 
-use anyhow::{Result, bail};
+use std::sync::LazyLock;
+
+use anyhow::{Result, anyhow, bail};
+use regex::Regex;
 
 /// A real number.
 #[derive(Clone, Debug, PartialEq)]
@@ -87,10 +90,14 @@ pub fn parse(text: &str) -> Result<Real> {
     }
 }
 
-fn tokens(text: &str) -> Result<Vec<String>> {
-    let pattern = regex::Regex::new(
+static TOKEN: LazyLock<Result<Regex, regex::Error>> = LazyLock::new(|| {
+    Regex::new(
         r"\s*([A-Za-z_][A-Za-z_0-9]*|[0-9]+\.?[0-9]*(?:e[-+]?[0-9]+)?|\*\*|>=|<=|[-+*/%()\[\],<>])",
-    )?;
+    )
+});
+
+fn tokens(text: &str) -> Result<Vec<String>> {
+    let pattern = TOKEN.as_ref().map_err(|error| anyhow!("{error}"))?;
     let mut tokens = Vec::new();
     let mut rest = text.trim_end();
     while !rest.is_empty() {

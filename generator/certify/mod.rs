@@ -22,6 +22,7 @@ pub mod quotient;
 mod script;
 mod segments;
 pub mod terms;
+mod witness;
 
 use std::collections::{BTreeMap, HashMap};
 use std::time::{Duration, Instant};
@@ -35,7 +36,7 @@ use exact::{Branch, Setting};
 pub use find::bound;
 use formula::Real;
 use hardware::{Hardware, Value, Variables};
-pub use proof::{Outcome, prove};
+pub use proof::{Outcome, Subject, prove};
 use script::Script;
 use terms::{Id, Term, Terms};
 

@@ -5,14 +5,25 @@ use std::time::Duration;
 
 use anyhow::{Context, Result, bail};
 
-use super::Statement;
+use super::{Statement, witness};
 use crate::base::transient::Directory;
 use crate::tools::{LimitReached, Tool};
 
+/// What a proved statement speaks of.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Subject {
+    /// A point at which its hypotheses hold, and others.
+    Point(String),
+    /// Nothing, as Gappa proves: its hypotheses contradict each other.
+    Nothing,
+    /// Neither was found.
+    Unknown,
+}
+
 /// What became of a statement.
 pub enum Outcome {
-    /// The script that was accepted.
-    Proved(usize),
+    /// The script that was accepted, and what it speaks of.
+    Proved(usize, Subject),
     /// What Gappa says of the last script.
     Open(String),
 }
@@ -67,7 +78,24 @@ pub fn prove(
                 continue;
             }
         }
-        return Ok(Outcome::Proved(number));
+        let subject = subject(gappa, script, limit)?;
+        return Ok(Outcome::Proved(number, subject));
     }
     Ok(Outcome::Open(why))
+}
+
+/// What an accepted script speaks of. Gappa is asked for a contradiction where no point is found.
+fn subject(gappa: &Tool, script: &str, limit: Duration) -> Result<Subject> {
+    if let Some(point) = witness::witness(script) {
+        return Ok(Subject::Point(point));
+    }
+    let Some(asked) = witness::contradiction(script) else { return Ok(Subject::Unknown) };
+    let dir = Directory::new().context("cannot make a temporary directory")?;
+    fs::write(dir.path().join("statement.g"), asked).context("cannot write a script for Gappa")?;
+    match gappa.run(["statement.g"], dir.path(), limit) {
+        Ok(run) if run.status.success() => Ok(Subject::Nothing),
+        Ok(_) => Ok(Subject::Unknown),
+        Err(error) if error.is::<LimitReached>() => Ok(Subject::Unknown),
+        Err(error) => Err(error),
+    }
 }

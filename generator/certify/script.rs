@@ -59,7 +59,9 @@ impl Script<'_> {
             }
         }
         for (&id, &(low, high)) in self.presupposed {
-            if !matches!(terms.get(id), Term::Number(_)) && needed[id] {
+            // A variable of one value, which the program puts in its place, is a premise all the same.
+            let is_given = is_variable(id) && low == high;
+            if !matches!(terms.get(id), Term::Number(_)) && (needed[id] || is_given) {
                 let name = terms.name(id);
                 hypotheses.push(format!("{name} in [{},{}]", number(low), number(high)));
             }

@@ -123,7 +123,16 @@ impl Problems {
 
     /// Line and column of a problem of this list, both counted from 1, columns in characters.
     pub fn position(&self, problem: &Problem) -> Option<(usize, usize)> {
-        let before = self.text.get(..problem.start()?)?;
+        self.line_and_column(problem.start()?)
+    }
+
+    /// Line and column where the file gives a key, as of [`Problems::position`].
+    pub fn place(&self, key: &str) -> Option<(usize, usize)> {
+        self.line_and_column(self.locations.get(key)?.start)
+    }
+
+    fn line_and_column(&self, at: usize) -> Option<(usize, usize)> {
+        let before = self.text.get(..at)?;
         let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
         let line = before.matches('\n').count() + 1;
         Some((line, before[line_start..].chars().count() + 1))

@@ -1,4 +1,4 @@
-//! Which key of a configuration would bring its error bound down most.
+//! Which keys of a configuration would keep the accuracy contract, or bring its error bound down most.
 
 use std::fmt;
 
@@ -13,48 +13,99 @@ const STEPS: [i64; 4] = [1, 2, 4, 8];
 /// What counts as a gain, in output units.
 const GAIN: f64 = 1e-6;
 
-/// A change of one key that makes the error bound smaller.
+/// How many changes are tried one after the other to keep the contract.
+const MOST: usize = 40;
+
+/// Changes of keys that make the error bound smaller.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Advice {
-    /// The key.
-    pub key: &'static str,
-    /// Its value, as TOML.
-    pub from: String,
-    /// The value that helps, as TOML.
-    pub to: String,
-    /// The bound with it, in output units.
+    /// Each key with its value, and the value that helps, as TOML.
+    pub changes: Vec<(&'static str, String, String)>,
+    /// The bound with all of them, in output units.
     pub units: f64,
 }
 
 impl fmt::Display for Advice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { key, from, to, units } = self;
-        write!(f, "`{key} = {to}` in place of {from} would bring the bound to {units:.3} units")
+        let changes = self.changes.iter();
+        let changes = changes.map(|(key, from, to)| format!("`{key} = {to}` in place of {from}"));
+        let changes = changes.collect::<Vec<_>>().join(" and ");
+        write!(f, "{changes} would bring the bound to {:.3} units", self.units)
     }
 }
 
+/// A configuration with a smaller bound.
+struct Better {
+    config: Config,
+    bound: Bound,
+}
+
 impl Core {
-    /// The change of one key that would bring the error bound down most.
+    /// What keeps the accuracy contract, where the configuration does not; else, and where nothing does, the change of one key
+    /// that would bring the error bound down most.
     pub fn advice(&self) -> Option<Advice> {
-        advise(&self.device, &self.config, &self.contract.bound())
+        let (device, bound) = (&self.device, self.contract.bound());
+        let first = better(device, &self.config, &bound)?;
+        let single = advice(device, &self.config, &first);
+        if bound.units < 1.0 {
+            return Some(single);
+        }
+        let next = |it: &Better| better(device, &it.config, &it.bound);
+        let mut walk = std::iter::successors(Some(first), next).take(MOST);
+        let kept = walk.find(|it| it.bound.units < 1.0);
+        Some(
+            kept.map_or(single, |it| {
+                advice(device, &self.config, &needed(device, &self.config, it))
+            }),
+        )
     }
 }
 
 /// The change of one key that the bound depends on, by as little as helps, that brings the bound down most; `None`
 /// where none does. Domains stay as they are: to narrow one is to ask for less.
-pub fn advise(device: &Device, config: &Config, bound: &Bound) -> Option<Advice> {
+fn better(device: &Device, config: &Config, bound: &Bound) -> Option<Better> {
     let schema = (device.schema)();
     STEPS.into_iter().find_map(|step| {
         let tried = candidates(&schema, config, bound, step).into_iter();
-        let advice = tried.filter_map(|(key, value)| {
-            let changed = with(&schema, config, key, &value)?;
-            let units = (device.contract)(&changed).bound().units;
-            let from = config.value(key).toml();
-            Some(Advice { key, from, to: value.toml(), units })
+        let better = tried.filter_map(|(key, value)| {
+            let config = with(&schema, config, key, &value)?;
+            let bound = (device.contract)(&config).bound();
+            Some(Better { config, bound })
         });
-        let best = advice.min_by(|a, b| a.units.total_cmp(&b.units))?;
-        (best.units < bound.units - GAIN).then_some(best)
+        let best = better.min_by(|a, b| a.bound.units.total_cmp(&b.bound.units))?;
+        (best.bound.units < bound.units - GAIN).then_some(best)
     })
+}
+
+/// The same without the changes that the contract is kept without.
+fn needed(device: &Device, config: &Config, kept: Better) -> Better {
+    let schema = (device.schema)();
+    let changed = changes(device, config, &kept.config);
+    changed.into_iter().fold(kept, |kept, (key, ..)| {
+        let without = with(&schema, &kept.config, key, config.value(key));
+        let bound = without.map(|config| ((device.contract)(&config).bound(), config));
+        match bound.filter(|(bound, _)| bound.units < 1.0) {
+            Some((bound, config)) => Better { config, bound },
+            None => kept,
+        }
+    })
+}
+
+fn advice(device: &Device, config: &Config, better: &Better) -> Advice {
+    Advice { changes: changes(device, config, &better.config), units: better.bound.units }
+}
+
+fn changes(
+    device: &Device,
+    config: &Config,
+    other: &Config,
+) -> Vec<(&'static str, String, String)> {
+    let keys = (device.schema)()
+        .keys
+        .into_iter()
+        .map(|key| (key.name, config.value(key.name), other.value(key.name)));
+    let changed = keys.filter(|(_, from, to)| from != to);
+    changed.map(|(key, from, to)| (key, from.toml(), to.toml())).collect()
 }
 
 /// The keys that the bound's terms name and the choices beside them, each with the values next to its own.

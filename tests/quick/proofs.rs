@@ -11,8 +11,10 @@ use std::path::Path;
 
 use crate::common::cores::{configuration, configurations};
 use crate::common::sample::sampled_alone;
-use glint::cosim::exhaustive::{Places, Proof, Record};
-use glint::registry::Registry;
+use glint::core::Core;
+use glint::cosim::exhaustive::{Backing, Places, Proof, Record};
+use glint::golden::{Bound, Contract, Highlight, Operand, Output, Sweep, cosine_power};
+use glint::registry::{Device, Registry};
 use serde_json::{Value, json};
 
 /// Places that are checked again of each proof, about.
@@ -91,4 +93,83 @@ fn the_records_hold_today() {
 /// Every `stride`-th block.
 fn every(places: &Places<'_>, stride: u64) -> Vec<u64> {
     (0..places.blocks()).step_by(stride as usize).collect()
+}
+
+/// The contract of `cosine-power`, as somebody else's device has it: with its bound, or a third of it.
+struct Foreign(Box<dyn Contract>, f64);
+
+impl Contract for Foreign {
+    fn operands(&self) -> &[Operand] {
+        self.0.operands()
+    }
+
+    fn outputs(&self) -> &[Output] {
+        self.0.outputs()
+    }
+
+    fn results(&self, operands: &[i64], index: u64, raw: &mut Vec<i64>) {
+        self.0.results(operands, index, raw);
+    }
+
+    fn exact(&self, operands: &[i64], index: u64, values: &mut Vec<[f64; 2]>) {
+        self.0.exact(operands, index, values);
+    }
+
+    fn bound(&self) -> Bound {
+        let Bound { f, units, terms } = self.0.bound();
+        Bound { f: f * self.1, units: units * self.1, terms }
+    }
+
+    fn highlight(&self) -> Option<&Highlight> {
+        self.0.highlight()
+    }
+
+    fn sweep(&self) -> Sweep {
+        self.0.sweep()
+    }
+
+    fn sweep_error(&self, place: &[i64]) -> f64 {
+        self.0.sweep_error(place)
+    }
+}
+
+#[test]
+fn a_bound_is_proven_where_somebody_proved_it() {
+    let own = configuration("configs/cosine_power.toml");
+    let foreign = |contract| {
+        let device = Device { contract, ..own.device };
+        Core::new(device, own.config.clone()).expect("a design")
+    };
+    let honest = foreign(|config| Box::new(Foreign(cosine_power::contract(config), 1.0)));
+    let wrong = foreign(|config| Box::new(Foreign(cosine_power::contract(config), 1.0 / 3.0)));
+    let backing = |core: &Core, proofs: &Path| core.backing(proofs).expect("readable records");
+    let record = Backing::Exhaustive("proofs/cosine_power.json".to_owned());
+    assert_eq!(backing(&own, Path::new("nowhere")), Backing::Catalogue);
+    assert_eq!(backing(&honest, Path::new("nowhere")), Backing::Author);
+    assert_eq!(backing(&honest, Path::new("proofs")), record);
+    assert_eq!(backing(&wrong, Path::new("proofs")), Backing::Author);
+    let page = wrong.page("mine.toml", Path::new("proofs")).expect("a page");
+    assert!(
+        page.contains("The bound is stated by its author") && !page.contains("proven"),
+        "{page}"
+    );
+
+    let proofs = tempfile::tempdir().expect("a directory");
+    let certificates = proofs.path().join("certificates");
+    fs::create_dir(&certificates).expect("a directory");
+    let text = fs::read_to_string("proofs/certificates/cosine_power.json").expect("a certificate");
+    fs::write(certificates.join("mine.json"), &text).expect("written");
+    let certified = backing(&honest, proofs.path());
+    assert!(
+        matches!(&certified, Backing::Certificate(path) if path.ends_with("mine.json")),
+        "{certified:?}"
+    );
+    assert_eq!(backing(&wrong, proofs.path()), Backing::Author);
+    // Not all statements were accepted; half a file.
+    let open = text.replace("\"certified\": true", "\"certified\": false");
+    fs::write(certificates.join("mine.json"), open).expect("written");
+    assert_eq!(backing(&honest, proofs.path()), Backing::Author);
+    fs::write(certificates.join("mine.json"), &text[..text.len() / 2]).expect("written");
+    let damaged = format!("{:#}", honest.backing(proofs.path()).expect_err("half a file"));
+    assert!(damaged.contains("mine.json` is damaged: restore it"), "{damaged}");
 }

@@ -10,7 +10,7 @@ use serde_json::json;
 
 use super::load_sequential;
 use crate::base::input;
-use crate::certify::{self, Outcome, Statement, prove, questions, statements};
+use crate::certify::{self, Outcome, Statement, Subject, prove, questions, statements};
 use crate::cli::own_file::OwnFile;
 use crate::cli::{Configs, Output, progress, say, tables};
 use crate::cosim::exhaustive::Certificate;
@@ -53,6 +53,9 @@ const MARKER: &str = "# Certificate by Glint: ";
 /// What precedes the digest of a script, in the line after that of the marker.
 const DIGEST: &str = "# SHA-256 of the script below: ";
 
+/// What precedes a point at which the hypotheses hold, in the next line.
+const WITNESS: &str = "# The hypotheses hold at ";
+
 /// `glint certify`.
 pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
     let loaded = load_sequential(registry, &arguments.configs.paths, "certify")?;
@@ -76,7 +79,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
         let record = OwnFile::record(arguments.out.as_deref(), &one.core.config.name)?;
         let certificate = |bound, certified| Certificate {
             glint: env!("CARGO_PKG_VERSION").to_owned(),
-            config: one.path.clone(),
+            config: input::label(&one.path),
             contract: one.core.contract_digest(),
             bound,
             certified,
@@ -123,9 +126,14 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
             .zip(&checked)
             .filter_map(|(statement, outcome)| match outcome {
                 Outcome::Open(why) => Some((statement, why.as_str())),
-                Outcome::Proved(_) => None,
+                Outcome::Proved(..) => None,
             })
             .collect();
+        let of = |subject: Subject| {
+            let is = |it: &&Outcome| matches!(it, Outcome::Proved(_, own) if *own == subject);
+            checked.iter().filter(is).count()
+        };
+        let (empty, unknown) = (of(Subject::Nothing), of(Subject::Unknown));
         whole &= open.is_empty();
         if let Some(record) = record {
             record.write_json(&certificate(bound, open.is_empty()))?;
@@ -136,7 +144,15 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
             } else {
                 "proved by Gappa"
             };
-            let proved = stated.len() - open.len();
+            let proved = stated.len() - open.len() - empty;
+            let empty = match empty {
+                0 => String::new(),
+                empty => format!(", and {empty} whose hypotheses contradict each other"),
+            };
+            let unknown = match unknown {
+                0 => String::new(),
+                unknown => format!(", {unknown} of them without a witness"),
+            };
             tables::print_line(&if open.is_empty() {
                 let origin = if is_stated {
                     ""
@@ -144,12 +160,12 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
                     ", a bound that is found, as the contract states none"
                 };
                 format!(
-                    "{}: certified: |output - formula| <= {bound:.6} units over the whole domain{origin}; {proved} statements {by}",
+                    "{}: certified: |output - formula| <= {bound:.6} units over the whole domain{origin}; {proved} statements {by}{unknown}{empty}",
                     one.path
                 )
             } else {
                 format!(
-                    "{}: not certified: {proved} of {} statements {by}, {} open",
+                    "{}: not certified: {proved} of {} statements {by}{unknown}{empty}, {} open",
                     one.path,
                     stated.len(),
                     open.len()
@@ -170,6 +186,8 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
             "bound": bound,
             "bound_found": !is_stated,
             "statements": stated.len(),
+            "contradictory": empty,
+            "without_witness": unknown,
             "open": open,
             "coq": arguments.coq,
         }));
@@ -211,9 +229,17 @@ fn write(
     let (mut names, mut files) = (Vec::new(), Vec::new());
     for (statement, outcome) in statements.iter().zip(outcomes) {
         let Statement { output, number, also, scripts } = statement;
-        let (chosen, state) = match outcome {
-            Outcome::Proved(chosen) => (*chosen, "accepted"),
-            Outcome::Open(_) => (0, "open"),
+        let (chosen, state, witness) = match outcome {
+            Outcome::Proved(chosen, Subject::Nothing) => {
+                (*chosen, "accepted; its hypotheses contradict each other", String::new())
+            }
+            Outcome::Proved(chosen, Subject::Unknown) => {
+                (*chosen, "accepted; no witness is found", String::new())
+            }
+            Outcome::Proved(chosen, Subject::Point(point)) => {
+                (*chosen, "accepted", format!("{WITNESS}{point}\n"))
+            }
+            Outcome::Open(_) => (0, "open", String::new()),
         };
         let name = format!("{output}_{number}.g");
         let outputs = [std::slice::from_ref(output), also.as_slice()].concat().join(" and ");
@@ -221,7 +247,7 @@ fn write(
             format!("{MARKER}{}, {outputs}, statement {number}: {state}.", input::label(config));
         let script = &scripts[chosen];
         let digest = digest(script.as_bytes());
-        let text = format!("{head} To check: gappa {name}\n{DIGEST}{digest}\n\n{script}");
+        let text = format!("{head} To check: gappa {name}\n{DIGEST}{digest}\n{witness}\n{script}");
         // All are opened before the first is written: what is not of Glint's making is refused with nothing changed.
         let file = OwnFile::new(directory, &name, MARKER)?;
         let path = directory.join(&name);

@@ -232,7 +232,17 @@ impl Loaded {
                 format!("; most of it, {:.3}, is of `{}` ({})", term.units, term.key, term.what)
             });
             let advice = match self.core.advice() {
-                Some(advice) => format!("; {advice}"),
+                Some(advice) => {
+                    let keys = advice.changes.iter();
+                    let places = keys.filter_map(|(key, ..)| self.locations.place(key));
+                    let places: Vec<String> = places
+                        .map(|(line, column)| format!("{}:{line}:{column}", self.path))
+                        .collect();
+                    match places.is_empty() {
+                        true => format!("; {advice}"),
+                        false => format!("; {advice}: see {}", places.join(" and ")),
+                    }
+                }
                 None => "; no single key that it depends on brings it down".to_owned(),
             };
             let message = format!(

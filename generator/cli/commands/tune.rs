@@ -215,7 +215,7 @@ fn toml(device: &Device, best: &Candidate, arguments: &Arguments) -> String {
     let head = format!(
         "# The smallest `{}` within {} {} that `glint tune` found for {}.\n\
          # Bound, {}: {:.6} of f, {:.4} output units. Estimate: {:.0} LUTs, {} DSP blocks, {} block RAMs,\n\
-         # {} bits of ROM, {:.0} MHz; `glint synth` measures.\n{}",
+         # {} bits of ROM, {:.0} MHz{}; `glint synth` measures.\n{}",
         device.name,
         arguments.error,
         arguments.unit,
@@ -228,6 +228,7 @@ fn toml(device: &Device, best: &Candidate, arguments: &Arguments) -> String {
         cost.block_rams,
         cost.rom_bits,
         cost.mhz,
+        best.clocks.map_or_else(String::new, |clocks| format!(", {clocks} clocks a point")),
         match cost.excess(arguments.target).as_str() {
             "" => String::new(),
             excess => format!("# By the estimate {excess}.\n"),

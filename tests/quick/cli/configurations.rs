@@ -131,11 +131,12 @@ fn outside_the_accuracy_contract() {
     let coarse = "[intensity]\nfraction = 6\n";
     let dir = Workspace::with("core.toml", format!("{COSINE_POWER}{coarse}"));
     let run = dir.glint(["generate", "core.toml"]).good();
-    // Most is the base's, times 16; a bit more halves it.
+    // Most is the base's, times 16: in all 31 ulp, of which 255 are half a unit with 14 bits.
     let parts = [
         "warning: core.toml: outside the accuracy contract",
         "not below 1; most of it, 63.750, is of `intensity.fraction`",
-        "; `intensity.fraction = 7` in place of 6 would bring the bound to ",
+        "; `intensity.fraction = 14` in place of 6 would bring the bound to 0.98",
+        &format!(" units: see core.toml:{}:1", COSINE_POWER.lines().count() + 2),
     ];
     for part in parts {
         assert!(run.err.contains(part), "{}", run.err);

@@ -112,11 +112,19 @@ fn a_record_must_be_of_the_configuration() {
     dir.write("core.toml", "device = \"cosine-power\"\npower = 2\n");
     datasheet(&dir, &["--proofs", "records", "--force"]).good();
     assert!(dir.read("datasheets/core.html").contains("There is no record of such a check"));
-    // Of this configuration, but what it was made with had another bound.
+    // Of this configuration, but what it was made with had another domain.
     dir.write("core.toml", "device = \"cosine-power\"\n");
-    dir.write("records/any_name.json", record.replace("\"bound\": 0.6", "\"bound\": 0.5"));
+    dir.write("records/any_name.json", record.replace("\"to\": 1000", "\"to\": 999"));
     let run = datasheet(&dir, &["--proofs", "records"]);
     run.refused(1, &["records/any_name.json", "another version of Glint", "--exhaustive --json"]);
+    // Half of it, and without a figure.
+    for damaged in
+        [&record[..record.len() / 2], &record.replace("\"colour_products\"", "\"other\"")]
+    {
+        dir.write("records/any_name.json", damaged);
+        let run = datasheet(&dir, &["--proofs", "records"]);
+        run.refused(1, &["records/any_name.json` is damaged: restore it"]);
+    }
 }
 
 #[cfg(unix)]
