@@ -51,8 +51,11 @@ struct Chip {
     delays: &'static str,
     /// What was measured over what the delays say.
     scale: f64,
-    /// The widest unsigned operands of a DSP block, the wider one first.
+    /// The widest unsigned operands of a DSP block, the wider one first, and by how many bits signed ones may be wider.
     multiplier: (u32, u32),
+    sign: u32,
+    /// Partial products of fewer bits are look-up tables.
+    least_product: u32,
     /// Bits of a block RAM, and its widest word.
     block: (u64, u64),
     /// Synchronous ROMs of fewer bits are look-up tables.
@@ -69,6 +72,8 @@ const CHIPS: [Chip; 3] = [
         delays: "ice40",
         scale: 0.9,
         multiplier: (16, 16),
+        sign: 0,
+        least_product: 11,
         block: (4096, 16),
         least_block: 128,
         name: "iCE40 UP5K",
@@ -80,6 +85,8 @@ const CHIPS: [Chip; 3] = [
         delays: "ecp5",
         scale: 0.95,
         multiplier: (18, 18),
+        sign: 0,
+        least_product: 9,
         block: (18_432, 36),
         least_block: 2048,
         name: "LFE5U-25F",
@@ -91,6 +98,8 @@ const CHIPS: [Chip; 3] = [
         delays: "xilinx7",
         scale: 1.0,
         multiplier: (24, 17),
+        sign: 1,
+        least_product: 9,
         block: (18_432, 36),
         least_block: 8192,
         name: "XC7A35T",
@@ -128,7 +137,7 @@ impl Cost {
         Self {
             // A tenth of a look-up table is more than an estimate is worth.
             luts: (luts * 10.0).round() / 10.0,
-            dsps: products(design).map(|(a, b)| blocks(chip, a, b)).sum(),
+            dsps: products(design).map(|(a, b)| dsps(design, chip, a, b)).sum(),
             block_rams: block_rams(design, chip),
             rom_bits: design.rom_bits(),
             mhz: (10_000.0 / (chip.scale * period(design, chip))).round() / 10.0,
@@ -190,14 +199,35 @@ impl Features {
     }
 }
 
-fn products(design: &Design) -> impl Iterator<Item = (u32, u32)> {
+fn products(design: &Design) -> impl Iterator<Item = (NetId, NetId)> {
     design.nets.iter().filter_map(|net| match net.driver {
-        Driver::Op(Op::Mul(a, b)) => Some((design.width(a), design.width(b))),
+        Driver::Op(Op::Mul(a, b)) => Some((a, b)),
         _ => None,
     })
 }
 
-/// DSP blocks for a product, the better way round. Slices of an operand of more than one block lose a bit to the sign.
+/// DSP blocks for a product, the better way round. As Yosys cuts operands: whole slices, and a rest, of which a single bit is a
+/// row of gates.
+fn dsps(design: &Design, chip: &Chip, a: NetId, b: NetId) -> u64 {
+    let [a, b] = [a, b].map(|net| {
+        let sign = if design.net(net).format.signed { chip.sign } else { 0 };
+        design.width(net) - sign
+    });
+    let (wide, narrow) = chip.multiplier;
+    let slices = |operand: u32, block: u32| {
+        let whole = std::iter::repeat_n(block, (operand / block) as usize);
+        let rest = Some(operand % block).filter(|rest| *rest > 1 || operand < block);
+        whole.chain(rest).collect::<Vec<u32>>()
+    };
+    let either = |a: u32, b: u32| {
+        let others = slices(b, narrow);
+        let pairs = slices(a, wide).into_iter().flat_map(|a| others.iter().map(move |b| a + b));
+        pairs.filter(|bits| *bits >= chip.least_product).count() as u64
+    };
+    either(a, b).min(either(b, a))
+}
+
+/// Partial products of a product, the better way round.
 fn blocks(chip: &Chip, a: u32, b: u32) -> u64 {
     let (wide, narrow) = chip.multiplier;
     let slices = |operand: u32, block: u32| {

@@ -234,7 +234,9 @@ fn estimates_are_as_near_to_synthesis_as_is_said() {
         for (core, record) in &cores {
             let Some(figures) = record.of(target) else { continue };
             let cost = Cost::new(&core.design, target);
-            let luts = figures.area.usage().expect("an FPGA").luts as f64;
+            let usage = figures.area.usage().expect("an FPGA");
+            assert_eq!(cost.dsps, usage.dsps as u64, "{target}, {}: DSP blocks", record.name);
+            let luts = usage.luts as f64;
             off.push((cost.luts / luts - 1.0).abs());
             assert!(
                 off[off.len() - 1] <= most,
