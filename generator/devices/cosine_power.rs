@@ -35,7 +35,8 @@ pub fn describe(d: &Designer, config: &Config) {
     let exponent = common::exponent(d, config).q();
     let colours = Colours::new(d, integer("colour.bits"), None);
 
-    let operand_select = d.select("operand_select", &["distance", "base", "power"]);
+    // With power = 2 there is no power to square again.
+    let operand_select = d.select("operand_select", &["distance", "base", "power"]).partly_used();
     let accumulator =
         d.register("accumulator", f).doc("n/m*(1 - cos gamma), then the powers of W's base");
     let squarings = Squarings::new(d, count);

@@ -1,8 +1,10 @@
 //! Every mistake that a description can make, with the message that names signals and source line.
 
+use glint::config::Config;
 use glint::dsl::{Designer, Setting, end, jump_if, loop_while, next, step, valid};
 use glint::fixed::{Format, Overflow, Rounding};
 use glint::hdl::blocks::divider::Divider;
+use glint::registry::Registry;
 
 const BYTE: Format = Format::unsigned(0, 8);
 
@@ -504,6 +506,15 @@ fn muxes_that_choose_nothing() {
         "`second` always passes `b_reg` on: it is no mux",
         "no microinstruction selects `inverted` by `m_select`",
     ]);
+}
+
+#[test]
+fn the_catalogue_has_no_warnings() {
+    for device in Registry::catalogue().devices() {
+        let config = Config::defaults(&(device.schema)(), "core");
+        let design = device.design(&config).unwrap_or_else(|mistakes| panic!("{mistakes}"));
+        assert!(design.warnings.is_empty(), "{}: {:?}", device.name, design.warnings);
+    }
 }
 
 #[test]

@@ -133,6 +133,8 @@ pub(crate) struct Inner {
     program: Option<Program>,
     /// The fields that a microinstruction sets.
     picked: HashSet<FieldId>,
+    /// Select lines of which no choice need be made.
+    partly_used: HashSet<FieldId>,
     /// What `valid` follows, and how many clocks later, when no microinstruction raises it.
     valid: Option<(NetId, u32)>,
     /// Whether results that are logic get registers.
@@ -163,6 +165,7 @@ impl Designer {
             views: HashMap::new(),
             program: None,
             picked: HashSet::new(),
+            partly_used: HashSet::new(),
             valid: None,
             registers_outputs: false,
             registers_operand_logic: true,
@@ -403,8 +406,9 @@ impl Designer {
             let location = self.net(self.start).location;
             self.report(Diagnostic::new("the design has no microprogram".to_owned(), location));
         }
-        let Inner { mut design, views, picked, mut diagnostics, registers_operand_logic, .. } =
-            self.inner.into_inner();
+        let inner = self.inner.into_inner();
+        let registers_operand_logic = inner.registers_operand_logic;
+        let Inner { mut design, views, picked, partly_used, mut diagnostics, .. } = inner;
         if diagnostics.is_empty() {
             diagnostics = design.verify();
         }
@@ -414,7 +418,7 @@ impl Designer {
         if !diagnostics.is_empty() {
             return Err(Diagnostics(diagnostics));
         }
-        design.warnings = rules::warnings(&design);
+        design.warnings = rules::warnings(&design, &partly_used);
         if registers_operand_logic {
             register_held(&mut design);
         }

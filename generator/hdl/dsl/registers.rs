@@ -324,6 +324,14 @@ impl<'d> Select<'d> {
         self
     }
 
+    /// States that the microprogram may leave choices out, of which [`Designer::finish`] warns otherwise: those of another
+    /// configuration, say.
+    #[must_use]
+    pub fn partly_used(self) -> Self {
+        self.designer.with(|inner| inner.partly_used.insert(self.field));
+        self
+    }
+
     /// The names of its values.
     fn choices(self) -> Vec<String> {
         self.designer.with(|inner| match &inner.design.control.fields[self.field.index()].kind {

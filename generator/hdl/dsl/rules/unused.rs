@@ -1,15 +1,21 @@
 //! Warnings of a description that is right, and says more than the device needs.
 
+use std::collections::HashSet;
+
 use super::operands::{read_by, used};
 use crate::base::cone::reached;
 use crate::base::diagnostic::Diagnostic;
-use crate::hdl::netlist::{Design, Driver, FieldKind, Net, NetId, Op, Partition};
+use crate::hdl::netlist::{Design, Driver, FieldId, FieldKind, Net, NetId, Op, Partition};
 
 /// Logic that no output depends on, muxes that always pass on the same, and choices that no microinstruction makes.
-pub(in crate::hdl::dsl) fn warnings(design: &Design) -> Vec<Diagnostic> {
+/// `partly_used` are select lines of which that is intended.
+pub(in crate::hdl::dsl) fn warnings(
+    design: &Design,
+    partly_used: &HashSet<FieldId>,
+) -> Vec<Diagnostic> {
     let mut found = dead(design);
     found.extend(constant(design));
-    found.extend(unmade(design));
+    found.extend(unmade(design, partly_used));
     found
 }
 
@@ -51,11 +57,14 @@ fn constant(design: &Design) -> Vec<Diagnostic> {
 }
 
 /// Choices of select lines that no microinstruction makes.
-fn unmade(design: &Design) -> Vec<Diagnostic> {
+fn unmade(design: &Design, partly_used: &HashSet<FieldId>) -> Vec<Diagnostic> {
     let control = &design.control;
     let mut found = Vec::new();
     for (at, field) in control.fields.iter().enumerate() {
         let FieldKind::Select(choices) = &field.kind else { continue };
+        if partly_used.contains(&FieldId(at as u32)) {
+            continue;
+        }
         let made = |choice: u64| control.microprogram.iter().any(|it| it.values[at] == choice);
         let unmade = (0..).zip(choices).filter(|(number, _)| !made(*number));
         let names: Vec<&str> = unmade.map(|(_, name)| name.as_str()).collect();
