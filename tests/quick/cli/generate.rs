@@ -258,8 +258,11 @@ fn symbolic_links_are_followed_or_refused() {
     let driver = dir.at("elsewhere/testbench/glint_cocotb.py");
     std::fs::rename(&driver, dir.at("driver.py")).expect("moved");
     symlink(dir.at("driver.py"), &driver).expect("a link");
+    let text = dir.read("driver.py");
+    dir.write("driver.py", "old");
     dir.done(["generate", "core.toml", "--out", "out", "--force"]);
     assert!(driver.is_symlink() && dir.at("elsewhere/notes.txt").exists());
+    assert_eq!(dir.read("driver.py"), text);
     let page = dir.done(["describe", "core.toml"]);
     dir.write("page.md", &page);
     symlink("page.md", dir.at("core.md")).expect("a link");

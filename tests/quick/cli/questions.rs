@@ -47,7 +47,7 @@ fn a_point_of_the_evaluators_choice_is_lit() {
         assert!((0.3..0.9).contains(&f) && value["inside_the_domain"] == true, "{name}: {formula}");
         let errors = formula["errors"].as_array().expect("errors").iter();
         let errors: Vec<f64> = errors.map(|error| error.as_f64().expect("a number")).collect();
-        assert!(errors.len() == 3 && errors.iter().all(|error| *error < 1.0), "{name}: {errors:?}");
+        assert!(!errors.is_empty() && errors.iter().all(|it| *it < 1.0), "{name}: {errors:?}");
     }
     // Around what is given: n/2·(c − 1) + 1 is 0 at c = 0.98 for n = 100.
     let value = eval(&["exponent=100", "--json"]).quiet().json();

@@ -32,10 +32,11 @@ fn a_clock_that_is_left_out_follows_the_target() {
 /// At 80 columns what a stage computes stays, and what can be spared goes.
 #[test]
 fn what_stages_compute_is_shown_in_a_narrow_terminal() {
-    let dir =
-        Workspace::with("core.toml", "device = \"threshold\"\narchitecture = \"pipelined\"\n");
+    let text =
+        "device = \"cosine-power\"\narchitecture = \"pipelined\"\npipeline.target = \"ice40\"\n";
+    let dir = Workspace::with("core.toml", text);
     let run = Run::of(dir.command().args(["schedule", "core.toml"]).env("COLUMNS", "80").output());
-    assert!(run.out.contains("| computes"), "{}", run.out);
+    assert!(run.out.contains("| computes "), "{}", run.out);
     assert!(run.out.lines().all(|line| line.chars().count() <= 80), "{}", run.out);
 }
 
