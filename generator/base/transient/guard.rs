@@ -10,7 +10,11 @@ use std::process::{ChildStdin, Command, Stdio};
 const SCRIPT: &str = r#"
 tree() {
     kill -STOP "$1"
-    for it in $(cat /proc/"$1"/task/*/children); do tree "$it"; done
+    for task in /proc/"$1"/task/*/children; do
+        list=
+        read -r list <"$task"
+        for it in $list; do tree "$it"; done
+    done
     kill -KILL "$1"
 }
 while read -r line; do children=$line; done
@@ -29,7 +33,7 @@ impl Guard {
     /// Tells which children are to be killed from now on.
     pub fn tell(&mut self, children: &BTreeSet<u32>) {
         let pipe = self.0.take().or_else(|| {
-            let mut command = Command::new("sh");
+            let mut command = Command::new("/bin/sh");
             // A group of its own: what is sent to that of this process does not reach it.
             command.args(["-c", SCRIPT]).current_dir("/").process_group(0);
             let shell = command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::null());
