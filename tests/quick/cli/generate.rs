@@ -149,7 +149,7 @@ fn tables_fit_the_terminal() {
     for (arguments, number) in [
         (&[][..], "0.621"),
         (&["compare", "--no-synthesis"], "0.00954"),
-        (&["eval", "configs/a_name_of_thirty_characters_.toml"], "524288"),
+        (&["eval", "configs/a_name_of_thirty_characters_.toml"], "1036288"),
         (&["list"], ""),
     ] {
         for columns in ["80", "60"] {
