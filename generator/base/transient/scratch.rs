@@ -205,7 +205,8 @@ fn statement(name: Option<&OsStr>) -> String {
 
 /// An error of a temporary path without its name, which says nothing to anybody.
 fn without_path(error: io::Error) -> io::Error {
-    error.kind().into()
+    let text = error.to_string();
+    io::Error::new(error.kind(), text.split(" at path ").next().unwrap_or_default())
 }
 
 fn forget(listed: io::Result<PathBuf>) {
