@@ -56,7 +56,7 @@ fn long_chain() -> Design {
     let format = Format::unsigned(8, 0);
     let x = d.operand("x", format).q();
     let mut last = x;
-    for number in 0..6_600 {
+    for number in 0..5_000 {
         let sum = d.add(&format!("sum{number}"), last, x);
         last = d.narrow(&format!("part{number}"), sum, format, Rounding::Truncate, Overflow::Wrap);
     }

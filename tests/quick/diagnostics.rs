@@ -479,13 +479,13 @@ fn what_no_output_depends_on() {
         unread.takes(d.add("taken", a, a));
         let _ = d.not("inverted", d.add("sum", a, a));
         let address = a.read_as(Format::unsigned(8, 0));
-        let _ = d.rom("table", address, BYTE, &[1; 256], false);
+        let _ = d.rom("words", address, BYTE, &[1; 256], false);
         vec![unread.load()]
     })
     .are([
         "`unread` is not used: no output depends on it",
         "`inverted` is not used: no output depends on it",
-        "`table_word` is not used: no output depends on it",
+        "`words_word` is not used: no output depends on it",
     ]);
 }
 
