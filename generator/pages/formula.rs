@@ -255,7 +255,14 @@ impl<'a> Reader<'a> {
             inside += &format!("<mo separator=\"true\">,</mo>{}", self.sum()?);
         }
         self.sign(&[")"])?;
-        let mathml = format!("<mrow><mo>(</mo>{inside}<mo>)</mo></mrow>");
+        // Around a fraction they are as high as it is, by their size: few fonts have what a browser would stretch.
+        let around = |sign: &str| match inside.contains("<mfrac>") {
+            true => format!(
+                "<mpadded voffset=\"-0.35em\"><mo class=\"tall\" stretchy=\"false\">{sign}</mo></mpadded>"
+            ),
+            false => format!("<mo>{sign}</mo>"),
+        };
+        let mathml = format!("<mrow>{}{inside}{}</mrow>", around("("), around(")"));
         Some(Part { mathml, inside: Some(inside) })
     }
 }
@@ -318,6 +325,9 @@ mod tests {
         assert!(set("a * b / c").contains("<mfrac><mrow><mi>a</mi><mo>⋅</mo><mi>b</mi></mrow>"));
         assert!(set("a / b * c").starts_with("<math displaystyle=\"true\"><mrow><mfrac>"));
         assert_eq!(set("cos(gamma)^n"), set("cos^n(gamma)"));
+        // They are higher around a fraction.
+        let factor = set("(n/2 + (c - 1))^2");
+        assert_eq!((factor.matches("tall").count(), factor.matches("<mo>(</mo>").count()), (2, 1));
         assert!(set("sqrt(n/k)").contains("<msqrt><mrow><mfrac>"));
         assert!(set("zeta_start").contains("<msub><mi>ζ</mi><mtext>start</mtext></msub>"));
         assert!(set("f0").contains("<msub><mi>f</mi><mtext>0</mtext></msub>"));

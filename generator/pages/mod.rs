@@ -2,6 +2,7 @@
 
 pub mod account;
 pub mod datasheet;
+pub mod diagram;
 pub mod drawing;
 pub mod figure;
 mod formula;

@@ -74,6 +74,8 @@ pub struct Settings {
     pub background: Vector,
     /// Whether the picture of Blinn's function in f64 is wanted too.
     pub compare: bool,
+    /// Values of operands that a picture does not have, or that are to stay the same, by name.
+    pub operands: Vec<(String, f64)>,
 }
 
 /// A picture and what there is to say of it.
@@ -183,7 +185,7 @@ pub fn render(
     let aspect = f64::from(width) / f64::from(height);
     let camera = Camera::new(&settings.view, aspect, middle, scene.balls())?;
     let contract = core.contract.as_ref();
-    let feed = Feed::new(core.device.name, contract)?;
+    let feed = Feed::with(core.device.name, contract, &settings.operands)?;
     ensure!(
         feed.longest().is_none() || scene.relief.is_none(),
         "the device `{}` walks lines of points, which a height map cannot perturb",

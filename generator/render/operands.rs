@@ -42,6 +42,8 @@ enum Quantity {
     DeltaZeta,
     Length,
     Amplitude,
+    /// The same at every point.
+    Given(f64),
 }
 
 impl Quantity {
@@ -104,11 +106,23 @@ impl Feed {
     /// # Errors
     /// It has operands that are not understood, or not the colours.
     pub fn new(device: &str, contract: &dyn Contract) -> Result<Self> {
+        Self::with(device, contract, &[])
+    }
+
+    /// For a device of that name, some of whose operands are `given` and the same at every point.
+    ///
+    /// # Errors
+    /// Those of [`Feed::new`]; an operand that the device does not have, or a value beyond its domain.
+    pub fn with(device: &str, contract: &dyn Contract, given: &[(String, f64)]) -> Result<Self> {
         let names: &[(&str, Quantity)] = if walks_lines(contract) { &OF_LINES } else { &OF_POINTS };
         let mut unknown = Vec::new();
         let mut operands = Vec::new();
         for operand in contract.operands() {
-            match quantity(operand, names) {
+            let quantity = match given.iter().find(|(name, _)| *name == operand.name) {
+                Some(&(_, value)) => Some(fixed(operand, value)?),
+                None => quantity(operand, names),
+            };
+            match quantity {
                 Some(quantity) => operands.push((quantity, operand.format, operand.domain)),
                 None if operand.doc.is_empty() => unknown.push(format!("`{}`", operand.name)),
                 None => unknown.push(format!("`{}` ({})", operand.name, operand.doc)),
@@ -117,9 +131,16 @@ impl Feed {
         if !unknown.is_empty() {
             let known: Vec<&str> = names.iter().map(|(name, _)| *name).collect();
             bail!(
-                "a host cannot supply {} of the device `{device}`; it supplies {}",
+                "a host cannot supply {} of the device `{device}`; it supplies {}; `glint render --operand NAME=VALUE` gives \
+                 an operand that stays the same",
                 unknown.join(", "),
                 known.join(", ")
+            );
+        }
+        for (name, _) in given {
+            ensure!(
+                contract.operands().iter().any(|operand| operand.name == *name),
+                "--operand {name}: the device `{device}` has no such operand"
             );
         }
         let mut feed = Self { operands, channels: [0; 3], scales: [0.0; 3], longest: None };
@@ -210,6 +231,7 @@ impl Feed {
             Quantity::Difference(axis) => point.difference.0[axis],
             // From 0 to the largest, which is full colour.
             Quantity::Colour(channel) => point.colour.0[channel] * format.to_f64(i128::from(high)),
+            Quantity::Given(value) => value,
             // Not of a point.
             Quantity::Amplitude | Quantity::ZetaStart | Quantity::DeltaZeta | Quantity::Length => {
                 0.0
@@ -254,6 +276,7 @@ impl Feed {
             Quantity::Exponent => f64::from(line.exponent),
             Quantity::Length => f64::from(line.length),
             Quantity::Amplitude => line.amplitude,
+            Quantity::Given(value) => *value,
             // Not of a line.
             _ => 0.0,
         })
@@ -303,6 +326,19 @@ fn number(value: f64, format: Format, (low, high): (i64, i64)) -> i64 {
 fn raw_angle(right_angles: f64, format: Format) -> i64 {
     let scaled = (right_angles * exp2(format.frac) + 0.5).floor() as i128;
     format.narrow(scaled, format.frac, Rounding::Truncate, Overflow::Wrap) as i64
+}
+
+/// An operand that is the same at every point.
+fn fixed(operand: &Operand, value: f64) -> Result<Quantity> {
+    let name = &operand.name;
+    let [low, high] =
+        [operand.domain.0, operand.domain.1].map(|raw| operand.format.to_f64(i128::from(raw)));
+    ensure!(!operand.colour, "--operand {name}: it is a colour, which the light gives");
+    ensure!(
+        (low..=high).contains(&value),
+        "--operand {name}={value}: its domain is {low} to {high}"
+    );
+    Ok(Quantity::Given(value))
 }
 
 fn quantity(operand: &Operand, names: &[(&str, Quantity)]) -> Option<Quantity> {

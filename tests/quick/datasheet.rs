@@ -9,8 +9,9 @@ use crate::common::cores::{all_configurations, configuration, configurations};
 use crate::common::sample::sampled_alone;
 use glint::core::Core;
 use glint::cosim::exhaustive::Record;
-use glint::hdl::netlist::{Driver, RegId};
+use glint::hdl::netlist::{Design, Driver, RegId};
 use glint::package::{Seal, is_sealed};
+use glint::pages::account::blocks::Blocks;
 use glint::pages::datasheet::{Datasheet, Subject, datasheet};
 use glint::synth;
 use roxmltree::{Document, Node, ParsingOptions};
@@ -64,7 +65,8 @@ fn every_configuration_has_its_page() {
         needs_nothing_else(&path, &made.page, &document);
         is_accessible(&path, &document);
         wires_are_clear(&path, &document);
-        has_the_blocks_of_the_netlist(&path, &document, &core);
+        has_the_numbers_of_the_netlist(&path, &document, &core);
+        has_the_arrows_of_the_blocks(&path, &document, &core.design);
         // Studies are not in the main job, which writes manifests.
         if !path.starts_with("configs/studies/") {
             has_the_clocks_of_the_manifest(&path, &made.wavedrom, &core);
@@ -248,7 +250,7 @@ fn drawn(document: &Document) -> BTreeSet<u16> {
     numbers.collect()
 }
 
-fn has_the_blocks_of_the_netlist(path: &str, document: &Document, core: &Core) {
+fn has_the_numbers_of_the_netlist(path: &str, document: &Document, core: &Core) {
     let design = &core.design;
     let nets = design.nets.iter().filter_map(|net| net.block);
     let roms = design.roms.iter().filter_map(|rom| rom.block);
@@ -259,6 +261,52 @@ fn has_the_blocks_of_the_netlist(path: &str, document: &Document, core: &Core) {
     assert!(drawn.is_subset(&known), "{path}: {drawn:?}, {known:?}");
     let missing: Vec<&u16> = blocks.difference(&drawn).collect();
     assert!(missing.is_empty(), "{path}: not drawn: {missing:?}");
+}
+
+/// Every block has its box, and an arrow for each number that it takes.
+fn has_the_arrows_of_the_blocks(path: &str, document: &Document, design: &Design) {
+    let diagram = diagram(document);
+    let groups = |class: &'static str| {
+        let groups = diagram.children().filter(move |node| node.attribute("class") == Some(class));
+        groups.map(|group| {
+            let paths = group.children().filter_map(|node| {
+                Some((node.attribute("class")?.split(' ').next()?, node.attribute("d")?))
+            });
+            (
+                group.children().find_map(|node| node.text()).unwrap_or_default(),
+                Vec::from_iter(paths),
+            )
+        })
+    };
+    let arrows = groups("net").flat_map(|(_, paths)| paths).filter(|(class, _)| *class == "arrow");
+    let tips: Vec<Point> = arrows
+        .flat_map(|(_, d)| d.split('M'))
+        .filter_map(|arrow| corners(&format!("M{}", arrow.split_once("l-3")?.0)).pop())
+        .collect();
+    let mut drawn: Vec<(String, usize)> = groups("block")
+        .map(|(title, paths)| {
+            let outline = paths.iter().find(|(class, _)| *class == "box").expect("a box").1;
+            let corners = corners(outline);
+            let (left, top) = corners[0];
+            let right = corners.iter().map(|it| it.0).max().unwrap_or(left);
+            let into = tips.iter().filter(|(x, y)| *y == top && (left..=right).contains(x));
+            (title.split(", ").next().unwrap_or_default().to_owned(), into.count())
+        })
+        .filter(|(title, _)| title.contains(" ("))
+        .collect();
+    let blocks = Blocks::new(design, true).all().into_iter();
+    let mut expected: Vec<(String, usize)> = blocks
+        .map(|block| {
+            let fields = block.selected_by.iter();
+            let fields = fields.filter(|it| matches!(design.net(**it).driver, Driver::Field(_)));
+            let taken = block.inputs.len() + block.selected_by.len() - fields.count();
+            let title = format!("{} ({})", block.name, block.kind);
+            (title.split(", ").next().unwrap_or_default().to_owned(), taken)
+        })
+        .collect();
+    drawn.sort();
+    expected.sort();
+    assert_eq!(drawn, expected, "{path}");
 }
 
 fn has_the_clocks_of_the_manifest(path: &str, wavedrom: &str, core: &Core) {
@@ -338,6 +386,8 @@ fn every_pipeline_has_its_page() {
         let name = &core.config.name;
         let files = core.verilog().expect("Verilog");
         let (_, verilog) = files.iter().find(|it| it.0 == format!("{name}.v")).expect("a module");
+        wires_are_clear(&path, &document);
+        has_the_arrows_of_the_blocks(&path, &document, &core.design);
         has_the_values_of_the_stages(&path, &document, &core);
         has_the_latency_of_the_header(&path, &made.wavedrom, verilog);
     }
@@ -345,14 +395,8 @@ fn every_pipeline_has_its_page() {
 
 /// Every value that a register of the sequential core has stands in the drawing, and the registers of every stage.
 fn has_the_values_of_the_stages(path: &str, document: &Document, core: &Core) {
-    let mut pictures = elements(document, "svg").filter(|svg| {
-        let label = svg.attribute("aria-labelledby").unwrap_or_default();
-        label.starts_with("stage-diagram")
-    });
-    let picture = pictures.next().expect("a drawing of the stages");
-    let texts = picture.descendants().filter(|node| node.tag_name().name() == "text");
-    let drawn: BTreeSet<String> =
-        texts.filter_map(|it| text(it).rsplit(' ').next().map(str::to_owned)).collect();
+    let picture = diagram(document);
+    let drawn: String = picture.descendants().filter_map(|node| node.text()).collect();
     let pipeline = core.design.pipeline.as_ref().expect("a pipeline");
     for checkpoint in &pipeline.checkpoints {
         let name = &core.design.net(checkpoint.net).name;
@@ -368,12 +412,13 @@ fn has_the_values_of_the_stages(path: &str, document: &Document, core: &Core) {
     let registers = registers.filter(|(id, _)| core.design.multiplier(*id).is_none());
     let widths = registers.map(|(_, register)| core.design.width(register.q));
     assert_eq!(bits, widths.sum::<u32>(), "{path}");
-    for stage in &pipeline.stages {
-        let mut bits = format!("{} register bits", stage.register_bits);
-        if stage.delayed_bits > 0 {
-            bits += &format!(", {} in delay lines", stage.delayed_bits);
-        }
-        assert!(picture.descendants().any(|node| node.text() == Some(&bits)), "{path}: {bits}");
+    let stages = picture.children().filter(|node| node.attribute("class") == Some("stage"));
+    let said: Vec<String> = stages.map(text).collect();
+    assert_eq!(said.len(), pipeline.stages.len(), "{path}");
+    for (stage, said) in pipeline.stages.iter().zip(&said) {
+        assert!(said.contains(&format!("{} register bits", stage.register_bits)), "{path}: {said}");
+        let delayed = format!("{} in delay lines", stage.delayed_bits);
+        assert_eq!(said.contains(&delayed), stage.delayed_bits > 0, "{path}: {said}");
     }
 }
 

@@ -4,10 +4,10 @@ use std::ops::ControlFlow;
 
 #[allow(dead_code)]
 #[path = "../../examples/dot_product/main.rs"]
-mod dot_product;
+pub mod dot_product;
 #[allow(dead_code)]
 #[path = "../../examples/normaliser/main.rs"]
-mod normaliser;
+pub mod normaliser;
 
 use dot_product::DOT_PRODUCT;
 use glint::config::{Config, Problems, Schema, parse, sample};

@@ -7,6 +7,7 @@ mod common;
 
 mod accuracy;
 mod analogues;
+mod blocks;
 mod cli;
 mod clocks;
 mod combinations;

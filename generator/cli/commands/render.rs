@@ -88,6 +88,9 @@ pub struct Arguments {
     /// The specular exponent n [default: 80, or the largest that the device takes]
     #[arg(long, value_name = "N")]
     exponent: Option<u32>,
+    /// The value of an operand at every point: one of a device of your own that a picture does not have
+    #[arg(long = "operand", value_name = "NAME=VALUE", value_parser = operand)]
+    operands: Vec<(String, f64)>,
     /// k_s, the share of the light that the device distributes, 0 to 1
     #[arg(long, value_name = "SHARE", default_value_t = Material::usual(0).specular, value_parser = share)]
     specular: f64,
@@ -209,6 +212,7 @@ fn settings(core: &Core, arguments: &Arguments) -> Result<Settings> {
         },
         background: arguments.background,
         compare: arguments.compare,
+        operands: arguments.operands.clone(),
     })
 }
 
@@ -379,6 +383,15 @@ fn numbers(text: &str) -> Result<Vec<f64>, String> {
             _ => Err(format!("`{word}` is not a finite number")),
         })
         .collect()
+}
+
+/// `NAME=VALUE`.
+fn operand(text: &str) -> Result<(String, f64), String> {
+    let (name, value) = text.split_once('=').ok_or("it takes NAME=VALUE, as in alpha2=0.04")?;
+    match numbers(value)?.as_slice() {
+        &[value] => Ok((name.trim().to_owned(), value)),
+        _ => Err("it takes one number".to_owned()),
+    }
 }
 
 fn vector(text: &str) -> Result<Vector, String> {

@@ -12,7 +12,7 @@ use crate::cli::tables::Column;
 use crate::cli::{Configs, Output, say, store, tables};
 use crate::hdl::netlist::{Design, Pipeline, value_name};
 use crate::package::{Seal, sealed};
-use crate::pages::stages;
+use crate::pages::diagram;
 use crate::registry::Registry;
 
 /// Show the stages of a pipeline
@@ -54,7 +54,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
         };
         shown += 1;
         if let Some(directory) = &arguments.svg {
-            let drawing = sealed(stages::svg(&one.core.design, pipeline)?, Seal::Markup);
+            let drawing = sealed(diagram::svg(&one.core.design)?, Seal::Markup);
             let path = directory.join(format!("{}.svg", one.core.config.name));
             store::write_sealed(&path, &drawing, Seal::Markup, arguments.force)
                 .with_context(|| format!("`{}` was not drawn", one.path))?;

@@ -2,7 +2,6 @@
 //!
 //! Everything on it comes from the design, the golden model and simulation; nothing knows a device by name.
 
-mod diagram;
 mod measured;
 mod microprogram;
 mod page;
@@ -66,7 +65,10 @@ struct Measured {
 
 /// A picture through the golden model, beside Blinn's in f64 and their difference.
 struct Highlight {
+    /// Through the device, beside Blinn's function, and the difference.
     png: Vec<u8>,
+    /// Through the device alone.
+    ball: Vec<u8>,
     exponent: u32,
     /// In dB; none for the same picture.
     psnr: Option<f64>,
@@ -124,6 +126,7 @@ fn highlight(core: &Core) -> Result<Highlight> {
         material: Material::usual(exponent),
         background: BACKGROUND,
         compare: true,
+        operands: Vec::new(),
     };
     let scene = Scene {
         objects: Scene::built_in(BuiltIn::Sphere, None, render::walks_lines(contract))?,
@@ -135,6 +138,7 @@ fn highlight(core: &Core) -> Result<Highlight> {
     let difference = rendered.comparison.as_ref().map(|comparison| &comparison.difference);
     Ok(Highlight {
         png: rendered.whole(core.device.name).png()?,
+        ball: rendered.picture.png()?,
         exponent,
         psnr: difference.and_then(|difference| difference.psnr),
         largest: difference.map_or(0, |difference| difference.largest),

@@ -8,7 +8,7 @@ use base64::engine::general_purpose::STANDARD;
 use super::measured::{self, RecordView};
 use super::microprogram::Microprogram;
 use super::table::TableView;
-use super::{Measured, Subject, diagram, timing};
+use super::{Measured, Subject, timing};
 use crate::base::{input, text};
 use crate::evidence::chart::Chart;
 use crate::evidence::comparison::{self, Multiplier};
@@ -16,13 +16,11 @@ use crate::evidence::hardware::FamilyUsage;
 use crate::hdl::netlist::Design;
 use crate::package::{self, Seal, Timing};
 use crate::pages::account::{self, PageInputs, blocks, short};
+use crate::pages::diagram;
 use crate::pages::figure::{Figure, figures};
 use crate::pages::formula;
 use crate::pages::markup::html;
 use crate::pages::stages;
-
-/// The clock at which rates are told, in MHz: what a small FPGA reaches.
-const CLOCK: f64 = 25.0;
 
 #[derive(Template)]
 #[template(path = "datasheet.html")]
@@ -104,6 +102,7 @@ struct ProofView {
 
 struct HighlightView {
     data: String,
+    ball: String,
     exponent: u32,
     likeness: String,
     gain: u8,
@@ -143,11 +142,7 @@ pub fn page(subject: &Subject, measured: &Measured) -> Result<String> {
         source: html(&about.source),
         notes: about.notes.iter().map(|note| html(note)).collect(),
         glance: glance(subject, measured),
-        diagram: match &design.pipeline {
-            None => diagram::drawing(design),
-            Some(pipeline) => stages::drawing(design, pipeline),
-        }
-        .svg()?,
+        diagram: diagram::drawing(design).svg()?,
         formats: html(account::FORMATS),
         ports: TableView::new("Ports", &account::ports(design)),
         domain: TableView::new("Domain of the operands", &account::domain(design, contract)),
@@ -162,14 +157,7 @@ pub fn page(subject: &Subject, measured: &Measured) -> Result<String> {
                 Some(pipeline) => account::pipeline_clocks(pipeline),
             },
         ),
-        throughput: match &design.pipeline {
-            None => throughput(&measured.timing),
-            Some(pipeline) => format!(
-                "A point takes a clock: {} million points a second at {} MHz, the clock that the stages are made for.",
-                short(pipeline.clock_mhz),
-                short(pipeline.clock_mhz)
-            ),
-        },
+        throughput: throughput(subject, &measured.timing),
         timing: timing::drawing(&measured.waves, described(design, measured)).svg()?,
         wavedrom_link: format!("data:application/json;base64,{}", STANDARD.encode(&wavedrom)),
         wavedrom,
@@ -187,6 +175,7 @@ pub fn page(subject: &Subject, measured: &Measured) -> Result<String> {
         figures: figures(&charts)?,
         highlight: measured.highlight.as_ref().map(|highlight| HighlightView {
             data: STANDARD.encode(&highlight.png),
+            ball: STANDARD.encode(&highlight.ball),
             exponent: highlight.exponent,
             likeness: match highlight.psnr {
                 Some(psnr) => format!(
@@ -253,14 +242,8 @@ fn glance(subject: &Subject, measured: &Measured) -> Vec<(&'static str, String)>
     if let Some(highlight) = contract.highlight() {
         glance.insert(1, ("Word f", highlight.f_format().to_string()));
     }
-    if let Some((figures, frequency, rate)) = subject.figures.as_ref().and_then(measured::fastest) {
-        glance.push((
-            "Points a second",
-            format!(
-                "{:.1} million at {:.1} MHz ({})",
-                rate.points, frequency.median, figures.device
-            ),
-        ));
+    if let Some(rate) = rate(subject) {
+        glance.push(("Points a second", rate));
     }
     if let Some((_, usage)) = &measured.synthesis
         && let Some(usage) = usage.first()
@@ -295,14 +278,31 @@ fn multipliers(design: &Design) -> String {
     }
 }
 
-fn throughput(timing: &Timing) -> String {
-    match timing.clocks_per_point() {
-        Some(clocks) => format!(
-            "Back to back a point takes {clocks} {}: {} million points a second at {CLOCK} MHz.",
-            if clocks == 1 { "clock" } else { "clocks" },
-            short((CLOCK / f64::from(clocks) * 100.0).round() / 100.0)
+/// The rate at the clock that was measured, where one was.
+fn rate(subject: &Subject) -> Option<String> {
+    let (figures, frequency, rate) = measured::fastest(subject.figures.as_ref()?)?;
+    Some(format!("{:.1} million at {:.1} MHz ({})", rate.points, frequency.median, figures.device))
+}
+
+/// How often a point can be computed, in a sentence.
+fn throughput(subject: &Subject, timing: &Timing) -> String {
+    let often = match timing.clocks_per_point() {
+        Some(1) => "A point takes a clock".to_owned(),
+        Some(clocks) => format!("Back to back a point takes {clocks} clocks"),
+        None => return "How many clocks a point takes depends on its operands.".to_owned(),
+    };
+    let made = subject.core.design.pipeline.as_ref().map(|pipeline| short(pipeline.clock_mhz));
+    match (rate(subject), made) {
+        (Some(rate), Some(made)) => {
+            format!(
+                "{often}. The stages are made for {made} MHz; points a second, as measured below: {rate}."
+            )
+        }
+        (Some(rate), None) => format!("{often}; points a second, as measured below: {rate}."),
+        (None, Some(made)) => format!(
+            "{often}: {made} million a second at {made} MHz, which the stages are made for."
         ),
-        None => "How many clocks a point takes depends on its operands.".to_owned(),
+        (None, None) => format!("{often}."),
     }
 }
 

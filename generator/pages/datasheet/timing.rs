@@ -65,8 +65,8 @@ fn label(lane: &Lane) -> String {
     }
 }
 
-/// How wide a clock should be, within reason: for all that is said in it, and where names of microinstructions may be
-/// cut.
+/// How wide a clock should be, within reason: for all that is said in it, and where addresses stand in place of
+/// the names of microinstructions.
 fn clock_widths(waves: &Waves) -> [i32; 2] {
     let wanted = |lanes: &mut dyn Iterator<Item = &Lane>| {
         let widths = lanes.filter(|lane| lane.shape == LaneStyle::Bus).flat_map(|lane| {
@@ -166,9 +166,21 @@ impl Grid<'_> {
         d
     }
 
+    /// The characters that a frame between two places has room for.
+    fn room(&self, from: usize, to: usize) -> usize {
+        (f64::from(self.x(to) - self.x(from) - 2 * SLANT) / (SIZE * 0.6)) as usize
+    }
+
     fn bus(&self, lane: &Lane, top: i32, items: &mut Vec<Item>) {
         let (middle, low) = (top + SWING / 2, top + SWING);
-        for (from, to) in segments(lane, self.places.clone()) {
+        let segments = segments(lane, self.places.clone());
+        // Where names of microinstructions have no room, their addresses stand.
+        let fits = |&(from, to): &(usize, usize)| {
+            let text = lane.values[from].as_deref().unwrap_or_default();
+            text.chars().count() <= self.room(from, to)
+        };
+        let addresses = lane.name == MICROINSTRUCTION && !segments.iter().all(fits);
+        for (from, to) in segments {
             let (x, end) = (self.x(from), self.x(to));
             let frame = format!(
                 "M{x} {middle}L{} {top}H{}L{end} {middle}L{} {low}H{}Z",
@@ -183,8 +195,10 @@ impl Grid<'_> {
             };
             items.push(Item::Open { class: "value", title: format!("{}: {text}", lane.name) });
             items.push(Item::path("bus", frame));
-            let room = (f64::from(end - x - 2 * SLANT) / (SIZE * 0.6)) as usize;
-            let shown = if text.chars().count() > room {
+            let room = self.room(from, to);
+            let shown = if addresses {
+                text.split(' ').next().unwrap_or_default().to_owned()
+            } else if text.chars().count() > room {
                 text.chars().take(room.saturating_sub(1)).chain(['…']).collect()
             } else {
                 text.clone()

@@ -100,6 +100,18 @@ fn the_same_pixels_whichever_computes_them() {
     dir.assert_no_staging();
 }
 
+/// Without a height map the normals are not perturbed, and cos dγ is 1 everywhere.
+#[test]
+fn an_operand_that_is_given_is_the_same_at_every_point() {
+    let dir = Workspace::with("rough.toml", "device = \"rough\"\n");
+    let drawn = ["", "cos_dgamma=1", "cos_dgamma=0.99"].map(|operand| {
+        let given = if operand.is_empty() { vec![] } else { vec!["--operand", operand] };
+        dir.done(render(&[&["rough.toml"][..], &given].concat()));
+        picture(&dir)
+    });
+    assert!(drawn[0] == drawn[1] && drawn[0] != drawn[2]);
+}
+
 /// Every configuration that comes with Glint is understood, and stays within its bound in a picture.
 #[test]
 fn every_configuration_draws() {
@@ -375,6 +387,8 @@ fn wrong_settings() {
         (&["--height-depth", "3"], "--height <FILE>"),
         (&["--height", "x.png", "--height-repeat", "inf"], "not beyond a million"),
         (&["--through", "icarus"], "possible values"),
+        (&["--operand", "alpha2"], "it takes NAME=VALUE"),
+        (&["--operand", "alpha2=high"], "`high` is not a finite number"),
     ] {
         // The last of several wins nowhere: the default size is given only where it is not set.
         let size = !arguments.contains(&"--size");
@@ -389,6 +403,13 @@ fn wrong_settings() {
     run.refused(2, &["the picture is a PNG file"]);
     let run = dir.glint(render(&["--camera", "0,0,0"]));
     run.refused(1, &["the camera stands where it looks at"]);
+    for (operand, message) in [
+        ("hue=1", "no such operand"),
+        ("cos_dgamma=2", "its domain is"),
+        ("red=1", "which the light gives"),
+    ] {
+        dir.glint(render(&["narrow.toml", "--operand", operand])).refused(1, &[message]);
+    }
     assert!(before == dir.files());
 }
 

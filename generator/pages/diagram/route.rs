@@ -68,6 +68,8 @@ pub struct Routes {
     pub nets: Vec<Net>,
     /// From left to right.
     pub width: f64,
+    /// Where each column begins and ends.
+    pub columns: Vec<(f64, f64)>,
 }
 
 impl Routes {
@@ -75,6 +77,12 @@ impl Routes {
     pub fn top(&self) -> f64 {
         let pieces = self.nets.iter().flat_map(|net| &net.pieces);
         pieces.map(|piece| piece.from.1.min(piece.to.1)).fold(f64::MAX, f64::min)
+    }
+
+    /// The lowest place of a wire.
+    pub fn bottom(&self) -> f64 {
+        let pieces = self.nets.iter().flat_map(|net| &net.pieces);
+        pieces.map(|piece| piece.from.1.max(piece.to.1)).fold(0.0, f64::max)
     }
 
     /// Moves all wires down.
@@ -279,7 +287,8 @@ impl Router<'_> {
             net.piece((borders[self.placement.column[to]].1, pin), (left[to], pin));
             net.pins.push((left[to], pin));
         }
-        Routes { left, nets, width: x }
+        let columns = borders.windows(2).map(|gaps| (gaps[0].1, gaps[1].0)).collect();
+        Routes { left, nets, width: x, columns }
     }
 }
 

@@ -3,7 +3,7 @@
 use dagre::graph::{Graph as Layered, GraphOptions};
 use dagre::{EdgeLabel, LayoutOptions, NodeLabel, RankDir, Ranker, layout};
 
-use super::graph::{BoxForm, Graph};
+use super::graph::{BoxForm, Graph, Wire};
 use crate::pages::account::blocks::BlockKind;
 
 /// Between boxes of a column.
@@ -76,11 +76,15 @@ impl Placement {
                 layered.set_edge(at.to_string(), END.to_owned(), Some(edge), None);
             }
         }
+        stages(graph, &mut layered);
         let is_port = |at: usize| matches!(graph.boxes[at].form, BoxForm::Input | BoxForm::Output);
         let ends = |wire: usize| {
             let (from, to) = (graph.wires[wire].from, graph.wires[wire].to);
             let (from, to) = if back[wire] { (to, from) } else { (from, to) };
-            (from.to_string(), to.to_string(), wire.to_string())
+            // Several wires between two boxes go side by side.
+            let same = |other: &Wire| *other == graph.wires[wire];
+            let first = graph.wires.iter().position(same).unwrap_or(wire);
+            (from.to_string(), to.to_string(), first.to_string())
         };
         for (at, wire) in graph.wires.iter().enumerate() {
             // What leads from a box to itself goes around it.
@@ -132,6 +136,31 @@ impl Placement {
             passes: passes.collect(),
             back: back.to_vec(),
         }
+    }
+}
+
+/// Ties the boxes of each stage between two nodes that are not drawn, so that a column is in one stage.
+fn stages(graph: &Graph, layered: &mut Layered<NodeLabel, EdgeLabel>) {
+    if graph.stages == 0 {
+        return;
+    }
+    let border = |stage: usize| format!("stage {stage}");
+    for stage in 0..=graph.stages {
+        let node = NodeLabel { width: 1.0, height: 1.0, ..NodeLabel::default() };
+        layered.set_node(border(stage), Some(node));
+    }
+    let mut tie = |from: String, to: String| {
+        let edge = EdgeLabel { weight: 0, ..EdgeLabel::default() };
+        layered.set_edge(from, to, Some(edge), Some("tie"));
+    };
+    for (at, one) in graph.boxes.iter().enumerate() {
+        let (from, to) = match (one.form, one.stage) {
+            (BoxForm::Input, _) => (None, Some(0)),
+            (_, Some(stage)) => (Some(stage), Some(stage + 1)),
+            (_, None) => (Some(graph.stages), None),
+        };
+        from.into_iter().for_each(|stage| tie(border(stage), at.to_string()));
+        to.into_iter().for_each(|stage| tie(at.to_string(), border(stage)));
     }
 }
 

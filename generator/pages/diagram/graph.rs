@@ -10,8 +10,10 @@ use crate::pages::account::format_text;
 pub struct Graph {
     /// Ports, blocks, and the control unit.
     pub boxes: Vec<Node>,
-    /// From the output of a box to another's input, each pair once.
+    /// From the output of a box to another's input, one for each input.
     pub wires: Vec<Wire>,
+    /// How many stages there are; none without a pipeline.
+    pub stages: usize,
 }
 
 /// A box of the diagram.
@@ -24,10 +26,14 @@ pub struct Node {
     pub name: String,
     /// What it is made of, and its format.
     pub caption: String,
+    /// What else its output is called.
+    pub aliases: Vec<String>,
     /// The lines that control it, by number or name; may be empty.
     pub control: String,
     /// Its tooltip.
     pub title: String,
+    /// In a pipeline, the stage that it is in; none of a port.
+    pub stage: Option<usize>,
 }
 
 /// How a box is drawn.
@@ -41,6 +47,8 @@ pub enum BoxForm {
     Control,
     /// A block of the datapath.
     Block(BlockKind),
+    /// Nothing: a stage in which values only pass.
+    Empty,
 }
 
 /// A wire.
@@ -53,26 +61,28 @@ pub struct Wire {
 }
 
 impl Graph {
-    /// Of a design.
+    /// The graph of a design.
     pub fn new(design: &Design) -> Self {
+        let stages = design.pipeline.as_ref().map_or(0, |pipeline| pipeline.stages.len());
         let mut builder = Builder {
             design,
-            blocks: Blocks::new(design).figure(),
-            graph: Self { boxes: Vec::new(), wires: Vec::new() },
+            blocks: Blocks::new(design, true),
+            graph: Self { boxes: Vec::new(), wires: Vec::new(), stages },
             driver: HashMap::new(),
         };
         builder.inputs();
-        let control = builder.control();
+        let control = design.pipeline.is_none().then(|| builder.control());
         let blocks = builder.all();
-        builder.conditions(control);
+        control.into_iter().for_each(|control| builder.conditions(control));
         for (at, block) in blocks {
             let selected = block.selected_by.iter();
             let selected = selected.filter(|&&net| !is_field(design, net));
             for &net in block.inputs.iter().chain(selected) {
-                builder.wire(net, at);
+                builder.takes(net, at);
             }
         }
         builder.outputs(control);
+        builder.fill();
         builder.graph
     }
 }
@@ -97,14 +107,47 @@ impl<'a> Builder<'a> {
 
     fn wire(&mut self, net: NetId, to: usize) {
         if let Some(&from) = self.driver.get(&net) {
-            self.join(from, to);
+            self.graph.wires.push(Wire { from, to });
         }
     }
 
-    fn join(&mut self, from: usize, to: usize) {
-        let wire = Wire { from, to };
-        if !self.graph.wires.contains(&wire) {
-            self.graph.wires.push(wire);
+    /// A wire to an input of a block; a constant stands beside what takes it.
+    fn takes(&mut self, net: NetId, to: usize) {
+        if self.driver.contains_key(&net)
+            || !matches!(self.design.net(net).driver, Driver::Constant(_))
+        {
+            return self.wire(net, to);
+        }
+        let (format, name) = (format_text(self.design.net(net).format), self.blocks.name(net));
+        let from = self.add(Node {
+            form: BoxForm::Block(BlockKind::Constant),
+            number: None,
+            title: titled(&format!("the constant {name}"), &format, &self.design.net(net).doc),
+            name,
+            caption: String::new(),
+            aliases: Vec::new(),
+            control: String::new(),
+            stage: self.graph.boxes[to].stage,
+        });
+        self.graph.wires.push(Wire { from, to });
+    }
+
+    /// Stages without a block have a place too.
+    fn fill(&mut self) {
+        for stage in 0..self.graph.stages {
+            if self.graph.boxes.iter().all(|it| it.stage != Some(stage)) {
+                let text = String::new;
+                self.add(Node {
+                    form: BoxForm::Empty,
+                    number: None,
+                    name: text(),
+                    caption: text(),
+                    aliases: Vec::new(),
+                    control: text(),
+                    title: text(),
+                    stage: Some(stage),
+                });
+            }
         }
     }
 
@@ -116,34 +159,49 @@ impl<'a> Builder<'a> {
             number: found.block,
             name: found.name.clone(),
             title: titled(&found.name, &format, &found.doc),
-            caption: format,
+            caption: self.held(format, net, 0),
+            aliases: Vec::new(),
             control: String::new(),
+            stage: None,
         })
     }
 
-    /// Operands and `start`; strobes stand at the registers that they write.
+    /// A caption with the clocks for which registers hold a value that a stage makes, where they are several.
+    fn held(&self, caption: String, net: NetId, stage: usize) -> String {
+        let Some(pipeline) = &self.design.pipeline else { return caption };
+        let held = self.blocks.held(net);
+        let last = held.into_iter().map(|it| pipeline.stage_of[it.index()]).max();
+        match last.unwrap_or(0).saturating_sub(stage) {
+            0 | 1 => caption,
+            clocks => format!("{caption} · held {clocks} clocks"),
+        }
+    }
+
+    /// Operands, `start`, and what goes with a point; strobes stand at the registers that they write.
     fn inputs(&mut self) {
         for port in self.design.inputs() {
-            if matches!(port.role, Role::Operand { .. } | Role::Start) {
+            if matches!(
+                port.role,
+                Role::Operand { .. } | Role::Start | Role::Point | Role::InValid | Role::SideIn
+            ) {
                 let at = self.port(port.net, BoxForm::Input);
                 self.driver.insert(port.net, at);
             }
         }
     }
 
-    fn outputs(&mut self, control: usize) {
-        for port in self.design.outputs() {
+    /// Results, and the handshake; that all points wait together is no flow of data.
+    fn outputs(&mut self, control: Option<usize>) {
+        for port in self.design.outputs().filter(|port| port.role != Role::InReady) {
             let at = self.port(port.net, BoxForm::Output);
-            let handshake = port.role.is_status();
-            let sources = match &self.design.net(port.net).driver {
-                Driver::Op(op) if !handshake => self.blocks.sources(op.operands()),
-                _ => Vec::new(),
+            let source = match control {
+                Some(_) if port.role.is_status() => None,
+                _ => self.blocks.driver(port.net),
             };
-            for net in &sources {
-                self.wire(*net, at);
-            }
-            if sources.is_empty() {
-                self.join(control, at);
+            match (source, control) {
+                (Some(net), _) => self.wire(net, at),
+                (None, Some(control)) => self.graph.wires.push(Wire { from: control, to: at }),
+                (None, None) => {}
             }
         }
     }
@@ -157,7 +215,9 @@ impl<'a> Builder<'a> {
             number: rom.block,
             name: "control unit".to_owned(),
             caption: format!("{words} words × {width} bits"),
+            aliases: Vec::new(),
             control: String::new(),
+            stage: None,
             title: "Control unit: sequencer and control ROM; its lines control the blocks"
                 .to_owned(),
         });
@@ -172,27 +232,36 @@ impl<'a> Builder<'a> {
     fn conditions(&mut self, control: usize) {
         for microinstruction in &self.design.control.microprogram {
             if let Sequence::LoopWhile { condition, .. } = microinstruction.sequence {
-                for net in self.blocks.sources([condition]) {
+                for net in self.blocks.behind(condition).to_vec() {
                     self.wire(net, control);
                 }
             }
         }
     }
 
-    fn all(&mut self) -> Vec<(usize, Block<'a>)> {
+    fn all(&mut self) -> Vec<(usize, Block)> {
         let mut added = Vec::new();
         for block in self.blocks.all() {
-            if self.driver.contains_key(&block.output) {
-                continue;
-            }
             let kind = block.kind.to_string();
+            let (first, last) = self.blocks.stages(&block);
+            let caption = match last - first {
+                0 => caption(&block),
+                _ => format!("{} · stages {first}–{last}", caption(&block)),
+            };
+            let caption = self.held(caption, block.output, last);
+            let mut doc = block.doc.clone();
+            if let [_, _, ..] = block.aliases[..] {
+                doc = format!("{doc} ({})", block.aliases.join(", "));
+            }
             let at = self.add(Node {
                 form: BoxForm::Block(block.kind),
                 number: block.number,
-                name: block.name.to_owned(),
-                caption: caption(&block),
+                name: block.name.clone(),
+                caption,
+                aliases: block.aliases.iter().take(1).cloned().collect(),
                 control: self.turned_by(&block),
-                title: titled(&format!("{} ({kind})", block.name), &block.format, &block.doc),
+                title: titled(&format!("{} ({kind})", block.name), &block.format, &doc),
+                stage: self.design.pipeline.as_ref().map(|_| last),
             });
             self.driver.insert(block.output, at);
             added.push((at, block));
@@ -202,19 +271,13 @@ impl<'a> Builder<'a> {
 
     /// The numbers or names of the lines that control a block, and of the port that writes an operand.
     fn turned_by(&self, block: &Block) -> String {
-        let fields = self.blocks.fields(block.output);
+        let (fields, strobes) = self.blocks.controls(block);
         let mut lines: Vec<String> = fields.into_iter().map(|field| self.lines(field)).collect();
-        if block.kind == BlockKind::Operand {
-            let strobes = self.design.inputs().filter_map(|port| match port.role {
-                Role::Operand { strobe } if block.inputs.contains(&port.net) => Some(strobe),
-                _ => None,
-            });
-            lines.extend(strobes.map(|strobe| {
-                let net = self.design.net(strobe);
-                let number = net.block.map(|number| number.to_string());
-                number.unwrap_or_else(|| net.name.clone())
-            }));
-        }
+        lines.extend(strobes.into_iter().map(|strobe| {
+            let net = self.design.net(strobe);
+            let number = net.block.map(|number| number.to_string());
+            number.unwrap_or_else(|| net.name.clone())
+        }));
         lines.join(" ")
     }
 
