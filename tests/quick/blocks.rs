@@ -76,7 +76,8 @@ fn check(path: &str, design: &Design) {
             ([Op::Mux { inputs, .. }], _) => inputs.len(),
             ([op], _) => op.operands().len(),
             (all, _) if all.iter().any(|it| matches!(it, Op::Mul(..))) => 2,
-            _ => block.inputs.len().max(1),
+            ([], BlockKind::Register | BlockKind::Operand) => 1,
+            _ => block.inputs.len(),
         };
         let (name, kind) = (&block.name, block.kind);
         assert_eq!(block.inputs.len(), wanted, "{path}: `{name}`, {kind}");
