@@ -307,7 +307,7 @@ impl<'a> Host<'a> {
         }
     }
 
-    /// The unit normal and half vector; `names` are of normal, half vector, and directions toward light and viewer.
+    /// Normal and half vector, of any length; the names are theirs and those of the directions toward light and viewer.
     fn pair(
         &self,
         given: &Given,
@@ -317,17 +317,17 @@ impl<'a> Host<'a> {
             format!("input `{name}` is missing; give it{or}, or angles in place of vectors")
         };
         let toward = match (self.vector(given, of_half)?, self.vector(given, light)?) {
-            (Some(half), None) => direction(of_half, half),
+            (Some(half), None) => half,
             (Some(_), Some(_)) => return Err(format!("`{of_half}` and `{light}` are both given")),
             (None, Some(toward)) => {
-                let view = self.vector(given, view)?.ok_or_else(|| missing(view, ""))?;
-                half([light, "view", "the sum of light and view"], toward, view)
+                let view_vector = self.vector(given, view)?.ok_or_else(|| missing(view, ""))?;
+                half([light, view, "the sum of light and view"], toward, view_vector)
+                    .map_err(|error| error.to_string())?
             }
             (None, None) => return Err(missing(of_half, &format!(", or `{light}` and `{view}`"))),
         };
-        let normal_vector = self.vector(given, normal)?.ok_or_else(|| missing(normal, ""))?;
-        let normal = direction(normal, normal_vector).map_err(|error| error.to_string())?;
-        Ok((normal, toward.map_err(|error| error.to_string())?))
+        let normal = self.vector(given, normal)?.ok_or_else(|| missing(normal, ""))?;
+        Ok((normal, toward))
     }
 
     /// Whether angles are given; an error where vectors are, too.
@@ -422,9 +422,14 @@ impl<'a> Host<'a> {
             }
         } else {
             let (normal, half) = self.pair(given, ["normal", "half", "light", "view"])?;
-            let perturbed = self.vector(given, "perturbed")?;
-            let perturbed = perturbed.map_or(Ok(normal), |it| direction("perturbed", it));
-            render::point(normal, perturbed.map_err(|error| error.to_string())?, half, colour)
+            let perturbed = self.vector(given, "perturbed")?.unwrap_or(normal);
+            let unit = |name, vector| direction(name, vector).map_err(|error| error.to_string());
+            render::point(
+                unit("normal", normal)?,
+                unit("perturbed", perturbed)?,
+                unit("half", half)?,
+                colour,
+            )
         };
         let degrees = |cosine: f64| libm::acos(cosine).to_degrees();
         let mut quantities = vec![
