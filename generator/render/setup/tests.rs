@@ -179,7 +179,7 @@ fn what_a_configuration_has_no_room_for() {
     // Brighter than the operand holds: it saturates.
     assert_eq!(quad(&arc.line(300.0, 5, 5))[4], 255);
     assert!(squared("", &arc.line(1.0, 1000, 5)).is_ok());
-    // 60° times √500 is 14.9 right angles.
+    // −30° times √500 is −7.45 right angles.
     let error = squared("angle.integer = 3", &arc.line(1.0, 1000, 5)).unwrap_err();
-    assert!(error.to_string().contains("is 14.9 right angles"), "{error}");
+    assert!(error.to_string().contains("is -7.5 right angles"), "{error}");
 }
