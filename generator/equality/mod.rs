@@ -8,6 +8,7 @@
 //! of the core, and stands in its place once that is proved.
 
 mod carry_out;
+mod cells;
 mod facts;
 mod lowest;
 mod module;

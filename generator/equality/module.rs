@@ -1,25 +1,15 @@
 //! A flat module, as Yosys reads it from Verilog, clock by clock on terms.
 //!
-//! Its cells mean what Yosys documents of them. A bit that is not determined is any bit, a new one wherever it is read, and so
-//! is a word beyond the contents of a memory.
+//! A bit that is not determined is any bit, a new one wherever it is read; a word beyond the contents of a memory is any word.
 
 use std::collections::HashMap;
 
 use anyhow::{Context, Result, bail, ensure};
 use serde_json::Value;
 
-use super::term::{ADDRESS, Id, Term, Terms};
+use super::cells::{Bit, Bits, Values};
+use super::term::{Id, Terms};
 use crate::base::fixed::MAX_WIDTH;
-
-/// A bit of a connection.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Bit {
-    Wire(usize),
-    Known(bool),
-    Any,
-}
-
-type Bits = Vec<Bit>;
 
 /// What drives wires in the same clock.
 enum What {
@@ -76,9 +66,6 @@ pub struct Module {
     pub memories: Vec<Memory>,
     wires: usize,
 }
-
-/// What every wire carries: a bit of a term.
-pub struct Values(Vec<Option<(Id, u32)>>);
 
 /// What the registers hold, each in terms of at most 64 bits, the lowest first.
 pub type Held = Vec<Vec<Id>>;
@@ -283,7 +270,7 @@ impl Module {
         mut input: impl FnMut(&mut Terms, &str, u32) -> Id,
         mut read: impl FnMut(&mut Terms, Read) -> Vec<Id>,
     ) -> Result<Values> {
-        let mut values = Values(vec![None; self.wires]);
+        let mut values = Values::new(self.wires);
         for (name, bits) in &self.inputs {
             ensure!(bits.len() <= MAX_WIDTH as usize, "the port `{name}` has more than 64 bits");
             let id = input(terms, name, bits.len() as u32);
@@ -295,9 +282,12 @@ impl Module {
         for cell in &self.cells {
             let result = match &cell.what {
                 What::Read(port) => read(terms, *port),
-                What::Word(words) => vec![values.rom(terms, cell, words)?],
+                What::Word(words) => {
+                    let width = cell.output.len() as u32;
+                    vec![values.rom(terms, &cell.inputs[0], words, width)]
+                }
                 What::Cell { kind, signed } => values
-                    .cell(terms, cell, kind, *signed)
+                    .cell(terms, kind, *signed, &cell.inputs, cell.output.len())
                     .with_context(|| format!("a cell `{kind}` of the text"))?,
             };
             values.set(&cell.output, &result);
@@ -353,196 +343,4 @@ fn words(cell: &Value, width: usize) -> Result<Vec<u64>> {
     let words = words.collect::<Result<Vec<u64>>>()?;
     ensure!(words.len() == number(&cell["parameters"]["SIZE"])?, "its contents have another size");
     Ok(words)
-}
-
-impl Values {
-    fn set(&mut self, bits: &Bits, columns: &[Id]) {
-        for (at, bit) in bits.iter().enumerate() {
-            if let Bit::Wire(wire) = *bit {
-                let (column, place) = (at / MAX_WIDTH as usize, at as u32 % MAX_WIDTH);
-                self.0[wire] = columns.get(column).map(|&id| (id, place));
-            }
-        }
-    }
-
-    /// What some bits carry, in terms of at most 64.
-    fn columns(&self, terms: &mut Terms, bits: &Bits) -> Vec<Id> {
-        bits.chunks(MAX_WIDTH as usize).map(|bits| self.word(terms, bits)).collect()
-    }
-
-    /// What at most 64 bits carry. Copies of a highest bit are an extension by a sign.
-    fn word(&self, terms: &mut Terms, bits: &[Bit]) -> Id {
-        let copies = bits.iter().rev().take_while(|bit| Some(*bit) == bits.last()).count();
-        if copies > 1 && matches!(bits.last(), Some(Bit::Wire(_))) {
-            let own = self.word(terms, &bits[..=bits.len() - copies]);
-            return terms.sign_extended(own, bits.len() as u32);
-        }
-        let mut word = None;
-        let mut at = 0;
-        while at < bits.len() {
-            let (part, width) = self.run(terms, &bits[at..]);
-            word = Some(match word {
-                None => part,
-                Some(lower) => terms.make(Term::Join(part, lower), (at + width) as u32),
-            });
-            at += width;
-        }
-        word.unwrap_or_else(|| terms.constant(0, 1))
-    }
-
-    /// The lowest bits that stand beside each other in one term, and how many they are.
-    fn run(&self, terms: &mut Terms, bits: &[Bit]) -> (Id, usize) {
-        let source = |bit: Bit| if let Bit::Wire(wire) = bit { self.0[wire] } else { None };
-        let first = source(bits[0]);
-        let follows = |&(at, bit): &(usize, &Bit)| match (bits[0], first) {
-            (_, Some((id, low))) => source(*bit) == Some((id, low + at as u32)),
-            (Bit::Known(_), _) => matches!(bit, Bit::Known(_)),
-            _ => source(*bit).is_none() && !matches!(bit, Bit::Known(_)),
-        };
-        let width = bits.iter().enumerate().take_while(follows).count();
-        let id = match (bits[0], first) {
-            (_, Some((id, low))) => terms.slice(id, low, width as u32),
-            (Bit::Known(_), _) => {
-                let ones = bits[..width].iter().enumerate();
-                let ones = ones.filter(|(_, bit)| **bit == Bit::Known(true));
-                let pattern = ones.fold(0, |pattern, (at, _)| pattern | 1 << at);
-                terms.constant(pattern, width as u32)
-            }
-            _ => terms.unknown(width as u32),
-        };
-        (id, width)
-    }
-
-    fn rom(&self, terms: &mut Terms, cell: &Cell, words: &[u64]) -> Result<Id> {
-        let width = cell.output.len() as u32;
-        let address = self.word(terms, &cell.inputs[0]);
-        let address = terms.resized(address, ADDRESS);
-        let memory = terms.memory(words);
-        let word = terms.make(Term::Word { memory, address }, width);
-        if cell.inputs[0].len() < 32 && words.len() >= 1 << cell.inputs[0].len() {
-            return Ok(word);
-        }
-        let size = terms.constant(words.len() as u64, ADDRESS);
-        let inside = terms.make(Term::Less(address, size), 1);
-        let beyond = terms.beyond(memory, address, width);
-        Ok(terms.choice(inside, word, beyond))
-    }
-
-    /// The result of a cell.
-    fn cell(
-        &self,
-        terms: &mut Terms,
-        cell: &Cell,
-        kind: &str,
-        signed: [bool; 2],
-    ) -> Result<Vec<Id>> {
-        let [a, b, s] = &cell.inputs;
-        let width = cell.output.len();
-        let extended = |terms: &mut Terms, bits: &Bits, signed: bool, width: usize| {
-            ensure!(bits.len().max(width) <= MAX_WIDTH as usize, "it has more than 64 bits");
-            let word = self.word(terms, bits);
-            Ok(match signed && width > bits.len() {
-                true => terms.sign_extended(word, width as u32),
-                false => terms.resized(word, width as u32),
-            })
-        };
-        let both = signed == [true; 2];
-        let of = |terms: &mut Terms, width: usize| -> Result<[Id; 2]> {
-            Ok([extended(terms, a, both, width)?, extended(terms, b, both, width)?])
-        };
-        let truth = |terms: &mut Terms, bits: &Bits| {
-            let columns = self.columns(terms, bits);
-            let any = columns.into_iter().map(|column| {
-                let zero = terms.constant(0, terms.width(column));
-                let none = terms.equal(column, zero);
-                terms.not(none)
-            });
-            let any: Vec<Id> = any.collect();
-            let or = |terms: &mut Terms, a, b| terms.make(Term::Or(a, b), 1);
-            any.into_iter().reduce(|a, b| or(terms, a, b)).context("it has no input")
-        };
-        let widest = a.len().max(b.len());
-        let bit = match kind {
-            "$mux" => {
-                let condition = self.word(terms, s);
-                let [a, b] = [a, b].map(|bits| self.columns(terms, bits));
-                return Ok((a.into_iter().zip(b))
-                    .map(|(a, b)| terms.choice(condition, b, a))
-                    .collect());
-            }
-            "$pmux" => {
-                let mut chosen = self.columns(terms, a);
-                for (at, condition) in s.iter().enumerate().rev() {
-                    let condition = self.word(terms, &[*condition]);
-                    let input = self.columns(terms, &b[at * width..(at + 1) * width].to_vec());
-                    for (chosen, input) in chosen.iter_mut().zip(input) {
-                        *chosen = terms.choice(condition, input, *chosen);
-                    }
-                }
-                return Ok(chosen);
-            }
-            "$not" => {
-                let a = extended(terms, a, signed[0], width)?;
-                return Ok(vec![terms.not(a)]);
-            }
-            "$pos" => return Ok(vec![extended(terms, a, signed[0], width)?]),
-            "$neg" => {
-                let (a, zero) =
-                    (extended(terms, a, signed[0], width)?, terms.constant(0, width as u32));
-                return Ok(vec![terms.make(Term::Sub(zero, a), width as u32)]);
-            }
-            "$and" | "$or" | "$xor" | "$xnor" | "$add" | "$sub" => {
-                let [a, b] = of(terms, width)?;
-                let op = match kind {
-                    "$and" => Term::And,
-                    "$or" => Term::Or,
-                    "$add" => Term::Add,
-                    "$sub" => Term::Sub,
-                    _ => Term::Xor,
-                };
-                let word = terms.make(op(a, b), width as u32);
-                return Ok(vec![if kind == "$xnor" { terms.not(word) } else { word }]);
-            }
-            "$mul" => {
-                ensure!(width <= MAX_WIDTH as usize, "it has more than 64 bits");
-                let [a, b] = of(terms, MAX_WIDTH as usize)?;
-                let product = terms.make(Term::Product(a, b), MAX_WIDTH);
-                return Ok(vec![terms.slice(product, 0, width as u32)]);
-            }
-            "$eq" | "$ne" => {
-                let [a, b] = of(terms, widest)?;
-                let equal = terms.equal(a, b);
-                if kind == "$eq" { equal } else { terms.not(equal) }
-            }
-            "$lt" | "$le" | "$gt" | "$ge" => {
-                let [a, b] = of(terms, widest)?;
-                let [a, b] = if matches!(kind, "$lt" | "$ge") { [a, b] } else { [b, a] };
-                let less = if both { Term::SignedLess(a, b) } else { Term::Less(a, b) };
-                let less = terms.make(less, 1);
-                if matches!(kind, "$lt" | "$gt") { less } else { terms.not(less) }
-            }
-            "$reduce_or" | "$reduce_bool" => truth(terms, a)?,
-            "$logic_not" => {
-                let any = truth(terms, a)?;
-                terms.not(any)
-            }
-            "$logic_and" | "$logic_or" => {
-                let (a, b) = (truth(terms, a)?, truth(terms, b)?);
-                let op = if kind == "$logic_and" { Term::And } else { Term::Or };
-                terms.make(op(a, b), 1)
-            }
-            "$reduce_and" => {
-                let mut all = terms.constant(1, 1);
-                for column in self.columns(terms, a) {
-                    let ones = terms.constant(u64::MAX, terms.width(column));
-                    let full = terms.equal(column, ones);
-                    all = terms.make(Term::And(all, full), 1);
-                }
-                all
-            }
-            _ => bail!("is not known here"),
-        };
-        ensure!(width <= MAX_WIDTH as usize, "it has more than 64 bits");
-        Ok(vec![terms.resized(bit, width as u32)])
-    }
 }

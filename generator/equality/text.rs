@@ -14,10 +14,12 @@ use serde_json::Value;
 
 use super::Open;
 use super::carry_out::{Execution, Product};
-use super::module::{Held, Memory, Module, Read, Values};
+use super::cells::Values;
+use super::module::{Held, Memory, Module, Read};
 use super::solver::{Said, Solver};
 use super::term::{Id, Term, Terms};
 use super::wholes::samples;
+use crate::base::fixed::mask;
 use crate::hdl::netlist::{Design, Role};
 use crate::tools::Tool;
 
@@ -111,6 +113,9 @@ fn ended<T>(verdict: TextVerdict) -> Result<T> {
 
 type Roles = HashMap<String, Role>;
 
+/// Registers with what they hold, and what the ports of each memory are given.
+type Constants = (HashMap<usize, u64>, Vec<Option<Vec<u64>>>);
+
 /// For each memory the clocks from write to read, of each of its read ports, while all points move on.
 fn delays(module: &Module, roles: &Roles) -> Result<Vec<Vec<usize>>> {
     let reset = constants(module, roles, 0, &HashMap::new())?.0;
@@ -159,15 +164,14 @@ fn lags(course: &[&[u64]], reads: usize) -> Option<Vec<usize>> {
     (0..reads).map(of_read).collect()
 }
 
-/// Which registers hold a constant after a clock in which the results are taken, and what it is, and what the ports of each
+/// Which registers hold a constant after a clock, of a reset or in which the results are taken, and what it is, and what the ports of each
 /// memory are given in it where these are constants and all bits are written; of the registers some are known before.
-#[expect(clippy::type_complexity, reason = "two maps of one clock")]
 fn constants(
     module: &Module,
     roles: &Roles,
     rst_n: u64,
     known: &HashMap<usize, u64>,
-) -> Result<(HashMap<usize, u64>, Vec<Option<Vec<u64>>>)> {
+) -> Result<Constants> {
     let mut terms = Terms::default();
     let mut held = module.power_up(&mut terms);
     for (&at, &bits) in known {
@@ -175,7 +179,7 @@ fn constants(
     }
     let input = |terms: &mut Terms, name: &str, width: u32| match roles.get(name) {
         Some(Role::Reset) => terms.constant(rst_n, width),
-        Some(Role::OutReady) => terms.constant(1, width),
+        Some(Role::OutReady) if rst_n == 1 => terms.constant(1, width),
         _ => terms.unknown(width),
     };
     let any = |terms: &mut Terms, read: Read| module.memories[read.memory].any(terms);
@@ -189,8 +193,7 @@ fn constants(
     let control = |memory: &Memory| {
         let ports = memory.control(&mut terms, &values);
         let addresses = 1 + memory.reads.len();
-        let ones =
-            |&id: &Id| terms.constant_of(id) == Some(crate::base::fixed::mask(terms.width(id)));
+        let ones = |&id: &Id| terms.constant_of(id) == Some(mask(terms.width(id)));
         let written = ports[addresses..].iter().all(ones);
         let constant = ports[..addresses].iter().map(|&id| terms.constant_of(id));
         constant.collect::<Option<Vec<u64>>>().filter(|_| written)
