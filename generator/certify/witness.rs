@@ -18,6 +18,9 @@ const STARTS: usize = 64;
 /// Fraction bits of a variable that has no place of the point.
 const CONTINUOUS: i32 = 20;
 
+/// Where a variable without an interval is looked for, on both sides of 0.
+const FREE: f64 = 1024.0;
+
 /// What a goal that nothing satisfies is, by which Gappa is asked for a contradiction.
 const NEVER: &str = "1 in [2,3] }";
 
@@ -79,15 +82,19 @@ impl Hypotheses {
                 intervals.push((id, f64::NEG_INFINITY, right.parse().ok()?));
             }
         }
-        let variables = intervals.iter().filter_map(|&(id, low, high)| {
+        let variables = (0..terms.count()).filter_map(|id| {
             let Term::Variable(name) = terms.get(id) else { return None };
             let unit = exp2(-places.get(name).copied().unwrap_or(CONTINUOUS));
+            let is_whole = |(of, low, high): &&(Id, f64, f64)| {
+                *of == id && low.is_finite() && high.is_finite()
+            };
+            let (_, low, high) = *intervals.iter().find(is_whole).unwrap_or(&(id, -FREE, FREE));
             // A number that is no multiple of the unit is the only one.
             let (unit, low, high) = match low == high && low != 0.0 {
                 true => (low, 1, 1),
                 false => (unit, (low / unit).ceil() as i64, (high / unit).floor() as i64),
             };
-            Some(Variable { name: name.clone(), unit, low, high })
+            Some(Variable { name: name.clone(), unit, low, high: high.max(low) })
         });
         Some(Self { variables: variables.collect(), terms, intervals })
     }
@@ -135,6 +142,9 @@ impl Hypotheses {
 
 /// A point at which the hypotheses of a script hold, in words; `None` where none is found.
 pub fn witness(script: &str) -> Option<String> {
+    if !script.contains(IMPLIES) {
+        return Some("every point".to_owned());
+    }
     let hypotheses = Hypotheses::of(script)?;
     let mut random = ChaCha8Rng::seed_from_u64(1);
     for _ in 0..STARTS {
