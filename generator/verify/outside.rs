@@ -298,7 +298,7 @@ pub const SYNTHESIS: Check = Check {
         let taken: Vec<String> = FAMILIES
             .par_iter()
             .map(|family| {
-                let files = subject.core.verilog_for(family.name)?;
+                let files = subject.sources(family.name)?;
                 let usage = synthesise(&tools[0], &files, name, family, limit)?;
                 progress(1);
                 Ok(format!(
@@ -444,7 +444,7 @@ pub const GATES: Check = Check {
         let failures: Vec<Option<String>> = families
             .par_iter()
             .map(|family| {
-                let rtl = subject.core.verilog_for(family.name)?;
+                let rtl = subject.sources(family.name)?;
                 let names: Vec<String> = rtl.iter().map(|(name, _)| name.clone()).collect();
                 let netlist = gates::netlist(&tools[0], &rtl, name, family, limit)?;
                 let files = gates::bench(&tools[0], sources.clone(), &names, netlist, family)?;
