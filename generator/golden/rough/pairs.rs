@@ -6,8 +6,8 @@
 //! at n = 1/q, or at an end of the domain. Of a pair with an n the error itself is computed, as the hardware rounds.
 //!
 //! **The search.** What has a bound no larger than an error that was met is left, for it holds nothing larger; all else
-//! is looked into. When that takes too many steps, the largest bound of what is left is the answer. The answer is never below
-//! nine tenths of the bound that the search begins with: looking for less is not worth the time.
+//! is looked into. When that takes too many steps, the largest bound of what is left is the answer. The answer is never below half
+//! of the bound that the search begins with: looking for less is not worth the time.
 
 use std::collections::BTreeMap;
 
@@ -20,7 +20,7 @@ use crate::golden::highlight::Reflectance;
 const STEPS: u64 = 1 << 21;
 
 /// The part of the first bound below which nothing is looked for.
-const LEAST: f64 = 0.9;
+const LEAST: f64 = 0.5;
 
 /// What f64 may add to the error of a sine.
 const F64: f64 = 1e-15;
@@ -47,7 +47,7 @@ struct Search<'a> {
     analysis: &'a Analysis,
     /// Cosines by bin, those with the largest errors first.
     cosines: BTreeMap<usize, Vec<Cosine>>,
-    /// The largest error that was met, or nine tenths of the first bound.
+    /// The largest error that was met, or half of the first bound.
     largest: f64,
     steps: u64,
 }
@@ -74,8 +74,9 @@ pub fn largest_error(it: &Arithmetic, analysis: &Analysis) -> f64 {
             break;
         }
         if !search.look_into(i, j, negative, &mut open) {
-            // The bins that come later have no larger bound.
-            return (bound + SLACK).min(first);
+            // The bins that come later have no larger bound; pairs in those before may have.
+            let largest = open.iter().map(|pair| pair.bound).fold(bound, f64::max);
+            return (largest + SLACK).min(first);
         }
     }
     open.sort_by(|one, other| other.bound.total_cmp(&one.bound));

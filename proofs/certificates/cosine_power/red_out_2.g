@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_power.toml, red_out and green_out and blue_out, statement 2: accepted. To check: gappa red_out_2.g
 # SHA-256 of the script below: 16bd105eaf0b4a0ea09de1b5410677ae554044b1175aa1b34df5067bc86bfd8b
+# The hypotheses hold at cos_gamma = 0.99170017242431640625, exponent_over_16 = 61.5, red = 0
 
 complement_2 = 1 - cos_gamma;
 product_4 = complement_2 * exponent_over_16;

@@ -1,4 +1,4 @@
-# Certificate by Glint: cosine_power.toml, red_out and green_out and blue_out, statement 3: accepted. To check: gappa red_out_3.g
+# Certificate by Glint: cosine_power.toml, red_out and green_out and blue_out, statement 3: accepted; its hypotheses contradict each other. To check: gappa red_out_3.g
 # SHA-256 of the script below: 923d8f2542bb2dc686069fe51e822520028552cd6d382d3be302f85de5beeedd
 
 complement_2 = 1 - cos_gamma;

@@ -1,4 +1,4 @@
-# Certificate by Glint: cosine_power.toml, red_out and green_out and blue_out, statement 5: accepted. To check: gappa red_out_5.g
+# Certificate by Glint: cosine_power.toml, red_out and green_out and blue_out, statement 5: accepted; no witness is found. To check: gappa red_out_5.g
 # SHA-256 of the script below: 1a4f4931c489f3a2babdefbe5ee33e8c2863fdc08af2a42c2c5d82e4b7efbad0
 
 complement_6 = 1 - cos_gamma;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_power.toml, red_out and green_out and blue_out, statement 6: accepted. To check: gappa red_out_6.g
 # SHA-256 of the script below: fc0e4c014b94543b8ad85aa5bc5eb0a252e45dc69c1eaf5978eb537b323cceba
+# The hypotheses hold at cos_gamma = 0.00000095367431640625, exponent_over_16 = 61.5
 
 complement_6 = 1 - cos_gamma;
 product_7 = complement_6 * exponent_over_16;

@@ -1,5 +1,6 @@
 # Certificate by Glint: quadratic.toml, red_out and green_out and blue_out, statement 1: accepted. To check: gappa red_out_1.g
 # SHA-256 of the script below: 2f6ddc84b82b2a0c1d601ee06b972ae7b851c059460f123d860c1487f76f4dde
+# The hypotheses hold at cos_gamma = 0.99999904632568359375, coefficient_at_exponent = 506.859375, red = 0
 
 multiplier5_1 = cos_gamma * cos_gamma;
 inverters_3 = (-0.0000000000009094947017729282379150390625) - cos_gamma;

@@ -1,5 +1,6 @@
 # Certificate by Glint: quadratic.toml, red_out and green_out and blue_out, statement 2: accepted. To check: gappa red_out_2.g
 # SHA-256 of the script below: 467104a7f87dd12c87fcd31e94d2a45082a40c0c871ae8389ef31fede614de3c
+# The hypotheses hold at cos_gamma = 0, coefficient_at_exponent = 506.859375, red = 0
 
 multiplier5_1 = cos_gamma * cos_gamma;
 inverters_3 = (-0.0000000000009094947017729282379150390625) - cos_gamma;

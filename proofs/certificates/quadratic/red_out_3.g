@@ -1,5 +1,6 @@
 # Certificate by Glint: quadratic.toml, red_out and green_out and blue_out, statement 3: accepted. To check: gappa red_out_3.g
 # SHA-256 of the script below: 7107cc787be804e8c2be66cc759bcc9378aaa9e34927ca77ebba7d6203469af4
+# The hypotheses hold at cos_gamma = 0, coefficient_at_exponent = 506.859375, red = 0
 
 multiplier5_1 = cos_gamma * cos_gamma;
 inverters_3 = (-0.0000000000009094947017729282379150390625) - cos_gamma;

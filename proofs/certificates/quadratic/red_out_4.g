@@ -1,5 +1,6 @@
 # Certificate by Glint: quadratic.toml, red_out and green_out and blue_out, statement 4: accepted. To check: gappa red_out_4.g
 # SHA-256 of the script below: ebb81d5ef8c8057093ddfcc987bc6ab3c8776ef658a0c07624a6cace0b009c5b
+# The hypotheses hold at cos_gamma = 0.00000095367431640625, coefficient_at_exponent = 0.80078125, red = 0
 
 multiplier5_6 = cos_gamma * cos_gamma;
 inverters_8 = (-0.0000000000009094947017729282379150390625) - cos_gamma;

@@ -1,5 +1,6 @@
 # Certificate by Glint: quadratic.toml, red_out and green_out and blue_out, statement 5: accepted. To check: gappa red_out_5.g
 # SHA-256 of the script below: aa10bbf177989bb6d63a24d8ded160fae7ad7445c4da30ca01755d0c2253c1a1
+# The hypotheses hold at cos_gamma = 0.99170017242431640625, coefficient_at_exponent = 506.859375
 
 multiplier5_6 = cos_gamma * cos_gamma;
 inverters_8 = (-0.0000000000009094947017729282379150390625) - cos_gamma;

@@ -1,4 +1,4 @@
-# Certificate by Glint: quadratic.toml, red_out and green_out and blue_out, statement 6: accepted. To check: gappa red_out_6.g
+# Certificate by Glint: quadratic.toml, red_out and green_out and blue_out, statement 6: accepted; its hypotheses contradict each other. To check: gappa red_out_6.g
 # SHA-256 of the script below: 0267122a4a5d4ecdfd5bffe218a5c2aca7b21e5ad6c22e2c3818993d905f6a6e
 
 multiplier5_6 = cos_gamma * cos_gamma;

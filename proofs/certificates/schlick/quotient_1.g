@@ -1,5 +1,6 @@
 # Certificate by Glint: schlick.toml, quotient, statement 1: accepted. To check: gappa quotient_1.g
 # SHA-256 of the script below: 85de6d87223483e1b1c721ccfeab3837ac48c27711ebc528e6b50912fe36ac92
+# The hypotheses hold at cos_gamma = 0.99170017242431640625, exponent = 984
 
 complement_2 = 1 - cos_gamma;
 scaled_4 = complement_2 * exponent;

@@ -1,5 +1,6 @@
 # Certificate by Glint: schlick.toml, red_out and green_out and blue_out, statement 2: accepted. To check: gappa red_out_2.g
 # SHA-256 of the script below: 178ad15771b5bb02ce1d274dcfeadb081411cd9e020fa1e9963a0968ca9e26ba
+# The hypotheses hold at cos_gamma = 0.00000095367431640625, exponent = 984, quotient_175 = 0, red = 98
 
 complement_2 = 1 - cos_gamma;
 scaled_4 = complement_2 * exponent;

@@ -1,4 +1,4 @@
-# Certificate by Glint: threshold.toml, red_out and green_out and blue_out, statement 1: accepted. To check: gappa red_out_1.g
+# Certificate by Glint: threshold.toml, red_out and green_out and blue_out, statement 1: accepted; its hypotheses contradict each other. To check: gappa red_out_1.g
 # SHA-256 of the script below: 94ca0bf6a05912487b68e2594f16700fba310cf1bc5d35067b288544606d7e57
 
 adder1_6 = cos_gamma - (-1);

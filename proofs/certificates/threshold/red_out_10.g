@@ -1,5 +1,5 @@
-# Certificate by Glint: threshold.toml, red_out and green_out and blue_out, statement 10: accepted. To check: gappa red_out_10.g
-# SHA-256 of the script below: c841f701a4d7b5ea464572cb2f2e1ac6af78a3e1af011298e4a59377360c7456
+# Certificate by Glint: threshold.toml, red_out and green_out and blue_out, statement 10: accepted; its hypotheses contradict each other. To check: gappa red_out_10.g
+# SHA-256 of the script below: d4aa88635a59f742dfe36b62f39fb9e26ec061d4a0aaef76ca6d7319fa853a1a
 
 adder1_2 = cos_gamma - (-1);
 adder1_4 = (-2) + adder1_2;
@@ -30,6 +30,7 @@ unrounded_36 = unrounded_35 * unrounded_35;
   /\ multiplier1_6 in [-1,-0.000000476837158203125]
   /\ multiplier2_kept_inside_12 in [0.0019683837890625,0.999969482421875]
   /\ red in [0,255]
+  /\ levels_at_exponent_over_2 in [0.0019683837890625,0.0019683837890625]
   /\ exact_22 >= 0
   /\ exact_28 <= 0
   /\ exact_31 >= 0

@@ -1,5 +1,5 @@
-# Certificate by Glint: threshold.toml, red_out and green_out and blue_out, statement 11: accepted. To check: gappa red_out_11.g
-# SHA-256 of the script below: a951f086af50a5c7d04dfb6e6ac16916ee000d38b6b601758c6b0e22dd791e6b
+# Certificate by Glint: threshold.toml, red_out and green_out and blue_out, statement 11: accepted; its hypotheses contradict each other. To check: gappa red_out_11.g
+# SHA-256 of the script below: 6ed64474004a2b4f701bf05a82bc804ad22601e5bcf21020691f9fcc5f34186c
 
 adder1_2 = cos_gamma - (-1);
 adder1_4 = (-2) + adder1_2;
@@ -30,6 +30,7 @@ unrounded_36 = unrounded_35 * unrounded_35;
   /\ multiplier1_6 in [-1,-0.000000476837158203125]
   /\ multiplier2_kept_inside_12 in [0.0019683837890625,0.999969482421875]
   /\ red in [0,255]
+  /\ levels_at_exponent_over_2 in [0.0019683837890625,0.0019683837890625]
   /\ exact_22 >= 0
   /\ exact_28 <= 0
   /\ exact_31 <= 0

@@ -1,5 +1,5 @@
-# Certificate by Glint: threshold.toml, red_out and green_out and blue_out, statement 12: accepted. To check: gappa red_out_12.g
-# SHA-256 of the script below: 8a08eccf34f4cd67691cd0301377942a127892c94097bd7404f2195a8a716944
+# Certificate by Glint: threshold.toml, red_out and green_out and blue_out, statement 12: accepted; its hypotheses contradict each other. To check: gappa red_out_12.g
+# SHA-256 of the script below: 03da9971cfa415a3c0e0a1edfa5cc8ce9adf73d3bd28c7123dfb3e14f42acc8f
 
 adder1_2 = cos_gamma - (-1);
 adder1_4 = (-2) + adder1_2;
@@ -24,6 +24,7 @@ difference_33 = red_intensity_15 - 0;
   /\ multiplier1_6 in [-1,-0.000000476837158203125]
   /\ multiplier2_kept_inside_12 in [0.0019683837890625,0.999969482421875]
   /\ red in [0,255]
+  /\ levels_at_exponent_over_2 in [0.0019683837890625,0.0019683837890625]
   /\ exact_22 <= 0
   -> |difference_33| <= 0.5116729736328125 }
 

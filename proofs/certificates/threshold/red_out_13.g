@@ -1,5 +1,5 @@
-# Certificate by Glint: threshold.toml, red_out and green_out and blue_out, statement 13: accepted. To check: gappa red_out_13.g
-# SHA-256 of the script below: 21367c2c0157de94155913da2baf0ccf4ead74d7ec6a101be3505931a580ae06
+# Certificate by Glint: threshold.toml, red_out and green_out and blue_out, statement 13: accepted; its hypotheses contradict each other. To check: gappa red_out_13.g
+# SHA-256 of the script below: 25115875e3e1b469d6d34e2c2e34316716ab51eb2ec5c93481643d16b793f7b6
 
 adder1_7 = cos_gamma - (-1);
 adder1_9 = (-2) + adder1_7;
@@ -27,6 +27,7 @@ unrounded_35 = unrounded_34 * unrounded_34;
   /\ cos_gamma in [0.00000095367431640625,0.99999904632568359375]
   /\ exponent_over_2 in [0.5,500]
   /\ red in [0,255]
+  /\ levels_at_exponent_over_2 in [0.0019683837890625,0.0019683837890625]
   /\ multiplier1_10 in [-1,-0.000000476837158203125]
   /\ multiplier2_kept_inside_16 in [0,0.001953125]
   /\ exact_21 >= 0

@@ -1,5 +1,6 @@
 # Certificate by Glint: threshold.toml, red_out and green_out and blue_out, statement 14: accepted. To check: gappa red_out_14.g
-# SHA-256 of the script below: 4028d85bb3dae7de9c5d7b632b7f0fdd89ef98529b1a42638268c42cddc26bd0
+# SHA-256 of the script below: fdd72c5a0d3e1e5f9a09140668d3ab5a8509dda32354a52cd25a33ca80297879
+# The hypotheses hold at cos_gamma = 0.99808788299560546875, exponent_over_2 = 500, red = 0, levels_at_exponent_over_2 = 0.0019683837890625
 
 adder1_7 = cos_gamma - (-1);
 adder1_9 = (-2) + adder1_7;
@@ -27,6 +28,7 @@ unrounded_35 = unrounded_34 * unrounded_34;
   /\ cos_gamma in [0.00000095367431640625,0.99999904632568359375]
   /\ exponent_over_2 in [0.5,500]
   /\ red in [0,255]
+  /\ levels_at_exponent_over_2 in [0.0019683837890625,0.0019683837890625]
   /\ multiplier1_10 in [-1,-0.000000476837158203125]
   /\ multiplier2_kept_inside_16 in [0,0.001953125]
   /\ exact_21 >= 0

@@ -1,5 +1,5 @@
-# Certificate by Glint: threshold.toml, red_out and green_out and blue_out, statement 15: accepted. To check: gappa red_out_15.g
-# SHA-256 of the script below: 6e4f07e9145508a2528bb8204e0ab37186b6771114e3205f26e217d89b3bf359
+# Certificate by Glint: threshold.toml, red_out and green_out and blue_out, statement 15: accepted; its hypotheses contradict each other. To check: gappa red_out_15.g
+# SHA-256 of the script below: f52ccb38837edea9fd9832b85040684959e254dc594546c695c71a0a815aeaf2
 
 adder1_7 = cos_gamma - (-1);
 adder1_9 = (-2) + adder1_7;
@@ -24,6 +24,7 @@ unrounded_34 = unrounded_33 * unrounded_33;
   /\ @FIX(exponent_over_2,-1)
   /\ cos_gamma in [0.00000095367431640625,0.99999904632568359375]
   /\ exponent_over_2 in [0.5,500]
+  /\ levels_at_exponent_over_2 in [0.0019683837890625,0.0019683837890625]
   /\ multiplier1_10 in [-1,-0.000000476837158203125]
   /\ multiplier2_kept_inside_16 in [0,0.001953125]
   /\ exact_21 >= 0

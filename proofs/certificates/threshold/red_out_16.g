@@ -1,5 +1,6 @@
 # Certificate by Glint: threshold.toml, red_out and green_out and blue_out, statement 16: accepted. To check: gappa red_out_16.g
-# SHA-256 of the script below: db76da512125bfc15db2ffb736305914ce845206b06d2fef906a938a1b423bda
+# SHA-256 of the script below: cf37701a82dcb5e6b5e6798e5c47aabc1f30909a39e4f38544fdace1119ac493
+# The hypotheses hold at cos_gamma = 0.99804592132568359375, exponent_over_2 = 500, levels_at_exponent_over_2 = 0.0019683837890625
 
 adder1_7 = cos_gamma - (-1);
 adder1_9 = (-2) + adder1_7;
@@ -24,6 +25,7 @@ unrounded_34 = unrounded_33 * unrounded_33;
   /\ @FIX(exponent_over_2,-1)
   /\ cos_gamma in [0.00000095367431640625,0.99999904632568359375]
   /\ exponent_over_2 in [0.5,500]
+  /\ levels_at_exponent_over_2 in [0.0019683837890625,0.0019683837890625]
   /\ multiplier1_10 in [-1,-0.000000476837158203125]
   /\ multiplier2_kept_inside_16 in [0,0.001953125]
   /\ exact_21 >= 0

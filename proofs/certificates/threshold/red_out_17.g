@@ -1,5 +1,6 @@
 # Certificate by Glint: threshold.toml, red_out and green_out and blue_out, statement 17: accepted. To check: gappa red_out_17.g
-# SHA-256 of the script below: b9bb7fca72181f6975fb415ff856cd85d8e1b0b28e493f48328bfce443e1d581
+# SHA-256 of the script below: 39e5e198afd2a91e9a313ae9d0c64102deb5211a609708d4e275f3b73da8a480
+# The hypotheses hold at cos_gamma = 0.5, exponent_over_2 = 2, levels_at_exponent_over_2 = 0.0019683837890625
 
 adder1_7 = cos_gamma - (-1);
 adder1_9 = (-2) + adder1_7;
@@ -18,6 +19,7 @@ difference_31 = 0 - 0;
   /\ @FIX(exponent_over_2,-1)
   /\ cos_gamma in [0.00000095367431640625,0.99999904632568359375]
   /\ exponent_over_2 in [0.5,500]
+  /\ levels_at_exponent_over_2 in [0.0019683837890625,0.0019683837890625]
   /\ multiplier1_10 in [-1,-0.000000476837158203125]
   /\ multiplier2_kept_inside_16 in [0,0.001953125]
   /\ exact_21 <= 0

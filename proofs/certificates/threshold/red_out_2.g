@@ -1,4 +1,4 @@
-# Certificate by Glint: threshold.toml, red_out and green_out and blue_out, statement 2: accepted. To check: gappa red_out_2.g
+# Certificate by Glint: threshold.toml, red_out and green_out and blue_out, statement 2: accepted; its hypotheses contradict each other. To check: gappa red_out_2.g
 # SHA-256 of the script below: 8fe9c549a2f3b0602be3473743109b1f0697c4108145d115804c6d0f92dd69a9
 
 adder1_6 = cos_gamma - (-1);

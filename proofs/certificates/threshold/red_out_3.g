@@ -1,4 +1,4 @@
-# Certificate by Glint: threshold.toml, red_out and green_out and blue_out, statement 3: accepted. To check: gappa red_out_3.g
+# Certificate by Glint: threshold.toml, red_out and green_out and blue_out, statement 3: accepted; its hypotheses contradict each other. To check: gappa red_out_3.g
 # SHA-256 of the script below: 874ae5f1b7bfb113b72a2dc6050fbb3f5ac0f16051940097e51dcb5caf039df6
 
 adder1_6 = cos_gamma - (-1);

@@ -1,4 +1,4 @@
-# Certificate by Glint: threshold.toml, red_out and green_out and blue_out, statement 4: accepted. To check: gappa red_out_4.g
+# Certificate by Glint: threshold.toml, red_out and green_out and blue_out, statement 4: accepted; its hypotheses contradict each other. To check: gappa red_out_4.g
 # SHA-256 of the script below: 1b8e7a2c7aeeef96eb840ca349a9b56bfcf109696ee0f563ba4b4c5e22bbcbec
 
 adder1_6 = cos_gamma - (-1);

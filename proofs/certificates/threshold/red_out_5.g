@@ -1,5 +1,6 @@
 # Certificate by Glint: threshold.toml, red_out and green_out and blue_out, statement 5: accepted. To check: gappa red_out_5.g
 # SHA-256 of the script below: 0fa934ff8af3b23fcc51ffefedba0ecfcde072607711141e4746cd67786c7dee
+# The hypotheses hold at cos_gamma = 0.99170017242431640625, exponent_over_2 = 492
 
 adder1_6 = cos_gamma - (-1);
 adder1_8 = (-2) + adder1_6;

@@ -1,5 +1,6 @@
 # Certificate by Glint: threshold.toml, red_out and green_out and blue_out, statement 6: accepted. To check: gappa red_out_6.g
 # SHA-256 of the script below: 582612f761c6a82a027b046ff3e782387575c372b7e324d31d59033d5114f38f
+# The hypotheses hold at cos_gamma = 0, exponent_over_2 = 492
 
 adder1_6 = cos_gamma - (-1);
 adder1_8 = (-2) + adder1_6;

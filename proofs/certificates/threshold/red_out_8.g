@@ -1,5 +1,6 @@
 # Certificate by Glint: threshold.toml, red_out and green_out and blue_out, statement 8: accepted. To check: gappa red_out_8.g
-# SHA-256 of the script below: c29d9f340d5f65d6a6c60772b5328ec2d7a24b4cce508468536c07203a81a96a
+# SHA-256 of the script below: 721c66e7575efe3ac3f055f933cf67993a9df1063d2fa39024deb57b0adefc84
+# The hypotheses hold at cos_gamma = 0.99999904632568359375, exponent_over_2 = 492, red = 0, levels_at_exponent_over_2 = 0.0019683837890625
 
 adder1_2 = cos_gamma - (-1);
 adder1_4 = (-2) + adder1_2;
@@ -32,6 +33,7 @@ unrounded_38 = unrounded_37 * red;
   /\ multiplier1_6 in [-1,-0.000000476837158203125]
   /\ multiplier2_kept_inside_12 in [0.0019683837890625,0.999969482421875]
   /\ red in [0,255]
+  /\ levels_at_exponent_over_2 in [0.0019683837890625,0.0019683837890625]
   /\ exact_22 >= 0
   /\ exact_28 >= 0
   /\ exact_31 >= 0

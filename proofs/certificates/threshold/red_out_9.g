@@ -1,5 +1,6 @@
 # Certificate by Glint: threshold.toml, red_out and green_out and blue_out, statement 9: accepted. To check: gappa red_out_9.g
-# SHA-256 of the script below: 355d075ed5b88d4dc66d81f944170faabdc6f21bfba16e73c342a5012f465415
+# SHA-256 of the script below: 17a38bb8fabd7389090cb25059f91e7cff5c2e69fdc9c4194a7dbd8953921549
+# The hypotheses hold at cos_gamma = 0.998088836669921875, exponent_over_2 = 500, red = 0, levels_at_exponent_over_2 = 0.0019683837890625
 
 adder1_2 = cos_gamma - (-1);
 adder1_4 = (-2) + adder1_2;
@@ -32,6 +33,7 @@ unrounded_38 = unrounded_37 * red;
   /\ multiplier1_6 in [-1,-0.000000476837158203125]
   /\ multiplier2_kept_inside_12 in [0.0019683837890625,0.999969482421875]
   /\ red in [0,255]
+  /\ levels_at_exponent_over_2 in [0.0019683837890625,0.0019683837890625]
   /\ exact_22 >= 0
   /\ exact_28 >= 0
   /\ exact_31 <= 0
