@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 1: accepted. To check: gappa red_out_1.g
-# SHA-256 of the script below: 9d7bdd55e4cbe96100d5a673c26b420712b0d1d6b9918256836468b2dfd40ee7
+# SHA-256 of the script below: f9159524a6d68d6c7dcdc21c391a0563a9fdd23b7089f775574e60b899272b12
+# The hypotheses hold at dx = 1.9667816162109375, dy = 1.9383697509765625, dz = -1.9999847412109375, red = 98, shift = 0
 
 multiplier1_1 = dx * dx;
 multiplier2_3 = dy * dy;
@@ -37,6 +38,7 @@ difference_38 = red_intensity_24 - exact_37;
   /\ dy in [-2,1.9999847412109375]
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
+  /\ shift in [0,0]
   /\ exact_31 >= 0
   -> |difference_38| <= 0.62451171875 }
 

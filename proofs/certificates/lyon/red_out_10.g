@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 10: accepted. To check: gappa red_out_10.g
-# SHA-256 of the script below: ca76664dda4a2def88e74bd76f5f6bbea56653c70c8d909eb70017bcd67f95b0
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 10: accepted; its hypotheses contradict each other. To check: gappa red_out_10.g
+# SHA-256 of the script below: 44757a5737bdd683e15016f10322680686456712dfab3bdf22b67c7d18ed1f26
 
 multiplier1_1 = dx * dx;
 multiplier2_3 = dy * dy;
@@ -33,6 +33,7 @@ difference_38 = red_intensity_24 - 0;
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_8 in [0,3.999999940395355224609375]
   /\ red in [0,255]
+  /\ shift in [3,3]
   /\ exact_32 <= 0
   -> |difference_38| <= 0.62451171875 }
 

@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 100: accepted. To check: gappa red_out_100.g
-# SHA-256 of the script below: e4810d28db192706760d0da34d35340337b5afed9634fae95f9f0db49d04e996
+# SHA-256 of the script below: dd9186b212b625253f2484cb50ec9b5be8c4bb4dba690dd80320d9e8236535b3
+# The hypotheses hold at dx = 0.4667816162109375, dy = -0.0616302490234375, dz = 0.0000152587890625, shift = 10
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -18,6 +19,7 @@ difference_23 = 0 - 0;
   /\ dy in [-2,1.9999847412109375]
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_11 in [0.125,0.24999999813735485076904296875]
+  /\ shift in [10,10]
   /\ exact_18 <= 0
   -> |difference_23| <= 0.62451171875 }
 

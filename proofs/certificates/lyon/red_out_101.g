@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 101: accepted. To check: gappa red_out_101.g
-# SHA-256 of the script below: 4d34515077cf89d51bac457f337a485b23870ad78f1a5ebceee60903b90f7eab
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 101: accepted; its hypotheses contradict each other. To check: gappa red_out_101.g
+# SHA-256 of the script below: ab2c2997d2aa4c68798b0f973a1d3958ccc07c309eedd756dfb9e3e69aca1236
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -25,6 +25,7 @@ difference_24 = 0 - exact_23;
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
   /\ distance_rounded_11 in [0.25,0.4999999962747097015380859375]
+  /\ shift in [10,10]
   /\ exact_18 >= 0
   -> |difference_24| <= 0.62451171875 }
 

@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 102: accepted. To check: gappa red_out_102.g
-# SHA-256 of the script below: df5f0dad3d4657e3bd33c94ce642204d0225a3924ce5abddad287822fd24bdaf
+# SHA-256 of the script below: 7f5fe5a558aa5670d81795b99aadae9f96b4ce9835642ced94dc2b978a211c7d
+# The hypotheses hold at dx = 0.4667816162109375, dy = 0.4383697509765625, dz = 0.0000152587890625, shift = 10
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -18,6 +19,7 @@ difference_23 = 0 - 0;
   /\ dy in [-2,1.9999847412109375]
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_11 in [0.25,0.4999999962747097015380859375]
+  /\ shift in [10,10]
   /\ exact_18 <= 0
   -> |difference_23| <= 0.62451171875 }
 

@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 103: accepted. To check: gappa red_out_103.g
-# SHA-256 of the script below: 617f4b2997f8a2845622483afa1ef70482549cb2dcc19b79a24cd1c66c4ae3cb
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 103: accepted; its hypotheses contradict each other. To check: gappa red_out_103.g
+# SHA-256 of the script below: 38918e65199f378a367bfc7845bad6024abd5dcb2c60fc001a1f608ed7322d1c
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -25,6 +25,7 @@ difference_24 = 0 - exact_23;
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
   /\ distance_rounded_11 in [0.5,0.999999992549419403076171875]
+  /\ shift in [10,10]
   /\ exact_18 >= 0
   -> |difference_24| <= 0.62451171875 }
 

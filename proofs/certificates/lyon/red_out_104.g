@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 104: accepted. To check: gappa red_out_104.g
-# SHA-256 of the script below: acd92f2dc7d80b1d9652697c5764e1980b2cc8b8c233bde82b4aa5252204eafa
+# SHA-256 of the script below: 8227087f60383eaf00dce138be96645f2156ca13345a3f2d8fac3b5b05161219
+# The hypotheses hold at dx = 0.9667816162109375, dy = -0.0616302490234375, dz = 0.0000152587890625, shift = 10
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -18,6 +19,7 @@ difference_23 = 0 - 0;
   /\ dy in [-2,1.9999847412109375]
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_11 in [0.5,0.999999992549419403076171875]
+  /\ shift in [10,10]
   /\ exact_18 <= 0
   -> |difference_23| <= 0.62451171875 }
 

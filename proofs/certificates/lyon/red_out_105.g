@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 105: accepted. To check: gappa red_out_105.g
-# SHA-256 of the script below: c4e81def4dac2d3a03136712621723721ce9f33d9c82672b3f2efdd794d1b815
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 105: accepted; its hypotheses contradict each other. To check: gappa red_out_105.g
+# SHA-256 of the script below: 178dbcb81ed3ae8b8eaa6d8c3eced87ef45d7e6e170d51397d0de7c7520e9b78
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -25,6 +25,7 @@ difference_24 = 0 - exact_23;
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
   /\ distance_rounded_11 in [1,1.99999998509883880615234375]
+  /\ shift in [10,10]
   /\ exact_18 >= 0
   -> |difference_24| <= 0.62451171875 }
 

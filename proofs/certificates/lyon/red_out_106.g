@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 106: accepted. To check: gappa red_out_106.g
-# SHA-256 of the script below: fb2c7f48f098aae7c6ad6989267b35d73d78121f75743ecb5a5f8ba5fd74132e
+# SHA-256 of the script below: 298321e97a51e55ef13408c8dd0669c3fbd25f3c89304803119114d4f997897a
+# The hypotheses hold at dx = -0.0332183837890625, dy = -0.0616302490234375, dz = -0.9999847412109375, shift = 10
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -18,6 +19,7 @@ difference_23 = 0 - 0;
   /\ dy in [-2,1.9999847412109375]
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_11 in [1,1.99999998509883880615234375]
+  /\ shift in [10,10]
   /\ exact_18 <= 0
   -> |difference_23| <= 0.62451171875 }
 

@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 107: accepted. To check: gappa red_out_107.g
-# SHA-256 of the script below: c86588a14b18ee9894dc2a249f79fd878be5e2a6aca55a08757294a99c3ce0f3
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 107: accepted; its hypotheses contradict each other. To check: gappa red_out_107.g
+# SHA-256 of the script below: 60398776c774c4d5c7db6587a653366be57623f5be3a8176553427dd55d4e3df
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -25,6 +25,7 @@ difference_24 = 0 - exact_23;
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
   /\ distance_rounded_11 in [2,3.9999999701976776123046875]
+  /\ shift in [10,10]
   /\ exact_18 >= 0
   -> |difference_24| <= 0.62451171875 }
 

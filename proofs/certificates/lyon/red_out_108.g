@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 108: accepted. To check: gappa red_out_108.g
-# SHA-256 of the script below: 5bd4f35f2c36d3d86d3965a027b2eab5e377898fca58882888fb14d25407a57f
+# SHA-256 of the script below: 3b8a40c2ceda2b6b71aacb5cb795a628a1f754af619931eb2c3196c0b2c02155
+# The hypotheses hold at dx = -0.0332183837890625, dy = -0.0616302490234375, dz = -1.4999847412109375, shift = 10
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -18,6 +19,7 @@ difference_23 = 0 - 0;
   /\ dy in [-2,1.9999847412109375]
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_11 in [2,3.9999999701976776123046875]
+  /\ shift in [10,10]
   /\ exact_18 <= 0
   -> |difference_23| <= 0.62451171875 }
 

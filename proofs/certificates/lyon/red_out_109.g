@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 109: accepted. To check: gappa red_out_109.g
-# SHA-256 of the script below: 4494f19b955c36104984d829adbfd45d7acceb2c84197134ed06c51f1f79cb58
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 109: accepted; its hypotheses contradict each other. To check: gappa red_out_109.g
+# SHA-256 of the script below: 84dd9845c4030c652f741f3a46b671fd540c717be1b9f21f425e7cc54e6a149e
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -25,6 +25,7 @@ difference_24 = 0 - exact_23;
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
   /\ distance_rounded_11 in [4,7.999999940395355224609375]
+  /\ shift in [10,10]
   /\ exact_18 >= 0
   -> |difference_24| <= 0.62451171875 }
 

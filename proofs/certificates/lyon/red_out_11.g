@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 11: accepted. To check: gappa red_out_11.g
-# SHA-256 of the script below: e09a031ab49755f5af59fca6d6fce6ba3bd048e029824678dd549a730ef36a03
+# SHA-256 of the script below: 40fc5cd23073bd3f58fd379c1f917e74d9d7b3f2a582d5b6cefdbc877f42d97f
+# The hypotheses hold at dx = 0, dy = 0, dz = -2, red = 98, shift = 3
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -25,6 +26,7 @@ difference_25 = 0 - exact_24;
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
   /\ distance_rounded_11 in [4,7.999999940395355224609375]
+  /\ shift in [3,3]
   /\ exact_19 >= 0
   -> |difference_25| <= 0.62451171875 }
 

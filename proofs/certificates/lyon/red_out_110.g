@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 110: accepted. To check: gappa red_out_110.g
-# SHA-256 of the script below: 8977441c4fb9472ca020c8e1b885f1692393fcc3e632b1714e35929f1d61d7ae
+# SHA-256 of the script below: 14fa5fdad85b8333bb31a47a5188f32fbd729ffb2cd35f8534e7585be5970c11
+# The hypotheses hold at dx = -0.0332183837890625, dy = 1.9383697509765625, dz = -1.9999847412109375, shift = 10
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -18,6 +19,7 @@ difference_23 = 0 - 0;
   /\ dy in [-2,1.9999847412109375]
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_11 in [4,7.999999940395355224609375]
+  /\ shift in [10,10]
   /\ exact_18 <= 0
   -> |difference_23| <= 0.62451171875 }
 

@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 111: accepted. To check: gappa red_out_111.g
-# SHA-256 of the script below: 955e710d9019ef0acfcbea0631b7681f01c9af58e15b2fadd2ade4c9c0de6b8f
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 111: accepted; its hypotheses contradict each other. To check: gappa red_out_111.g
+# SHA-256 of the script below: 89f6ea455bdf8aca64e76676a7ac014d154ecf6aac7d639524e6a87eb966fe1f
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -25,6 +25,7 @@ difference_24 = 0 - exact_23;
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
   /\ distance_rounded_11 in [8,12]
+  /\ shift in [10,10]
   /\ exact_18 >= 0
   -> |difference_24| <= 0.62451171875 }
 

@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 112: accepted. To check: gappa red_out_112.g
-# SHA-256 of the script below: 48f41b9102546c388b9209d41a65fb07495276635557e8b28a18798334b8677f
+# SHA-256 of the script below: 30571449fbb02ad3930f5c5c1e141e8b52faabd8ba07d126cecdb8828638e626
+# The hypotheses hold at dx = 1.9667816162109375, dy = 1.9383697509765625, dz = -1.9999847412109375, shift = 10
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -18,6 +19,7 @@ difference_23 = 0 - 0;
   /\ dy in [-2,1.9999847412109375]
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_11 in [8,12]
+  /\ shift in [10,10]
   /\ exact_18 <= 0
   -> |difference_23| <= 0.62451171875 }
 

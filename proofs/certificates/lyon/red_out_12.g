@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 12: accepted. To check: gappa red_out_12.g
-# SHA-256 of the script below: 85a31b0f6a267846f809af00e519fdadc4c61c2b81f04761dd3da02869d118ed
+# SHA-256 of the script below: 63a110fb9bd0b8ce81546e3b0c043f15addcac7cfa860fdcc07bcfaff115ae53
+# The hypotheses hold at dx = -0.0332183837890625, dy = 1.9383697509765625, dz = -1.9999847412109375, shift = 3
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -18,6 +19,7 @@ difference_24 = 0 - 0;
   /\ dy in [-2,1.9999847412109375]
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_11 in [4,7.999999940395355224609375]
+  /\ shift in [3,3]
   /\ exact_19 <= 0
   -> |difference_24| <= 0.62451171875 }
 

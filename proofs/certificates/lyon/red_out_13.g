@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 13: accepted. To check: gappa red_out_13.g
-# SHA-256 of the script below: cdc651752a516c4386aba8be11153be9e2ece7979c6e329aecb19e5934b8ca24
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 13: accepted; its hypotheses contradict each other. To check: gappa red_out_13.g
+# SHA-256 of the script below: f063bcd107badc50b037f216b833deff77cc912026053852ffcb78351ed446c3
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -25,6 +25,7 @@ difference_25 = 0 - exact_24;
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
   /\ distance_rounded_11 in [8,12]
+  /\ shift in [3,3]
   /\ exact_19 >= 0
   -> |difference_25| <= 0.62451171875 }
 

@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 14: accepted. To check: gappa red_out_14.g
-# SHA-256 of the script below: f0b2784fef0432b81ff46405dca119ff7957cdfbf2083c265edc20e5e9b14761
+# SHA-256 of the script below: c0f6bf98fa242f0aaf368792a0683aa6c9a32ddd982eca62f565b70b3cc8365f
+# The hypotheses hold at dx = 1.9667816162109375, dy = 1.9383697509765625, dz = -1.9999847412109375, shift = 3
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -18,6 +19,7 @@ difference_24 = 0 - 0;
   /\ dy in [-2,1.9999847412109375]
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_11 in [8,12]
+  /\ shift in [3,3]
   /\ exact_19 <= 0
   -> |difference_24| <= 0.62451171875 }
 

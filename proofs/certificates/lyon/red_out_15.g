@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 15: accepted. To check: gappa red_out_15.g
-# SHA-256 of the script below: d32b76deced6a639ebdd39b34f3f0aa2f5629e869c3e28fc6e352324c60fe105
+# SHA-256 of the script below: fc1262e0254aff6b7605eb3a5d385d9c2d5897e516fb87d331c624d46b6e973c
+# The hypotheses hold at dx = -0.0332183837890625, dy = -0.0616302490234375, dz = 0.0000152587890625, red = 98, shift = 4
 
 multiplier1_1 = dx * dx;
 multiplier2_3 = dy * dy;
@@ -38,6 +39,7 @@ difference_39 = red_intensity_24 - exact_38;
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_8 in [0,1.9999999701976776123046875]
   /\ red in [0,255]
+  /\ shift in [4,4]
   /\ exact_32 >= 0
   -> |difference_39| <= 0.62451171875 }
 

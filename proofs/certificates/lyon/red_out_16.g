@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 16: accepted. To check: gappa red_out_16.g
-# SHA-256 of the script below: 7b59be6a6611fc117b303d49c953b061b9d039a301889c2f3f5d3644404e259d
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 16: accepted; its hypotheses contradict each other. To check: gappa red_out_16.g
+# SHA-256 of the script below: 8396063635962ae5ad120ba67aed0f879f78f9dfea069fbbc9393d0a3bf73d81
 
 multiplier1_1 = dx * dx;
 multiplier2_3 = dy * dy;
@@ -33,6 +33,7 @@ difference_38 = red_intensity_24 - 0;
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_8 in [0,1.9999999701976776123046875]
   /\ red in [0,255]
+  /\ shift in [4,4]
   /\ exact_32 <= 0
   -> |difference_38| <= 0.62451171875 }
 

@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 17: accepted. To check: gappa red_out_17.g
-# SHA-256 of the script below: 4f339964ee214ff9d7a1ec9a0715845aa5fe1c4f5c36175f5bb8d8a7de5d074e
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 17: accepted; no witness is found. To check: gappa red_out_17.g
+# SHA-256 of the script below: 0f3a531d825e64ce9d1473b3bdef19482ba446ce445df026052954066afe6189
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -25,6 +25,7 @@ difference_25 = 0 - exact_24;
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
   /\ distance_rounded_11 in [2,3.9999999701976776123046875]
+  /\ shift in [4,4]
   /\ exact_19 >= 0
   -> |difference_25| <= 0.62451171875 }
 

@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 18: accepted. To check: gappa red_out_18.g
-# SHA-256 of the script below: 6672cf4b2d03fecc1eca013ddb2952a8aeb47c346ad1a8f3a55f694f87825cb2
+# SHA-256 of the script below: 1d226237aaf020ecbf4fc8509dad60d15fdbdb6d441f25481ca4f36b5e0b46a1
+# The hypotheses hold at dx = -0.0332183837890625, dy = -0.0616302490234375, dz = -1.4999847412109375, shift = 4
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -18,6 +19,7 @@ difference_24 = 0 - 0;
   /\ dy in [-2,1.9999847412109375]
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_11 in [2,3.9999999701976776123046875]
+  /\ shift in [4,4]
   /\ exact_19 <= 0
   -> |difference_24| <= 0.62451171875 }
 

@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 19: accepted. To check: gappa red_out_19.g
-# SHA-256 of the script below: 77927d6fe9332a1cd7bad482735eea1f15bdc9b59385c7903d9de9b4c16d12da
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 19: accepted; its hypotheses contradict each other. To check: gappa red_out_19.g
+# SHA-256 of the script below: 02560e7135ac3c3744650c4cfd7731e589318faf67b515082e4ec6c0e1b05f3a
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -25,6 +25,7 @@ difference_25 = 0 - exact_24;
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
   /\ distance_rounded_11 in [4,7.999999940395355224609375]
+  /\ shift in [4,4]
   /\ exact_19 >= 0
   -> |difference_25| <= 0.62451171875 }
 

@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 2: accepted. To check: gappa red_out_2.g
-# SHA-256 of the script below: 93f3f98964a4364292db39c41f06893fb120264fd78dfc19fb369bdc124d7d0c
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 2: accepted; its hypotheses contradict each other. To check: gappa red_out_2.g
+# SHA-256 of the script below: ea0b7729a5afc4dfcaa9e80c1ad7f48b855641e02417e5b65116be83bd10060d
 
 multiplier1_1 = dx * dx;
 multiplier2_3 = dy * dy;
@@ -32,6 +32,7 @@ difference_37 = red_intensity_24 - 0;
   /\ dy in [-2,1.9999847412109375]
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
+  /\ shift in [0,0]
   /\ exact_31 <= 0
   -> |difference_37| <= 0.62451171875 }
 

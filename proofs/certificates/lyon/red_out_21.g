@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 21: accepted. To check: gappa red_out_21.g
-# SHA-256 of the script below: af59fc6aad9774f15170b5fc1902c3d5f4c96a81a5c8dc45d7c782c9f89427a3
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 21: accepted; its hypotheses contradict each other. To check: gappa red_out_21.g
+# SHA-256 of the script below: 7069687fb1440694cbfc4f370589f61158d337f17b8e55daafc3c7b91803de20
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -25,6 +25,7 @@ difference_25 = 0 - exact_24;
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
   /\ distance_rounded_11 in [8,12]
+  /\ shift in [4,4]
   /\ exact_19 >= 0
   -> |difference_25| <= 0.62451171875 }
 

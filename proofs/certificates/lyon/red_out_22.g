@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 22: accepted. To check: gappa red_out_22.g
-# SHA-256 of the script below: 405087645742a82dc62e256a7b035c51aa180697b2c079e2f85e33444b7a3650
+# SHA-256 of the script below: f49f6bb49e8a75c0bc14969bb763022577ecdf5975cb7bfeee81e2817a28599f
+# The hypotheses hold at dx = 1.9667816162109375, dy = 1.9383697509765625, dz = -1.9999847412109375, shift = 4
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -18,6 +19,7 @@ difference_24 = 0 - 0;
   /\ dy in [-2,1.9999847412109375]
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_11 in [8,12]
+  /\ shift in [4,4]
   /\ exact_19 <= 0
   -> |difference_24| <= 0.62451171875 }
 

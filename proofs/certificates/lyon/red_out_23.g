@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 23: accepted. To check: gappa red_out_23.g
-# SHA-256 of the script below: 28d712edcf60278acf85748f2a669da00e824b5d1a163e73db34e38ad9acf800
+# SHA-256 of the script below: 87ff9989b00399ed1dc0a95c4821b9378399e51ca6ec5ee08528aa668ff6a5be
+# The hypotheses hold at dx = -0.0332183837890625, dy = -0.0616302490234375, dz = 0.0000152587890625, red = 98, shift = 5
 
 multiplier1_1 = dx * dx;
 multiplier2_3 = dy * dy;
@@ -36,6 +37,7 @@ difference_35 = red_intensity_22 - exact_34;
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_8 in [0,0.99999998509883880615234375]
   /\ red in [0,255]
+  /\ shift in [5,5]
   /\ exact_28 >= 0
   -> |difference_35| <= 0.62451171875 }
 

@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 24: accepted. To check: gappa red_out_24.g
-# SHA-256 of the script below: 0813d22bf108d4ace2d59df3ff950b43e058da3afd8b932698ee5e517a0ba54f
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 24: accepted; its hypotheses contradict each other. To check: gappa red_out_24.g
+# SHA-256 of the script below: 711e30dc553f0ee64f0ec4266d833ae7c850a0c988df9cba2a62f1fa9464762e
 
 multiplier1_1 = dx * dx;
 multiplier2_3 = dy * dy;
@@ -31,6 +31,7 @@ difference_34 = red_intensity_22 - 0;
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_8 in [0,0.99999998509883880615234375]
   /\ red in [0,255]
+  /\ shift in [5,5]
   /\ exact_28 <= 0
   -> |difference_34| <= 0.62451171875 }
 

@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 25: accepted. To check: gappa red_out_25.g
-# SHA-256 of the script below: b11a68cf955bd861c494f28eb8c3168b7f73853d552a3a32488aab4395ddd505
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 25: accepted; no witness is found. To check: gappa red_out_25.g
+# SHA-256 of the script below: 36bba22f6573beb03c787a620cc7fd5fdb8c0b3b3f857a0da4c850731568da59
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -24,6 +24,7 @@ difference_22 = 0 - exact_21;
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
   /\ distance_rounded_11 in [1,1.99999998509883880615234375]
+  /\ shift in [5,5]
   /\ exact_16 >= 0
   -> |difference_22| <= 0.62451171875 }
 

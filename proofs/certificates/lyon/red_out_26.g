@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 26: accepted. To check: gappa red_out_26.g
-# SHA-256 of the script below: 47b9d320c706319d748ac3777c174103848e254531d3aba1ebf19e6f79d375c6
+# SHA-256 of the script below: faa5c0eea1d7dde90051b5f0f7e2928281ac3e80e5ec5ba2b8aafdde8f815471
+# The hypotheses hold at dx = -0.0332183837890625, dy = -0.0616302490234375, dz = -0.9999847412109375, shift = 5
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -17,6 +18,7 @@ difference_21 = 0 - 0;
   /\ dy in [-2,1.9999847412109375]
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_11 in [1,1.99999998509883880615234375]
+  /\ shift in [5,5]
   /\ exact_16 <= 0
   -> |difference_21| <= 0.62451171875 }
 

@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 27: accepted. To check: gappa red_out_27.g
-# SHA-256 of the script below: 453b3771a82fb69fdc042f67468da897fce74a0844baca9021393939cc6fc51f
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 27: accepted; its hypotheses contradict each other. To check: gappa red_out_27.g
+# SHA-256 of the script below: cc8bae2169c7ba53a16dd3cf7335611043c3a1cc0a7558b77328f198ff4d7035
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -24,6 +24,7 @@ difference_22 = 0 - exact_21;
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
   /\ distance_rounded_11 in [2,3.9999999701976776123046875]
+  /\ shift in [5,5]
   /\ exact_16 >= 0
   -> |difference_22| <= 0.62451171875 }
 

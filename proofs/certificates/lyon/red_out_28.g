@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 28: accepted. To check: gappa red_out_28.g
-# SHA-256 of the script below: eb6eb6fc96045a14051175f1418459867c5a784f1a734a25d1510c782e499c49
+# SHA-256 of the script below: fa7f7fb259bf9a6e21b4d09aeb77c829cc623ef96277d37e1c640cb2b1e0293a
+# The hypotheses hold at dx = -0.0332183837890625, dy = -0.0616302490234375, dz = -1.4999847412109375, shift = 5
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -17,6 +18,7 @@ difference_21 = 0 - 0;
   /\ dy in [-2,1.9999847412109375]
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_11 in [2,3.9999999701976776123046875]
+  /\ shift in [5,5]
   /\ exact_16 <= 0
   -> |difference_21| <= 0.62451171875 }
 

@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 29: accepted. To check: gappa red_out_29.g
-# SHA-256 of the script below: ddb61c491f6fcfb1136d675cf27775267554dadf120ba5a15879047d31f7d2af
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 29: accepted; its hypotheses contradict each other. To check: gappa red_out_29.g
+# SHA-256 of the script below: 0e343d27b7999d681d28c905bbf8a3c7501acb2480a07f12df2fdf3932eb61cc
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -24,6 +24,7 @@ difference_22 = 0 - exact_21;
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
   /\ distance_rounded_11 in [4,7.999999940395355224609375]
+  /\ shift in [5,5]
   /\ exact_16 >= 0
   -> |difference_22| <= 0.62451171875 }
 

@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 3: accepted. To check: gappa red_out_3.g
-# SHA-256 of the script below: 3d209e3bc8366aa3c7b172451b582bf106858aa49a338d8f9cb8d02d80ee56ec
+# SHA-256 of the script below: 37b3bde6e3003a22baa72f6c14af110c0d9b6c7fa0ec3b67ce8e9b754645ea9b
+# The hypotheses hold at dx = 1.9667816162109375, dy = 1.9383697509765625, dz = -1.9999847412109375, red = 98, shift = 1
 
 multiplier1_1 = dx * dx;
 multiplier2_3 = dy * dy;
@@ -37,6 +38,7 @@ difference_39 = red_intensity_24 - exact_38;
   /\ dy in [-2,1.9999847412109375]
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
+  /\ shift in [1,1]
   /\ exact_32 >= 0
   -> |difference_39| <= 0.62451171875 }
 

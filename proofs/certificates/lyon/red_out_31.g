@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 31: accepted. To check: gappa red_out_31.g
-# SHA-256 of the script below: 35899677946d6aa5e494d62138d8a0ce8ca80e71426c08cd1112bf75367fa4a5
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 31: accepted; its hypotheses contradict each other. To check: gappa red_out_31.g
+# SHA-256 of the script below: 6f94a6b31333d55349440fed3f2807f129b197b07dd547cc23d0105d3a86199d
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -24,6 +24,7 @@ difference_22 = 0 - exact_21;
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
   /\ distance_rounded_11 in [8,12]
+  /\ shift in [5,5]
   /\ exact_16 >= 0
   -> |difference_22| <= 0.62451171875 }
 

@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 32: accepted. To check: gappa red_out_32.g
-# SHA-256 of the script below: 38fd2c173be3f3932ad7c54d519400f66c6d9feac86c3c79fcc51c77d4237938
+# SHA-256 of the script below: a4448de812503b3570f1d5d0680ff98b0bd98ceb14d807a56a62b5e4387580e6
+# The hypotheses hold at dx = 1.9667816162109375, dy = 1.9383697509765625, dz = -1.9999847412109375, shift = 5
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -17,6 +18,7 @@ difference_21 = 0 - 0;
   /\ dy in [-2,1.9999847412109375]
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_11 in [8,12]
+  /\ shift in [5,5]
   /\ exact_16 <= 0
   -> |difference_21| <= 0.62451171875 }
 

@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 33: accepted. To check: gappa red_out_33.g
-# SHA-256 of the script below: f9664001e9d104b56de40501a22b97b46c9c2545aa0e07a0213016b753f7c41e
+# SHA-256 of the script below: 6e3db075a2d4eaed870c20e57d39746ad739654595fda7594a9c25fb06e91c22
+# The hypotheses hold at dx = -0.0332183837890625, dy = -0.0616302490234375, dz = 0.0000152587890625, red = 98, shift = 6
 
 multiplier1_1 = dx * dx;
 multiplier2_3 = dy * dy;
@@ -38,6 +39,7 @@ difference_39 = red_intensity_24 - exact_38;
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_8 in [0,0.499999992549419403076171875]
   /\ red in [0,255]
+  /\ shift in [6,6]
   /\ exact_32 >= 0
   -> |difference_39| <= 0.62451171875 }
 

@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 34: accepted. To check: gappa red_out_34.g
-# SHA-256 of the script below: 9a9bdf5fdd8cd096516824119db7390dfd3138dbfd1ce942a73ec2a169832ecf
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 34: accepted; its hypotheses contradict each other. To check: gappa red_out_34.g
+# SHA-256 of the script below: 5b90c9ad6a7f0638c757633ed3e929aebbe466b77b739289535a40086c79f39d
 
 multiplier1_1 = dx * dx;
 multiplier2_3 = dy * dy;
@@ -33,6 +33,7 @@ difference_38 = red_intensity_24 - 0;
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_8 in [0,0.499999992549419403076171875]
   /\ red in [0,255]
+  /\ shift in [6,6]
   /\ exact_32 <= 0
   -> |difference_38| <= 0.62451171875 }
 

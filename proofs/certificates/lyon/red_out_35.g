@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 35: accepted. To check: gappa red_out_35.g
-# SHA-256 of the script below: bb68b2e86d5dcc4e4c04cefaa5d97161f7aa5fbdc6725461b6acda02fe5f23d4
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 35: accepted; no witness is found. To check: gappa red_out_35.g
+# SHA-256 of the script below: 1f2aa2a0c382627f980120e58f2c5dfbf0136d18594b4b59dad923269a8b3952
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -25,6 +25,7 @@ difference_25 = 0 - exact_24;
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
   /\ distance_rounded_11 in [0.5,0.999999992549419403076171875]
+  /\ shift in [6,6]
   /\ exact_19 >= 0
   -> |difference_25| <= 0.62451171875 }
 

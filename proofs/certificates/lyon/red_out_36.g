@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 36: accepted. To check: gappa red_out_36.g
-# SHA-256 of the script below: b727cc2a5d8be64eb945fb914c1d45e37aebbf239668aaaeab54231d4a9404c7
+# SHA-256 of the script below: d9138138d15f3234d5626c87c33c30e927bab3fec7050ffe00c94be687d0f4ca
+# The hypotheses hold at dx = 0.9667816162109375, dy = -0.0616302490234375, dz = 0.0000152587890625, shift = 6
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -18,6 +19,7 @@ difference_24 = 0 - 0;
   /\ dy in [-2,1.9999847412109375]
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_11 in [0.5,0.999999992549419403076171875]
+  /\ shift in [6,6]
   /\ exact_19 <= 0
   -> |difference_24| <= 0.62451171875 }
 

@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 37: accepted. To check: gappa red_out_37.g
-# SHA-256 of the script below: 036c69ea471d33be608f28771345630551a5bb3026ee11f8027030a3eb8d986a
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 37: accepted; its hypotheses contradict each other. To check: gappa red_out_37.g
+# SHA-256 of the script below: 363cccc5435a549eadd768efb539d77f014c12622ec71b8f878e206d9f1a8c9c
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -25,6 +25,7 @@ difference_25 = 0 - exact_24;
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
   /\ distance_rounded_11 in [1,1.99999998509883880615234375]
+  /\ shift in [6,6]
   /\ exact_19 >= 0
   -> |difference_25| <= 0.62451171875 }
 

@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 38: accepted. To check: gappa red_out_38.g
-# SHA-256 of the script below: 3358aa12b2ba83f14665bb24a615aa7c1a36c06daebcf2ff3df3a79e74558ded
+# SHA-256 of the script below: 0b9b444a84697e4cff1270c51b9df4729e1d5baf07e089fc315f6548192ed033
+# The hypotheses hold at dx = -0.0332183837890625, dy = -0.0616302490234375, dz = -0.9999847412109375, shift = 6
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -18,6 +19,7 @@ difference_24 = 0 - 0;
   /\ dy in [-2,1.9999847412109375]
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_11 in [1,1.99999998509883880615234375]
+  /\ shift in [6,6]
   /\ exact_19 <= 0
   -> |difference_24| <= 0.62451171875 }
 

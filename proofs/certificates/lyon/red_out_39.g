@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 39: accepted. To check: gappa red_out_39.g
-# SHA-256 of the script below: ce2f521ec4153655c226eb2e9c02b2a32d420805cec4ec8849eafa7044919fd4
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 39: accepted; its hypotheses contradict each other. To check: gappa red_out_39.g
+# SHA-256 of the script below: 14ea972b7670d76de6f63008abdf5e1d84c90cb1323520e8254d6382c4278565
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -25,6 +25,7 @@ difference_25 = 0 - exact_24;
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
   /\ distance_rounded_11 in [2,3.9999999701976776123046875]
+  /\ shift in [6,6]
   /\ exact_19 >= 0
   -> |difference_25| <= 0.62451171875 }
 

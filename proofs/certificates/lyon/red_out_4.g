@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 4: accepted. To check: gappa red_out_4.g
-# SHA-256 of the script below: 8dbc6316eb44ff6ddfc200c3716a439bb8dc0bfb11dea3f5e3fca10c3f3b8a7d
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 4: accepted; its hypotheses contradict each other. To check: gappa red_out_4.g
+# SHA-256 of the script below: 074b9d649274145a44229059043d19e5b8b06c56ba96452d5670ae95b915722a
 
 multiplier1_1 = dx * dx;
 multiplier2_3 = dy * dy;
@@ -32,6 +32,7 @@ difference_38 = red_intensity_24 - 0;
   /\ dy in [-2,1.9999847412109375]
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
+  /\ shift in [1,1]
   /\ exact_32 <= 0
   -> |difference_38| <= 0.62451171875 }
 

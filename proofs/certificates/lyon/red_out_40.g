@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 40: accepted. To check: gappa red_out_40.g
-# SHA-256 of the script below: 53c1d00f97670e58ad10868a364c2032f07bac102e92e86ff2f23adc3046dfcc
+# SHA-256 of the script below: 3a5b05d1efb4c3c5790273ad9977e24af48f1900590451c0af5b5783fc1029e0
+# The hypotheses hold at dx = -0.0332183837890625, dy = -0.0616302490234375, dz = -1.4999847412109375, shift = 6
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -18,6 +19,7 @@ difference_24 = 0 - 0;
   /\ dy in [-2,1.9999847412109375]
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_11 in [2,3.9999999701976776123046875]
+  /\ shift in [6,6]
   /\ exact_19 <= 0
   -> |difference_24| <= 0.62451171875 }
 

@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 41: accepted. To check: gappa red_out_41.g
-# SHA-256 of the script below: 45fee3a903bb4650255638e4c2d9f1133d4667aa6b1fa58757edb7930c05f573
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 41: accepted; its hypotheses contradict each other. To check: gappa red_out_41.g
+# SHA-256 of the script below: 55fa663c735e9ec56a594d4ce573ed8bc1a44109075915156f12c52872af1f64
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -25,6 +25,7 @@ difference_25 = 0 - exact_24;
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
   /\ distance_rounded_11 in [4,7.999999940395355224609375]
+  /\ shift in [6,6]
   /\ exact_19 >= 0
   -> |difference_25| <= 0.62451171875 }
 

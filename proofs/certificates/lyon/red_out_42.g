@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 42: accepted. To check: gappa red_out_42.g
-# SHA-256 of the script below: c1cd3e543c97a7446d14316ba53e945d537f0e79334a75992968c58cec3ae74c
+# SHA-256 of the script below: c60b51606530eda341960f17d937cf0641e444ac6a3214745ea4ba9bb9b52413
+# The hypotheses hold at dx = -0.0332183837890625, dy = 1.9383697509765625, dz = -1.9999847412109375, shift = 6
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -18,6 +19,7 @@ difference_24 = 0 - 0;
   /\ dy in [-2,1.9999847412109375]
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_11 in [4,7.999999940395355224609375]
+  /\ shift in [6,6]
   /\ exact_19 <= 0
   -> |difference_24| <= 0.62451171875 }
 

@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 43: accepted. To check: gappa red_out_43.g
-# SHA-256 of the script below: 1427d53be791b2bb126af22064ce0bbc38b79a1af5de621f74aa7eef0777a1cc
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 43: accepted; its hypotheses contradict each other. To check: gappa red_out_43.g
+# SHA-256 of the script below: 1f13cb1934339e82e2149297bba82d64a885b36ba5bb852285551cf024dab0bd
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -25,6 +25,7 @@ difference_25 = 0 - exact_24;
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
   /\ distance_rounded_11 in [8,12]
+  /\ shift in [6,6]
   /\ exact_19 >= 0
   -> |difference_25| <= 0.62451171875 }
 

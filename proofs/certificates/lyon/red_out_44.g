@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 44: accepted. To check: gappa red_out_44.g
-# SHA-256 of the script below: 6bf70929c683f6596059d5f82668747cdfecb83f376f5f30b50c643fd5176825
+# SHA-256 of the script below: 75df3052d382e41ca01a61d089795cf954e04efe6411426e071feedac440e523
+# The hypotheses hold at dx = 1.9667816162109375, dy = 1.9383697509765625, dz = -1.9999847412109375, shift = 6
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -18,6 +19,7 @@ difference_24 = 0 - 0;
   /\ dy in [-2,1.9999847412109375]
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_11 in [8,12]
+  /\ shift in [6,6]
   /\ exact_19 <= 0
   -> |difference_24| <= 0.62451171875 }
 

@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 45: accepted. To check: gappa red_out_45.g
-# SHA-256 of the script below: 4687206918ed94f87a820ce6c6395508e74870309b41d6e6e09a0ccdf9b56827
+# SHA-256 of the script below: d2df4d237fd43c9afaddee3ad979aa180ed6b987ec94d76b644c60abc473e43b
+# The hypotheses hold at dx = -0.0332183837890625, dy = -0.0616302490234375, dz = 0.0000152587890625, red = 98, shift = 7
 
 multiplier1_1 = dx * dx;
 multiplier2_3 = dy * dy;
@@ -38,6 +39,7 @@ difference_39 = red_intensity_24 - exact_38;
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_8 in [0,0.2499999962747097015380859375]
   /\ red in [0,255]
+  /\ shift in [7,7]
   /\ exact_32 >= 0
   -> |difference_39| <= 0.62451171875 }
 

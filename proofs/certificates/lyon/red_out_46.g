@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 46: accepted. To check: gappa red_out_46.g
-# SHA-256 of the script below: 342b5b22116b0a1a668f48ae4b545c638d4e0bcbcd17f6c16bf6de973865b417
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 46: accepted; its hypotheses contradict each other. To check: gappa red_out_46.g
+# SHA-256 of the script below: aad64b250a9333b004ad44e208d5a531b74ba45137994ca2fb945ce85c27151d
 
 multiplier1_1 = dx * dx;
 multiplier2_3 = dy * dy;
@@ -33,6 +33,7 @@ difference_38 = red_intensity_24 - 0;
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_8 in [0,0.2499999962747097015380859375]
   /\ red in [0,255]
+  /\ shift in [7,7]
   /\ exact_32 <= 0
   -> |difference_38| <= 0.62451171875 }
 

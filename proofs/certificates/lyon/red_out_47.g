@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 47: accepted. To check: gappa red_out_47.g
-# SHA-256 of the script below: 30a3425a8aced8c7731b49471b7e1667c6c47eff648d12257ac72ceb7d104b2e
+# SHA-256 of the script below: 0de623b22e2cc818a98c8735d7fd29aacdfc7c1eafb20ca0facabd04eeac4470
+# The hypotheses hold at dx = 0.5, dy = 0, dz = 0, red = 106, shift = 7
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -25,6 +26,7 @@ difference_25 = 0 - exact_24;
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
   /\ distance_rounded_11 in [0.25,0.4999999962747097015380859375]
+  /\ shift in [7,7]
   /\ exact_19 >= 0
   -> |difference_25| <= 0.62451171875 }
 

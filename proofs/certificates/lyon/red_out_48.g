@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 48: accepted. To check: gappa red_out_48.g
-# SHA-256 of the script below: 0c80a611a43e73403b4613008b44c2e54298028b029f4b2ec2fe69a9f0627c0c
+# SHA-256 of the script below: 0ca6028d085f3b611fdb9719ad71891f4c51d42c51cfeda00f3b6c005a8c9c0f
+# The hypotheses hold at dx = 0.4667816162109375, dy = 0.4383697509765625, dz = 0.0000152587890625, shift = 7
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -18,6 +19,7 @@ difference_24 = 0 - 0;
   /\ dy in [-2,1.9999847412109375]
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_11 in [0.25,0.4999999962747097015380859375]
+  /\ shift in [7,7]
   /\ exact_19 <= 0
   -> |difference_24| <= 0.62451171875 }
 

@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 49: accepted. To check: gappa red_out_49.g
-# SHA-256 of the script below: ef5ead1b2bd8de808e7a9e0803a864bb36ebc336b3d8c72ee90401dd59a05d46
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 49: accepted; its hypotheses contradict each other. To check: gappa red_out_49.g
+# SHA-256 of the script below: 99728dd89b8502c849a995a55bfe9211ecc331ec939448483153d3bf44c659a7
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -25,6 +25,7 @@ difference_25 = 0 - exact_24;
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
   /\ distance_rounded_11 in [0.5,0.999999992549419403076171875]
+  /\ shift in [7,7]
   /\ exact_19 >= 0
   -> |difference_25| <= 0.62451171875 }
 

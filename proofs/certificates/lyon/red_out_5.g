@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 5: accepted. To check: gappa red_out_5.g
-# SHA-256 of the script below: 77ebc5c0e3e95371e13a42ad96d2ad78cc9104951e64fb983b0e8df1cf102c26
+# SHA-256 of the script below: 33fb567675d58315a5fcaae055f6ca73ce60bfad10dd7440c20268e59a27694d
+# The hypotheses hold at dx = -0.0332183837890625, dy = 1.9383697509765625, dz = -1.9999847412109375, red = 98, shift = 2
 
 multiplier1_1 = dx * dx;
 multiplier2_3 = dy * dy;
@@ -38,6 +39,7 @@ difference_39 = red_intensity_24 - exact_38;
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_8 in [0,7.99999988079071044921875]
   /\ red in [0,255]
+  /\ shift in [2,2]
   /\ exact_32 >= 0
   -> |difference_39| <= 0.62451171875 }
 

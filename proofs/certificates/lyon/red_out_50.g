@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 50: accepted. To check: gappa red_out_50.g
-# SHA-256 of the script below: d03468d9eb686a026f5c8f69e826b7eac638cb697a771d49b386bc530a413870
+# SHA-256 of the script below: eb48422832f18090af194902c3dba0a4cb8379847979949eba13c74c27e70c65
+# The hypotheses hold at dx = 0.9667816162109375, dy = -0.0616302490234375, dz = 0.0000152587890625, shift = 7
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -18,6 +19,7 @@ difference_24 = 0 - 0;
   /\ dy in [-2,1.9999847412109375]
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_11 in [0.5,0.999999992549419403076171875]
+  /\ shift in [7,7]
   /\ exact_19 <= 0
   -> |difference_24| <= 0.62451171875 }
 

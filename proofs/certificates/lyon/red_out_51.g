@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 51: accepted. To check: gappa red_out_51.g
-# SHA-256 of the script below: 354a0f834f1603faf3e01f6db1a31dea674a9477098eaff055ce176001471ed6
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 51: accepted; its hypotheses contradict each other. To check: gappa red_out_51.g
+# SHA-256 of the script below: 92eec50926ca2252aa7fcd2ba34ca62dc67c0ead7eb1e579622098ed4db9ec18
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -25,6 +25,7 @@ difference_25 = 0 - exact_24;
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
   /\ distance_rounded_11 in [1,1.99999998509883880615234375]
+  /\ shift in [7,7]
   /\ exact_19 >= 0
   -> |difference_25| <= 0.62451171875 }
 

@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 52: accepted. To check: gappa red_out_52.g
-# SHA-256 of the script below: 149eba5d4ebd081e3383df5bddc051318aa65e0658ffc5e2e299d50811e71033
+# SHA-256 of the script below: 51c784001b862bd230a11cac2fa33b68818e6fba20bde189dfd06c9315aa863c
+# The hypotheses hold at dx = -0.0332183837890625, dy = -0.0616302490234375, dz = -0.9999847412109375, shift = 7
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -18,6 +19,7 @@ difference_24 = 0 - 0;
   /\ dy in [-2,1.9999847412109375]
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_11 in [1,1.99999998509883880615234375]
+  /\ shift in [7,7]
   /\ exact_19 <= 0
   -> |difference_24| <= 0.62451171875 }
 

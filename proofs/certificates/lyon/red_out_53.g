@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 53: accepted. To check: gappa red_out_53.g
-# SHA-256 of the script below: 7af9139ccce4ce035c0700d56e607718761b590543398b8e96dfa7898f9f325f
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 53: accepted; its hypotheses contradict each other. To check: gappa red_out_53.g
+# SHA-256 of the script below: cbf4a91f3c4bc6c8008db509ae686959ee5d8ca066b5cda686010ce8fe419a9f
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -25,6 +25,7 @@ difference_25 = 0 - exact_24;
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
   /\ distance_rounded_11 in [2,3.9999999701976776123046875]
+  /\ shift in [7,7]
   /\ exact_19 >= 0
   -> |difference_25| <= 0.62451171875 }
 

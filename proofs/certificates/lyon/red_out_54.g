@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 54: accepted. To check: gappa red_out_54.g
-# SHA-256 of the script below: 8477584d599ec2a482d3ba5bf26991f52cde20ae7104614cfc037e01f6eaff85
+# SHA-256 of the script below: 140e56197963c82f319624c5836c5959314f3c25c9351d0354b37822244f0b95
+# The hypotheses hold at dx = -0.0332183837890625, dy = -0.0616302490234375, dz = -1.4999847412109375, shift = 7
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -18,6 +19,7 @@ difference_24 = 0 - 0;
   /\ dy in [-2,1.9999847412109375]
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_11 in [2,3.9999999701976776123046875]
+  /\ shift in [7,7]
   /\ exact_19 <= 0
   -> |difference_24| <= 0.62451171875 }
 

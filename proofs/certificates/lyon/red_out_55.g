@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 55: accepted. To check: gappa red_out_55.g
-# SHA-256 of the script below: 9d7b814c33779518da3478cddbaf256f7e32cd70b38d71ececa4f8510d2ebb20
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 55: accepted; its hypotheses contradict each other. To check: gappa red_out_55.g
+# SHA-256 of the script below: 1283553c3f8227e5d21ff69b53ad6422972aad7a258bdecf744eae76943fb0b7
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -25,6 +25,7 @@ difference_25 = 0 - exact_24;
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
   /\ distance_rounded_11 in [4,7.999999940395355224609375]
+  /\ shift in [7,7]
   /\ exact_19 >= 0
   -> |difference_25| <= 0.62451171875 }
 

@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 56: accepted. To check: gappa red_out_56.g
-# SHA-256 of the script below: 4d67446dc742f4829ed6b7d64b8e6133c188815e2b2af8576629fb37b68a4f96
+# SHA-256 of the script below: 0f9d4232d8d7785b363731555d486fd5a7909ec28f0a3106f5723453c5ca198b
+# The hypotheses hold at dx = -0.0332183837890625, dy = 1.9383697509765625, dz = -1.9999847412109375, shift = 7
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -18,6 +19,7 @@ difference_24 = 0 - 0;
   /\ dy in [-2,1.9999847412109375]
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_11 in [4,7.999999940395355224609375]
+  /\ shift in [7,7]
   /\ exact_19 <= 0
   -> |difference_24| <= 0.62451171875 }
 

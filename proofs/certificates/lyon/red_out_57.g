@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 57: accepted. To check: gappa red_out_57.g
-# SHA-256 of the script below: 45cc3b28982e84769a66c7d3b5e508d5ccde8000c7052bbbf0ba135f961a24c1
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 57: accepted; its hypotheses contradict each other. To check: gappa red_out_57.g
+# SHA-256 of the script below: adac758f8536ad2348aa37ffca45a56c86c09098460c28780f47e79a85dc6370
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -25,6 +25,7 @@ difference_25 = 0 - exact_24;
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
   /\ distance_rounded_11 in [8,12]
+  /\ shift in [7,7]
   /\ exact_19 >= 0
   -> |difference_25| <= 0.62451171875 }
 

@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 58: accepted. To check: gappa red_out_58.g
-# SHA-256 of the script below: 0a04d70c3d0c40ceee33ef0a6130dd805f7af2bb7047841d5a64e2da77334f92
+# SHA-256 of the script below: f0031c680c0b82691b977c75b03b5c693486642a8c843d29be7631c59f4543df
+# The hypotheses hold at dx = 1.9667816162109375, dy = 1.9383697509765625, dz = -1.9999847412109375, shift = 7
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -18,6 +19,7 @@ difference_24 = 0 - 0;
   /\ dy in [-2,1.9999847412109375]
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_11 in [8,12]
+  /\ shift in [7,7]
   /\ exact_19 <= 0
   -> |difference_24| <= 0.62451171875 }
 

@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 59: accepted. To check: gappa red_out_59.g
-# SHA-256 of the script below: 93cf9117ec3dd3973ff213dd981afc3ccbc0debc8dce5d37356efdf2318bfe3b
+# SHA-256 of the script below: 4374cc058b0e0b280578d61738b96d9f1d84162a040e4df6d396962c652171b0
+# The hypotheses hold at dx = -0.0332183837890625, dy = -0.0616302490234375, dz = 0.0000152587890625, red = 98, shift = 8
 
 multiplier1_1 = dx * dx;
 multiplier2_3 = dy * dy;
@@ -38,6 +39,7 @@ difference_39 = red_intensity_24 - exact_38;
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_8 in [0,0.12499999813735485076904296875]
   /\ red in [0,255]
+  /\ shift in [8,8]
   /\ exact_32 >= 0
   -> |difference_39| <= 0.62451171875 }
 

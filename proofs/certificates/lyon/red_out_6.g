@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 6: accepted. To check: gappa red_out_6.g
-# SHA-256 of the script below: 6b61d2eac2fa57ad355fa98415a391cf04e83cd78cfadc9cfa39f33226680a64
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 6: accepted; its hypotheses contradict each other. To check: gappa red_out_6.g
+# SHA-256 of the script below: 41d533dca0ed44b4e13f660672de2b92087867d75371940b802d5657a1a7519d
 
 multiplier1_1 = dx * dx;
 multiplier2_3 = dy * dy;
@@ -33,6 +33,7 @@ difference_38 = red_intensity_24 - 0;
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_8 in [0,7.99999988079071044921875]
   /\ red in [0,255]
+  /\ shift in [2,2]
   /\ exact_32 <= 0
   -> |difference_38| <= 0.62451171875 }
 

@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 60: accepted. To check: gappa red_out_60.g
-# SHA-256 of the script below: 7d7327d2aa6516e03036e98d489bc65351e02626aa902d678b4aad0b5306f118
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 60: accepted; its hypotheses contradict each other. To check: gappa red_out_60.g
+# SHA-256 of the script below: 6d21ab0f85ae28fc5b47ad276551cf1a37eaff698c2058132b26afdb7ea829fa
 
 multiplier1_1 = dx * dx;
 multiplier2_3 = dy * dy;
@@ -33,6 +33,7 @@ difference_38 = red_intensity_24 - 0;
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_8 in [0,0.12499999813735485076904296875]
   /\ red in [0,255]
+  /\ shift in [8,8]
   /\ exact_32 <= 0
   -> |difference_38| <= 0.62451171875 }
 

@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 61: accepted. To check: gappa red_out_61.g
-# SHA-256 of the script below: 96ff5c3310f81d0f3c40eca8383feac16634895cb3b23098c8c87e4dc019c131
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 61: accepted; no witness is found. To check: gappa red_out_61.g
+# SHA-256 of the script below: bddfe9b280dfba180b9d8e57ec968bbfc66269d4d604fd3f831cff047350ddc7
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -25,6 +25,7 @@ difference_25 = 0 - exact_24;
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
   /\ distance_rounded_11 in [0.125,0.24999999813735485076904296875]
+  /\ shift in [8,8]
   /\ exact_19 >= 0
   -> |difference_25| <= 0.62451171875 }
 

@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 62: accepted. To check: gappa red_out_62.g
-# SHA-256 of the script below: dd83a97609cef4286bff7acb0ab622da0ce71766dd77415ef8b80edc7468dc69
+# SHA-256 of the script below: cf2fb777a45b98270b2f987fc0581651af186113012af00db1c4b1ebd7be6627
+# The hypotheses hold at dx = 0.4667816162109375, dy = -0.0616302490234375, dz = 0.0000152587890625, shift = 8
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -18,6 +19,7 @@ difference_24 = 0 - 0;
   /\ dy in [-2,1.9999847412109375]
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_11 in [0.125,0.24999999813735485076904296875]
+  /\ shift in [8,8]
   /\ exact_19 <= 0
   -> |difference_24| <= 0.62451171875 }
 

@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 63: accepted. To check: gappa red_out_63.g
-# SHA-256 of the script below: 7ea29deb3e0327769222494b862d60555c6dd1f787d79213545a414d66f61c56
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 63: accepted; its hypotheses contradict each other. To check: gappa red_out_63.g
+# SHA-256 of the script below: d2ef97fed9b2919cc68b4167ec5f04126ebe67cb1256d91da60acb96bc948cf7
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -25,6 +25,7 @@ difference_25 = 0 - exact_24;
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
   /\ distance_rounded_11 in [0.25,0.4999999962747097015380859375]
+  /\ shift in [8,8]
   /\ exact_19 >= 0
   -> |difference_25| <= 0.62451171875 }
 

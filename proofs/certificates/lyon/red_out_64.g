@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 64: accepted. To check: gappa red_out_64.g
-# SHA-256 of the script below: b093f7b4e73997a12ead4a03b757dd99fd116eb708d15c8a000eb61beeda84ee
+# SHA-256 of the script below: 2a3698111c41b0ad8f17fb984308a40d2bb98338ef68a27d793148205b8db061
+# The hypotheses hold at dx = 0.4667816162109375, dy = 0.4383697509765625, dz = 0.0000152587890625, shift = 8
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -18,6 +19,7 @@ difference_24 = 0 - 0;
   /\ dy in [-2,1.9999847412109375]
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_11 in [0.25,0.4999999962747097015380859375]
+  /\ shift in [8,8]
   /\ exact_19 <= 0
   -> |difference_24| <= 0.62451171875 }
 

@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 65: accepted. To check: gappa red_out_65.g
-# SHA-256 of the script below: 1da8f3f1c113afd9e18168eb4b6595b94188fcd1d220b5eb5b8997c1a21238e6
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 65: accepted; its hypotheses contradict each other. To check: gappa red_out_65.g
+# SHA-256 of the script below: a0d3f5ee6c3d260fcecef1c4f54bcfbd0b3be692bccd80dbec9596821d41f7ef
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -25,6 +25,7 @@ difference_25 = 0 - exact_24;
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
   /\ distance_rounded_11 in [0.5,0.999999992549419403076171875]
+  /\ shift in [8,8]
   /\ exact_19 >= 0
   -> |difference_25| <= 0.62451171875 }
 

@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 66: accepted. To check: gappa red_out_66.g
-# SHA-256 of the script below: 77d7dca0d29b7a5b4fbd6f668d5449a741d258b37ddd67509403558223bddc5b
+# SHA-256 of the script below: 31ae8c0bf6f1f3a21347483441746323d5e535889536d4c7e433de80d9ebc607
+# The hypotheses hold at dx = 0.9667816162109375, dy = -0.0616302490234375, dz = 0.0000152587890625, shift = 8
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -18,6 +19,7 @@ difference_24 = 0 - 0;
   /\ dy in [-2,1.9999847412109375]
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_11 in [0.5,0.999999992549419403076171875]
+  /\ shift in [8,8]
   /\ exact_19 <= 0
   -> |difference_24| <= 0.62451171875 }
 

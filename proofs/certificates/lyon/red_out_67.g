@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 67: accepted. To check: gappa red_out_67.g
-# SHA-256 of the script below: 4812466f7cebc9958cb150d0dd2038c196f23529d5c42f5a36774bf5ab0d3767
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 67: accepted; its hypotheses contradict each other. To check: gappa red_out_67.g
+# SHA-256 of the script below: 5a9988cc261f27cd2bc5d3da21ae8571112c2ab14bb453828cd0e569d3171afa
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -25,6 +25,7 @@ difference_25 = 0 - exact_24;
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
   /\ distance_rounded_11 in [1,1.99999998509883880615234375]
+  /\ shift in [8,8]
   /\ exact_19 >= 0
   -> |difference_25| <= 0.62451171875 }
 

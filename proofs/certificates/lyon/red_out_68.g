@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 68: accepted. To check: gappa red_out_68.g
-# SHA-256 of the script below: da3a1df8c76583e000d3b7bb9f36577557fe14185496ed48a976ec2d234c1c60
+# SHA-256 of the script below: 93febd57d2fa64230561797b1e197d9dbc2af1132d9bffffda15d688b8547a73
+# The hypotheses hold at dx = -0.0332183837890625, dy = -0.0616302490234375, dz = -0.9999847412109375, shift = 8
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -18,6 +19,7 @@ difference_24 = 0 - 0;
   /\ dy in [-2,1.9999847412109375]
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_11 in [1,1.99999998509883880615234375]
+  /\ shift in [8,8]
   /\ exact_19 <= 0
   -> |difference_24| <= 0.62451171875 }
 

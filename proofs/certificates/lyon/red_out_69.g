@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 69: accepted. To check: gappa red_out_69.g
-# SHA-256 of the script below: 34f6e86ba0cc9f2e75d6d0bc5e1538b11856885c7c5b5dc2f29a4b128c534b3e
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 69: accepted; its hypotheses contradict each other. To check: gappa red_out_69.g
+# SHA-256 of the script below: 6415657032d965dfeded6c79d76776d42f405e1da7560374bbd68db17808b4ee
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -25,6 +25,7 @@ difference_25 = 0 - exact_24;
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
   /\ distance_rounded_11 in [2,3.9999999701976776123046875]
+  /\ shift in [8,8]
   /\ exact_19 >= 0
   -> |difference_25| <= 0.62451171875 }
 

@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 7: accepted. To check: gappa red_out_7.g
-# SHA-256 of the script below: f62511cf6fb6ea6bcb0dd42d3c463a09f1052e2a2766ad695df32b74f606e6e0
+# SHA-256 of the script below: 635bb0a8bb7df4302e741055fc5eb92259dfca1aa5f46437084edfa7abfeef83
+# The hypotheses hold at dx = 0, dy = -2, dz = -2, red = 22, shift = 2
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -25,6 +26,7 @@ difference_25 = 0 - exact_24;
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
   /\ distance_rounded_11 in [8,12]
+  /\ shift in [2,2]
   /\ exact_19 >= 0
   -> |difference_25| <= 0.62451171875 }
 

@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 70: accepted. To check: gappa red_out_70.g
-# SHA-256 of the script below: 3c60a0ff0b5e6c9247add9df9427bc5ba15331faa866c481546b428a1c1281c1
+# SHA-256 of the script below: cc9bfe5f4fbc24ba36c5fffec1bced348496d244cdd1073db92cc2dbc29ee1e0
+# The hypotheses hold at dx = -0.0332183837890625, dy = -0.0616302490234375, dz = -1.4999847412109375, shift = 8
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -18,6 +19,7 @@ difference_24 = 0 - 0;
   /\ dy in [-2,1.9999847412109375]
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_11 in [2,3.9999999701976776123046875]
+  /\ shift in [8,8]
   /\ exact_19 <= 0
   -> |difference_24| <= 0.62451171875 }
 

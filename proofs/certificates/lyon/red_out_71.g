@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 71: accepted. To check: gappa red_out_71.g
-# SHA-256 of the script below: f5e68a53fd5d6f2f0dbef1724db2af8c286083fa267d8279fd5b5a718dfcfd25
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 71: accepted; its hypotheses contradict each other. To check: gappa red_out_71.g
+# SHA-256 of the script below: da6fcebcbd5a690096f604145714c006f43a61c82d6528d33a490debedc6c7a8
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -25,6 +25,7 @@ difference_25 = 0 - exact_24;
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
   /\ distance_rounded_11 in [4,7.999999940395355224609375]
+  /\ shift in [8,8]
   /\ exact_19 >= 0
   -> |difference_25| <= 0.62451171875 }
 

@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 72: accepted. To check: gappa red_out_72.g
-# SHA-256 of the script below: babaff7411d3bfa285e043c275c18019555d3625d64d61d96e56ca58b1ffe4a8
+# SHA-256 of the script below: 7737058ebcb69db3576631ba74baef95a5c7bbe9b73ffc52b497e7aeb6d83749
+# The hypotheses hold at dx = -0.0332183837890625, dy = 1.9383697509765625, dz = -1.9999847412109375, shift = 8
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -18,6 +19,7 @@ difference_24 = 0 - 0;
   /\ dy in [-2,1.9999847412109375]
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_11 in [4,7.999999940395355224609375]
+  /\ shift in [8,8]
   /\ exact_19 <= 0
   -> |difference_24| <= 0.62451171875 }
 

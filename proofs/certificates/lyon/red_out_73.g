@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 73: accepted. To check: gappa red_out_73.g
-# SHA-256 of the script below: f9052757919481b0cfb680552b22562f081f7991c26b1bda417bc2dad6429917
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 73: accepted; its hypotheses contradict each other. To check: gappa red_out_73.g
+# SHA-256 of the script below: 0b40bb0c37ef6ae3280006952293c8c1cf0e1162e3edd1a0351ece742ab06204
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -25,6 +25,7 @@ difference_25 = 0 - exact_24;
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
   /\ distance_rounded_11 in [8,12]
+  /\ shift in [8,8]
   /\ exact_19 >= 0
   -> |difference_25| <= 0.62451171875 }
 

@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 74: accepted. To check: gappa red_out_74.g
-# SHA-256 of the script below: a5cb804406d9954162f3e97cdc283533ac47265735ff71076d7c257b9a0e0958
+# SHA-256 of the script below: 910d74ac8d84e6de8043ac411423ea157dc33134203f9b233227a414aa791060
+# The hypotheses hold at dx = 1.9667816162109375, dy = 1.9383697509765625, dz = -1.9999847412109375, shift = 8
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -18,6 +19,7 @@ difference_24 = 0 - 0;
   /\ dy in [-2,1.9999847412109375]
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_11 in [8,12]
+  /\ shift in [8,8]
   /\ exact_19 <= 0
   -> |difference_24| <= 0.62451171875 }
 

@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 75: accepted. To check: gappa red_out_75.g
-# SHA-256 of the script below: 03f55012e44de37f5627b4725b194e020f8e18aa844aff0dbed3de417c29b0ac
+# SHA-256 of the script below: 7012a3ede048ee62063d47f193a29a7b4718491aef127ddf403b9fd5a7359c74
+# The hypotheses hold at dx = -0.0332183837890625, dy = -0.0616302490234375, dz = 0.0000152587890625, red = 98, shift = 9
 
 multiplier1_1 = dx * dx;
 multiplier2_3 = dy * dy;
@@ -38,6 +39,7 @@ difference_39 = red_intensity_24 - exact_38;
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_8 in [0,0.062499999068677425384521484375]
   /\ red in [0,255]
+  /\ shift in [9,9]
   /\ exact_32 >= 0
   -> |difference_39| <= 0.62451171875 }
 

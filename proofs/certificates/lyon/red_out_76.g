@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 76: accepted. To check: gappa red_out_76.g
-# SHA-256 of the script below: a81704e18b35678d75432c9c090ebcf53dcfa4788eccbf3cff78678c3c5b253a
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 76: accepted; its hypotheses contradict each other. To check: gappa red_out_76.g
+# SHA-256 of the script below: 35309389f66a7753dcccdf5964c0c91d54353a7074ebe319484c13568f487f41
 
 multiplier1_1 = dx * dx;
 multiplier2_3 = dy * dy;
@@ -33,6 +33,7 @@ difference_38 = red_intensity_24 - 0;
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_8 in [0,0.062499999068677425384521484375]
   /\ red in [0,255]
+  /\ shift in [9,9]
   /\ exact_32 <= 0
   -> |difference_38| <= 0.62451171875 }
 

@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 77: accepted. To check: gappa red_out_77.g
-# SHA-256 of the script below: f9649eb2f431f7c7dfac86abb929fb79a0ac850d6ec5ed4c30745e9c1f83b14b
+# SHA-256 of the script below: 36f2741f0fd8133f6d10ebe3d29ae8f87400064dc21598ed669105286a1c347d
+# The hypotheses hold at dx = 0.25, dy = 0, dz = 0, red = 106, shift = 9
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -25,6 +26,7 @@ difference_25 = 0 - exact_24;
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
   /\ distance_rounded_11 in [0.0625,0.124999999068677425384521484375]
+  /\ shift in [9,9]
   /\ exact_19 >= 0
   -> |difference_25| <= 0.62451171875 }
 

@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 78: accepted. To check: gappa red_out_78.g
-# SHA-256 of the script below: ffe9bf945fd1bbfe00ee6b03dde113ea9dc2d93f41360691e2deb627a66aa476
+# SHA-256 of the script below: b21c970e534d5c40b0f3f8f74a46a603a7f0072a8026f9f8d34ef4cce980de4f
+# The hypotheses hold at dx = 0.3417816162109375, dy = -0.0616302490234375, dz = 0.0000152587890625, shift = 9
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -18,6 +19,7 @@ difference_24 = 0 - 0;
   /\ dy in [-2,1.9999847412109375]
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_11 in [0.0625,0.124999999068677425384521484375]
+  /\ shift in [9,9]
   /\ exact_19 <= 0
   -> |difference_24| <= 0.62451171875 }
 

@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 79: accepted. To check: gappa red_out_79.g
-# SHA-256 of the script below: a1ff6e24e1de9855b3812eeca2a5098c7edfd6a006085ae552fd64b98edb9fea
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 79: accepted; its hypotheses contradict each other. To check: gappa red_out_79.g
+# SHA-256 of the script below: daf82585bd93beec74254015090ad193a709308f48975d52cbaccf912faa8bf1
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -25,6 +25,7 @@ difference_25 = 0 - exact_24;
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
   /\ distance_rounded_11 in [0.125,0.24999999813735485076904296875]
+  /\ shift in [9,9]
   /\ exact_19 >= 0
   -> |difference_25| <= 0.62451171875 }
 

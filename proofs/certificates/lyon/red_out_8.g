@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 8: accepted. To check: gappa red_out_8.g
-# SHA-256 of the script below: 6d67bc5b59213316081f3237ef9da6e3b5f95aa1aa19c3f3edc2f92223fff94f
+# SHA-256 of the script below: de127ce427428cd21200b96988b6a64eef53f887fd45adaab8a5466bb2024de0
+# The hypotheses hold at dx = 1.9667816162109375, dy = 1.9383697509765625, dz = -1.9999847412109375, shift = 2
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -18,6 +19,7 @@ difference_24 = 0 - 0;
   /\ dy in [-2,1.9999847412109375]
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_11 in [8,12]
+  /\ shift in [2,2]
   /\ exact_19 <= 0
   -> |difference_24| <= 0.62451171875 }
 

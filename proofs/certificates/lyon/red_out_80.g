@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 80: accepted. To check: gappa red_out_80.g
-# SHA-256 of the script below: 4c3942d78b8526b8d59a3bcb99b10aff76ab84bc588b0a9456e5aeedf7656fe4
+# SHA-256 of the script below: 9030ad62af5fe3a462df46f32bd1786ef52676d53f3912d35a40998e955e147e
+# The hypotheses hold at dx = 0.4667816162109375, dy = -0.0616302490234375, dz = 0.0000152587890625, shift = 9
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -18,6 +19,7 @@ difference_24 = 0 - 0;
   /\ dy in [-2,1.9999847412109375]
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_11 in [0.125,0.24999999813735485076904296875]
+  /\ shift in [9,9]
   /\ exact_19 <= 0
   -> |difference_24| <= 0.62451171875 }
 

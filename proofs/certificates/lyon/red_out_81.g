@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 81: accepted. To check: gappa red_out_81.g
-# SHA-256 of the script below: 376eda8956a008ce1e9179f1b6c13cf72462ef65ca0c0e28c8a5e09074fd58f5
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 81: accepted; its hypotheses contradict each other. To check: gappa red_out_81.g
+# SHA-256 of the script below: cde9721293cc225d02696f54a21fb8faaa636a2362e9d772615a9fcce80c286d
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -25,6 +25,7 @@ difference_25 = 0 - exact_24;
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
   /\ distance_rounded_11 in [0.25,0.4999999962747097015380859375]
+  /\ shift in [9,9]
   /\ exact_19 >= 0
   -> |difference_25| <= 0.62451171875 }
 

@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 82: accepted. To check: gappa red_out_82.g
-# SHA-256 of the script below: 08f735bd7a6f65577474fe83d60ff2dc13c916c04ebd0ed9610d9f2c8456422c
+# SHA-256 of the script below: 0bb12bbb36d8905b6fbb70f68dafa8734caca2408093abb76bf7418c86ea3a3b
+# The hypotheses hold at dx = 0.4667816162109375, dy = 0.4383697509765625, dz = 0.0000152587890625, shift = 9
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -18,6 +19,7 @@ difference_24 = 0 - 0;
   /\ dy in [-2,1.9999847412109375]
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_11 in [0.25,0.4999999962747097015380859375]
+  /\ shift in [9,9]
   /\ exact_19 <= 0
   -> |difference_24| <= 0.62451171875 }
 

@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 83: accepted. To check: gappa red_out_83.g
-# SHA-256 of the script below: 9ff9d71112badcdc576cb12aec35a1d18ae28ae53d32a5de4e911acea19c76a2
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 83: accepted; its hypotheses contradict each other. To check: gappa red_out_83.g
+# SHA-256 of the script below: 092ed3ae564f08a4ee9194f2d7d263f1359d204a7beda921b71ccf960336874c
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -25,6 +25,7 @@ difference_25 = 0 - exact_24;
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
   /\ distance_rounded_11 in [0.5,0.999999992549419403076171875]
+  /\ shift in [9,9]
   /\ exact_19 >= 0
   -> |difference_25| <= 0.62451171875 }
 

@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 84: accepted. To check: gappa red_out_84.g
-# SHA-256 of the script below: 73dd6177dbcab82171b4731a900762cbe483dcec94cb5226a2f8fccc749a5797
+# SHA-256 of the script below: e1ab452cf09a98e7e08a0e4030ddf3e5e73100acbf12a8ad790d4c81759d658c
+# The hypotheses hold at dx = 0.9667816162109375, dy = -0.0616302490234375, dz = 0.0000152587890625, shift = 9
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -18,6 +19,7 @@ difference_24 = 0 - 0;
   /\ dy in [-2,1.9999847412109375]
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_11 in [0.5,0.999999992549419403076171875]
+  /\ shift in [9,9]
   /\ exact_19 <= 0
   -> |difference_24| <= 0.62451171875 }
 

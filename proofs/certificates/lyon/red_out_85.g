@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 85: accepted. To check: gappa red_out_85.g
-# SHA-256 of the script below: 33e8e18281bf15f91186b60c8fa97ecd33dfa221550ba341da3edda536c041c6
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 85: accepted; its hypotheses contradict each other. To check: gappa red_out_85.g
+# SHA-256 of the script below: dcf221a33cd18e68e11c995e6f0fb998d376e39176d53eab6ac37d3547d6db37
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -25,6 +25,7 @@ difference_25 = 0 - exact_24;
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
   /\ distance_rounded_11 in [1,1.99999998509883880615234375]
+  /\ shift in [9,9]
   /\ exact_19 >= 0
   -> |difference_25| <= 0.62451171875 }
 

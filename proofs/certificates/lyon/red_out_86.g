@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 86: accepted. To check: gappa red_out_86.g
-# SHA-256 of the script below: 0ffbba08d2738e311362c52eabf98e27045c184d429e8ab6655b2469cfee318f
+# SHA-256 of the script below: efc1ad3093b82b5de4ba3c7efa4d4d4f70ec8513987031ef1f08bd2ce381ac36
+# The hypotheses hold at dx = -0.0332183837890625, dy = -0.0616302490234375, dz = -0.9999847412109375, shift = 9
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -18,6 +19,7 @@ difference_24 = 0 - 0;
   /\ dy in [-2,1.9999847412109375]
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_11 in [1,1.99999998509883880615234375]
+  /\ shift in [9,9]
   /\ exact_19 <= 0
   -> |difference_24| <= 0.62451171875 }
 

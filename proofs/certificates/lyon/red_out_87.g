@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 87: accepted. To check: gappa red_out_87.g
-# SHA-256 of the script below: 1f3d6e740e70d8e130e19b5e2d0c1be25093001df86cd81f0c98a91457454cbb
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 87: accepted; its hypotheses contradict each other. To check: gappa red_out_87.g
+# SHA-256 of the script below: 03574dcaa4b4bac6bfd6d60d2d8fa99c5c5cb8d45a062df097adb966160f0cfc
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -25,6 +25,7 @@ difference_25 = 0 - exact_24;
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
   /\ distance_rounded_11 in [2,3.9999999701976776123046875]
+  /\ shift in [9,9]
   /\ exact_19 >= 0
   -> |difference_25| <= 0.62451171875 }
 

@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 88: accepted. To check: gappa red_out_88.g
-# SHA-256 of the script below: 8cd28e135059573ce1496c26e3f83d44fd4413bb7c039966cdc4de600bff9d95
+# SHA-256 of the script below: 551eb351d8223a179b86f1dbccae4bee630f676e7ae841883f88dde6ffeffb4d
+# The hypotheses hold at dx = -0.0332183837890625, dy = -0.0616302490234375, dz = -1.4999847412109375, shift = 9
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -18,6 +19,7 @@ difference_24 = 0 - 0;
   /\ dy in [-2,1.9999847412109375]
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_11 in [2,3.9999999701976776123046875]
+  /\ shift in [9,9]
   /\ exact_19 <= 0
   -> |difference_24| <= 0.62451171875 }
 

@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 89: accepted. To check: gappa red_out_89.g
-# SHA-256 of the script below: df14dc99807418f6f9dde17052fe0d3515ed3b9088ea7c25fc38149a74c31028
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 89: accepted; its hypotheses contradict each other. To check: gappa red_out_89.g
+# SHA-256 of the script below: d1f6f9887b748a20e4129b2561ddcb8a5505ba8dd560187fe99c826a16c8f777
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -25,6 +25,7 @@ difference_25 = 0 - exact_24;
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
   /\ distance_rounded_11 in [4,7.999999940395355224609375]
+  /\ shift in [9,9]
   /\ exact_19 >= 0
   -> |difference_25| <= 0.62451171875 }
 

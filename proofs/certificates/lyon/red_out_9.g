@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 9: accepted. To check: gappa red_out_9.g
-# SHA-256 of the script below: 6503738b4d376d81190ce99425a1d8dda8e0319d848c699c56b71d0a6117c05e
+# SHA-256 of the script below: 8e50c396affaad8696da86c392a683a3e0240a85fb66f6edbae79cebdf115b48
+# The hypotheses hold at dx = -0.0332183837890625, dy = -0.0616302490234375, dz = 0.0000152587890625, red = 98, shift = 3
 
 multiplier1_1 = dx * dx;
 multiplier2_3 = dy * dy;
@@ -38,6 +39,7 @@ difference_39 = red_intensity_24 - exact_38;
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_8 in [0,3.999999940395355224609375]
   /\ red in [0,255]
+  /\ shift in [3,3]
   /\ exact_32 >= 0
   -> |difference_39| <= 0.62451171875 }
 

@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 90: accepted. To check: gappa red_out_90.g
-# SHA-256 of the script below: ffae9f1383977c419a96545e363b038d42cf04ecee78512ffc1c27f6773639c7
+# SHA-256 of the script below: f83ed5c62c5d2911758f98c795aac1e57bd4896b5a0187ff3d74b18c3438aaa2
+# The hypotheses hold at dx = -0.0332183837890625, dy = 1.9383697509765625, dz = -1.9999847412109375, shift = 9
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -18,6 +19,7 @@ difference_24 = 0 - 0;
   /\ dy in [-2,1.9999847412109375]
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_11 in [4,7.999999940395355224609375]
+  /\ shift in [9,9]
   /\ exact_19 <= 0
   -> |difference_24| <= 0.62451171875 }
 

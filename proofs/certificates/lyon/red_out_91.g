@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 91: accepted. To check: gappa red_out_91.g
-# SHA-256 of the script below: ecef7d8bf93f3cbbbb21dcb03d90777c2ddeb7c1190d84f9b2004535d3f39cec
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 91: accepted; its hypotheses contradict each other. To check: gappa red_out_91.g
+# SHA-256 of the script below: ceb35f0d3db3452471f67fd37002a83d5d474c17659819276361f59262c25ac1
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -25,6 +25,7 @@ difference_25 = 0 - exact_24;
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
   /\ distance_rounded_11 in [8,12]
+  /\ shift in [9,9]
   /\ exact_19 >= 0
   -> |difference_25| <= 0.62451171875 }
 

@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 92: accepted. To check: gappa red_out_92.g
-# SHA-256 of the script below: af358860b769552ca9e6af39a2abc644c42b8e72b90547e42723d88a6f8b4f33
+# SHA-256 of the script below: 362f45f63660fdbd617b9d46a6092ea1147ce43b2606f09f9998d912d977666a
+# The hypotheses hold at dx = 1.9667816162109375, dy = 1.9383697509765625, dz = -1.9999847412109375, shift = 9
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -18,6 +19,7 @@ difference_24 = 0 - 0;
   /\ dy in [-2,1.9999847412109375]
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_11 in [8,12]
+  /\ shift in [9,9]
   /\ exact_19 <= 0
   -> |difference_24| <= 0.62451171875 }
 

@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 93: accepted. To check: gappa red_out_93.g
-# SHA-256 of the script below: 784620e8522dcbf59476743ea53e365f3fa3c9690f2283b1936b92e0009521a7
+# SHA-256 of the script below: f3c7284140774c45b4fe0b32fd1b959a872ec1348160786ba5ee5b2acaacd134
+# The hypotheses hold at dx = -0.0332183837890625, dy = -0.0616302490234375, dz = 0.0000152587890625, red = 98, shift = 10
 
 multiplier1_1 = dx * dx;
 multiplier2_3 = dy * dy;
@@ -38,6 +39,7 @@ difference_38 = red_intensity_24 - exact_37;
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_8 in [0,0.0312499995343387126922607421875]
   /\ red in [0,255]
+  /\ shift in [10,10]
   /\ exact_31 >= 0
   -> |difference_38| <= 0.62451171875 }
 

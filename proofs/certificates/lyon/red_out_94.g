@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 94: accepted. To check: gappa red_out_94.g
-# SHA-256 of the script below: 79c0e880458800511efb970114b336a6332c063bdbf4cfd288a9d4b60bbe6271
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 94: accepted; its hypotheses contradict each other. To check: gappa red_out_94.g
+# SHA-256 of the script below: c1b8cdfc71eddf02bfd56972a2470a81b16dec5c9529980bbe8e5b6c5c24d494
 
 multiplier1_1 = dx * dx;
 multiplier2_3 = dy * dy;
@@ -33,6 +33,7 @@ difference_37 = red_intensity_24 - 0;
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_8 in [0,0.0312499995343387126922607421875]
   /\ red in [0,255]
+  /\ shift in [10,10]
   /\ exact_31 <= 0
   -> |difference_37| <= 0.62451171875 }
 

@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 95: accepted. To check: gappa red_out_95.g
-# SHA-256 of the script below: 132434b582d7cab00746a544460122078bb4c44ae4323779d9feb532c31fa8b8
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 95: accepted; no witness is found. To check: gappa red_out_95.g
+# SHA-256 of the script below: 7bd18b02d96a90e05cc5989aec43be7cf6a960655c745d7fe375880d98004d0f
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -25,6 +25,7 @@ difference_24 = 0 - exact_23;
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
   /\ distance_rounded_11 in [0.03125,0.0624999995343387126922607421875]
+  /\ shift in [10,10]
   /\ exact_18 >= 0
   -> |difference_24| <= 0.62451171875 }
 

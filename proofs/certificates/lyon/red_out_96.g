@@ -1,5 +1,6 @@
 # Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 96: accepted. To check: gappa red_out_96.g
-# SHA-256 of the script below: 39e0e0238c01c041bfd8d753c85474fce09c313e646ac2626a929270ac9f30a8
+# SHA-256 of the script below: 52f7aeca12ca241d7b2273dd3df2356edde969770f4b9a3535cee8ffb731c58b
+# The hypotheses hold at dx = -0.0332183837890625, dy = 0.1883697509765625, dz = 0.0000152587890625, shift = 10
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -18,6 +19,7 @@ difference_23 = 0 - 0;
   /\ dy in [-2,1.9999847412109375]
   /\ dz in [-2,1.9999847412109375]
   /\ distance_rounded_11 in [0.03125,0.0624999995343387126922607421875]
+  /\ shift in [10,10]
   /\ exact_18 <= 0
   -> |difference_23| <= 0.62451171875 }
 

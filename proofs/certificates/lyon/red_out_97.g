@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 97: accepted. To check: gappa red_out_97.g
-# SHA-256 of the script below: d466bafef48ed1471f803c688969f9504ec185b1adb3ac2faa01b1b8f56ad5e0
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 97: accepted; its hypotheses contradict each other. To check: gappa red_out_97.g
+# SHA-256 of the script below: 6b2ab79e4d7040c860a5a13032d5b991d6070166e73fe0806eceb6e0ada68d31
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -25,6 +25,7 @@ difference_24 = 0 - exact_23;
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
   /\ distance_rounded_11 in [0.0625,0.124999999068677425384521484375]
+  /\ shift in [10,10]
   /\ exact_18 >= 0
   -> |difference_24| <= 0.62451171875 }
 

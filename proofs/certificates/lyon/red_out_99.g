@@ -1,5 +1,5 @@
-# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 99: accepted. To check: gappa red_out_99.g
-# SHA-256 of the script below: 1dd53aefd7293b12fa8a5c1e4bcb489f6619095385aba7bd1bad69f8c59981c5
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 99: accepted; its hypotheses contradict each other. To check: gappa red_out_99.g
+# SHA-256 of the script below: 0e5d9a2991eb23900a573d5a0b719f13e6fea4b6f4e9bbf9b040af7ee1953f83
 
 multiplier1_6 = dx * dx;
 multiplier2_7 = dy * dy;
@@ -25,6 +25,7 @@ difference_24 = 0 - exact_23;
   /\ dz in [-2,1.9999847412109375]
   /\ red in [0,255]
   /\ distance_rounded_11 in [0.125,0.24999999813735485076904296875]
+  /\ shift in [10,10]
   /\ exact_18 >= 0
   -> |difference_24| <= 0.62451171875 }
 
