@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 1: accepted. To check: gappa cosine_word_1.g
 # SHA-256 of the script below: 1cc1b64d8c2a435d01510dc0d9ed5fab946b8118acef21d46f3338a0df0cc8c4
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_0 = right * 0;

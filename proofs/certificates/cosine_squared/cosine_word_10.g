@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 10: accepted. To check: gappa cosine_word_10.g
 # SHA-256 of the script below: 32617845325d819878570113f0a9569f6e480be974075901224e357ecad4b8fb
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_72 = right * 0.0703125;

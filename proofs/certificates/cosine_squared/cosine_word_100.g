@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 100: accepted. To check: gappa cosine_word_100.g
 # SHA-256 of the script below: d51eb16f3458d6ed24ff8f722ba92e98f41a65e3eadd638647e34599f4a61fea
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_792 = right * 0.7734375;

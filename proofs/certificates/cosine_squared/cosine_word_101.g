@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 101: accepted. To check: gappa cosine_word_101.g
 # SHA-256 of the script below: c3434b0562cb1ec1137a66372fba38ecb7b76a09a3bb316aab0f2888e013554c
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_800 = right * 0.78125;

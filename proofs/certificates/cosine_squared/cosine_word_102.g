@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 102: accepted. To check: gappa cosine_word_102.g
 # SHA-256 of the script below: 46c4c7fd2d4f0b167f2c9ca22c603b571ad5cac24bc2b990a4b6723a7cd4ee72
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_808 = right * 0.7890625;

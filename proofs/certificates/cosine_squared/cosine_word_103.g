@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 103: accepted. To check: gappa cosine_word_103.g
 # SHA-256 of the script below: 531a072d2e37a3b214f44007ef5e408a7dedbaa4d5c3845b114d2bb2fc093d5e
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_816 = right * 0.796875;

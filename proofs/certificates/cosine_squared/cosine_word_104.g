@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 104: accepted. To check: gappa cosine_word_104.g
 # SHA-256 of the script below: 142600a5edb9c79e7e9337b83e050f0ee7abc54a956c06a6b1fc76b10aba0797
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_824 = right * 0.8046875;

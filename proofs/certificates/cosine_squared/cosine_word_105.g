@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 105: accepted. To check: gappa cosine_word_105.g
 # SHA-256 of the script below: 191014f3e5b3a8cdecbbc931c7d29ae7660f96ff53bee471a6b8538eb9e392f3
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_832 = right * 0.8125;

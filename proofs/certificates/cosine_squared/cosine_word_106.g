@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 106: accepted. To check: gappa cosine_word_106.g
 # SHA-256 of the script below: 00ed406aa8b941d89d924365d5a4c50c9f18e8698df207357e964c9623ce21da
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_840 = right * 0.8203125;

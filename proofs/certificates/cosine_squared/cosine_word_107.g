@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 107: accepted. To check: gappa cosine_word_107.g
 # SHA-256 of the script below: df3a1bb8c55288f396bf339ec1486d013c89a35e078a9d872ba626fdbbd068a8
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_848 = right * 0.828125;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 108: accepted. To check: gappa cosine_word_108.g
 # SHA-256 of the script below: 821d2ca993c10a91831f34ca2a1539b23f8ac37d9d7d9f3d90fd35371739ddff
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_856 = right * 0.8359375;

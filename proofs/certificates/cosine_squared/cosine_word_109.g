@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 109: accepted. To check: gappa cosine_word_109.g
 # SHA-256 of the script below: 9f794b2aa16dd91967459a699307dc8681ecee8e91ff395300101c97de82021e
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_864 = right * 0.84375;

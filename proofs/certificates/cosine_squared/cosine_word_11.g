@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 11: accepted. To check: gappa cosine_word_11.g
 # SHA-256 of the script below: f510bfb603fa2120d230a27469be6d5c4704e7550408baf2674041407d12b378
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_80 = right * 0.078125;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 110: accepted. To check: gappa cosine_word_110.g
 # SHA-256 of the script below: e696f4618de233ed4c03e83a38cc496884f6dac1746e437908b56a78fc1adbb9
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_872 = right * 0.8515625;

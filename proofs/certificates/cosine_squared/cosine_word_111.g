@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 111: accepted. To check: gappa cosine_word_111.g
 # SHA-256 of the script below: d7190e3e24c4ea078b7dd083e187c7ba8c16917632b3fee99743a2873dee5a85
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_880 = right * 0.859375;

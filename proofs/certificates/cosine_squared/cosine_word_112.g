@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 112: accepted. To check: gappa cosine_word_112.g
 # SHA-256 of the script below: 0da9b3c718e796f87bfa531cdb0c2b384edce3d68cabeb37bfd5ee2310cb429b
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_888 = right * 0.8671875;

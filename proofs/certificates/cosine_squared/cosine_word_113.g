@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 113: accepted. To check: gappa cosine_word_113.g
 # SHA-256 of the script below: 282460ea2c7f80f7ef8cba80300fc064306e09abcaffbb6e72a68a22b4488823
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_896 = right * 0.875;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 114: accepted. To check: gappa cosine_word_114.g
 # SHA-256 of the script below: bb0b60c84d22b75e2861d50c864f647342dbe4f6c945539ad2b7bed9201ff832
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_904 = right * 0.8828125;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 115: accepted. To check: gappa cosine_word_115.g
 # SHA-256 of the script below: a32c73ba9c763be2264f9aaae266b0409a42c04ffa3dbc437221abb404020d5a
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_912 = right * 0.890625;

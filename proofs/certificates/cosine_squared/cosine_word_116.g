@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 116: accepted. To check: gappa cosine_word_116.g
 # SHA-256 of the script below: dd942a392c35f0cdcc2186e7714ef7834cf107423e9da54611f7da3f82ba745b
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_920 = right * 0.8984375;

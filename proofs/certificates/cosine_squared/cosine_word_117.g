@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 117: accepted. To check: gappa cosine_word_117.g
 # SHA-256 of the script below: 598f9976c44bcce60ea4cac39537dea1581b37c9284b0dbac0bdaf8020706308
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_928 = right * 0.90625;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 118: accepted. To check: gappa cosine_word_118.g
 # SHA-256 of the script below: 9dd89b7e07c09b552b7ffcd094f81692c3113ed264f7e50466c425458184ef22
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_936 = right * 0.9140625;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 119: accepted. To check: gappa cosine_word_119.g
 # SHA-256 of the script below: ea4672ac7b2a6210dc5e91a99cc232958535ec708b2cba647c06d81d1cfa6b82
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_944 = right * 0.921875;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 12: accepted. To check: gappa cosine_word_12.g
 # SHA-256 of the script below: a5c93fa23879ac5232440436bebe88374e9db78ea6550f28fd53fb73293a7057
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_88 = right * 0.0859375;

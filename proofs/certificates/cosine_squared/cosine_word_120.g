@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 120: accepted. To check: gappa cosine_word_120.g
 # SHA-256 of the script below: 970852fba349cb12b7318cfcc7916baf29a3da1b94aa4ba37807e85953489288
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_952 = right * 0.9296875;

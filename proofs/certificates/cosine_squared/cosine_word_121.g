@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 121: accepted. To check: gappa cosine_word_121.g
 # SHA-256 of the script below: f04a69b6ad9e8372e19617d0706cd027bd30f2c2f62636ee5d72dae0ce69be6d
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_960 = right * 0.9375;

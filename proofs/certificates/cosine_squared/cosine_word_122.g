@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 122: accepted. To check: gappa cosine_word_122.g
 # SHA-256 of the script below: 936405d9c0f1db21029bc94c81f2563ca53d39dc5e893bf8933309af173d275f
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_968 = right * 0.9453125;

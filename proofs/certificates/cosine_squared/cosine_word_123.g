@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 123: accepted. To check: gappa cosine_word_123.g
 # SHA-256 of the script below: b8ce21953b3b0dc82f22ac5e889b1832ec31ee0e2fb3b3a9f10bed2037ef5ef7
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_976 = right * 0.953125;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 124: accepted. To check: gappa cosine_word_124.g
 # SHA-256 of the script below: 68ed4702dc9ad2c5378ee30009d613c2d29c9ff73458b3c3c5d245b106fa66d9
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_984 = right * 0.9609375;

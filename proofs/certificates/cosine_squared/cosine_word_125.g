@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 125: accepted. To check: gappa cosine_word_125.g
 # SHA-256 of the script below: ef8125d4858d9a78bb5f4a63c29a3ec29a54a9eceb949814f23bb6b6e28c1c12
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_992 = right * 0.96875;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 126: accepted. To check: gappa cosine_word_126.g
 # SHA-256 of the script below: c3173ad4107c1723d98cb743d690d50a13929ff60311f4a3515a7ea90d5f9912
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_1000 = right * 0.9765625;

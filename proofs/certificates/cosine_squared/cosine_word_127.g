@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 127: accepted. To check: gappa cosine_word_127.g
 # SHA-256 of the script below: cdcf81c71fd1128dfe8247799890e39f86a11edd7dc44021890f939a7e317eef
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_1008 = right * 0.984375;

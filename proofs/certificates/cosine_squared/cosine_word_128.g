@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 128: accepted. To check: gappa cosine_word_128.g
 # SHA-256 of the script below: 8f269ace7470af470ec3db44adc70aa027d2edae192fae6b5c62709eeafd5850
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_1016 = right * 0.9921875;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 13: accepted. To check: gappa cosine_word_13.g
 # SHA-256 of the script below: 9ad129a8339ed237ffeecfa98cfd5c11f50135b34587c31c8282de5375a061d7
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_96 = right * 0.09375;

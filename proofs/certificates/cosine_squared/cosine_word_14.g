@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 14: accepted. To check: gappa cosine_word_14.g
 # SHA-256 of the script below: a26a785c986409576eaf698119b020846b72681be1bf17acbd43fde7968bdc93
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_104 = right * 0.1015625;

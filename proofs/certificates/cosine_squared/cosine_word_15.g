@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 15: accepted. To check: gappa cosine_word_15.g
 # SHA-256 of the script below: 35f5cff3398c01613856cdae7c7492609c23ee09944887e38a56e10464bf7473
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_112 = right * 0.109375;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 16: accepted. To check: gappa cosine_word_16.g
 # SHA-256 of the script below: e0bb3667882cf2ace3cd6dba82cae68657ce83e3d4e96a3f502f1bac0a3e5847
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_120 = right * 0.1171875;

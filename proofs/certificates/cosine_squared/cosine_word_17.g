@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 17: accepted. To check: gappa cosine_word_17.g
 # SHA-256 of the script below: c5839a7da3eabedf87029336578f4e9f3f5422ba6bd32ce5050d471f87213d18
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_128 = right * 0.125;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 18: accepted. To check: gappa cosine_word_18.g
 # SHA-256 of the script below: e71cad1e4b3c3ec2ee5314dcfa85a649479d0c5a8ce986ebbe67bfc5b00aa6de
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_136 = right * 0.1328125;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 19: accepted. To check: gappa cosine_word_19.g
 # SHA-256 of the script below: 794ac9add1c97e9c8acf7abed96eb737e06556e13a053b94d3377e4002534f71
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_144 = right * 0.140625;

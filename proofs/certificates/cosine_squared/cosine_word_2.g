@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 2: accepted. To check: gappa cosine_word_2.g
 # SHA-256 of the script below: 0d970af77b0a699c84c3ab55c00f32c10d6f794114217a67a307f083071fe229
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_8 = right * 0.0078125;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 20: accepted. To check: gappa cosine_word_20.g
 # SHA-256 of the script below: 1db21cc627138a90cafcf7e0ea1b73c40cb5a6fe7bc108954f2232b3efe88c52
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_152 = right * 0.1484375;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 21: accepted. To check: gappa cosine_word_21.g
 # SHA-256 of the script below: 14ae336b0bf1db51030127b385ca0bb31eb3fd9eac2f81bb6a3b4fabfe04f6a1
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_160 = right * 0.15625;

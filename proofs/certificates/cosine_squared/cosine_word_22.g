@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 22: accepted. To check: gappa cosine_word_22.g
 # SHA-256 of the script below: 87a4c80ff0d6c997e09936dc4c9e9cbc57d1eebd5ae14392934d5b129761bd4e
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_168 = right * 0.1640625;

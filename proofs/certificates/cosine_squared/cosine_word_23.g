@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 23: accepted. To check: gappa cosine_word_23.g
 # SHA-256 of the script below: ac2185544ab2396740f3d802e60d73e670ca8444bd3e454c4fae9882b76d1021
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_176 = right * 0.171875;

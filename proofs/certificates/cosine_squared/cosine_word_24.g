@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 24: accepted. To check: gappa cosine_word_24.g
 # SHA-256 of the script below: 4caa47aaf4a5f87cac218d8c3748e9af2055e8b49e6adffe006aa793ccb46c91
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_184 = right * 0.1796875;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 25: accepted. To check: gappa cosine_word_25.g
 # SHA-256 of the script below: af1c4701fbf89ccf201092a9cbb64770b030e527fe7740d7a7ae842874ad30da
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_192 = right * 0.1875;

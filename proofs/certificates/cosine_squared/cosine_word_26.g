@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 26: accepted. To check: gappa cosine_word_26.g
 # SHA-256 of the script below: 73370c88ec53336bfa85067a054b59ed04f176f050c7f9980331c74a493ec84c
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_200 = right * 0.1953125;

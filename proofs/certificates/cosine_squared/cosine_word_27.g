@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 27: accepted. To check: gappa cosine_word_27.g
 # SHA-256 of the script below: a72c01003508ce8ebabd56c7a3eb00c42a5699bde9721a7a551fcb22e04544a8
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_208 = right * 0.203125;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 28: accepted. To check: gappa cosine_word_28.g
 # SHA-256 of the script below: 17284e03db26a0b6e8caa5eef9e5eb13638d1b677ad302b1b608caa58c802c5c
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_216 = right * 0.2109375;

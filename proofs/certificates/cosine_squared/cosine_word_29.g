@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 29: accepted. To check: gappa cosine_word_29.g
 # SHA-256 of the script below: b03c849d31d3117bac86d27c45a0b109123eb32123b3423922ca4cd787fa5095
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_224 = right * 0.21875;

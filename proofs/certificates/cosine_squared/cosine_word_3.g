@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 3: accepted. To check: gappa cosine_word_3.g
 # SHA-256 of the script below: 9fea0b219dcd442ab7fa62facb66dcca8a6c4487fb1598198d03c67763a51226
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_16 = right * 0.015625;

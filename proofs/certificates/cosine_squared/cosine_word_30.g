@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 30: accepted. To check: gappa cosine_word_30.g
 # SHA-256 of the script below: 7a63ac5ca1326320081511548fdb578e7e6be150ec9df252b7de13def003f8e9
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_232 = right * 0.2265625;

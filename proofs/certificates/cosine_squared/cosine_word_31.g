@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 31: accepted. To check: gappa cosine_word_31.g
 # SHA-256 of the script below: 53886d66b085f5ab9655249f8640cdf0e077b2ca01d538182d27d123b1bdeb47
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_240 = right * 0.234375;

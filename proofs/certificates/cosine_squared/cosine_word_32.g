@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 32: accepted. To check: gappa cosine_word_32.g
 # SHA-256 of the script below: 51999bb8c15c0ec503581caf1246ef1cdfea9a4deced8eac8a97c79a20ff43c3
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_248 = right * 0.2421875;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 33: accepted. To check: gappa cosine_word_33.g
 # SHA-256 of the script below: 9a1b425088082a5fef2f865659b2adca271693f3c1eee1959831af0e8a889325
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_256 = right * 0.25;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 34: accepted. To check: gappa cosine_word_34.g
 # SHA-256 of the script below: 3c1d3a87e6edcb20ae00c63fd04bad2bec8cb04014cd08d9e36c74443b39fcbd
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_264 = right * 0.2578125;

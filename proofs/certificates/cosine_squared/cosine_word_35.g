@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 35: accepted. To check: gappa cosine_word_35.g
 # SHA-256 of the script below: ec1413d9b65a98c6c8d98199f2cbf8f3f93b78c18b71dee4acba6017649fc95a
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_272 = right * 0.265625;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 36: accepted. To check: gappa cosine_word_36.g
 # SHA-256 of the script below: 114ecfb714e6926128f621fe4cc8cb8a851d1b2ec255a532939503df5deccc38
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_280 = right * 0.2734375;

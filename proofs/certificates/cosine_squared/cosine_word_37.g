@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 37: accepted. To check: gappa cosine_word_37.g
 # SHA-256 of the script below: de72fe2f6b9b4da4a122f403def01e078432927d824ea80c897d739468c4ce73
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_288 = right * 0.28125;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 38: accepted. To check: gappa cosine_word_38.g
 # SHA-256 of the script below: 5330f7224d206e7dc2147ccf68356dc81838b38671047c202616a9f69a0c32c6
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_296 = right * 0.2890625;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 39: accepted. To check: gappa cosine_word_39.g
 # SHA-256 of the script below: 298328b494ad8f7928c517feede21be18fd8bc584b17e7e6b2c5518107da0a09
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_304 = right * 0.296875;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 4: accepted. To check: gappa cosine_word_4.g
 # SHA-256 of the script below: 6b90f486247ff07913516f49725743d3b7dcabb9a26c02a272f9704ae7bb1997
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_24 = right * 0.0234375;

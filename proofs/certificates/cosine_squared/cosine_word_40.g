@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 40: accepted. To check: gappa cosine_word_40.g
 # SHA-256 of the script below: bcc2236d0d0e0f91639c104b323a9331f4ee07d8e9d355afb06d5e66614bfcb8
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_312 = right * 0.3046875;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 41: accepted. To check: gappa cosine_word_41.g
 # SHA-256 of the script below: bfdc64910e874cada5a1d13570d50ac8749e4f1d6dfb3e947d3123b37d369f48
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_320 = right * 0.3125;

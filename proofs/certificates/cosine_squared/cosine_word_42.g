@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 42: accepted. To check: gappa cosine_word_42.g
 # SHA-256 of the script below: 47c7278d69c2a00a3415adf46ae0432827e29504acaea0afcf036c5cb96e3966
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_328 = right * 0.3203125;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 43: accepted. To check: gappa cosine_word_43.g
 # SHA-256 of the script below: 77439c156b422a1bed1af887d4c5480e8ff9f385b295c7b0434f29ab2de77d1a
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_336 = right * 0.328125;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 44: accepted. To check: gappa cosine_word_44.g
 # SHA-256 of the script below: f3bcb2f0288a98d23589afa750fade5e0af394b96768cae6ce7965050881efc2
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_344 = right * 0.3359375;

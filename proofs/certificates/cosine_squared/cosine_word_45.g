@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 45: accepted. To check: gappa cosine_word_45.g
 # SHA-256 of the script below: bbb5a0e9c6dd0d257c81830a856931fb17691890b69415fb640554f8afe09e9a
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_352 = right * 0.34375;

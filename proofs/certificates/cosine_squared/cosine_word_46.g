@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 46: accepted. To check: gappa cosine_word_46.g
 # SHA-256 of the script below: 1ef92b4742cbd2dbec364ab0bd09c2c1a7d54b3392aa051b67a076270495aa96
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_360 = right * 0.3515625;

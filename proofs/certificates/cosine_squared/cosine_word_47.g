@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 47: accepted. To check: gappa cosine_word_47.g
 # SHA-256 of the script below: dabf795e473f3440932527cf281965a81c86acc05f7c85043f0a1926f3008e81
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_368 = right * 0.359375;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 48: accepted. To check: gappa cosine_word_48.g
 # SHA-256 of the script below: 9cb742e6d5132df508c387fb86aee6bbe2d8dd98e3f1ab9af9f6533dd12a5a77
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_376 = right * 0.3671875;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 49: accepted. To check: gappa cosine_word_49.g
 # SHA-256 of the script below: ac45860c1d2df2851e7f0978b564cd96ed0cf2058705328fad0282c64bfd8d63
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_384 = right * 0.375;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 5: accepted. To check: gappa cosine_word_5.g
 # SHA-256 of the script below: c22184c20da6ca63f12ef5a88f89a58137dced4a244168549ddd85bd9a527346
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_32 = right * 0.03125;

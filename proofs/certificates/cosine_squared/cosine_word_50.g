@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 50: accepted. To check: gappa cosine_word_50.g
 # SHA-256 of the script below: ce81e1557f0d0b67a127167785e1d14de72d44dacd5caaafe44cd6acd12d175b
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_392 = right * 0.3828125;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 51: accepted. To check: gappa cosine_word_51.g
 # SHA-256 of the script below: d4c5abb10d29bc039722603b9bc06b97f26ae38e31d986dc50986855a9d374c1
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_400 = right * 0.390625;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 52: accepted. To check: gappa cosine_word_52.g
 # SHA-256 of the script below: aaa6593b8ed370c72cd8277159424eb04580c58d55e80634ea24400d09fe303d
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_408 = right * 0.3984375;

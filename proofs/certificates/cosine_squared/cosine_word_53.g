@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 53: accepted. To check: gappa cosine_word_53.g
 # SHA-256 of the script below: 9ac92fbbeb9142965be903b2dc596958474e55a738ae8dcb718c08f7eeae5b68
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_416 = right * 0.40625;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 54: accepted. To check: gappa cosine_word_54.g
 # SHA-256 of the script below: 0c3a93e4e2211fbe04958aa55c265c72639b6bd33cb70a00e1cc1842dc5351d2
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_424 = right * 0.4140625;

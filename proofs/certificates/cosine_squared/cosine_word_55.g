@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 55: accepted. To check: gappa cosine_word_55.g
 # SHA-256 of the script below: f4381cd1abfc21474f5d0b0751dc167c4c6916132082d52e37ddbac73a13c7bb
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_432 = right * 0.421875;

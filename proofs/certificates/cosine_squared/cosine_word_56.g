@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 56: accepted. To check: gappa cosine_word_56.g
 # SHA-256 of the script below: 1c0c53885d500e724926507b5f5fe0ca8024fbefd504bcd0da4c1d634f86cdd2
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_440 = right * 0.4296875;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 57: accepted. To check: gappa cosine_word_57.g
 # SHA-256 of the script below: 55ba957542ab4ac48bda264b7bf5a2f3b18343569244c64e7603f84d4fece098
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_448 = right * 0.4375;

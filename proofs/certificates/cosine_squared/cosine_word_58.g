@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 58: accepted. To check: gappa cosine_word_58.g
 # SHA-256 of the script below: 035c0cad8a8a1e31e58ba13f7c741d635b36fad404e942c477fa4409b2e4d9f6
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_456 = right * 0.4453125;

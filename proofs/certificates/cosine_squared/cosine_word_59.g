@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 59: accepted. To check: gappa cosine_word_59.g
 # SHA-256 of the script below: 80456a963ad9a427c5964c3432d5863ffa1c5814092871a4dc0ed0e5b46204af
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_464 = right * 0.453125;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 6: accepted. To check: gappa cosine_word_6.g
 # SHA-256 of the script below: e394e60abe1885205476148815dca995d3d7c0935c2a9eebfd05fc10fd433ac4
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_40 = right * 0.0390625;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 60: accepted. To check: gappa cosine_word_60.g
 # SHA-256 of the script below: f3d862517f7c19253e51eadb0d623ec3aed9926752252d81933507abd071062c
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_472 = right * 0.4609375;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 61: accepted. To check: gappa cosine_word_61.g
 # SHA-256 of the script below: eb1697bf4f79e55629c1c4c764adb0a6934014c72d883981fc0b6a9d2d85f2f6
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_480 = right * 0.46875;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 62: accepted. To check: gappa cosine_word_62.g
 # SHA-256 of the script below: 1543ec476f927161f50ea24783e3f8aea7d1f1902cf35347373276a61aeca08e
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_488 = right * 0.4765625;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 63: accepted. To check: gappa cosine_word_63.g
 # SHA-256 of the script below: 82a72170f06304ce6d15796a8071164fe4f4a811d2acbaaae7768a53e0cd2d39
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_496 = right * 0.484375;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 64: accepted. To check: gappa cosine_word_64.g
 # SHA-256 of the script below: 897cf3b421307ca177711be733f3ecf43347ab2d1fb1308da8732a695157e442
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_504 = right * 0.4921875;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 65: accepted. To check: gappa cosine_word_65.g
 # SHA-256 of the script below: dc143eec0c4f75fc618ab1077f37fff63d230a64247acf1cda2a3cea9590578c
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_512 = right * 0.5;

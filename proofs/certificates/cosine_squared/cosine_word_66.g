@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 66: accepted. To check: gappa cosine_word_66.g
 # SHA-256 of the script below: f3e1c7867c723ec367a9023cb40de1f36e4ad0d739dac4ee79ce19ce9d5b871c
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_520 = right * 0.5078125;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 67: accepted. To check: gappa cosine_word_67.g
 # SHA-256 of the script below: 17fde762b99622ebbedddc80f27947c08c908075936cda4b29121a9e417a2e40
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_528 = right * 0.515625;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 68: accepted. To check: gappa cosine_word_68.g
 # SHA-256 of the script below: 5377faf1bbaaa5fd62865190dfd38d587be93f426fc5461e37ace5bd8cf71f92
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_536 = right * 0.5234375;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 69: accepted. To check: gappa cosine_word_69.g
 # SHA-256 of the script below: 64f393aca584b459cc41164a636bf31b6e2fb8bd31840dac7c78e28719f52232
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_544 = right * 0.53125;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 7: accepted. To check: gappa cosine_word_7.g
 # SHA-256 of the script below: 6ad1c570b7c718f9d00d7fbaa0ceb98e7ed6ef29d511ad64559820825e9809a3
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_48 = right * 0.046875;

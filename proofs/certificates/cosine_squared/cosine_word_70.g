@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 70: accepted. To check: gappa cosine_word_70.g
 # SHA-256 of the script below: 71310d4949609593dfc1cd35628310c8f7d32821cb27f5feffb7936951f0c3b0
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_552 = right * 0.5390625;

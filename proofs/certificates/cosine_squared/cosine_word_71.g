@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 71: accepted. To check: gappa cosine_word_71.g
 # SHA-256 of the script below: 81b2017ce73e70e6cde09ab774eec7d19c4251790394643293af614657b186ca
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_560 = right * 0.546875;

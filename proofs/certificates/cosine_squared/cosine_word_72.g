@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 72: accepted. To check: gappa cosine_word_72.g
 # SHA-256 of the script below: f6671bc92032a614a2e2f6c737849be71a5632d5a83032b2fd08279c52da6b9e
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_568 = right * 0.5546875;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 73: accepted. To check: gappa cosine_word_73.g
 # SHA-256 of the script below: 577ebacd5f8fb942d823a3ba3f6406c32a1f59b9e4032518547668fea7294397
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_576 = right * 0.5625;

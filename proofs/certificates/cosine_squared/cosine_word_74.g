@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 74: accepted. To check: gappa cosine_word_74.g
 # SHA-256 of the script below: 0c59523414cacb1e59c4bde46fb8a542e0c546932308339ceba1394d2b5f5981
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_584 = right * 0.5703125;

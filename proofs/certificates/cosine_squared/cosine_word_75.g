@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 75: accepted. To check: gappa cosine_word_75.g
 # SHA-256 of the script below: 0c51f689a7f9be3a137314233770507c8699b6e2c3dd13eb18364f46c89a709e
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_592 = right * 0.578125;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 76: accepted. To check: gappa cosine_word_76.g
 # SHA-256 of the script below: 945e72fa73bf19f8237f8bde195dd2b3184e52a5c5a4b3a7c80ff0ae3f2b00b1
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_600 = right * 0.5859375;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 77: accepted. To check: gappa cosine_word_77.g
 # SHA-256 of the script below: c379e7b2ff1593dc87ea5925db762e262c655d1d73db4596f663062dda9d78ef
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_608 = right * 0.59375;

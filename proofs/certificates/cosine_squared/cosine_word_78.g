@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 78: accepted. To check: gappa cosine_word_78.g
 # SHA-256 of the script below: b8d136aa25b322aa9214bb07014d9600aae4c1bd682fcfa9e5331090eb4cca45
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_616 = right * 0.6015625;

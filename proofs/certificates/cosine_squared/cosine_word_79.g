@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 79: accepted. To check: gappa cosine_word_79.g
 # SHA-256 of the script below: 3008181aa3ec3f749e6ed551485a28200459d7ab2e7442879d573706fdba66eb
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_624 = right * 0.609375;

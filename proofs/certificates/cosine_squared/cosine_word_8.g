@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 8: accepted. To check: gappa cosine_word_8.g
 # SHA-256 of the script below: a3947dd96866c1aebe99b30863c2640a5746f9f2970da04b521cc41dafe134ed
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_56 = right * 0.0546875;

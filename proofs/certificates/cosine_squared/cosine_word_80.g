@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 80: accepted. To check: gappa cosine_word_80.g
 # SHA-256 of the script below: be66bbf9c1ef09ab2d54dee12cd4e61b34615d951cf863cede1c690148a4c71f
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_632 = right * 0.6171875;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 81: accepted. To check: gappa cosine_word_81.g
 # SHA-256 of the script below: 5665d8ce8a9e77924f5b63514fd6002a52642df33e54b3c790597b1c245f2962
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_640 = right * 0.625;

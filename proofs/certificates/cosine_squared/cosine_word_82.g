@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 82: accepted. To check: gappa cosine_word_82.g
 # SHA-256 of the script below: 4a9e43da5fc3260d3142534ec341c242ef64f9fc15ab51686d39ba576e4ca66c
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_648 = right * 0.6328125;

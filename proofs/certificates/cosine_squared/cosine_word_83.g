@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 83: accepted. To check: gappa cosine_word_83.g
 # SHA-256 of the script below: 9971e172e5502371daa1215e9022ab83bf155b4183a1eba7026c041716df3a30
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_656 = right * 0.640625;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 84: accepted. To check: gappa cosine_word_84.g
 # SHA-256 of the script below: 56cd6c7244f207371d2a06b8ab841f61cb40b33d14545962c48041420d5b856d
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_664 = right * 0.6484375;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 85: accepted. To check: gappa cosine_word_85.g
 # SHA-256 of the script below: f7fbfac2255e5c1487214a4ad1554207e95f1f915463b43d833a41118db0c80e
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_672 = right * 0.65625;

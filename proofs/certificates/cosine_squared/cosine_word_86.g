@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 86: accepted. To check: gappa cosine_word_86.g
 # SHA-256 of the script below: a98d649166eccd0ba7ea34731e4e06b7f52d6d97e4ef909dc73f1509020b731e
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_680 = right * 0.6640625;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 87: accepted. To check: gappa cosine_word_87.g
 # SHA-256 of the script below: b0530d6b77be34aacc3d807275ec3a7784f0603dc2c310b90f1afb11c03d49fe
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_688 = right * 0.671875;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 88: accepted. To check: gappa cosine_word_88.g
 # SHA-256 of the script below: acecced363f2fc7b42a9bf94100606c1d49303aca5cd3c6dea02cbae05629727
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_696 = right * 0.6796875;

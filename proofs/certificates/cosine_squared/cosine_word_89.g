@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 89: accepted. To check: gappa cosine_word_89.g
 # SHA-256 of the script below: 064a27199a02c5b6dc3fc8ea3e8cd4ff6d7fa3d56eb2ace5865ed8550439ee38
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_704 = right * 0.6875;

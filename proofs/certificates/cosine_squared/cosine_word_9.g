@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 9: accepted. To check: gappa cosine_word_9.g
 # SHA-256 of the script below: 2f87fec6fe3b9b45b9cb73a2e435b31a585677231c077dc7f8549e90ce5e3d4c
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_64 = right * 0.0625;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 90: accepted. To check: gappa cosine_word_90.g
 # SHA-256 of the script below: 5168c92eb4501808b599d24fc3c2da0ea05eefc109ca3b1d70cb0d3dd88f7cd0
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_712 = right * 0.6953125;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 91: accepted. To check: gappa cosine_word_91.g
 # SHA-256 of the script below: bbc24a1b99db0fc370e1445817b3d9d3fac8673fe360abcdc36cf08c737efd90
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_720 = right * 0.703125;

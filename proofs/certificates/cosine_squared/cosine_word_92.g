@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 92: accepted. To check: gappa cosine_word_92.g
 # SHA-256 of the script below: d025c90987a0b39bfb1ea343c402e50882ffc71172e31ed367b1bd063dc2db05
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_728 = right * 0.7109375;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 93: accepted. To check: gappa cosine_word_93.g
 # SHA-256 of the script below: 2d04c14abb6884a5983a4181e478257830f50d452798b206c53d2fe7e9d36957
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_736 = right * 0.71875;

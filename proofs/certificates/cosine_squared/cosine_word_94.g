@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 94: accepted. To check: gappa cosine_word_94.g
 # SHA-256 of the script below: 0b59532ffa3b589d66ebbc6515136debeb779d4fadf1565cf5dbeefcc7ed847a
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_744 = right * 0.7265625;

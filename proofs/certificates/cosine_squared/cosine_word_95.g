@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 95: accepted. To check: gappa cosine_word_95.g
 # SHA-256 of the script below: a1594c55e4eb17a98de4cafed498a6ac025fd41d816fc65b6c319c0ff1f9a7b5
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_752 = right * 0.734375;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 96: accepted. To check: gappa cosine_word_96.g
 # SHA-256 of the script below: d12466f436641b6250853da1ca93761de2a03f25febf4460e8bbe0686c594aa9
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_760 = right * 0.7421875;

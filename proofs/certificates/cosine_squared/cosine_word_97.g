@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 97: accepted. To check: gappa cosine_word_97.g
 # SHA-256 of the script below: 08f622cef1fdb63e5c8ef8acad48ba5c868ee56ec6fe293e6a65098aab83ec60
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_768 = right * 0.75;

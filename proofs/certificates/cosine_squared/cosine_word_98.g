@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 98: accepted. To check: gappa cosine_word_98.g
 # SHA-256 of the script below: 32c4b39c876e1a8a9f840d65683d38b0270cb9837af9ec67671583a414fe0906
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_776 = right * 0.7578125;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, cosine_word, statement 99: accepted. To check: gappa cosine_word_99.g
 # SHA-256 of the script below: e67ec8aaa36281019bb3dd3c548423a5a59e7160e9d4b1a58afdbdbbbf1a2a6a
+# The hypotheses hold at right = 1.5707963267948965579989817342720925807952880859375, rest = 0.96919345855712890625
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.
 y_784 = right * 0.765625;

@@ -1,5 +1,6 @@
 # Certificate by Glint: cosine_squared.toml, intensity_out, statement 1: accepted. To check: gappa intensity_out_1.g
 # SHA-256 of the script below: be21d882eff03edac85eec012be575371020ef7a0da624b32b68f97c64c28dcf
+# The hypotheses hold at cosine_45 = 0, amplitude = 251, f = 0.00024700164794921875
 
 intensity_product_2 = cosine_45 * amplitude;
 intensity_rounded_3 = fixed<0,na>(intensity_product_2);

@@ -136,7 +136,7 @@ fn outside_the_accuracy_contract() {
         "warning: core.toml: outside the accuracy contract",
         "not below 1; most of it, 63.750, is of `intensity.fraction`",
         "; `intensity.fraction = 14` in place of 6 would bring the bound to 0.98",
-        &format!(" units: see core.toml:{}:1", COSINE_POWER.lines().count() + 2),
+        &format!(" units: see core.toml:{}:12", COSINE_POWER.lines().count() + 2),
     ];
     for part in parts {
         assert!(run.err.contains(part), "{}", run.err);
