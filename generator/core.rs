@@ -257,7 +257,7 @@ impl Core {
     /// # Errors
     /// The design cannot be written as Verilog.
     pub fn verilog(&self) -> Result<Vec<(String, String)>> {
-        self.verilog_of(&self.design, "")
+        self.verilog_for("")
     }
 
     /// The same for a target, by name, with what it has of its own.
@@ -265,15 +265,11 @@ impl Core {
     /// # Errors
     /// The design cannot be written as Verilog.
     pub fn verilog_for(&self, target: &str) -> Result<Vec<(String, String)>> {
-        self.verilog_of(&self.design.written_for(target), target)
-    }
-
-    fn verilog_of(&self, design: &Design, target: &str) -> Result<Vec<(String, String)>> {
         let around = Surroundings {
             style: Surroundings::new(&self.config, None).style,
             ..Surroundings::default()
         };
-        let files = package::emit(design, &EmitInputs { around, ..EmitInputs::default() })?;
+        let files = package::emit(&self.design, &EmitInputs { around, ..EmitInputs::default() })?;
         Ok(package::sources_for(files, target))
     }
 

@@ -28,11 +28,21 @@ ${ line }$
 ${ line }$
 <%- endfor %>
 <%- if !rom.second %>
-    ${ rom.attribute }$reg ${ rom.range }$ ${ rom.memory }$ [0:${ rom.last }$];
 <%- match rom.contents %>
+<%- when Contents::Case with (choices) %>
+    function ${ rom.range }$ ${ rom.memory }$;
+        input ${ rom.number }$ ${ rom.at }$;
+        case (${ rom.at }$)
+<%- for line in choices %>
+${ line }$
+<%- endfor %>
+        endcase
+    endfunction
 <%- when Contents::File with { radix, parameter } %>
+    ${ rom.attribute }$reg ${ rom.range }$ ${ rom.memory }$ [0:${ rom.last }$];
     initial $readmem${ radix }$(${ parameter }$, ${ rom.memory }$);
 <%- when Contents::Inline with (words) %>
+    ${ rom.attribute }$reg ${ rom.range }$ ${ rom.memory }$ [0:${ rom.last }$];
     initial begin
 <%- for line in words %>
 ${ line }$

@@ -22,13 +22,14 @@ ${ line }$
 <% for line in stage.title %>
 ${ line }$
 <%- endfor %>
-<%- for line in stage.registers %>
+<%- for line in stage.words %>
 ${ line }$
 <%- endfor %>
 <%- let items = &stage.items %>
-<%- let groups = &stage.groups %>
 <%- include "items.v" %>
-<%- include "groups.v" %>
+<%- for line in stage.registers %>
+${ line }$
+<%- endfor %>
 <%- endfor %>
 <%- if !unused.is_empty() %>
 
@@ -38,5 +39,8 @@ ${ line }$
 <%- endfor %>
 <%- endif %>
 endmodule
+<%- if let Some(name) = delay %>
+<% include "delay.v" %>
+<%- endif %>
 
 `default_nettype wire

@@ -34,11 +34,7 @@ ${ line }$
 <%- for line in inside %>
     ${ line }$
 <%- endfor %>
-    wire [${ stages }$:1] ${ present }$ = {
-<%- for line in valids %>
-        ${ line }$
-<%- endfor %>
-    };
+    wire [${ stages }$:1] ${ present }$ = ${ valid }$;
 
     // The same for a queue beside it: all points in it move together, unless a result waits.
     wire ${ moves }$ = ${ moves_when }$;

@@ -118,8 +118,9 @@ static KEYS: LazyLock<Vec<Key>> = LazyLock::new(|| {
         Key::choice(
             "package.memories",
             "files",
-            &["files", "inline"],
-            "Whether ROM contents are .mem files, or stand in the Verilog, for flows that do not find files.",
+            &["files", "inline", "case"],
+            "Whether ROM contents are .mem files, or stand in the Verilog, for flows that do not find files: as initial values, or as \
+             the choices of a case, for flows that drop those.",
         ),
         Key::choice(
             "package.rom_style",

@@ -62,8 +62,8 @@ fn about(config: &Config) -> About {
     let mut notes = vec![
         "The seeds hold every device against this function and give no circuit for it; structure and formats \
          are Glint's own."
-            .to_owned(),
-        "Phong's function is this device with cos psi = V.R at the input in place of N.H.".to_owned(),
+            .into(),
+        "Phong's function is this device with cos psi = V.R at the input in place of N.H.".into(),
     ];
     notes.extend(decay::notes(config));
     About {

@@ -4,7 +4,7 @@ use crate::base::fixed::Format;
 use crate::config::{Config, Key, Problems};
 use crate::hdl::blocks::colour::Colours;
 use crate::hdl::blocks::line::{LineBlocks, OperandBlocks};
-use crate::hdl::dsl::{Designer, Operand, Signal, Step, end, step, valid};
+use crate::hdl::dsl::{Designer, Note, Operand, Signal, Step, Topic, end, step, valid};
 
 use super::rounding;
 
@@ -106,16 +106,17 @@ fn shares_multiplier(config: &Config) -> bool {
 
 /// What a device says of writes while it is busy and of how long its outputs hold, where each colour has a
 /// multiplier of its own behind the register that `follow` names, until `until`.
-pub fn outputs_note(config: &Config, follow: &str, until: &str) -> String {
+pub fn outputs_note(config: &Config, follow: &str, until: &str) -> Note {
     if shares_multiplier(config) {
-        return "Writes while busy are ignored. One multiplier multiplies f by the colours, one after the other, and the \
-                outputs are registers: they hold from valid until the next computation reaches the products."
-            .to_owned();
+        return Topic::Writes.note(
+            "Writes while busy are ignored. One multiplier multiplies f by the colours, one after the other, and the \
+             outputs are registers: they hold from valid until the next computation reaches the products.",
+        );
     }
-    format!(
+    Topic::Writes.note(format!(
         "Writes while busy are ignored. The outputs follow {follow} and the colour registers: they hold from valid \
          until a colour is written or the next computation {until}."
-    )
+    ))
 }
 
 /// The keys of the operands of a device that has cos γ, n and colours.

@@ -10,7 +10,7 @@ use crate::config::{Config, Schema};
 use crate::hdl::blocks::colour::Colours;
 use crate::hdl::blocks::squaring::Squarings;
 use crate::hdl::dsl::{Designer, Signal, step};
-use crate::hdl::netlist::About;
+use crate::hdl::netlist::{About, Topic};
 
 use super::{common, rounding};
 
@@ -54,7 +54,7 @@ pub fn describe(d: &Designer, config: &Config) {
         .doc("second operand of the multiplier");
     let product = d
         .shared_mul("product", &first, &second)
-        .doc("the shared product; its point depends on the operands");
+        .doc_on(Topic::Microprogram, "the shared product; its point depends on the operands");
     let rounding_f = rounding(config, "intensity.rounding");
     let distance =
         d.narrow("distance", product.of(complement, zeta), f, rounding_f, Overflow::Saturate);
@@ -96,16 +96,17 @@ fn about(config: &Config) -> About {
         formula: format!("out = colour * (n/{m} * (cos(gamma) - 1) + 1)^{m}"),
         source: "Seed 002, the paper's W(n, gamma) with zeta = n/m".to_owned(),
         notes: vec![
-            "The paper gives no circuit. This is the least that its formula asks for: one multiplier and one \
-             accumulator; n/m is a shift by wiring."
-                .to_owned(),
+            "The paper gives no circuit; n/m is a shift by wiring.".into(),
+            Topic::Microprogram.note(
+                "The circuit is the least that the formula asks for: one multiplier and one accumulator.",
+            ),
             "The sum is formed as a complement, 1 - n/m * (1 - cos gamma): every number is then a fraction from 0 \
              to 1, and the clamp beyond the zero of W is the saturation of the first product. The complement is the \
              accumulator inverted, an ulp too small, which the error bound counts."
-                .to_owned(),
+                .into(),
             "Cosines are limited to 0 ... 1.0 as they are written; cos gamma <= 0 gives 0, and so does everything \
              beyond the zero of W at cos gamma = (n - m)/n."
-                .to_owned(),
+                .into(),
             common::outputs_note(config, "the accumulator", "begins"),
         ],
     }

@@ -9,7 +9,7 @@ use crate::hdl::blocks::angle;
 use crate::hdl::blocks::colour::Colours;
 use crate::hdl::blocks::line::Line;
 use crate::hdl::dsl::Designer;
-use crate::hdl::netlist::About;
+use crate::hdl::netlist::{About, Topic};
 
 use super::{common, quad_cosine, rounding};
 
@@ -98,27 +98,28 @@ fn about(stages: i32) -> About {
             "The host multiplies both angles by a = sqrt(n/2) before it writes them: there is no exponent here. \
              Angles are in right angles: 1.0 is 90 degrees. The intensity is 0 where the stretched angle is not in \
              -90 (included) to 90 degrees."
-                .to_owned(),
+                .into(),
             "A stretched angle is no angle on a circle: it must not wrap around within a line. With angle.integer = 7 \
              the register holds 128 right angles either way; what a host can set up reaches 3*sqrt(n/2), that is 68 for n \
              = 1000. Beyond, the register wraps around, in model and hardware alike."
-                .to_owned(),
+                .into(),
             "The default has 22 fraction bits of the angle: over the longest line, of 4095 intervals, the host's roundings of delta_zeta and \
              zeta_start add up to at most 2^11 ulps. The formula falls by at most 1.58 in a right angle, so that an \
              amplitude of 255 drifts by at most 255 * 1.58 * 2^(11 - 22) = 0.20 units; with the contract's 0.82 and \
              half a unit for the rounding of the amplitude, 1.52 from the host's unrounded numbers."
-                .to_owned(),
+                .into(),
             "The seed does not draw the prototype. Its accumulator is taken to be that of the claimed device, and \
              bears its block numbers: registers 1 to 3, counter 5, adder 6, mux 7, register 8, ROM 12, multiplier 13."
-                .to_owned(),
-            format!(
+                .into(),
+            Topic::Latency.note(format!(
                 "A start makes length + 1 points, one a clock: valid is high for each, {} clocks after output 37 \
                  (write_angle) has written its angle. busy is high to the last point and done is high with it.",
                 if stages == 2 { "two".to_owned() } else { stages.to_string() }
+            )),
+            Topic::Writes.note(
+                "Writes while busy are ignored. The output follows the operand register of the amplitude: it holds \
+                 from valid until that is written or the next computation begins.",
             ),
-            "Writes while busy are ignored. The output follows the operand register of the amplitude: it holds from \
-             valid until that is written or the next computation begins."
-                .to_owned(),
         ],
     }
 }

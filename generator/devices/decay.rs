@@ -9,7 +9,7 @@ use crate::hdl::blocks::colour::Colours;
 use crate::hdl::blocks::exponential::{self, ExponentialFormats};
 use crate::hdl::blocks::multipartite::{Cut, Offset};
 use crate::hdl::blocks::segmented::{self, Entry, Segment, Segmentation, SegmentedFormats};
-use crate::hdl::dsl::{Designer, Signal, step};
+use crate::hdl::dsl::{Designer, Note, Signal, Topic, step};
 
 use super::{common, rounding};
 
@@ -208,7 +208,9 @@ pub fn describe<'d>(d: &'d Designer, config: &Config, cos_gamma: Signal<'d>, cur
     let second = d
         .bus("second", operand_select, [line.rest, exponent])
         .doc("second operand of the multiplier");
-    let product = d.shared_mul("product", &first, &second).doc("its point depends on the operands");
+    let product = d
+        .shared_mul("product", &first, &second)
+        .doc_on(Topic::Microprogram, "its point depends on the operands");
     decay.takes(line.at(d, "curve", product.of(line.slope, line.rest)));
 
     let power = product.of(factor, exponent);
@@ -368,21 +370,23 @@ fn ends<'d>(
     d.choose("reflectance_next", facing, [dark, lit])
 }
 
-/// What [`crate::hdl::netlist::About::notes`] says of both devices.
-pub fn notes(config: &Config) -> Vec<String> {
+/// What [`About::notes`](crate::hdl::dsl::About::notes) says of both devices.
+pub fn notes(config: &Config) -> Vec<Note> {
     vec![
-        "Two products a point, in one shared multiplier (a second one would save a clock of six and cost one to \
-         two DSP blocks): the rise within a segment of the decay, and n times the decay. 2^-x over the fraction \
-         of n*decay comes from tables that are added (symmetric multipartite), for which it is stored less the \
-         line 1 - x/2; the integer shifts it right."
-            .to_owned(),
+        Topic::Microprogram.note(
+            "Two products a point, in one shared multiplier (a second one would save a clock of six and cost one to \
+             two DSP blocks): the rise within a segment of the decay, and n times the decay.",
+        ),
+        "2^-x over the fraction of n*decay comes from tables that are added (symmetric multipartite), for which \
+         it is stored less the line 1 - x/2; the integer shifts it right."
+            .into(),
         "The straight segments of the decay shrink toward cos gamma = 1, by factors of four of 1 - cos gamma, so \
          that the decay keeps its relative accuracy, which is what n multiplies. The table is addressed by the \
          inverse of cos gamma, an ulp below 1 - cos gamma, which costs no subtractor: its contents make up for it."
-            .to_owned(),
+            .into(),
         "Cosines are limited to 0 ... 1.0 as they are written; cos gamma <= 0 gives 0, for n = 0 too. Else n = 0 \
          gives what cos gamma = 1.0 gives: all ones, an ulp below 1.0."
-            .to_owned(),
+            .into(),
         common::outputs_note(config, "the register of f", "reaches microinstruction 4"),
     ]
 }

@@ -61,7 +61,7 @@ fn about(config: &Config) -> About {
     let mut notes = vec![
         "The seed gives no circuit. It prints gamma as the angle between H and L; the angle between N and H, \
          which is what makes the function comparable with cos^n, is taken here."
-            .to_owned(),
+            .into(),
     ];
     notes.extend(decay::notes(config));
     About {

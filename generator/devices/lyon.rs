@@ -9,7 +9,7 @@ use crate::config::{Config, Key, Problems, Schema};
 use crate::hdl::blocks::colour::Colours;
 use crate::hdl::blocks::squaring::Squarings;
 use crate::hdl::dsl::{Designer, Setting, Signal, Step, loop_while, step};
-use crate::hdl::netlist::About;
+use crate::hdl::netlist::{About, Note, Topic};
 
 use super::{common, rounding};
 
@@ -268,12 +268,12 @@ fn shift_format(config: &Config) -> Format {
 }
 
 /// From what the clocks of a point come.
-fn clocks_note(config: &Config) -> String {
+fn clocks_note(config: &Config) -> Note {
     let shift = config.choice("scale") == "shift";
     let [squares, colours] =
         ["distance.multipliers", "colour.multipliers"].map(|key| config.choice(key) == "1");
     let output = config.flag("output.registered") && !colours;
-    format!(
+    Topic::Latency.note(format!(
         "Valid is {}{} clocks after start: one each for {}D^2, scaling, base{} and result, and one for each squaring \
          after the first{}.",
         common::squarings(config)
@@ -289,7 +289,7 @@ fn clocks_note(config: &Config) -> String {
             _ => "",
         },
         if shift { " and for each place shifted after the first" } else { "" },
-    )
+    ))
 }
 
 fn about(config: &Config) -> About {
@@ -298,8 +298,7 @@ fn about(config: &Config) -> About {
     let (beta, scaling) = if shift {
         (
             "2^shift",
-            "The shift register shifts one place a clock under the counter, shift + 1 times, which then counts the \
-             squarings. The host loads shift = log2 n, rounded: beta is within a factor of 1.42 of n/(2*power).",
+            "The host loads shift = log2 n, rounded: beta is within a factor of 1.42 of n/(2*power).",
         )
     } else {
         (
@@ -307,6 +306,22 @@ fn about(config: &Config) -> About {
             "Beta is n/(2*power) for every n: multiplier 5 is ours, and stands in for the patent's shift register.",
         )
     };
+    let mut notes = vec![
+        "The seed lists the parts; the wiring is an interpretation. For unit vectors D^2 = 2*(1 - cos gamma), so that this \
+         is the function of cosine-power, reached without a scalar product."
+            .into(),
+        scaling.into(),
+        clocks_note(config),
+        "The formula knows no side that faces away: where cos gamma <= 0, that is D^2 >= 2, f is not 0 for small n. \
+         A host that wants it to be 0 does not start the device there."
+            .into(),
+        "Components may have any value; D^2 is whole up to 12.0, which is the most that three of them give."
+            .into(),
+        common::outputs_note(config, "the accumulator", "begins"),
+    ];
+    let shifting = "The shift register shifts one place a clock under the counter, shift + 1 times, which then counts the \
+                    squarings.";
+    notes.extend(shift.then(|| Topic::Microprogram.note(shifting)));
     About {
         device: "lyon".to_owned(),
         title: format!("Specular intensity from a difference vector, power {m}"),
@@ -314,18 +329,6 @@ fn about(config: &Config) -> About {
             "out = colour * max(0, 1 - beta*D^2)^{m}, beta = {beta}/(2*{m}), D = N - H"
         ),
         source: "US 5 739 820, Fig. 7C and 7D, the first analogue in seed 000".to_owned(),
-        notes: vec![
-            "The seed lists the parts; the wiring is an interpretation. For unit vectors D^2 = 2*(1 - cos gamma), so that this \
-             is the function of cosine-power, reached without a scalar product."
-                .to_owned(),
-            scaling.to_owned(),
-            clocks_note(config),
-            "The formula knows no side that faces away: where cos gamma <= 0, that is D^2 >= 2, f is not 0 for small n. \
-             A host that wants it to be 0 does not start the device there."
-                .to_owned(),
-            "Components may have any value; D^2 is whole up to 12.0, which is the most that three of them give."
-                .to_owned(),
-            common::outputs_note(config, "the accumulator", "begins"),
-        ],
+        notes,
     }
 }

@@ -9,7 +9,7 @@ use crate::hdl::blocks::angle;
 use crate::hdl::blocks::colour::{ChannelBlocks, Colours};
 use crate::hdl::blocks::line::Line;
 use crate::hdl::dsl::{Designer, Signal};
-use crate::hdl::netlist::About;
+use crate::hdl::netlist::{About, Topic};
 
 use super::{common, rounding};
 
@@ -186,8 +186,8 @@ fn about(stages: i32) -> About {
             "Angles are in right angles: 1.0 is 90 degrees. The register holds one turn and wraps around where \
              angles do, so no line overflows it. The intensity is 0 where the angle is not in -90 (included) to 90 \
              degrees, and where the stretched angle is 90 degrees or more."
-                .to_owned(),
-            format!(
+                .into(),
+            Topic::Latency.note(format!(
                 "A start makes length + 1 points, one a clock: valid is high for each. Output 37 (write_angle) writes \
                  the angle of a point; valid, which is the same net in the patent, follows it by {}. busy is high to the \
                  last point and done is high with it.",
@@ -195,29 +195,29 @@ fn about(stages: i32) -> About {
                     2 => "two clocks, for register 8 and for the synchronous ROM 12".to_owned(),
                     stages => format!("{stages} clocks, for the registers on the way"),
                 }
-            ),
+            )),
             "Decoder 10 picks k = 1 for n = 1, 2 for n = 2, 4 for n = 3 to 6 and 16 for all other n, with n = 0 among \
              them: its root is 0 and its intensity the amplitude wherever the surface faces. The patent drives four \
              address bits of ROM 12 with the decoder's outputs 30 to 33; here their number drives two, and the ROM is \
              a quarter as large. Its nine bits of n cannot hold 1000; ten can."
-                .to_owned(),
+                .into(),
             "The patent's counter 5 is written by its strobe and used up by a line. Here the operand length keeps its \
              value and loads the counter with the first point, so that a line can be repeated by start alone. A length \
              of 0 makes one point: the microinstruction that adds is left out, as the patent's borrow from an empty counter \
              leaves it out."
-                .to_owned(),
+                .into(),
             "The default has 26 fraction bits of the angle: over the longest line, of 4095 intervals, the host's roundings of delta_zeta and \
              zeta_start add up to at most 2^11 ulps. The formula falls by at most 30.6 in a right angle (n = 1000), so \
              that an amplitude of 255 drifts by at most 255 * 30.6 * 2^(11 - 26) = 0.24 units. With the contract's 0.93 \
              and half a unit for the rounding of the amplitude itself this is 1.67 units from the host's unrounded \
              numbers. The accumulator adds exactly, and only multiplier 11 drops bits."
-                .to_owned(),
+                .into(),
             "The root sqrt(n/k) is applied by multiplier 11 alone; the seed's formulas (13) and (16) apply it to the \
              operands a second time. Output 28 is busy, high from start to end, as trigger 39 drives it."
-                .to_owned(),
+                .into(),
             "Writes while busy are ignored. The output follows the operand registers of amplitude and exponent: it \
              holds from valid until one of them is written or the next computation begins."
-                .to_owned(),
+                .into(),
         ],
     }
 }

@@ -174,15 +174,15 @@ fn about(config: &Config) -> About {
         notes: vec![
             "Below its zero at c = 1 - 1/a(n) the parabola is clamped to 0. The seed has no clamp, but no negative numbers \
              either."
-                .to_owned(),
+                .into(),
             format!(
                 "The seed does not say what ROM(n) holds. Against cos^n over n = {first} ... {last} the formula itself \
                  is off by up to {:.4} with a(n) = n - 1 (at n = {}), and by up to {:.4} with the minimax a(n) (at \
                  n = {}).",
                 taylor.0, taylor.1, minimax.0, minimax.1
-            ),
-            "n = 0 is taken as n = 1, where a(n) = 0 and f = c.".to_owned(),
-            "Cosines are limited to 0 ... 1.0 as they are written; cos gamma <= 0 gives 0.".to_owned(),
+            ).into(),
+            "n = 0 is taken as n = 1, where a(n) = 0 and f = c.".into(),
+            "Cosines are limited to 0 ... 1.0 as they are written; cos gamma <= 0 gives 0.".into(),
             common::outputs_note(config, "register intensity", "has its result"),
         ],
     }

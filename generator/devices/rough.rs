@@ -12,7 +12,7 @@ use crate::base::fixed::{Format, Overflow, Rounding};
 use crate::config::Config;
 use crate::hdl::blocks::colour::{ChannelBlocks, Colours};
 use crate::hdl::dsl::{Designer, Register, Signal, end, hold, step, valid};
-use crate::hdl::netlist::About;
+use crate::hdl::netlist::{About, Note, Topic};
 
 use super::{common, rounding};
 use sine::sine_rom;
@@ -144,7 +144,7 @@ pub fn describe(d: &Designer, config: &Config) {
     let product = d
         .shared_mul("multiplier10", &mux8, &mux9)
         .block(10)
-        .doc("the shared product; its point depends on the operands");
+        .doc_on(Topic::Microprogram, "the shared product; its point depends on the operands");
     let overflow = if formats.patent { Overflow::Wrap } else { Overflow::Saturate };
     let (rounding_products, rounding_result) = (formats.product_rounding, formats.result_rounding);
     let cos_cos = product.of(cos_gamma, cos_dgamma);
@@ -299,28 +299,28 @@ fn facing_only<'d>(d: &'d Designer, cos_gamma: Signal<'d>, result: Signal<'d>) -
 fn about(config: &Config) -> About {
     let patent = config.choice("arithmetic") == "patent";
     let mut notes = vec![
-        format!(
-            "Registers, muxes, adders and multipliers carry the numbers of the patent's figure 1; the control \
-             ROM is its table 1, {}.",
+        "Registers, muxes, adders and multipliers carry the numbers of the patent's figure 1.".into(),
+        Topic::Microprogram.note(format!(
+            "The control ROM is the patent's table 1, {}.",
             match (config.choice("colour.multipliers"), config.flag("output.registered")) {
                 ("1", _) => "with a microinstruction more for each colour",
                 (_, true) => "with a microinstruction more for the output registers",
                 _ => "bit for bit",
             }
+        )),
+        Topic::Microprogram.note(
+            "Muxes 8 and 9 are followed by registers: the multiplier takes what the microinstruction before \
+             selected. The patent's settling microinstructions leave the time for that. A synchronous ROM 18 is \
+             addressed with dgamma one microinstruction before line 47 says so.",
         ),
-        "Muxes 8 and 9 are followed by registers: the multiplier takes what the microinstruction before \
-         selected. The patent's settling microinstructions leave the time for that. A synchronous ROM 18 is addressed \
-         with dgamma one microinstruction before line 47 says so."
-            .to_owned(),
         common::outputs_note(config, "register 13", "reaches microinstruction 5"),
     ];
-    notes.push(if patent {
+    notes.push(Note::from(if patent {
         "Numbers are fractions modulo 1.0, as in the patent: every '- 1' is a missing carry, n loses its low \
          bit, and nothing is clamped."
-            .to_owned()
     } else {
-        "Cosines are limited to 0 ... 1.0 as they are written; cos gamma <= 0 gives 0.".to_owned()
-    });
+        "Cosines are limited to 0 ... 1.0 as they are written; cos gamma <= 0 gives 0."
+    }));
     About {
         device: "rough".to_owned(),
         title: "Specular intensity of a rough surface".to_owned(),

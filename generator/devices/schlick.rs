@@ -9,7 +9,7 @@ use crate::config::{Config, Key, Schema};
 use crate::hdl::blocks::colour::Colours;
 use crate::hdl::blocks::divider::Divider;
 use crate::hdl::dsl::{Designer, Signal, loop_while, step};
-use crate::hdl::netlist::About;
+use crate::hdl::netlist::{About, Topic};
 
 use super::common;
 
@@ -86,16 +86,18 @@ fn about(config: &Config) -> About {
         notes: vec![
             format!(
                 "The quotient is truncated to {bits} bits and exact to the last of them: the divider keeps the whole \
-                 remainder. One bit takes a clock. The quotient 1.0, of cos gamma = 1.0 or n = 0, is the largest \
+                 remainder. The quotient 1.0, of cos gamma = 1.0 or n = 0, is the largest \
                  fraction, an ulp less."
-            ),
+            )
+            .into(),
+            Topic::Microprogram.note("One bit of the quotient takes a clock."),
             "Cosines are limited to 0 ... 1.0 as they are written; cos gamma <= 0 gives 0. A division by zero \
              cannot occur: the divisor is 0 for cos gamma = 0 and n = 0 alone, and cos gamma = 0 adds an ulp to \
              it, so that this gives 0 too."
-                .to_owned(),
+                .into(),
             "The seed prints the fraction as cos/n - n*cos + cos, without the fraction bar; the denominator is \
              n - n*cos + cos."
-                .to_owned(),
+                .into(),
             common::outputs_note(config, "the quotient", "begins"),
         ],
     }

@@ -156,15 +156,15 @@ fn about(config: &Config) -> About {
             .to_owned(),
         source: "UA 30041, the prototype in seed 001".to_owned(),
         notes: vec![
-            "The seed multiplies by n; for cos^n to be approximated it must be n/2, which is wiring.".to_owned(),
+            "The seed multiplies by n; for cos^n to be approximated it must be n/2, which is wiring.".into(),
             "\"- 1\" and \"+ 1\" are 1.0 here. The seed's adder 1 adds all ones and its adder 2 a carry: an ulp \
              down and up, which stands for 1.0 only where numbers are modulo 1.0."
-                .to_owned(),
+                .into(),
             "The seed does not say what ROM(n) holds: here it holds the smallest f that is shown. Nothing passes where \
              the base is negative, whose square would rise again."
-                .to_owned(),
-            comparator_note(config),
-            "Cosines are limited to 0 ... 1.0 as they are written; cos gamma <= 0 gives 0.".to_owned(),
+                .into(),
+            comparator_note(config).into(),
+            "Cosines are limited to 0 ... 1.0 as they are written; cos gamma <= 0 gives 0.".into(),
             common::outputs_note(config, "register intensity", "has its result"),
         ],
     }

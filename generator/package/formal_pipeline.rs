@@ -9,6 +9,7 @@ use askama::Template;
 
 use super::formal::{Script, Sources, inputs_of, outputs_of};
 use crate::hdl::netlist::{Design, NetId, Pipeline, Role};
+use crate::hdl::verilog::naming::Naming;
 use crate::hdl::verilog::rows::{connections, separated};
 use crate::hdl::verilog::text::{Names, literal, range};
 
@@ -29,8 +30,8 @@ struct Wrapper {
     /// What the proof sees of the inside: declarations.
     inside: Vec<String>,
     stages: usize,
-    /// One bit a stage, the last first, with their commas.
-    valids: Vec<String>,
+    /// One bit a stage, under its path.
+    valid: String,
     stall: bool,
     moves_when: &'static str,
     /// No point in any stage.
@@ -82,21 +83,23 @@ pub fn files(
     }
     // A net of the inside under its path; Yosys joins the two when it flattens.
     let mut inside = Vec::new();
-    let mut seen = |net: NetId| {
-        let path = format!("\\{instance}.{} ", port_name(net));
-        let range = range(design.width(net));
+    let mut seen = |name: &str, range: &str| {
+        let path = format!("\\{instance}.{name} ");
         let space = if range.is_empty() { "" } else { " " };
         inside.push(format!("(* hierconn *) wire {range}{space}{path};"));
         path
     };
     let latency = pipeline.stages.len();
-    let valid: Vec<String> = pipeline.valid.iter().map(|&net| seen(net)).collect();
+    let valid = seen(&Naming::new(design).valid, &format!("[{latency}:1]"));
     let side = (pipeline.side > 0).then(|| Side {
         range: range(pipeline.side),
         tag: names.fresh("tag"),
         stages: (1..)
             .zip(&pipeline.side_values)
-            .map(|(number, &net)| SideStage { number, value: seen(net) })
+            .map(|(number, &net)| {
+                let value = seen(&port_name(net), &range(design.width(net)));
+                SideStage { number, value }
+            })
             .collect(),
     });
     let (queue, followed, begins) =
@@ -116,11 +119,7 @@ pub fn files(
         outputs: outputs_of(design),
         connections: connections(design),
         stages: latency,
-        // An escaped name ends with a blank, or with the line.
-        valids: separated(valid.into_iter().rev().collect())
-            .into_iter()
-            .map(|line| line.trim_end().to_owned())
-            .collect(),
+        valid,
         stall: pipeline.stall,
         moves_when: if pipeline.stall { "out_ready | ~out_valid" } else { "1'b1" },
         empty: literal(0, latency as u32),

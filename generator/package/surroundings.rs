@@ -129,7 +129,8 @@ impl Surroundings {
             },
             software: config.flag("package.software"),
             style: Style {
-                inline: config.choice("package.memories") == "inline",
+                inline: config.choice("package.memories") != "files",
+                case: config.choice("package.memories") == "case",
                 rom_style: match config.choice(ROM_STYLE) {
                     "block" => Some("rom_style = \"block\""),
                     // To Yosys, which reads the first, memory in look-up tables is one that can be written.

@@ -1,7 +1,7 @@
 //! The stages of a pipeline as a table.
 
 use super::account::{Table, code};
-use crate::hdl::netlist::{Design, Pipeline, value_name};
+use crate::hdl::netlist::{Design, Pipeline};
 
 /// The stages with their microinstructions, values, time and registers.
 pub fn table(design: &Design, pipeline: &Pipeline) -> Table {
@@ -9,9 +9,9 @@ pub fn table(design: &Design, pipeline: &Pipeline) -> Table {
         "stage: | microinstructions | logic, ns: | slack, ns: | register bits: | in delay lines: | computes",
     );
     for (number, stage) in pipeline.stages.iter().enumerate() {
-        let values = pipeline.computed(design, number).map(|net| match net.block {
-            None => code(value_name(&net.name)),
-            Some(block) => format!("{} ({block})", code(value_name(&net.name))),
+        let values = pipeline.computed(design, number).map(|(value, net)| match net.block {
+            None => code(value),
+            Some(block) => format!("{} ({block})", code(value)),
         });
         table.row([
             number.to_string(),

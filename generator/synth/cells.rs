@@ -17,19 +17,13 @@ use super::netlist::{self, Netlist};
 use super::workspace::{self, HARNESS, Workspace};
 use super::{Subject, Target};
 use crate::tools::Tool;
+use crate::tools::gates::cells::{LOAD, MAPPING};
 
 const DEVICE: &str = "OSU 0.18 µm, typical corner, before layout";
 const NETLIST: &str = "cells.v";
 const STATISTICS: &str = "cells.txt";
 const GATE: &str = "NAND2X1";
 const CONSTRAINTS: &str = "cells.constr";
-
-/// What a port drives, in pF. That there are constraints makes Yosys buffer nets and size cells.
-const LOAD: &str = "set_load 0.1 [all_outputs]\n";
-
-/// How Yosys maps to the cells of `cells.lib`, without the top module.
-pub const MAPPING: &str =
-    "dfflibmap -liberty cells.lib; abc -liberty cells.lib -constr cells.constr; opt_clean -purge";
 
 /// Makes sure that there is a library.
 ///

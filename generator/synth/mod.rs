@@ -24,6 +24,7 @@ use serde::{Deserialize, Serialize};
 use crate::hdl::netlist::Design;
 use crate::package;
 use crate::tools::Tool;
+use crate::tools::gates::cells::MAPPING;
 use crate::tools::synthesis::FAMILIES;
 pub use figures::{Area, Figures, Frequency, Step};
 pub use record::{DIRECTORY, Rate, Record, tools};
@@ -133,7 +134,7 @@ impl Flow {
         let mut text = format!("{} {} {}\n", self.target, subject.seeds, env!("CARGO_PKG_VERSION"));
         text += &self.versions.join("\n");
         if self.target == Target::Osu018 {
-            text += cells::MAPPING;
+            text += MAPPING;
         }
         for (name, contents) in subject.files {
             text += &format!("\n{name} {}", package::digest(contents.as_bytes()));

@@ -144,6 +144,16 @@ pub(super) fn run(
     command: &str,
     limit: Duration,
 ) -> Result<Directory> {
+    commanded(yosys, files, &format!("{}; {command}", family.script(top)), limit)
+}
+
+/// Has Yosys read Verilog and run commands, and returns the directory in which it did.
+pub(super) fn commanded(
+    yosys: &Tool,
+    files: &[(String, String)],
+    commands: &str,
+    limit: Duration,
+) -> Result<Directory> {
     let dir = Directory::new().context("cannot make a directory for synthesis")?;
     for (name, contents) in files {
         fs::write(dir.path().join(name), contents)
@@ -151,7 +161,7 @@ pub(super) fn run(
     }
     let sources: Vec<&str> =
         files.iter().map(|(name, _)| name.as_str()).filter(|name| name.ends_with(".v")).collect();
-    let script = format!("read_verilog {}; {}; {command}", sources.join(" "), family.script(top),);
+    let script = format!("read_verilog {}; {commands}", sources.join(" "));
     yosys.run_to_success(["-q", "-p", &script], dir.path(), limit)?;
     Ok(dir)
 }

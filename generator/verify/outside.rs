@@ -1,6 +1,7 @@
 //! Checks that run tools outside Glint, on the emitted files.
 
 use std::fs;
+use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
@@ -16,6 +17,7 @@ use crate::core::{BENCH_SEED, Core};
 use crate::equality;
 use crate::package;
 use crate::tools::gates;
+use crate::tools::gates::cells::{LIBERTY, Start};
 use crate::tools::synthesis::{FAMILIES, Family, synthesise};
 use crate::tools::{
     LimitReached, Limits, PROOF_LIMITS, Simulator, elaborate, lint, prove, run_bench,
@@ -431,10 +433,11 @@ fn written(subject: &Subject<'_>) -> Result<Directory> {
 pub const GATES: Check = Check {
     id: "gates",
     title: "Netlists at gate level",
-    question: "Do the netlists that synthesis makes for FPGAs, ROM contents and all, pass the bench of their source?",
+    question: "Do the netlists that synthesis makes for FPGAs and of standard cells, ROM contents and all, pass the bench of \
+               their source?",
     reads: "netlists that Yosys makes of the Verilog and memory files of the core, and the shipped bench with other points",
     tools: &["yosys", "iverilog", "vvp"],
-    steps: |_| simulated().count() as u64,
+    steps: |_| simulated().count() as u64 + 1,
     run: |subject, tools, progress| {
         let (name, limit) = (&subject.core.config.name, subject.effort.time_limit);
         let vectors = subject.core.vectors(GATE_POINTS, BENCH_SEED)?;
@@ -455,17 +458,34 @@ pub const GATES: Check = Check {
             })
             .collect::<Result<_>>()?;
         let titles: Vec<&str> = families.iter().map(|family| family.title).collect();
+        let mut failures: Vec<String> = failures.into_iter().flatten().collect();
+        let cells = Path::new(LIBERTY).is_file();
+        if cells {
+            let rtl = subject.core.verilog()?;
+            let names: Vec<String> = rtl.iter().map(|(name, _)| name.clone()).collect();
+            let netlist = gates::cells::netlist(&tools[0], &rtl, name, limit)?;
+            for &start in Start::of(subject.core.design.pipeline.is_some()) {
+                let models = gates::cells::models(start)?;
+                let files = gates::around(sources.clone(), &names, netlist.clone(), models);
+                let outcome = run_bench(Simulator::Icarus, &files, &format!("{name}_tb"), limit)?;
+                if !outcome.passed {
+                    failures.push(format!("cells, {start:?}: {}", outcome.transcript.trim()));
+                }
+            }
+        }
+        progress(1);
+        let cells = if cells { ", and of cells of 0.18 µm" } else { "" };
         Ok(Finding::new(
             Verdict::Passed,
             format!(
-                "{} results in {} clocks (seed {BENCH_SEED}) of the netlists for {}",
+                "{} results in {} clocks (seed {BENCH_SEED}) of the netlists for {}{cells}",
                 grouped(GATE_POINTS),
                 grouped(clocks),
                 titles.join(" and ")
             ),
             "Every output is right on every clock.",
         )
-        .failures(failures.into_iter().flatten().collect())
+        .failures(failures)
         .open("Timing: the models of the cells have none. Families without models of all cells."))
     },
 };

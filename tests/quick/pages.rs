@@ -21,7 +21,7 @@ fn names() -> Vec<String> {
 #[test]
 fn notes_have_no_runs_of_blanks() {
     for (path, unit) in configurations() {
-        for note in &unit.design.about.notes {
+        for note in unit.design.about.paragraphs() {
             assert!(!note.contains("  ") && !note.contains('\n'), "{path}: {note}");
         }
     }

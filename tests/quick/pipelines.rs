@@ -128,32 +128,30 @@ fn delay_lines_are_registers_that_nothing_reads_on_their_way() {
     assert!(lines >= 8, "{lines} delay lines");
 }
 
-/// The words of a memory, with the register behind it, are as many as the stages that the value goes through: the
-/// names of the values have the stages.
+/// The words of a memory, with the register behind it, are as many as the stages that a value goes through: names have
+/// the stages, and an operand is in stage 0.
 #[test]
 fn memories_of_delay_lines_have_a_word_less_than_there_are_stages() {
-    let memory = Regex::new(r"reg \[\d+:0\] delay_s(\d+)_s(\d+) \[0:(\d+)\];").expect("a pattern");
+    let lines = Regex::new(
+        r"(?s)_delay #\([^;]*\.WORDS\((\d+)\)[^;]*\.entering\(\{?(.*?)\}?\),\s*\.leaving\(\{?(.*?)\}?\)\s*\);",
+    );
+    let (lines, name) = (lines.expect("a pattern"), Regex::new(r"^\w+$").expect("a pattern"));
     let number = |text: &str| text.parse::<usize>().expect("a number");
+    let stage = |name: &str| name.rsplit_once("_s").map_or(0, |(_, stage)| number(stage));
     let mut seen = 0;
     for (path, unit) in all_configurations() {
         let files = package::emit(&unit.design, &EmitInputs::default()).expect("Verilog");
-        let Some(text) = files.iter().find(|file| file.path.ends_with("_pipelined.v")) else {
-            continue;
-        };
-        for found in memory.captures_iter(&text.contents) {
-            seen += 1;
-            let [from, to, last] = [1, 2, 3].map(|at| number(&found[at]));
-            assert_eq!(last + 2, to - from, "{path}: {}", &found[0]);
-            let name = format!("delay_s{from}_s{to}[slot_of_{}]", last + 1);
-            let leaves = text.contents.split(&format!(" <= {name};")).next().expect("text before");
-            let leaves = leaves.rsplit(';').next().expect("a statement");
-            let names = leaves.trim().trim_matches(['{', '}']).split(',').map(str::trim);
-            for q in names {
-                assert!(q.ends_with(&format!("_s{to}")), "{path}: `{q}` leaves {name}");
+        for found in files.iter().flat_map(|file| lines.captures_iter(&file.contents)) {
+            let [enter, leave] =
+                [2, 3].map(|at| found[at].split(',').map(str::trim).collect::<Vec<_>>());
+            for (enter, leave) in enter.iter().zip(&leave).filter(|(it, _)| name.is_match(it)) {
+                let words = stage(leave) - stage(enter) - 1;
+                assert_eq!(words, number(&found[1]), "{path}: {enter} to {leave}");
+                seen += 1;
             }
         }
     }
-    assert!(seen >= 8, "{seen} memories");
+    assert!(seen >= 8, "{seen} values");
 }
 
 /// Such a word comes late in its clock, and the way into a memory in look-up tables is longer than to a register.

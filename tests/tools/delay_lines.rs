@@ -27,24 +27,18 @@ fn changed(emitted: &Emitted, change: &dyn Fn(&str) -> String) -> Files {
     files
 }
 
-/// Every delay line with so many words: the text up to them, and their number.
+/// The words of every memory.
 fn slots(text: &str) -> Vec<usize> {
-    let counts = text.match_indices("    initial slot_of_");
-    let digits =
-        |at: usize| text[at..].chars().take_while(char::is_ascii_digit).collect::<String>();
-    counts.map(|(at, found)| digits(at + found.len()).parse().expect("a number")).collect()
+    let counts = text.split("_delay #(").skip(1).filter_map(|it| it.split(".WORDS(").nth(1));
+    let digits = counts.filter_map(|it| it.split(')').next());
+    digits.map(|it| it.parse().expect("a number")).collect()
 }
 
-/// The same with lines of `words` words that have another number of them, of as many bits.
+/// The same with another number of words in memories of `words`, of as many bits.
 fn with_words(text: &str, words: usize, other: usize) -> String {
-    let (last, wrong) = (words - 1, other - 1);
-    let bits = words.next_power_of_two().trailing_zeros();
-    assert!(other <= 1 << bits, "{other} words need more bits than {words}");
-    text.replace(
-        &format!("slot_of_{words} == {bits}'d{last} ?"),
-        &format!("slot_of_{words} == {bits}'d{wrong} ?"),
-    )
-    .replace(&format!(" [0:{last}];"), &format!(" [0:{wrong}];"))
+    let most = words.next_power_of_two();
+    assert!(other <= most, "{other} words need more bits than {words}");
+    text.replace(&format!(".WORDS({words})"), &format!(".WORDS({other})"))
 }
 
 #[test]
@@ -69,8 +63,9 @@ fn a_line_that_is_too_long_or_too_short_is_noticed() {
 fn a_line_that_does_not_wait_is_noticed() {
     let emitted = Emitted::new(&configuration(CONFIG), POINTS, 1);
     let forgets = |text: &str| {
-        let (before, lines) = text.split_once("    // Delay lines").expect("a section");
-        format!("{before}    // Delay lines{}", lines.replace("if (advance)", "if (1'b1)"))
+        let (stages, lines) = text.split_once("    // Delay lines").expect("a section");
+        let lines = lines.replace(".enable(advance)", ".enable(1'b1)");
+        format!("{stages}    // Delay lines{lines}")
     };
     for simulator in [Simulator::Icarus, Simulator::Verilator] {
         let files = changed(&emitted, &forgets);

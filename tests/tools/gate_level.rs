@@ -3,10 +3,13 @@
 
 use std::fs;
 
-use crate::common::cores::{Emitted, configuration};
+use crate::common::cores::{Emitted, configuration, configuration_with};
 use crate::common::netlist::{self, POINTS, synthesise};
+use crate::common::tools::{LIMIT, tool};
 use glint::tools::gates;
+use glint::tools::gates::cells::{self, Start};
 use glint::tools::synthesis::{FAMILIES, Family};
+use glint::tools::{Simulator, run_bench};
 use rayon::prelude::*;
 
 fn families() -> impl ParallelIterator<Item = &'static Family> {
@@ -97,4 +100,36 @@ fn with_digit(text: &str, at: usize, change: impl Fn(u32) -> u32) -> String {
     let digit = text[at..].chars().next().and_then(|digit| digit.to_digit(16));
     let changed = char::from_digit(change(digit.expect("a digit")), 16).expect("a digit");
     format!("{}{changed}{}", &text[..at], &text[at + 1..])
+}
+
+/// The netlist of a configuration in standard cells passes the bench of its source, and a gate in place of another is
+/// noticed: of the pipelines from unknown values in all registers, memories of delay lines among them.
+#[test]
+fn netlists_of_cells_pass_and_wrong_gates_fail() {
+    const GATES: usize = 8;
+    let case = configuration_with("configs/threshold.toml", "\n[package]\nmemories = \"case\"\n");
+    let of = |path: &str| configuration(&format!("configs/{path}.toml"));
+    let cores = [of("cosine_power_pipelined"), of("lyon_pipelined"), of("cosine_power"), case];
+    cores.par_iter().for_each(|core| {
+        let emitted = Emitted::new(core, POINTS, 1);
+        let rtl = emitted.rtl();
+        let netlist = cells::netlist(&tool("yosys"), &rtl, &emitted.name, LIMIT)
+            .unwrap_or_else(|error| panic!("{error:#}"));
+        let names: Vec<String> = rtl.into_iter().map(|(name, _)| name).collect();
+        let passes = |netlist: &str, start: Start| {
+            let models = cells::models(start).expect("models");
+            let files = gates::around(emitted.simulated(), &names, netlist.to_owned(), models);
+            let run = run_bench(Simulator::Icarus, &files, &emitted.bench(), LIMIT);
+            run.unwrap_or_else(|error| panic!("{error:?}")).passed
+        };
+        let starts = Start::of(core.design.pipeline.is_some());
+        for &start in starts {
+            assert!(passes(&netlist, start), "{}, {start:?}", emitted.name);
+        }
+        let gates: Vec<usize> = netlist.match_indices("  NAND2X1 ").map(|(at, _)| at).collect();
+        let wrong = |at: usize| format!("{}  NOR2X1 {}", &netlist[..at], &netlist[at + 10..]);
+        let noticed = (0..GATES).map(|number| gates[number * gates.len() / GATES]);
+        let noticed = noticed.filter(|&at| !passes(&wrong(at), starts[0])).count();
+        assert!(noticed * 2 > GATES, "{}: {noticed} of {GATES} wrong gates", emitted.name);
+    });
 }

@@ -32,7 +32,6 @@ fn flow(target: Target) -> Flow {
 }
 
 fn measured(target: Target, design: &Design, seeds: u32) -> Figures {
-    let design = &design.written_for(target.name());
     let files = package::emit(design, &EmitInputs::default()).expect("Verilog");
     let files = package::sources(files);
     let subject = Subject { design, files: &files, seeds, limit: LIMIT };

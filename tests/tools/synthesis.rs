@@ -7,6 +7,7 @@
 
 use std::collections::BTreeSet;
 use std::fs;
+use std::path::Path;
 
 use crate::common::cores::{Emitted, configuration, configuration_with, configurations};
 use crate::common::netlist::{self, POINTS, synthesise};
@@ -56,6 +57,47 @@ fn configurations_are_synthesised_whole() {
             let netlist = fs::read_to_string(dir.path().join("netlist.v")).expect("a netlist");
             netlist::bench(&emitted, netlist, family).assert_passes();
         }
+    });
+}
+
+/// The flows of Yosys, each with the step behind the mapping of memories.
+const FLOWS: [(&str, &str); 8] = [
+    ("synth_ice40 -dsp", "map_gates"),
+    ("synth_gatemate", "map_gates"),
+    ("synth_efinix", "map_gates"),
+    ("synth_ecp5", "map_gates"),
+    ("synth_xilinx", "fine"),
+    ("synth_gowin", "map_gates"),
+    ("synth_nexus", "map_gates"),
+    ("synth", "check"),
+];
+
+/// Every flow maps the memories of every pipeline that is shipped, from its files: delay lines ask for no kind of memory. In
+/// ECP5 they are in look-up tables.
+#[test]
+fn every_flow_takes_the_delay_lines_of_pipelines() {
+    let shipped = fs::read_dir("rtl_out").expect("rtl_out");
+    let names = shipped.map(|entry| entry.expect("an entry").file_name().into_string());
+    let pipelines: Vec<String> =
+        names.filter_map(Result::ok).filter(|name| name.ends_with("_pipelined")).collect();
+    assert_eq!(pipelines.len(), 8);
+    pipelines.par_iter().for_each(|name| {
+        let directory = Path::new("rtl_out").join(name);
+        let flows = FLOWS.iter().map(|(flow, end)| {
+            let memories = if *flow == "synth" { "" } else { "select -assert-none t:$mem*; " };
+            let tables = match *flow {
+                "synth_ecp5" => "select -assert-min 1 t:TRELLIS_DPR16X4; ",
+                _ => "",
+            };
+            format!("design -load core; {flow} -top {name} -run begin:{end}; {memories}{tables}")
+        });
+        let commands = format!(
+            "read_verilog {name}.v; hierarchy -top {name}; design -save core; {}",
+            flows.collect::<String>()
+        );
+        tool("yosys")
+            .run_to_success(["-q", "-p", &commands], &directory, LIMIT)
+            .unwrap_or_else(|error| panic!("{name}: {error:#}"));
     });
 }
 

@@ -10,7 +10,7 @@ use super::{Loaded, load, paths};
 use crate::base::text::counted;
 use crate::cli::tables::Column;
 use crate::cli::{Configs, Output, say, store, tables};
-use crate::hdl::netlist::{Design, Pipeline, value_name};
+use crate::hdl::netlist::{Design, Pipeline};
 use crate::package::{Seal, sealed};
 use crate::pages::diagram;
 use crate::registry::Registry;
@@ -116,7 +116,7 @@ fn print(one: &Loaded, pipeline: &Pipeline) {
 
 /// The values that a stage computes, by name.
 fn computed<'a>(design: &'a Design, pipeline: &'a Pipeline, stage: usize) -> Vec<&'a str> {
-    pipeline.computed(design, stage).map(|net| value_name(&net.name)).collect()
+    pipeline.computed(design, stage).map(|(value, _)| value).collect()
 }
 
 fn as_json(one: &Loaded, pipeline: &Pipeline) -> Value {

@@ -16,14 +16,12 @@ use crate::cli::{Configs, Output, TimeLimit, progress, say};
 use crate::evidence::comparison;
 use crate::registry::Registry;
 use crate::synth::{Figures, Flow, Rate, Record, Subject, TARGETS, Target};
+use crate::tools::gates::cells::LIBERTY;
 use crate::tune::{Cost, Features};
 use cache::Cache;
 
 /// The exponent at which the clocks of a device are counted where they depend on it.
 const EXPONENT: f64 = 35.0;
-
-/// Where Debian's `qflow-tech-osu018` puts the cells.
-const LIBERTY: &str = "/usr/share/qflow/tech/osu018/osu018_stdcells.lib";
 
 /// Measure area and frequency by synthesis, placement and routing
 ///
@@ -167,10 +165,9 @@ fn measure<'a>(
     let clocks_per_point =
         comparison::clocks_per_point(&core.design, core.contract.as_ref(), EXPONENT)?;
     let figures = flows.par_iter().map(|flow| {
-        let design = core.design.written_for(flow.target().name());
         let files = core.verilog_for(flow.target().name())?;
         let subject = Subject {
-            design: &design,
+            design: &core.design,
             files: &files,
             seeds: arguments.seeds,
             limit: arguments.time_limit.get(),

@@ -49,6 +49,13 @@ macro_rules! described {
                 let _ = self.$net.doc(line);
                 self
             }
+
+            /// States a comment on `topic`: where that is not the device, it is none of a pipeline's.
+            #[must_use]
+            pub fn doc_on(self, topic: crate::hdl::netlist::Topic, line: &str) -> Self {
+                let _ = self.$net.doc_on(topic, line);
+                self
+            }
         }
     };
     ($handle:ident, $net:ident, $line:literal: $field:ident) => {
@@ -91,8 +98,8 @@ pub use registers::{Counter, Flag, Operand, Register, Select};
 pub use rom::Rom;
 pub use signal::{Mux, Signal};
 
-pub use crate::hdl::netlist::About;
 use crate::hdl::netlist::register_held;
+pub use crate::hdl::netlist::{About, Note, Topic};
 
 use crate::base::diagnostic::{Diagnostic, Diagnostics};
 use crate::base::fixed::Format;
@@ -380,8 +387,8 @@ impl Designer {
     fn replace_note(&self, note: &str) {
         self.with(|inner| {
             let notes = &mut inner.design.about.notes;
-            notes.retain(|note| !note.starts_with("Writes while busy"));
-            notes.push(note.to_owned());
+            notes.retain(|note| note.topic != Topic::Writes);
+            notes.push(Topic::Writes.note(note));
         });
     }
 

@@ -3,7 +3,7 @@
 use super::{Designer, Setting};
 use crate::base::fixed::Format;
 use crate::base::interval::{self, Interval, hull};
-use crate::hdl::netlist::{Driver, FieldId, NetId, Op};
+use crate::hdl::netlist::{Driver, FieldId, NetId, Op, Topic};
 
 /// A net of the design, as a handle.
 #[derive(Clone, Copy)]
@@ -52,6 +52,13 @@ impl<'d> Signal<'d> {
     pub fn doc(self, line: &str) -> Self {
         self.designer.set_doc(self.id, line);
         self
+    }
+
+    /// States a comment on `topic`: where that is not the device, it is none of a pipeline's.
+    #[must_use]
+    pub fn doc_on(self, topic: Topic, line: &str) -> Self {
+        self.designer.with(|inner| inner.design.nets[self.id.index()].doc_topic = topic);
+        self.doc(line)
     }
 
     /// Gives a wiring net a name of its own, under which Verilog and waveforms show it.

@@ -2,7 +2,7 @@
 
 use super::{
     About, Control, Design, Driver, Net, NetId, Partition, RegId, Register, RegisterKind, Rom,
-    RomId,
+    RomId, Topic,
 };
 use crate::base::diagnostic::SourceLocation;
 use crate::base::fixed::Format;
@@ -56,6 +56,7 @@ impl Net {
             driver,
             block: None,
             doc: String::new(),
+            doc_topic: Topic::Device,
             named: true,
             partition: Partition::Datapath,
             location,

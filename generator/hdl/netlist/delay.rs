@@ -1,6 +1,5 @@
 //! Delay lines: values of a pipeline that nothing reads on their way through several stages.
 
-use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use super::{Design, Driver, NetId, Op, RegId};
@@ -70,8 +69,9 @@ impl Delayed {
 impl Design {
     /// The delay lines that are emitted as memories: those that take less so on a target that has small ones.
     ///
-    /// What is found is the same as these registers on every clock, whatever the enable does. The side channel stays
-    /// in registers: the proof by induction follows its value from stage to stage. So does what is inside a multiplier.
+    /// Points find the same there as in these registers, whatever the enable does; a reset, which drops all points, begins with the
+    /// first word again. The side channel stays in registers: the proof by induction follows its value from stage to stage. So
+    /// does what is inside a multiplier.
     pub fn delay_lines(&self) -> Vec<DelayLine> {
         let Some(pipeline) = &self.pipeline else { return Vec::new() };
         let Some(memory) = pipeline.delay_memory else { return Vec::new() };
@@ -127,16 +127,6 @@ impl Design {
             ) => op.operands().into_iter().any(|it| self.is_of_block_memory(it)),
             _ => false,
         }
-    }
-
-    /// The design as it is written for a target, by name: delay lines are memories for that of the pipeline alone.
-    pub fn written_for(&self, target: &str) -> Cow<'_, Self> {
-        let mut written = Cow::Borrowed(self);
-        if self.pipeline.as_ref().is_some_and(|it| it.target != target) {
-            let pipeline = &mut written.to_mut().pipeline;
-            pipeline.iter_mut().for_each(|it| it.delay_memory = None);
-        }
-        written
     }
 
     /// Of each net, who reads it.

@@ -39,7 +39,7 @@ pub use eval::Interpreter;
 pub use handshake::Handshake;
 pub use held::register_held;
 pub use needed::setting_of;
-pub use pipeline::{Checkpoint, Multiplier, Pipeline, Stage, value_name};
+pub use pipeline::{Checkpoint, Multiplier, Pipeline, Stage};
 pub use termination::latest_done;
 
 macro_rules! id {
@@ -98,6 +98,8 @@ pub struct Net {
     pub block: Option<u16>,
     /// One line for the reader of the Verilog; may be empty.
     pub doc: String,
+    /// What that speaks of.
+    pub doc_topic: Topic,
     /// Named by the author of the description, so that waveforms and Verilog show it. The rest is
     /// wiring that the DSL adds (extensions, slices, rounding), named after what it serves.
     pub named: bool,
@@ -260,7 +262,49 @@ pub struct About {
     /// The document, and the part of it, that describes the device.
     pub source: String,
     /// Paragraphs on readings, formats and limits.
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
+}
+
+impl About {
+    /// The texts of the notes.
+    pub fn paragraphs(&self) -> impl Iterator<Item = &str> {
+        self.notes.iter().map(|note| note.text.as_str())
+    }
+}
+
+/// A paragraph about a device.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Note {
+    /// What it speaks of.
+    pub topic: Topic,
+    /// The paragraph.
+    pub text: String,
+}
+
+/// What a note speaks of: a pipeline has none of these but the first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Topic {
+    /// The device, whatever its architecture.
+    Device,
+    /// What stands once and is used in turn: multipliers, the control ROM, the clocks of a loop.
+    Microprogram,
+    /// Writes, and how long the outputs hold.
+    Writes,
+    /// Clocks from start to valid.
+    Latency,
+}
+
+impl Topic {
+    /// A note on it.
+    pub fn note(self, text: impl Into<String>) -> Note {
+        Note { topic: self, text: text.into() }
+    }
+}
+
+impl<T: Into<String>> From<T> for Note {
+    fn from(text: T) -> Self {
+        Topic::Device.note(text)
+    }
 }
 
 /// A device: datapath, control unit and ports.

@@ -22,6 +22,8 @@ pub struct Pipeline {
     pub stages: Vec<Stage>,
     /// For each net its stage. A register of stage k holds what stage k - 1 made.
     pub stage_of: Vec<usize>,
+    /// For each net the name of its value, which is the same in every stage that has it.
+    pub value_of: Vec<String>,
     /// The nets that say which stage has a point, and when points move.
     pub handshake: Vec<NetId>,
     /// For each stage from 1 on, to the results: whether it has a point.
@@ -63,12 +65,13 @@ pub struct Checkpoint {
 }
 
 impl Pipeline {
-    /// The named nets whose logic is in a stage, in the order of the design's nets; the handshake is none of them.
+    /// The named nets whose logic is in a stage, each with the name of its value, in the order of the design's nets; the
+    /// handshake is none of them.
     pub fn computed<'a>(
         &'a self,
         design: &'a Design,
         stage: usize,
-    ) -> impl Iterator<Item = &'a Net> {
+    ) -> impl Iterator<Item = (&'a str, &'a Net)> {
         let made = move |net: &Net, at: usize| match net.driver {
             Driver::Op(_) => at == stage,
             // The word of a block memory is there a stage after its address.
@@ -79,7 +82,7 @@ impl Pipeline {
         let nets = nets.filter(move |((id, net), at)| {
             net.named && !self.handshake.contains(id) && made(net, **at)
         });
-        nets.map(|((_, net), _)| net)
+        nets.map(|((id, net), _)| (self.value_of[id.index()].as_str(), net))
     }
 }
 
@@ -102,9 +105,4 @@ impl Design {
             _ => None,
         }
     }
-}
-
-/// The name of a pipeline's value, from that of a net with it: without the stage.
-pub fn value_name(net: &str) -> &str {
-    net.rsplit_once("_s").map_or(net, |(value, _)| value)
 }

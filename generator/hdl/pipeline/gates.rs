@@ -19,8 +19,7 @@ pub fn gated(unrolled: &Unrolled) -> Unrolled {
             if bits.iter().all(|bit| *bit == (None, None)) {
                 return None;
             }
-            let name = format!("{}_part", node.label.name);
-            let label = Label { name, named: false, doc: String::new(), ..node.label.clone() };
+            let label = Label { named: false, ..node.label.part("part") };
             let mut parts = Vec::new();
             let mut low = 0;
             for run in bits.chunk_by(|a, b| a == b) {
@@ -134,6 +133,7 @@ mod tests {
             doc: String::new(),
             block: None,
             named: true,
+            part_of: None,
             location: Location::caller(),
         };
         let mut graph = Graph::default();

@@ -43,8 +43,25 @@ pub struct Label {
     pub block: Option<u16>,
     /// Named by the author of the description.
     pub named: bool,
+    /// Of a part of a value, the name of the whole.
+    pub part_of: Option<String>,
     /// Where the description says so.
     pub location: &'static Location<'static>,
+}
+
+impl Label {
+    /// The label of a part of the value, or of the value that this is a part of: names do not grow with the depth.
+    pub fn part(&self, name: &str) -> Self {
+        let whole = self.part_of.as_ref().unwrap_or(&self.name);
+        Self {
+            name: format!("{whole}_{name}"),
+            doc: String::new(),
+            block: None,
+            named: true,
+            part_of: Some(whole.clone()),
+            location: self.location,
+        }
+    }
 }
 
 /// A value.

@@ -84,9 +84,9 @@ fn below_the_highest(
     label: &Label,
 ) -> NetId {
     let (places, width) = (graph.width(wide) - 1, graph.width(narrow));
-    let highest = slice(graph, wide, places, Format::BIT, &part(label, "highest"));
-    let below = slice(graph, wide, 0, unsigned(places), &part(label, "below"));
-    let inside = part(label, "inside");
+    let highest = slice(graph, wide, places, Format::BIT, &label.part("highest"));
+    let below = slice(graph, wide, 0, unsigned(places), &label.part("below"));
+    let inside = label.part("inside");
     let whole = if wide == narrow {
         let square = product(graph, target, below, below, unsigned(2 * places), &inside);
         Op::Concat(vec![highest, square])
@@ -94,7 +94,7 @@ fn below_the_highest(
         let product = product(graph, target, below, narrow, unsigned(places + width), &inside);
         let zero = graph.constant(0, unsigned(width), &unnamed(label));
         let other = Op::Mux { select: highest, inputs: vec![zero, narrow] };
-        let other = graph.op(other, unsigned(width), &part(label, "at_highest"));
+        let other = graph.op(other, unsigned(width), &label.part("at_highest"));
         let upper = slice(graph, product, places, unsigned(width), label);
         // One of the two is 0.
         let upper = graph.op(Op::Or(upper, other), unsigned(width), &unnamed(label));
@@ -124,16 +124,16 @@ fn below_the_sign(
 ) -> NetId {
     let (width, places) = (graph.width(positive) - 1, graph.width(other) - 1);
     let positive = graph.resize(positive, width, false);
-    let sign = slice(graph, other, places, Format::BIT, &part(label, "sign"));
-    let below = slice(graph, other, 0, unsigned(places), &part(label, "below"));
-    let inside = part(label, "inside");
+    let sign = slice(graph, other, places, Format::BIT, &label.part("sign"));
+    let below = slice(graph, other, 0, unsigned(places), &label.part("below"));
+    let inside = label.part("inside");
     let product = product(graph, target, positive, below, unsigned(width + places), &inside);
     let zero = graph.constant(0, unsigned(width), &unnamed(label));
     let less = Op::Mux { select: sign, inputs: vec![zero, positive] };
-    let less = graph.op(less, unsigned(width), &part(label, "at_sign"));
+    let less = graph.op(less, unsigned(width), &label.part("at_sign"));
     let upper = slice(graph, product, places, unsigned(width), label);
     let [upper, less] = [upper, less].map(|it| graph.resize(it, width + 1, true));
-    let upper = graph.op(Op::Sub(upper, less), integer(true, width + 1), &part(label, "upper"));
+    let upper = graph.op(Op::Sub(upper, less), integer(true, width + 1), &label.part("upper"));
     let lower = slice(graph, product, 0, unsigned(places), label);
     let whole = Op::Concat(vec![upper, lower]);
     let whole = graph.op(whole, integer(true, width + 1 + places), &unnamed(label));
@@ -159,7 +159,7 @@ fn summed(graph: &mut Graph, mut parts: Vec<Term>, format: Format, label: &Label
         let signed = [sum, term].iter().any(|it| graph.node(it.value).format.signed);
         let [a, b] = [sum, term].map(|it| in_ones(graph, it, width, signed, label));
         let (op, format) = (Op::Add { a, b, carry: None }, integer(signed, width));
-        let value = shortened(graph, op, format, format.range(), &part(label, "sum"));
+        let value = shortened(graph, op, format, format.range(), &label.part("sum"));
         Term { value, places: 0 }
     });
     let sum =
@@ -191,10 +191,10 @@ fn cut(
     label: &Label,
 ) -> Vec<Term> {
     let rest = graph.width(wide) - limit;
-    let upper_bits = slice(graph, wide, rest, integer(signed, limit), &part(label, "upper_bits"));
+    let upper_bits = slice(graph, wide, rest, integer(signed, limit), &label.part("upper_bits"));
     // What the upper bits are multiplied by, and the rest, and the places that the product of the upper bits is up.
     let (upper_factor, rest_factor, places) = if wide == narrow {
-        let lower = slice(graph, wide, 0, unsigned(rest), &part(label, "lower_bits"));
+        let lower = slice(graph, wide, 0, unsigned(rest), &label.part("lower_bits"));
         let zero = graph.constant(0, Format::BIT, &unnamed(label));
         let both = Op::Concat(vec![upper_bits, zero, lower]);
         let both = graph.op(both, integer(signed, limit + 1 + rest), &unnamed(label));
@@ -203,7 +203,7 @@ fn cut(
         (narrow, narrow, rest)
     };
     let upper_format = integer(signed, limit + graph.width(upper_factor));
-    let upper_label = part(label, "upper");
+    let upper_label = label.part("upper");
     let upper = parts(graph, target, [upper_bits, upper_factor], upper_format, &upper_label);
     let upper = upper.into_iter().map(|term| Term { places: term.places + places, ..term });
     // The lower bits have no sign; the product with them has that of the other operand.
@@ -211,11 +211,11 @@ fn cut(
     let lower = if rest <= MOST_ROWS && rest * width <= target.row_bits {
         vec![Term { value: rows(graph, wide, rest, rest_factor, label), places: 0 }]
     } else {
-        let lower_bits = slice(graph, wide, 0, unsigned(rest), &part(label, "lower_bits"));
+        let lower_bits = slice(graph, wide, 0, unsigned(rest), &label.part("lower_bits"));
         let bits = rest + u32::from(signed);
         let lower_bits = graph.resize(lower_bits, bits, signed);
         let format = integer(signed, bits + width);
-        parts(graph, target, [lower_bits, rest_factor], format, &part(label, "lower"))
+        parts(graph, target, [lower_bits, rest_factor], format, &label.part("lower"))
     };
     upper.chain(lower).collect()
 }
@@ -227,8 +227,8 @@ fn rows(graph: &mut Graph, wide: NetId, rest: u32, narrow: NetId, label: &Label)
     let format = |width: u32| integer(signed, width);
     let mut sum: Option<NetId> = None;
     for row in 0..rest {
-        let bit = slice(graph, wide, row, Format::BIT, &part(label, "row"));
-        let unnamed = unnamed(&part(label, "row"));
+        let bit = slice(graph, wide, row, Format::BIT, &label.part("row"));
+        let unnamed = unnamed(&label.part("row"));
         let zero = graph.constant(0, format(width), &unnamed);
         let mux = Op::Mux { select: bit, inputs: vec![zero, narrow] };
         let taken = graph.op(mux, format(width), &unnamed);
@@ -245,7 +245,7 @@ fn rows(graph: &mut Graph, wide: NetId, rest: u32, narrow: NetId, label: &Label)
                 let (a, b) =
                     (graph.resize(sum, total, signed), graph.resize(shifted, total, signed));
                 let (op, format) = (Op::Add { a, b, carry: None }, format(total));
-                shortened(graph, op, format, format.range(), &part(label, "rows"))
+                shortened(graph, op, format, format.range(), &label.part("rows"))
             }
         });
     }
@@ -258,12 +258,6 @@ fn integer(signed: bool, width: u32) -> Format {
 
 fn unsigned(width: u32) -> Format {
     integer(false, width)
-}
-
-/// The label of a part of a value.
-fn part(label: &Label, name: &str) -> Label {
-    let name = format!("{}_{name}", label.name);
-    Label { name, doc: String::new(), named: true, ..label.clone() }
 }
 
 /// The label of what needs no name.

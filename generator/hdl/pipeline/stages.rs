@@ -8,8 +8,8 @@ use super::unroll::Unrolled;
 use super::{Delays, Goal, Options};
 use crate::base::fixed::Format;
 use crate::hdl::netlist::{
-    Checkpoint, Delayed, Design, Driver, Net, NetId, Op, Pipeline, Port, RegId, RegisterKind, Role,
-    Rom, RomId, Stage,
+    About, Checkpoint, Delayed, Design, Driver, Net, NetId, Op, Pipeline, Port, RegId,
+    RegisterKind, Role, Rom, RomId, Stage, Topic,
 };
 
 /// The design of a schedule.
@@ -20,15 +20,10 @@ pub fn assemble(
     schedule: &Schedule,
     options: &Options,
 ) -> Design {
-    let about = crate::hdl::netlist::About {
+    let notes = sequential.about.notes.iter();
+    let about = About {
         title: format!("{}, a point a clock", sequential.about.title),
-        notes: sequential
-            .about
-            .notes
-            .iter()
-            .filter(|note| !is_of_handshake(note))
-            .cloned()
-            .collect(),
+        notes: notes.filter(|note| note.topic == Topic::Device).cloned().collect(),
         ..sequential.about.clone()
     };
     let mut builder = Builder {
@@ -38,6 +33,7 @@ pub fn assemble(
         schedule,
         design: Design { about, ..Design::empty(&sequential.name) },
         stage_of: Vec::new(),
+        value_of: Vec::new(),
         advance: None,
         taken: HashSet::from(["clk".to_owned()]),
         names: HashMap::new(),
@@ -55,7 +51,8 @@ pub fn assemble(
     builder.results(unrolled);
     let stages = builder.stages(unrolled);
     let checkpoints = builder.checkpoints(unrolled);
-    let Builder { mut design, stage_of, flow, valid, side_values, registered, .. } = builder;
+    let Builder { mut design, stage_of, value_of, flow, valid, side_values, registered, .. } =
+        builder;
     design.ports.sort_by_key(|port| match port.role {
         role if role.is_input() => 0,
         Role::InReady => 1,
@@ -75,6 +72,7 @@ pub fn assemble(
         delay_memory: options.target.delay_memory.filter(|_| options.delays == Delays::Memory),
         stages,
         stage_of,
+        value_of,
         handshake: flow,
         valid,
         side_values,
@@ -99,11 +97,6 @@ fn count_delayed(design: &mut Design) {
     }
 }
 
-/// Whether a note speaks of the handshake of the sequential core, which a pipeline does not have.
-fn is_of_handshake(note: &str) -> bool {
-    note.starts_with("Writes while busy") || note.contains("clocks after start")
-}
-
 struct Builder<'a> {
     sequential: &'a Design,
     graph: &'a Graph,
@@ -112,6 +105,8 @@ struct Builder<'a> {
     design: Design,
     /// Of every net: the stage that it is in.
     stage_of: Vec<usize>,
+    /// Of every net: the name of its value.
+    value_of: Vec<String>,
     /// 1 when every point moves on by a stage; none if they always do.
     advance: Option<NetId>,
     taken: HashSet<String>,
@@ -135,6 +130,7 @@ impl Builder<'_> {
     fn net(&mut self, name: String, stage: usize, format: Format, driver: Driver) -> NetId {
         self.taken.insert(name.clone());
         self.stage_of.push(stage);
+        self.value_of.push(name.clone());
         let location = self.sequential.nets[0].location;
         self.design.add_net(Net::new(name, format, driver, location))
     }
@@ -145,6 +141,9 @@ impl Builder<'_> {
     }
 
     fn labelled(&mut self, id: NetId, node: NetId) -> NetId {
+        if let Some(name) = self.names.get(&node) {
+            name.clone_into(&mut self.value_of[id.index()]);
+        }
         let node = self.graph.node(node);
         let net = &mut self.design.nets[id.index()];
         net.range = node.range;

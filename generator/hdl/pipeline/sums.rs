@@ -39,8 +39,7 @@ pub fn shortened(
     if low == 0 || low >= width {
         return graph.insert(Cell::Op(op), format, range, label);
     }
-    let label_of_part =
-        Label { name: format!("{}_upper", label.name), named: false, ..label.clone() };
+    let label_of_part = Label { named: false, ..label.part("upper") };
     let part = Format::unsigned((width - low) as i32, 0);
     let [upper, addend] =
         [passing, other].map(|of| graph.op(Op::Slice { of, low }, part, &label_of_part));
@@ -70,7 +69,7 @@ fn chosen_behind(
     if inputs.len() != 2 || constants.count() != 1 {
         return None;
     }
-    let each = Label { name: format!("{}_before", label.name), named: false, ..label.clone() };
+    let each = Label { named: false, ..label.part("before") };
     let inputs = inputs.iter().map(|&it| graph.op(Op::Sub(from, it), format, &each)).collect();
     Some(graph.insert(Cell::Op(Op::Mux { select, inputs }), format, range, label))
 }

@@ -22,7 +22,7 @@ use super::settle::settled;
 use crate::base::diagnostic::{Diagnostic, Diagnostics};
 use crate::base::fixed::Format;
 use crate::hdl::netlist::{
-    Design, Driver, Net, NetId, Op, RegId, RegisterKind, Role, RomId, Sequence,
+    Design, Driver, Net, NetId, Op, RegId, RegisterKind, Role, RomId, Sequence, Topic,
 };
 
 /// More clocks than any microprogram takes that is worth a pipeline.
@@ -597,9 +597,10 @@ impl<'e, 'a> Clock<'e, 'a> {
 fn label(net: &Net) -> Label {
     Label {
         name: net.name.clone(),
-        doc: net.doc.clone(),
+        doc: if net.doc_topic == Topic::Device { net.doc.clone() } else { String::new() },
         block: net.block,
         named: net.named,
+        part_of: None,
         location: net.location,
     }
 }

@@ -1,76 +1,55 @@
-//! Delay lines as memories: what nothing reads on its way through several stages.
+//! Delay lines: what nothing reads on its way through several stages goes through memories, in a module of its own.
 
 use std::collections::BTreeMap;
 
 use super::module::Builder;
+use super::naming::Naming;
 use super::plan::address_width;
-use super::text::{comment, literal, range, statement};
-use super::view::StageSection;
+use super::text::{comment, literal, statement};
+use super::view::{Item, Spaced, StageSection};
 use crate::hdl::netlist::{DelayLine, NetId};
 
-const TITLE: &str = "Delay lines: values that nothing reads for several stages lie in small memories. Whenever points \
-                     move on, a slot gives the value that it holds and takes a new one; its turn comes again when all \
-                     others have had theirs.";
-
-/// The memory that synthesis is to take, as Yosys and Vivado want it said, and as Synplify does.
-const STYLE: &str = "(* ram_style = \"distributed\", syn_ramstyle = \"distributed\" *)";
+const TITLE: &str =
+    "Delay lines: what nothing reads for several stages goes through small memories";
 
 /// How many words go round, and when they do.
 type Pace = (usize, Option<NetId>);
 
-/// The section of the delay lines; none without any.
-pub fn section(builder: &mut Builder<'_>) -> Option<StageSection> {
+/// The section of the delay lines: an instance for those of one length. None without any.
+pub fn section(builder: &mut Builder<'_>, naming: &Naming) -> Option<StageSection> {
     let plan = builder.plan;
     let mut paces: BTreeMap<Pace, Vec<&DelayLine>> = BTreeMap::new();
     for line in &plan.delays {
         paces.entry((line.words(), line.enable)).or_default().push(line);
     }
-    let (mut registers, mut groups) = (Vec::new(), Vec::new());
+    let mut items = Vec::new();
     for ((words, enable), lines) in paces {
-        let (slot, width) =
-            (builder.expressions.fresh(&format!("slot_of_{words}")), address_width(words));
-        let (zero, one) = (literal(0, width), literal(1, width));
-        let last = literal(words as u64 - 1, width);
-        let space = if width > 1 { " " } else { "" };
-        registers.push(format!("    reg {}{space}{slot};", range(width)));
-        registers.push(format!("    initial {slot} = {zero};"));
-        // Of a power of two the number after the last is 0.
-        let mut takes = vec![if words.is_power_of_two() {
-            format!("{slot} <= {slot} + {one};")
-        } else {
-            format!("{slot} <= {slot} == {last} ? {zero} : {slot} + {one};")
-        }];
-        for line in lines {
-            let wish = format!("delay_s{}_s{}", line.from, line.to);
-            let memory = builder.expressions.fresh(&wish);
-            let bits = line.values.iter().map(|it| plan.design.width(it.data)).sum();
-            let last = words - 1;
-            registers.push(format!("    {STYLE}"));
-            registers.push(format!("    reg {} {memory} [0:{last}];", range(bits)));
-            let leave = line.values.iter().map(|it| plan.design.register(it.last()).q);
-            let leave = leave.map(|q| plan.design.net(q).name.clone());
-            let leave = together(leave.collect());
-            takes.push(format!("{leave} <= {memory}[{slot}];"));
-            let enter = line.values.iter().map(|it| builder.expressions.whole(it.data));
-            let enter = together(enter.collect());
-            takes.push(format!("{memory}[{slot}] <= {enter};"));
+        let instance = builder.expressions.fresh(&format!("delay_of_{}", words + 1));
+        let values: Vec<_> = lines.iter().flat_map(|line| &line.values).collect();
+        let bits: u32 = values.iter().map(|it| plan.design.width(it.data)).sum();
+        let enable = enable.map_or(literal(1, 1), |enable| builder.expressions.whole(enable));
+        let leave = values.iter().map(|it| plan.design.register(it.last()).q);
+        let leave = together(leave.map(|q| plan.design.net(q).name.clone()).collect());
+        let enter = together(values.iter().map(|it| builder.expressions.whole(it.data)).collect());
+        let reset = plan.reset.map_or(literal(1, 1), |reset| plan.design.net(reset).name.clone());
+        let head = format!(
+            "{} #(.WIDTH({bits}), .WORDS({words}), .BITS({})) {instance} (",
+            naming.delay(),
+            address_width(words)
+        );
+        let flow = format!(".clk(clk), .rst_n({reset}), .enable({enable}),");
+        let mut text = statement(4, &head);
+        for line in [flow, format!(".entering({enter}),"), format!(".leaving({leave})")] {
+            text.extend(statement(8, &line));
         }
-        let enable = enable.map(|enable| builder.expressions.whole(enable));
-        let indent = if enable.is_some() { 12 } else { 8 };
-        let takes = takes.iter().flat_map(|it| statement(indent, it));
-        groups.push(match enable {
-            Some(enable) => {
-                let begin = statement(8, &format!("if ({enable}) begin"));
-                begin.into_iter().chain(takes).chain(["        end".to_owned()]).collect()
-            }
-            None => takes.collect(),
-        });
+        text.push("    );".to_owned());
+        items.push(Spaced { gap: false, item: Item::Assign(text) });
     }
-    (!groups.is_empty()).then(|| StageSection {
+    (!items.is_empty()).then(|| StageSection {
         title: comment(4, TITLE),
-        registers,
-        items: Vec::new(),
-        groups,
+        words: Vec::new(),
+        items,
+        registers: Vec::new(),
     })
 }
 

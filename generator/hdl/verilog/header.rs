@@ -29,8 +29,11 @@ pub fn top(design: &Design, origin: &Origin) -> Vec<String> {
     }
     lines.push("//".to_owned());
     lines.extend(comment(0, &formats(design)));
-    lines.extend(ports(design));
-    for note in &about.notes {
+    // The ports of a pipeline have their comments below.
+    if design.pipeline.is_none() {
+        lines.extend(ports(design));
+    }
+    for note in about.paragraphs() {
         lines.extend(paragraph(note));
     }
     lines.extend(regenerated(origin));

@@ -6,10 +6,10 @@ use super::expression::Expressions;
 use super::header::{self, Origin};
 use super::interface::{Interface, unread};
 use super::invariants::invariants;
-use super::naming::{Naming, is_control_rom, remark, rom_label};
-use super::plan::{NetForm, Plan};
+use super::naming::{Naming, is_control_rom, rom_label};
+use super::plan::{NetForm, Plan, address_width};
 use super::rows::{Row, separated};
-use super::text::{annotated, comment, literal, range, statement};
+use super::text::{COLUMNS, annotated, comment, literal, range, statement};
 use super::view::{Contents, Instance, Item, Module, RomItem, Section, Spaced};
 use super::words::{in_fields, in_hex, word_note};
 use crate::hdl::netlist::{
@@ -25,6 +25,8 @@ pub struct Builder<'a> {
     pub(super) expressions: Expressions<'a>,
     /// The choices of fields that label a case, as (field, value).
     labels: BTreeSet<(usize, usize)>,
+    /// The comment of the assignment before.
+    last_note: String,
 }
 
 impl<'a> Builder<'a> {
@@ -42,6 +44,7 @@ impl<'a> Builder<'a> {
             partition,
             expressions: Expressions::new(plan, naming.names.clone()),
             labels: BTreeSet::new(),
+            last_note: String::new(),
         }
     }
 
@@ -51,7 +54,7 @@ impl<'a> Builder<'a> {
         let items = self.items(&|_| true);
         let groups = self.groups(&|_| true);
         let constants = self.constants();
-        let state = self.state(&|_| true);
+        let state = Row::declarations(&self.state(&|_| true));
         let sections = [("Constants", constants), ("Registers", state)];
         Module {
             header: header::partition(self.plan.design, self.partition, origin, self.naming),
@@ -90,6 +93,7 @@ impl<'a> Builder<'a> {
     /// `reg` where a procedural block assigns the net.
     fn kind(&self, net: NetId) -> &'static str {
         match &self.plan.design.net(net).driver {
+            Driver::Register(register) if self.plan.delayed(*register).is_some() => "wire",
             Driver::Register(_) => "reg",
             Driver::Rom(rom) if self.plan.design.rom(*rom).synchronous => "reg",
             Driver::Op(Op::Mux { inputs, .. }) if inputs.len() > 2 => "reg",
@@ -108,16 +112,15 @@ impl<'a> Builder<'a> {
     }
 
     /// The declarations of what the clock changes and is wanted, except ports.
-    pub(super) fn state(&self, wanted: &dyn Fn(NetId) -> bool) -> Vec<String> {
+    pub(super) fn state(&self, wanted: &dyn Fn(NetId) -> bool) -> Vec<Row> {
         let roms = self.plan.design.roms.iter().filter(|rom| rom.synchronous).map(|rom| rom.data);
         let roms = roms.filter(|net| self.plan.partition(*net) == self.partition);
-        let rows: Vec<_> = self
+        let rows = self
             .registers()
             .chain(roms)
             .filter(|net| wanted(*net) && !self.interface.outputs.contains(net))
-            .map(|net| Row::net(self.plan, "", "reg", net))
-            .collect();
-        Row::declarations(&rows)
+            .map(|net| Row::net(self.plan, "", self.kind(net), net));
+        rows.collect()
     }
 
     /// Registers are 0 before the first clock. What a ROM is read into is known after it, and block memories have no
@@ -186,11 +189,21 @@ impl<'a> Builder<'a> {
     }
 
     fn assign(&mut self, id: NetId) -> Item {
-        let note = remark(self.plan.design, id);
+        let mut note = self.plan.remark(id);
         let right = self.expressions.driver(id);
         let lines = statement(4, &format!("{} = {right};", self.target(id)));
+        let net = self.plan.design.net(id);
+        let repeats = note == self.last_note || (net.doc.is_empty() && net.block.is_none());
+        self.last_note.clone_from(&note);
         if let [line] = &lines[..] {
-            return Item::Assign(annotated(line.trim_start(), 4, &note));
+            let behind = annotated(line.trim_start(), 4, &note);
+            if behind.len() == 1 {
+                return Item::Assign(behind);
+            }
+        }
+        // In a pipeline neither a format nor what was said of the net before stands on a line of its own.
+        if repeats && self.plan.design.pipeline.is_some() {
+            note.clear();
         }
         Item::Assign(comment(4, &note).into_iter().chain(lines).collect())
     }
@@ -222,7 +235,7 @@ impl<'a> Builder<'a> {
             Row::declarations(&[Row::net(self.plan, "", "reg", id).without_note()])
         };
         Item::Case {
-            comment: comment(4, &remark(design, id)),
+            comment: comment(4, &self.plan.remark(id)),
             declaration,
             select: self.expressions.whole(select),
             arms,
@@ -254,12 +267,15 @@ impl<'a> Builder<'a> {
 
     fn rom(&mut self, id: RomId) -> Item {
         let rom = self.plan.design.rom(id);
+        let case = self.naming.style.case;
         let width = self.plan.design.width(rom.data);
         let what =
             if rom.doc.is_empty() { String::new() } else { format!(": {}", rom.doc.join(" ")) };
         let control = is_control_rom(self.plan.design, id);
+        let memory = &self.naming.memories[id.index()];
+        let address = self.expressions.address(rom);
         let word =
-            format!("{}[{}]", self.naming.memories[id.index()], self.expressions.address(rom));
+            if case { format!("{memory}({address})") } else { format!("{memory}[{address}]") };
         let read = if rom.synchronous {
             let data = &self.plan.design.net(rom.data).name;
             let when = rom.enable.map(|enable| self.expressions.whole(enable));
@@ -275,10 +291,19 @@ impl<'a> Builder<'a> {
                 _ => String::new(),
             },
             range: range(width),
+            number: range(address_width(rom.words.len())),
+            at: if case { self.expressions.fresh("address") } else { String::new() },
             memory: self.naming.memories[id.index()].clone(),
             last: rom.words.len().saturating_sub(1),
-            contents: if self.naming.style.inline {
-                Contents::Inline(words(self.plan.design, id, &self.naming.memories[id.index()]))
+            contents: if case {
+                let mut choices = words(self.plan.design, id, 12, &|address, bits| {
+                    format!("{}: {memory} = ", literal(address as u64, bits))
+                });
+                choices.push(format!("            default: {memory} = {{{width}{{1'bx}}}};"));
+                Contents::Case(choices)
+            } else if self.naming.style.inline {
+                let place = |address, _| format!("{memory}[{address}] = ");
+                Contents::Inline(words(self.plan.design, id, 8, &place))
             } else {
                 Contents::File {
                     radix: if control { 'b' } else { 'h' },
@@ -348,6 +373,47 @@ impl<'a> Builder<'a> {
         blocks
     }
 
+    /// What registers take.
+    fn takes(&mut self, members: &[RegId], indent: usize) -> Vec<String> {
+        let mut takes = Vec::new();
+        for &member in members {
+            let register = self.plan.design.register(member);
+            let data = register.data.map(|data| self.expressions.whole(data)).unwrap_or_default();
+            let text = format!("{} <= {data};", self.plan.design.net(register.q).name);
+            takes.extend(statement(indent, &text));
+        }
+        takes
+    }
+
+    /// The block of the wanted registers of a pipeline, which all take their values under `enable`.
+    pub(super) fn stage(
+        &mut self,
+        enable: Option<NetId>,
+        wanted: &dyn Fn(NetId) -> bool,
+    ) -> Vec<String> {
+        let design = self.plan.design;
+        let registers = (0..).map(RegId).zip(&design.registers);
+        let written = registers.filter(|(id, register)| {
+            wanted(register.q)
+                && design.multiplier(*id).is_none()
+                && self.plan.delayed(*id).is_none()
+        });
+        let members: Vec<RegId> = written.map(|(id, _)| id).collect();
+        let when = enable.map(|enable| format!("if ({}) ", self.expressions.whole(enable)));
+        let when = format!("always @(posedge clk) {}", when.unwrap_or_default());
+        let takes = self.takes(&members, 8);
+        match &takes[..] {
+            [] => Vec::new(),
+            [only] if when.len() + only.len() < COLUMNS - 4 => {
+                vec![format!("    {when}{}", only.trim_start())]
+            }
+            _ => {
+                let begin = format!("    {when}begin");
+                [begin].into_iter().chain(takes).chain(["    end".to_owned()]).collect()
+            }
+        }
+    }
+
     fn group(&mut self, enable: Option<NetId>, members: &[RegId]) -> Vec<String> {
         let design = self.plan.design;
         let reset = self
@@ -356,13 +422,7 @@ impl<'a> Builder<'a> {
             .filter(|_| members.iter().any(|member| design.register(*member).reset.is_some()));
         let enable = enable.map(|enable| self.expressions.whole(enable));
         let nested = reset.is_some() || enable.is_some();
-        let mut takes = Vec::new();
-        for &member in members {
-            let register = design.register(member);
-            let data = register.data.map(|data| self.expressions.whole(data)).unwrap_or_default();
-            let text = format!("{} <= {data};", design.net(register.q).name);
-            takes.extend(statement(if nested { 12 } else { 8 }, &text));
-        }
+        let takes = self.takes(members, if nested { 12 } else { 8 });
         let mut lines = Vec::new();
         if let Some(reset) = reset {
             lines.push(format!("        if (!{}) begin", design.net(reset).name));
@@ -401,10 +461,16 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// A statement a word of a ROM, for an initial block.
-fn words(design: &Design, id: RomId, memory: &str) -> Vec<String> {
+/// A statement for each word of a ROM; it begins with what `place` says for the number of the word, which has so many bits.
+fn words(
+    design: &Design,
+    id: RomId,
+    indent: usize,
+    place: &dyn Fn(usize, u32) -> String,
+) -> Vec<String> {
     let rom = design.rom(id);
     let width = design.width(rom.data);
+    let bits = address_width(rom.words.len());
     let word = |(address, word): (usize, &u64)| {
         let value = if is_control_rom(design, id) {
             format!("{width}'b{}", in_fields(design, *word))
@@ -412,7 +478,7 @@ fn words(design: &Design, id: RomId, memory: &str) -> Vec<String> {
             format!("{width}'h{}", in_hex(*word, width))
         };
         let note = word_note(design, id, address).unwrap_or_default();
-        annotated(&format!("{memory}[{address}] = {value};"), 8, &note)
+        annotated(&format!("{}{value};", place(address, bits)), indent, &note)
     };
     rom.words.iter().enumerate().flat_map(word).collect()
 }

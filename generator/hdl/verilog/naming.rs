@@ -25,6 +25,8 @@ pub struct Naming {
     pub choices: Vec<Vec<String>>,
     /// The net that takes unread bits. Linters leave a net alone whose name contains `unused`.
     pub unused: String,
+    /// The shift register of a pipeline that says which stages have points.
+    pub valid: String,
     /// All names so far: a module may add its own.
     pub names: Names,
     design: String,
@@ -35,6 +37,8 @@ pub struct Naming {
 pub struct Style {
     /// ROM contents stand in the Verilog: there are neither files nor parameters with their names.
     pub inline: bool,
+    /// They stand there as the choices of a case, in a function.
+    pub case: bool,
     /// The attributes of ROMs that are read on the clock.
     pub rom_style: Option<&'static str>,
     /// Registers are 0 before the first clock.
@@ -74,6 +78,7 @@ impl Naming {
                 .collect(),
             choices: choices(&design.control, &mut names),
             unused: names.fresh("unused"),
+            valid: names.fresh("valid"),
             names,
             design: design.name.clone(),
         }
@@ -95,6 +100,11 @@ impl Naming {
     /// The module of a product with a register at its output.
     pub fn multiplier(&self) -> String {
         format!("{}_multiplier", self.design)
+    }
+
+    /// The module of delay lines.
+    pub fn delay(&self) -> String {
+        format!("{}_delay", self.design)
     }
 
     /// The instance of a partition.

@@ -6,9 +6,10 @@ use super::interface::Interface;
 use super::module::{Builder, parameters};
 use super::naming::Naming;
 use super::plan::Plan;
-use super::text::{ascii, comment};
-use super::view::{PipelineModule, StageSection};
-use crate::hdl::netlist::{Driver, NetId, Partition, Pipeline};
+use super::rows::Row;
+use super::text::{ascii, comment, literal};
+use super::view::{PipelineModule, Spaced, StageSection};
+use crate::hdl::netlist::{Design, Driver, NetId, Partition, Pipeline, Role};
 
 /// The module.
 pub fn module(
@@ -20,36 +21,36 @@ pub fn module(
     let design = plan.design;
     let interface = Interface::new(plan, Partition::Datapath);
     let mut builder = Builder::new(plan, naming, &interface, Partition::Datapath);
-    let flow = |net: NetId| pipeline.handshake.contains(&net);
     let clocked = |net: NetId| match design.net(net).driver {
         Driver::Register(_) => true,
         Driver::Rom(rom) => design.rom(rom).synchronous,
         _ => false,
     };
+    let is_word = |net: NetId| matches!(design.net(net).driver, Driver::Rom(_));
     // What the clock changes stands in the stage that makes it.
     let section = |net: NetId| pipeline.stage_of[net.index()] - usize::from(clocked(net));
-    let mut stages = vec![StageSection {
-        title: comment(4, "The handshake: which stage has a point, and when all of them move on"),
-        registers: builder.state(&flow),
-        items: builder.items(&flow),
-        groups: builder.groups(&flow),
-    }];
+    let enable = enable(design, pipeline);
+    let here =
+        |net: NetId, number: usize| !pipeline.handshake.contains(&net) && section(net) == number;
+    let mut stages = vec![handshake(plan, naming, pipeline)];
     for (number, stage) in pipeline.stages.iter().enumerate() {
-        let here = |net: NetId| !flow(net) && section(net) == number;
+        let here = |net: NetId| here(net, number);
+        let items = dense(builder.items(&here));
+        let block = builder.stage(enable, &here);
+        let registers = Row::together(builder.state(&|net| here(net) && !is_word(net)));
         stages.push(StageSection {
             title: title(number, &stage.microinstructions),
-            registers: builder.state(&here),
-            items: builder.items(&here),
-            groups: builder.groups(&here),
+            words: Row::declarations(&builder.state(&|net| here(net) && is_word(net))),
+            items,
+            registers: Row::declarations(&registers).into_iter().chain(block).collect(),
         });
     }
-    stages.extend(delays::section(&mut builder));
-    let results = |net: NetId| !flow(net) && section(net) == pipeline.stages.len();
+    stages.extend(delays::section(&mut builder, naming));
     stages.push(StageSection {
         title: comment(4, "Results"),
+        words: Vec::new(),
+        items: dense(builder.items(&|net| here(net, pipeline.stages.len()))),
         registers: Vec::new(),
-        items: builder.items(&results),
-        groups: Vec::new(),
     });
     PipelineModule {
         header: header::top(design, origin),
@@ -59,7 +60,60 @@ pub fn module(
         constants: builder.constants(),
         stages,
         unused: builder.unused(),
+        delay: (!plan.delays.is_empty()).then(|| naming.delay()),
     }
+}
+
+/// Which stages have points, and when they move: a shift register in place of the bits of the netlist.
+fn handshake(plan: &Plan, naming: &Naming, pipeline: &Pipeline) -> StageSection {
+    let design = plan.design;
+    let port = |role: Role| {
+        let port = design.port(|it| it == role);
+        port.map(|it| design.net(it.net).name.as_str())
+    };
+    let [offered, shown, reset] =
+        [Role::InValid, Role::Valid, Role::Reset].map(|role| port(role).unwrap_or_default());
+    let (valid, last) = (&naming.valid, pipeline.stages.len());
+    let next = match last {
+        1 => offered.to_owned(),
+        2 => format!("{{{valid}[1], {offered}}}"),
+        _ => format!("{{{valid}[{}:1], {offered}}}", last - 1),
+    };
+    let mut lines =
+        vec![format!("reg  [{last}:1] {valid};"), format!("assign {shown} = {valid}[{last}];")];
+    let enable = enable(design, pipeline);
+    if let (Some(enable), Some(ready), Some(taken)) =
+        (enable, port(Role::OutReady), port(Role::InReady))
+    {
+        let advance = &design.net(enable).name;
+        lines.push(format!("wire {advance} = {ready} | ~{valid}[{last}];"));
+        lines.push(format!("assign {taken} = {advance};"));
+    }
+    let when = enable.map_or(String::new(), |it| format!("if ({}) ", design.net(it).name));
+    lines.push("always @(posedge clk) begin".to_owned());
+    lines.push(format!("    if (!{reset}) {valid} <= {};", literal(0, last as u32)));
+    lines.push(format!("    else {when}{valid} <= {next};"));
+    lines.push("end".to_owned());
+    StageSection {
+        title: comment(
+            4,
+            "The handshake: a bit for each stage that has a point; all points move on together",
+        ),
+        words: Vec::new(),
+        items: Vec::new(),
+        registers: lines.into_iter().map(|line| format!("    {line}")).collect(),
+    }
+}
+
+/// When all points move on; none if they always do.
+fn enable(design: &Design, pipeline: &Pipeline) -> Option<NetId> {
+    design.registers.iter().find(|it| pipeline.valid.contains(&it.q))?.enable
+}
+
+/// Items without empty lines between them.
+fn dense(mut items: Vec<Spaced>) -> Vec<Spaced> {
+    items.iter_mut().for_each(|it| it.gap = false);
+    items
 }
 
 /// `Stage 3, part of: accumulator <- base^2`.

@@ -4,14 +4,17 @@
 //! written where it is used, as [`Bits`]. Other cells that nobody named are written into the one
 //! expression that uses them while that stays short. Everything else is declared, under its name.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 
 use anyhow::{Result, ensure};
 
 use super::bits::{Bits, Piece};
+use super::naming::remark;
 use crate::base::diagnostic::Diagnostics;
 use crate::base::fixed::mask;
-use crate::hdl::netlist::{DelayLine, Design, Driver, NetId, Op, Partition, RegId, Role, RomId};
+use crate::hdl::netlist::{
+    DelayLine, Delayed, Design, Driver, NetId, Op, Partition, RegId, Role, RomId,
+};
 
 /// How a net appears in the Verilog.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,6 +58,8 @@ pub struct Plan<'a> {
     pub reset: Option<NetId>,
     /// The registers that are written as memories.
     pub delays: Vec<DelayLine>,
+    /// The nets that repeat a value of a pipeline, whose comment stands where it is declared first.
+    repeats: HashSet<NetId>,
 }
 
 impl<'a> Plan<'a> {
@@ -78,11 +83,13 @@ impl<'a> Plan<'a> {
             reads: BTreeMap::new(),
             reset,
             delays: design.delay_lines(),
+            repeats: HashSet::new(),
         };
         plan.resolve_wiring(&order);
         plan.find_live(&order);
         plan.place_expressions();
         plan.count_reads();
+        plan.find_repeats();
         Ok(plan)
     }
 
@@ -222,7 +229,7 @@ impl<'a> Plan<'a> {
             let transparent = constant || !(net.named || self.is_port(id));
             self.roots[id.index()] = self.wired(id, &self.roots).unwrap_or_else(|| whole.clone());
             self.bits[id.index()] = match self.wiring(id) {
-                Some(bits) if transparent => {
+                Some(bits) if transparent || self.is_plain(id, &bits) => {
                     self.forms[id.index()] = NetForm::Wiring;
                     bits
                 }
@@ -294,19 +301,73 @@ impl<'a> Plan<'a> {
             let Driver::Op(op) = &net.driver else {
                 continue;
             };
-            if net.named || self.is_port(id) {
-                continue;
-            }
             let [(reader, true)] = uses.get(&id).map_or(&[][..], Vec::as_slice) else {
                 continue;
             };
+            let carried = match reader {
+                Reader::Register(register) if !matches!(op, Op::Mux { inputs, .. } if inputs.len() > 2) => {
+                    self.is_carried(id, *register)
+                }
+                _ => false,
+            };
+            if (net.named && !carried) || self.is_port(id) {
+                continue;
+            }
             let mentioned: usize =
                 op.operands().iter().map(|operand| self.mentioned(*operand, &size)).sum();
-            if self.home(*reader) == self.partition(id) && self.reads_well(op, *reader, mentioned) {
+            let short = carried || self.reads_well(op, *reader, mentioned);
+            if self.home(*reader) == self.partition(id) && short {
                 self.forms[id.index()] = NetForm::Inline;
                 size[id.index()] = mentioned;
             }
         }
+    }
+
+    /// Whether a net of a pipeline is short wiring that needs no name: it has no comment, or the register behind it has that.
+    fn is_plain(&self, id: NetId, bits: &Bits) -> bool {
+        const MOST_PIECES: usize = 3;
+        let is_held = || {
+            let mut registers = (0..self.design.registers.len()).map(|at| RegId(at as u32));
+            registers.any(|it| self.design.register(it).data == Some(id) && self.is_carried(id, it))
+        };
+        let undocumented = self.design.net(id).doc.is_empty();
+        self.design.pipeline.is_some()
+            && !self.is_port(id)
+            && bits.pieces().len() <= MOST_PIECES
+            && (undocumented || is_held())
+    }
+
+    /// Whether a register holds the value that a net of a pipeline has in the stage before, under the same name.
+    fn is_carried(&self, id: NetId, register: RegId) -> bool {
+        let Some(pipeline) = &self.design.pipeline else { return false };
+        let q = self.design.register(register).q;
+        pipeline.value_of[id.index()] == pipeline.value_of[q.index()]
+            && self.delayed(register) != Some(false)
+            && self.design.multiplier(register).is_none()
+    }
+
+    /// Finds the nets whose value another net of an earlier place has.
+    fn find_repeats(&mut self) {
+        let Some(pipeline) = &self.design.pipeline else { return };
+        let passed = self.delays.iter().flat_map(|line| &line.values).flat_map(Delayed::passed);
+        let passed: HashSet<NetId> = passed.map(|&it| self.design.register(it).q).collect();
+        let written = |id: &NetId| {
+            self.forms[id.index()] == NetForm::Declared
+                && !passed.contains(id)
+                && !self.is_port(*id)
+        };
+        let mut nets: Vec<NetId> = self.live.iter().copied().filter(written).collect();
+        nets.sort_by_key(|id| pipeline.stage_of[id.index()]);
+        let ports = self.design.ports.iter().map(|port| port.net);
+        let mut seen: HashSet<&str> =
+            ports.map(|id| pipeline.value_of[id.index()].as_str()).collect();
+        let repeated = |id: &NetId| !seen.insert(&pipeline.value_of[id.index()]);
+        self.repeats = nets.into_iter().filter(repeated).collect();
+    }
+
+    /// What to say of a net where it is declared.
+    pub fn remark(&self, id: NetId) -> String {
+        if self.repeats.contains(&id) { String::new() } else { remark(self.design, id) }
     }
 
     fn mentioned(&self, operand: NetId, size: &[usize]) -> usize {

@@ -1,8 +1,7 @@
 //! Declarations and port lists, set in columns.
 
-use super::naming::remark;
 use super::plan::Plan;
-use super::text::{annotated, range};
+use super::text::{COLUMNS, annotated, range};
 use crate::hdl::netlist::{Design, NetId, Port};
 
 /// A comma behind each text but the last.
@@ -43,7 +42,7 @@ impl Row {
     pub fn net(plan: &Plan, direction: &str, kind: &str, id: NetId) -> Self {
         let net = plan.design.net(id);
         let format = net.format;
-        let note = remark(plan.design, id);
+        let note = plan.remark(id);
         Self::port(direction, kind, format.width(), format.signed, &net.name, &note)
     }
 
@@ -76,6 +75,25 @@ impl Row {
         self
     }
 
+    /// The same rows with those together that have no comment and are declared alike.
+    pub fn together(rows: Vec<Self>) -> Vec<Self> {
+        let (mut all, plain): (Vec<_>, Vec<_>) =
+            rows.into_iter().partition(|row| !row.note.is_empty());
+        let first = all.len();
+        for row in plain {
+            let alike = |other: &&mut Self| {
+                let length = other.head.len() + other.range.len() + other.name.len();
+                (&other.head, &other.range) == (&row.head, &row.range)
+                    && length + row.name.len() + 10 <= COLUMNS
+            };
+            match all[first..].iter_mut().rev().find(alike) {
+                Some(other) => other.name = format!("{}, {}", other.name, row.name),
+                None => all.push(row),
+            }
+        }
+        all
+    }
+
     /// As ports, with commas.
     pub fn ports(rows: &[Self]) -> Vec<String> {
         Self::set(rows, |at| if at + 1 < rows.len() { "," } else { "" })
@@ -89,7 +107,9 @@ impl Row {
     fn set(rows: &[Self], end: impl Fn(usize) -> &'static str) -> Vec<String> {
         let head = rows.iter().map(|row| row.head.len()).max().unwrap_or(0);
         let range = rows.iter().map(|row| row.range.len()).max().unwrap_or(0);
-        let name = rows.iter().map(|row| row.name.len() + 1).max().unwrap_or(0);
+        // Several names have no comment behind them.
+        let single = rows.iter().filter(|row| !row.name.contains(' '));
+        let name = single.map(|row| row.name.len() + 1).max().unwrap_or(0);
         let mut lines = Vec::new();
         for (at, row) in rows.iter().enumerate() {
             let gap = if range == 0 { "" } else { " " };

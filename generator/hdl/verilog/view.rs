@@ -82,7 +82,11 @@ pub struct RomItem {
     pub attribute: String,
     /// `[7:0]`.
     pub range: String,
-    /// The memory's name.
+    /// The range of the number of a word, of a memory that is a function.
+    pub number: String,
+    /// The name of that number there.
+    pub at: String,
+    /// The name of the memory, or of the function.
     pub memory: String,
     /// The number of the last word.
     pub last: usize,
@@ -103,6 +107,8 @@ pub enum Contents {
     },
     /// Here: statements.
     Inline(Vec<String>),
+    /// Here: the choices of a case.
+    Case(Vec<String>),
 }
 
 /// The top module.
@@ -153,16 +159,18 @@ pub struct PipelineModule {
     pub stages: Vec<StageSection>,
     /// The net that takes the bits that nobody reads, or nothing.
     pub unused: Vec<String>,
+    /// The name of the module of delay lines, if there are any.
+    pub delay: Option<String>,
 }
 
 /// A part of a pipeline.
 pub struct StageSection {
     /// Comment lines.
     pub title: Vec<String>,
-    /// The registers that end it.
-    pub registers: Vec<String>,
+    /// Declarations of what ROMs are read into on the clock.
+    pub words: Vec<String>,
     /// Combinational cells and ROMs, operands first.
     pub items: Vec<Spaced>,
-    /// The bodies of the clocked blocks.
-    pub groups: Vec<Vec<String>>,
+    /// The registers that end it: declarations, and the block in which they take their values.
+    pub registers: Vec<String>,
 }

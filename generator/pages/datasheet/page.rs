@@ -140,7 +140,7 @@ pub fn page(subject: &Subject, measured: &Measured) -> Result<String> {
         title: html(&about.title),
         formula: formula::typeset(&about.formula),
         source: html(&about.source),
-        notes: about.notes.iter().map(|note| html(note)).collect(),
+        notes: about.paragraphs().map(html).collect(),
         glance: glance(subject, measured),
         diagram: diagram::drawing(design).svg()?,
         formats: html(account::FORMATS),

@@ -81,7 +81,7 @@ pub fn page(design: &Design, inputs: &PageInputs) -> Result<String> {
         name: &design.name,
         formula: &about.formula,
         source: prose(&about.source),
-        notes: about.notes.iter().map(|note| prose(note)).collect(),
+        notes: about.paragraphs().map(prose).collect(),
         ports: table(&account::ports(design)),
         numbering: account::numbering(design),
         program: Program::new(design),

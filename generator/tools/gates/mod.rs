@@ -1,5 +1,7 @@
 //! Netlists from synthesis in a simulator: the bench of the source, around gates.
 
+pub mod cells;
+
 use std::fs;
 use std::path::Path;
 use std::time::Duration;
@@ -34,7 +36,7 @@ pub fn netlist(
     fs::read_to_string(dir.path().join(NETLIST)).context("`yosys` wrote no netlist")
 }
 
-/// The files of the bench around a netlist, of `sources`, those of device and bench: without those named in
+/// The files of the bench around a netlist of a family, of `sources`, those of device and bench: without those named in
 /// `rtl`, and with the models of the family's cells.
 ///
 /// # Errors
@@ -46,6 +48,16 @@ pub fn bench(
     netlist: String,
     family: &Family,
 ) -> Result<Vec<(String, String)>> {
+    Ok(around(sources, rtl, netlist, models(yosys, family)?))
+}
+
+/// The same with the models of any cells.
+pub fn around(
+    sources: Vec<(String, String)>,
+    rtl: &[String],
+    netlist: String,
+    models: Vec<(String, String)>,
+) -> Vec<(String, String)> {
     let mut files = sources;
     files.retain(|(name, _)| !rtl.contains(name));
     for (_, contents) in &mut files {
@@ -53,8 +65,8 @@ pub fn bench(
         *contents = contents.replace("dut.control.word_address", "4'd15");
     }
     files.push(("netlist.v".to_owned(), netlist));
-    files.extend(models(yosys, family)?);
-    Ok(files)
+    files.extend(models);
+    files
 }
 
 /// The models of a family's cells.

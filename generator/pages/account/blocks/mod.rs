@@ -10,7 +10,7 @@ mod kind;
 use std::collections::BTreeSet;
 
 use super::{NUMBER, Table, code, format_text, short};
-use crate::hdl::netlist::{Design, Driver, FieldId, NetId, Op, RegisterKind, Role, value_name};
+use crate::hdl::netlist::{Design, Driver, FieldId, NetId, Op, RegisterKind, Role};
 use groups::Groups;
 pub use kind::BlockKind;
 use kind::{ADDER, MULTIPLIER, operator};
@@ -205,13 +205,12 @@ impl<'a> Blocks<'a> {
     /// The name of a block: in a pipeline the shortest of those of its parts, without the stage.
     fn called(&self, inside: &[NetId], head: NetId) -> String {
         let design = self.design;
-        if design.pipeline.is_none() {
-            return design.net(head).name.clone();
-        }
+        let Some(pipeline) = &design.pipeline else { return design.net(head).name.clone() };
+        let value = |it: NetId| &pipeline.value_of[it.index()];
         let parts = inside.iter().filter(|it| design.ports.iter().all(|port| port.net != **it));
-        let names = parts.rev().map(|it| value_name(&design.net(*it).name));
+        let names = parts.rev().map(|it| value(*it));
         let name = names.min_by_key(|name| name.len());
-        name.unwrap_or(value_name(&design.net(head).name)).to_owned()
+        name.unwrap_or(value(head)).clone()
     }
 
     /// What else the output of a block is called in a pipeline, on its way through wires and registers.
@@ -220,12 +219,12 @@ impl<'a> Blocks<'a> {
         let Some(pipeline) = &design.pipeline else { return Vec::new() };
         let mut names: Vec<String> = Vec::new();
         for checkpoint in &pipeline.checkpoints {
-            let net = design.net(checkpoint.net);
-            let other = match net.block {
-                Some(number) => format!("{number} {}", value_name(&net.name)),
-                None => value_name(&net.name).to_owned(),
+            let value = &pipeline.value_of[checkpoint.net.index()];
+            let other = match design.net(checkpoint.net).block {
+                Some(number) => format!("{number} {value}"),
+                None => value.clone(),
             };
-            let same = value_name(&net.name) == name || names.contains(&other);
+            let same = value == name || names.contains(&other);
             if self.groups.sources[checkpoint.net.index()] == [head] && !same {
                 names.push(other);
             }
