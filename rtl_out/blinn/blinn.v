@@ -31,9 +31,10 @@
 // Phong's function is this device with cos psi = V.R at the input in place of N.H.
 //
 // Two products a point, in one shared multiplier (a second one would save a clock of six and cost
-// one to two DSP blocks): the rise within a segment of the decay, and n times the decay. 2^-x over
-// the fraction of n*decay comes from tables that are added (symmetric multipartite), for which it
-// is stored less the line 1 - x/2; the integer shifts it right.
+// one to two DSP blocks): the rise within a segment of the decay, and n times the decay.
+//
+// 2^-x over the fraction of n*decay comes from tables that are added (symmetric multipartite), for
+// which it is stored less the line 1 - x/2; the integer shifts it right.
 //
 // The straight segments of the decay shrink toward cos gamma = 1, by factors of four of 1 - cos
 // gamma, so that the decay keeps its relative accuracy, which is what n multiplies. The table is

@@ -11,30 +11,13 @@
 // fraction bits; the value of a signal is its integer times 2^-F. With negative I the first
 // fraction bits are always 0 and left out.
 //
-//  rst_n              reset, active low, synchronous
-//  in_valid           a point is offered: the operands are its own
-//  cos_gamma  u1.20   operand
-//  exponent   u10.0   operand
-//  red        u8.0    operand
-//  green      u8.0    operand
-//  blue       u8.0    operand
-//  out_ready          the results are taken in this clock
-//  in_ready           the point that is offered is taken in this clock
-//  out_valid          results are on the outputs
-//  f_out      u0.16   result
-//  red_out    u8.0    result
-//  green_out  u8.0    result
-//  blue_out   u8.0    result
-//
 // The seeds hold every device against this function and give no circuit for it; structure and
 // formats are Glint's own.
 //
 // Phong's function is this device with cos psi = V.R at the input in place of N.H.
 //
-// Two products a point, in one shared multiplier (a second one would save a clock of six and cost
-// one to two DSP blocks): the rise within a segment of the decay, and n times the decay. 2^-x over
-// the fraction of n*decay comes from tables that are added (symmetric multipartite), for which it
-// is stored less the line 1 - x/2; the integer shifts it right.
+// 2^-x over the fraction of n*decay comes from tables that are added (symmetric multipartite), for
+// which it is stored less the line 1 - x/2; the integer shifts it right.
 //
 // The straight segments of the decay shrink toward cos gamma = 1, by factors of four of 1 - cos
 // gamma, so that the decay keeps its relative accuracy, which is what n multiplies. The table is
@@ -76,714 +59,431 @@ module blinn_pipelined #(
     // Constants
     localparam [20:0] COS_GAMMA_MOST = 21'h100000;  // 1.0 in u1.20
 
-    // The handshake: which stage has a point, and when all of them move on
-    reg  valid_s1;   // stage 1 has a point
-    reg  valid_s2;   // stage 2 has a point
-    reg  valid_s3;   // stage 3 has a point
-    reg  valid_s4;   // stage 4 has a point
-    reg  valid_s5;   // stage 5 has a point
-    reg  valid_s6;   // stage 6 has a point
-    reg  valid_s7;   // stage 7 has a point
-    reg  valid_s8;   // stage 8 has a point
-    reg  valid_s9;   // stage 9 has a point
-    reg  valid_s10;  // stage 10 has a point
-    reg  valid_s11;  // stage 11 has a point
-    reg  valid_s12;  // stage 12 has a point
-    reg  valid_s13;  // stage 13 has a point
-    reg  valid_s14;  // stage 14 has a point
-    reg  valid_s15;  // stage 15 has a point
-    reg  valid_s16;  // stage 16 has a point
-    reg  valid_s17;  // stage 17 has a point
-    reg  valid_s18;  // stage 18 has a point
-    reg  valid_s19;  // stage 19 has a point
-    reg  valid_s20;  // the results are on the outputs
-
-    assign out_valid = valid_s20;  // the results are on the outputs
-    wire advance = out_ready | ~valid_s20;  // every point moves on by a stage
-    assign in_ready = advance;  // a point that is offered is taken in this clock
-
+    // The handshake: a bit for each stage that has a point; all points move on together
+    reg  [20:1] valid;
+    assign out_valid = valid[20];
+    wire advance = out_ready | ~valid[20];
+    assign in_ready = advance;
     always @(posedge clk) begin
-        if (!rst_n) begin
-            valid_s1 <= 1'b0;
-            valid_s2 <= 1'b0;
-            valid_s3 <= 1'b0;
-            valid_s4 <= 1'b0;
-            valid_s5 <= 1'b0;
-            valid_s6 <= 1'b0;
-            valid_s7 <= 1'b0;
-            valid_s8 <= 1'b0;
-            valid_s9 <= 1'b0;
-            valid_s10 <= 1'b0;
-            valid_s11 <= 1'b0;
-            valid_s12 <= 1'b0;
-            valid_s13 <= 1'b0;
-            valid_s14 <= 1'b0;
-            valid_s15 <= 1'b0;
-            valid_s16 <= 1'b0;
-            valid_s17 <= 1'b0;
-            valid_s18 <= 1'b0;
-            valid_s19 <= 1'b0;
-            valid_s20 <= 1'b0;
-        end else if (advance) begin
-            valid_s1 <= in_valid;
-            valid_s2 <= valid_s1;
-            valid_s3 <= valid_s2;
-            valid_s4 <= valid_s3;
-            valid_s5 <= valid_s4;
-            valid_s6 <= valid_s5;
-            valid_s7 <= valid_s6;
-            valid_s8 <= valid_s7;
-            valid_s9 <= valid_s8;
-            valid_s10 <= valid_s9;
-            valid_s11 <= valid_s10;
-            valid_s12 <= valid_s11;
-            valid_s13 <= valid_s12;
-            valid_s14 <= valid_s13;
-            valid_s15 <= valid_s14;
-            valid_s16 <= valid_s15;
-            valid_s17 <= valid_s16;
-            valid_s18 <= valid_s17;
-            valid_s19 <= valid_s18;
-            valid_s20 <= valid_s19;
-        end
+        if (!rst_n) valid <= 20'd0;
+        else if (advance) valid <= {valid[19:1], in_valid};
     end
 
     // Stage 0, part of: segment of the decay addressed by cos gamma
     reg  [20:0] cos_gamma_reg_s1;  // u1.20: cosine of the angle between normal and half vector
-
-    wire cos_gamma_over_s0 = cos_gamma[20];
-
-    // u1.20: cosine of the angle between normal and half vector
-    wire [20:0] cos_gamma_reg_s0 = cos_gamma_over_s0 ? COS_GAMMA_MOST : cos_gamma;
-
-    always @(posedge clk) begin
-        if (advance) begin
-            cos_gamma_reg_s1 <= cos_gamma_reg_s0;
-        end
+    always @(posedge clk) if (advance) begin
+        cos_gamma_reg_s1 <= cos_gamma[20] ? COS_GAMMA_MOST : cos_gamma;
     end
 
     // Stage 1, part of: segment of the decay addressed by cos gamma
+    wire octave_top16_s1 = |cos_gamma_reg_s1[19:4];
+    wire facing_s1 = |cos_gamma_reg_s1;  // the surface faces the half vector
+    reg         aligned_s2;        // cos gamma is 1.0
     reg  [19:0] octave_by16_s2;
     reg         octave_free16_s2;
-    reg         aligned_s2;        // cos gamma is 1.0
-
-    wire octave_top16_s1 = |cos_gamma_reg_s1[19:4];
-
-    wire [19:0] octave_by16_s1 = octave_top16_s1 ? cos_gamma_reg_s1[19:0] : {cos_gamma_reg_s1[3:0],
-            16'd0};
-
-    wire octave_free16_s1 = ~octave_top16_s1;
-    wire facing_s1 = |cos_gamma_reg_s1;  // the surface faces the half vector
-    wire aligned_s1 = cos_gamma_reg_s1[20];  // cos gamma is 1.0
-
-    always @(posedge clk) begin
-        if (advance) begin
-            octave_by16_s2 <= octave_by16_s1;
-            octave_free16_s2 <= octave_free16_s1;
-            aligned_s2 <= aligned_s1;
-        end
+    always @(posedge clk) if (advance) begin
+        octave_by16_s2 <= octave_top16_s1 ? cos_gamma_reg_s1[19:0] : {cos_gamma_reg_s1[3:0], 16'd0};
+        octave_free16_s2 <= ~octave_top16_s1;
+        aligned_s2 <= cos_gamma_reg_s1[20];
     end
 
     // Stage 2, part of: segment of the decay addressed by cos gamma
-    reg  [19:0] octave_by4_s3;
-    reg         octave_free16_s3;
-    reg         octave_free8_s3;
-    reg         octave_free4_s3;
-    reg         aligned_s3;        // cos gamma is 1.0
-
     wire octave_top8_s2 = |octave_by16_s2[19:12];
     wire [19:0] octave_by8_s2 = octave_top8_s2 ? octave_by16_s2 : {octave_by16_s2[11:0], 8'd0};
     wire octave_top4_s2 = |octave_by8_s2[19:16];
-    wire [19:0] octave_by4_s2 = octave_top4_s2 ? octave_by8_s2 : {octave_by8_s2[15:0], 4'd0};
-    wire octave_free8_s2 = ~octave_top8_s2;
-    wire octave_free4_s2 = ~octave_top4_s2;
-
-    always @(posedge clk) begin
-        if (advance) begin
-            octave_by4_s3 <= octave_by4_s2;
-            octave_free16_s3 <= octave_free16_s2;
-            octave_free8_s3 <= octave_free8_s2;
-            octave_free4_s3 <= octave_free4_s2;
-            aligned_s3 <= aligned_s2;
-        end
+    reg  [19:0] octave_by4_s3;
+    reg         octave_free16_s3, octave_free8_s3, octave_free4_s3, aligned_s3;
+    always @(posedge clk) if (advance) begin
+        octave_by4_s3 <= octave_top4_s2 ? octave_by8_s2 : {octave_by8_s2[15:0], 4'd0};
+        octave_free16_s3 <= octave_free16_s2;
+        octave_free8_s3 <= ~octave_top8_s2;
+        octave_free4_s3 <= ~octave_top4_s2;
+        aligned_s3 <= aligned_s2;
     end
 
     // Stage 3, part of: segment of the decay addressed by cos gamma
-    reg  [18:0] distance_s4;         // 1.0 - cos gamma * 2^octave, less an ulp, from 0 to one half
-    reg         curve_in_range3_s4;  // u is in range 3 or in one above
-    reg         curve_in_range4_s4;  // u is in range 4 or in one above
-    reg         curve_in_range1_s4;  // u is in range 1 or in one above
-    reg         aligned_s4;          // cos gamma is 1.0
-
     wire octave_top2_s3 = |octave_by4_s3[19:18];
     wire [19:0] octave_by2_s3 = octave_top2_s3 ? octave_by4_s3 : {octave_by4_s3[17:0], 2'd0};
-    wire octave_top1_s3 = octave_by2_s3[19];
-    wire [19:0] octave_by1_s3 = octave_top1_s3 ? octave_by2_s3 : {octave_by2_s3[18:0], 1'b0};
-
+    wire [19:0] octave_by1_s3 = octave_by2_s3[19] ? octave_by2_s3 : {octave_by2_s3[18:0], 1'b0};
     // 1.0 - cos gamma * 2^octave, less an ulp, from 0 to one half
     wire [18:0] distance_s3 = ~octave_by1_s3[18:0];
-
-    wire curve_in_range3_s3 = |distance_s3[18:11];  // u is in range 3 or in one above
-    wire curve_in_range4_s3 = |distance_s3[18:9];  // u is in range 4 or in one above
-    wire curve_in_range1_s3 = |distance_s3[18:15];  // u is in range 1 or in one above
     wire octave_free2_s3 = ~octave_top2_s3;
-    wire octave_free1_s3 = ~octave_top1_s3;
-
+    wire octave_free1_s3 = ~octave_by2_s3[19];
     // leading zeros of cos gamma
     wire [4:0] octave_s3 = {octave_free16_s3, octave_free8_s3, octave_free4_s3, octave_free2_s3,
             octave_free1_s3};
-
-    always @(posedge clk) begin
-        if (advance) begin
-            distance_s4 <= distance_s3;
-            curve_in_range3_s4 <= curve_in_range3_s3;
-            curve_in_range4_s4 <= curve_in_range4_s3;
-            curve_in_range1_s4 <= curve_in_range1_s3;
-            aligned_s4 <= aligned_s3;
-        end
+    reg         curve_in_range3_s4;  // u is in range 3 or in one above
+    reg         curve_in_range4_s4;  // u is in range 4 or in one above
+    reg         curve_in_range1_s4;  // u is in range 1 or in one above
+    reg  [18:0] distance_s4;
+    reg         aligned_s4;
+    always @(posedge clk) if (advance) begin
+        distance_s4 <= distance_s3;
+        curve_in_range3_s4 <= |distance_s3[18:11];
+        curve_in_range4_s4 <= |distance_s3[18:9];
+        curve_in_range1_s4 <= |distance_s3[18:15];
+        aligned_s4 <= aligned_s3;
     end
 
     // Stage 4, part of: segment of the decay addressed by cos gamma
-    reg  [12:0] curve_rest2_s5;  // u0.13
-    reg         aligned_s5;      // cos gamma is 1.0
     reg  [44:0] curve_word_s5;
-
     wire curve_in_range2_s4 = |distance_s4[18:13];  // u is in range 2 or in one above
-
-    // u0.13
     wire [12:0] curve_rest4_s4 = curve_in_range4_s4 ? {distance_s4[8:0], 4'd0} : {distance_s4[7:0],
             5'd0};
-
-    // u0.13
     wire [12:0] curve_rest3_s4 = curve_in_range3_s4 ? {distance_s4[9:0], 3'd0} : curve_rest4_s4;
-
     wire curve_in_range0_s4 = |distance_s4[18:17];  // u is in range 0 or in one above
-
-    // u0.13
     wire [12:0] curve_rest1_s4 = curve_in_range1_s4 ? {distance_s4[11:0], 1'b0} :
             {distance_s4[10:0], 2'd0};
-
     wire [12:0] curve_rest0_s4 = curve_in_range0_s4 ? distance_s4[12:0] : curve_rest1_s4;  // u0.13
-    wire [12:0] curve_rest2_s4 = curve_in_range2_s4 ? curve_rest0_s4 : curve_rest3_s4;  // u0.13
-
     wire [6:0] curve_word4_s4 = curve_in_range4_s4 ? {5'd0, distance_s4[10:9]} : {6'd32,
             distance_s4[8]};
-
     wire [6:0] curve_word3_s4 = curve_in_range3_s4 ? {4'd8, distance_s4[12:10]} : curve_word4_s4;
-
     wire [6:0] curve_word1_s4 = curve_in_range1_s4 ? {2'd2, distance_s4[16:12]} : {3'd0,
             distance_s4[14:11]};
-
     wire [6:0] curve_word0_s4 = curve_in_range0_s4 ? {1'b0, distance_s4[18:13]} : curve_word1_s4;
     wire [6:0] curve_word2_s4 = curve_in_range2_s4 ? curve_word0_s4 : curve_word3_s4;
-
     // ROM curve: value at the start of a segment (u0.26), then its rise over the segment in units
     // of 2^-24 (19 bits)
     reg [44:0] curve_rom [0:95];
     initial $readmemh(CURVE_FILE, curve_rom);
     always @(posedge clk) if (advance) curve_word_s5 <= curve_rom[curve_word2_s4];
-
-    always @(posedge clk) begin
-        if (advance) begin
-            curve_rest2_s5 <= curve_rest2_s4;
-            aligned_s5 <= aligned_s4;
-        end
+    reg  [12:0] curve_rest2_s5;  // u0.13
+    reg         aligned_s5;
+    always @(posedge clk) if (advance) begin
+        curve_rest2_s5 <= curve_in_range2_s4 ? curve_rest0_s4 : curve_rest3_s4;
+        aligned_s5 <= aligned_s4;
     end
 
     // Stage 5, part of: segment of the decay addressed by cos gamma
-    reg  [12:0] curve_rest2_s6;         // u0.13
     reg  [25:0] curve_base_s6;          // u0.26
+    reg  [12:0] curve_rest2_s6;
     reg  [17:0] product_upper_bits_s6;
-    reg         product_row_s6;
-    reg         aligned_s6;             // cos gamma is 1.0
-
-    wire [25:0] curve_base_s5 = curve_word_s5[44:19];  // u0.26
-
-    always @(posedge clk) begin
-        if (advance) begin
-            curve_rest2_s6 <= curve_rest2_s5;
-            curve_base_s6 <= curve_base_s5;
-            product_upper_bits_s6 <= curve_word_s5[18:1];
-            product_row_s6 <= curve_word_s5[0];
-            aligned_s6 <= aligned_s5;
-        end
+    reg         product_row_s6, aligned_s6;
+    always @(posedge clk) if (advance) begin
+        curve_rest2_s6 <= curve_rest2_s5;
+        curve_base_s6 <= curve_word_s5[44:19];
+        product_upper_bits_s6 <= curve_word_s5[18:1];
+        product_row_s6 <= curve_word_s5[0];
+        aligned_s6 <= aligned_s5;
     end
 
     // Stage 6: values on their way
-    reg  [12:0] curve_rest2_s7;         // u0.13
-    reg  [25:0] curve_base_s7;          // u0.26
+    reg  [12:0] curve_rest2_s7;
+    reg  [25:0] curve_base_s7;
     reg  [17:0] product_upper_bits_s7;
-    reg         product_row_s7;
-    reg         aligned_s7;             // cos gamma is 1.0
-
-    always @(posedge clk) begin
-        if (advance) begin
-            curve_rest2_s7 <= curve_rest2_s6;
-            curve_base_s7 <= curve_base_s6;
-            product_upper_bits_s7 <= product_upper_bits_s6;
-            product_row_s7 <= product_row_s6;
-            aligned_s7 <= aligned_s6;
-        end
+    reg         product_row_s7, aligned_s7;
+    always @(posedge clk) if (advance) begin
+        curve_rest2_s7 <= curve_rest2_s6;
+        curve_base_s7 <= curve_base_s6;
+        product_upper_bits_s7 <= product_upper_bits_s6;
+        product_row_s7 <= product_row_s6;
+        aligned_s7 <= aligned_s6;
     end
 
     // Stage 7, part of: decay <- base + slope * rest
-    reg  [25:0] curve_base_s8;     // u0.26
+    reg  [25:0] curve_base_s8;
     reg  [30:0] product_upper_s8;
     reg  [12:0] product_row_2_s8;
-    reg         aligned_s8;        // cos gamma is 1.0
-
-    wire [30:0] product_upper_s7 = product_upper_bits_s7 * curve_rest2_s7;
-
-    always @(posedge clk) begin
-        if (advance) begin
-            curve_base_s8 <= curve_base_s7;
-            product_upper_s8 <= product_upper_s7;
-            product_row_2_s8 <= product_row_s7 ? curve_rest2_s7 : 13'd0;
-            aligned_s8 <= aligned_s7;
-        end
+    reg         aligned_s8;
+    always @(posedge clk) if (advance) begin
+        curve_base_s8 <= curve_base_s7;
+        product_upper_s8 <= product_upper_bits_s7 * curve_rest2_s7;
+        product_row_2_s8 <= product_row_s7 ? curve_rest2_s7 : 13'd0;
+        aligned_s8 <= aligned_s7;
     end
 
     // Stage 8, part of: decay <- base + slope * rest
-    reg  [4:0]  octave_s9;            // leading zeros of cos gamma
-    reg         curve_sum_bits_s9;
+    wire [30:0] product_upper_3_s8 = {19'd0, product_row_2_s8[12:1]} + product_upper_s8;
+    wire [26:0] curve_sum_s8 = {1'b0, curve_base_s8} + {6'd0, product_upper_3_s8[30:10]};  // u1.26
     reg  [25:0] curve_sum_inside_s9;  // u0.26
-    reg         aligned_s9;           // cos gamma is 1.0
-
-    wire [30:0] product_sum_upper_2_s8 = {19'd0, product_row_2_s8[12:1]} + product_upper_s8;
-    wire [31:0] product_sum_s8 = {product_sum_upper_2_s8, product_row_2_s8[0]};
-    wire [26:0] curve_sum_s8 = {1'b0, curve_base_s8} + {6'd0, product_sum_s8[31:11]};  // u1.26
-
-    always @(posedge clk) begin
-        if (advance) begin
-            curve_sum_bits_s9 <= curve_sum_s8[26];
-            curve_sum_inside_s9 <= curve_sum_s8[25:0];
-            aligned_s9 <= aligned_s8;
-        end
+    wire [4:0]  octave_s9;
+    reg         curve_sum_bits_s9, aligned_s9;
+    always @(posedge clk) if (advance) begin
+        curve_sum_bits_s9 <= curve_sum_s8[26];
+        curve_sum_inside_s9 <= curve_sum_s8[25:0];
+        aligned_s9 <= aligned_s8;
     end
 
     // Stage 9, part of: segment of the decay addressed by cos gamma; decay <- base + slope * rest;
     // halvings <- n * decay
-    reg  [9:0]  exponent_s10;     // specular exponent n
-    reg         decay_small_s10;  // the decay is below 1/4, and all its bits count
-    reg  [23:0] factor_s10;       // the decay, its point by decay_small
-    reg         aligned_s10;      // cos gamma is 1.0
-
     wire octave_any_s9 = |octave_s9;  // cos gamma is below one half
-
     // u0.26: -log2(cos gamma * 2^octave)
     wire [25:0] decay_s9 = curve_sum_bits_s9 ? 26'h3ffffff : curve_sum_inside_s9;
-
     wire decay_large_s9 = |decay_s9[25:24];
     wire decay_far_s9 = decay_large_s9 | octave_any_s9;
     wire decay_small_s9 = ~decay_far_s9;  // the decay is below 1/4, and all its bits count
-
-    // the decay, its point by decay_small
-    wire [23:0] factor_s9 = decay_small_s9 ? decay_s9[23:0] : {octave_s9, decay_s9[25:7]};
-
-    always @(posedge clk) begin
-        if (advance) begin
-            decay_small_s10 <= decay_small_s9;
-            factor_s10 <= factor_s9;
-            aligned_s10 <= aligned_s9;
-        end
+    reg  [23:0] factor_s10;    // the decay, its point by decay_small
+    wire [9:0]  exponent_s10;
+    reg         decay_small_s10, aligned_s10;
+    always @(posedge clk) if (advance) begin
+        decay_small_s10 <= decay_small_s9;
+        factor_s10 <= decay_small_s9 ? decay_s9[23:0] : {octave_s9, decay_s9[25:7]};
+        aligned_s10 <= aligned_s9;
     end
 
     // Stage 10, part of: halvings <- n * decay
-    reg         decay_small_s11;      // the decay is below 1/4, and all its bits count
-    reg  [27:0] product_upper_2_s11;
+    reg         decay_small_s11, aligned_s11;
+    reg  [27:0] product_upper_5_s11;
     reg  [15:0] product_lower_s11;
-    reg         aligned_s11;          // cos gamma is 1.0
-
-    wire [27:0] product_upper_2_s10 = factor_s10[23:6] * exponent_s10;
-    wire [15:0] product_lower_s10 = factor_s10[5:0] * exponent_s10;
-
-    always @(posedge clk) begin
-        if (advance) begin
-            decay_small_s11 <= decay_small_s10;
-            product_upper_2_s11 <= product_upper_2_s10;
-            product_lower_s11 <= product_lower_s10;
-            aligned_s11 <= aligned_s10;
-        end
+    always @(posedge clk) if (advance) begin
+        decay_small_s11 <= decay_small_s10;
+        product_upper_5_s11 <= factor_s10[23:6] * exponent_s10;
+        product_lower_s11 <= factor_s10[5:0] * exponent_s10;
+        aligned_s11 <= aligned_s10;
     end
 
     // Stage 11, part of: halvings <- n * decay
-    reg         decay_small_s12;          // the decay is below 1/4, and all its bits count
-    reg  [27:0] product_sum_upper_5_s12;
-    reg  [5:0]  product_sum_upper_6_s12;
-    reg         aligned_s12;              // cos gamma is 1.0
-
-    always @(posedge clk) begin
-        if (advance) begin
-            decay_small_s12 <= decay_small_s11;
-            product_sum_upper_5_s12 <= {18'd0, product_lower_s11[15:6]} + product_upper_2_s11;
-            product_sum_upper_6_s12 <= product_lower_s11[5:0];
-            aligned_s12 <= aligned_s11;
-        end
+    reg         decay_small_s12, aligned_s12;
+    reg  [27:0] product_upper_7_s12;
+    reg  [5:0]  product_upper_8_s12;
+    always @(posedge clk) if (advance) begin
+        decay_small_s12 <= decay_small_s11;
+        product_upper_7_s12 <= {18'd0, product_lower_s11[15:6]} + product_upper_5_s11;
+        product_upper_8_s12 <= product_lower_s11[5:0];
+        aligned_s12 <= aligned_s11;
     end
 
     // Stage 12, part of: halvings <- n * decay
+    wire [20:0] halvings_coarse_s12 = (|product_upper_7_s12[27:18]) ? 21'h1fffff :
+            {product_upper_7_s12[17:0], product_upper_8_s12[5:3]};
+    wire [20:0] halvings_fine_s12 = (|product_upper_7_s12[27:25]) ? 21'h1fffff :
+            product_upper_7_s12[24:4];
     reg  [20:0] halvings_s13;  // u5.16: n*decay: how often f is half of 1.0
-    reg         aligned_s13;   // cos gamma is 1.0
-
-    wire [33:0] product_sum_2_s12 = {product_sum_upper_5_s12, product_sum_upper_6_s12};
-
-    // u5.16
-    wire [20:0] halvings_coarse_s12 = (|product_sum_2_s12[33:24]) ? 21'h1fffff :
-            product_sum_2_s12[23:3];
-
-    // u5.16
-    wire [20:0] halvings_fine_s12 = (|product_sum_2_s12[33:31]) ? 21'h1fffff :
-            product_sum_2_s12[30:10];
-
-    // u5.16: n*decay: how often f is half of 1.0
-    wire [20:0] halvings_s12 = decay_small_s12 ? halvings_fine_s12 : halvings_coarse_s12;
-
-    always @(posedge clk) begin
-        if (advance) begin
-            halvings_s13 <= halvings_s12;
-            aligned_s13 <= aligned_s12;
-        end
+    reg         aligned_s13;
+    always @(posedge clk) if (advance) begin
+        halvings_s13 <= decay_small_s12 ? halvings_fine_s12 : halvings_coarse_s12;
+        aligned_s13 <= aligned_s12;
     end
 
     // Stage 13, part of: tables of 2^-x addressed by the fraction; reflectance <- 2^-halvings
-    reg         [20:0] halvings_s14;                // u5.16: n*decay: how often f is half of 1.0
-    reg         [14:0] exp2_bend_value_word_s14;    // u-4.19
-    reg                peak_s14;                    // f is 1.0, less an ulp
-    // s-10.19: what the field adds, less half an ulp
-    reg  signed [9:0]  exp2_bend_offset1_term_s14;
-    // s-12.19: what the field adds, less half an ulp
-    reg  signed [7:0]  exp2_bend_offset2_term_s14;
-
-    wire exp2_bend_offset1_upper_s13 = halvings_s13[8];
-    wire exp2_bend_offset2_upper_s13 = halvings_s13[6];
-
     // ROM exp2_bend_value: 1 - x/2 - 2^-x at the middle of each of 128 intervals of x, in units of
     // 2^-19
     reg [14:0] exp2_bend_value_rom [0:127];
     initial $readmemh(EXP2_BEND_VALUE_FILE, exp2_bend_value_rom);
     wire [14:0] exp2_bend_value_word_s13 = exp2_bend_value_rom[halvings_s13[15:9]];
-
     wire exp2_bend_offset1_mirrored_s13 = ~halvings_s13[7];
-
     // distance from the middle of the field
-    wire exp2_bend_offset1_distance_s13 = exp2_bend_offset1_upper_s13 ? halvings_s13[7] :
+    wire exp2_bend_offset1_distance_s13 = halvings_s13[8] ? halvings_s13[7] :
             exp2_bend_offset1_mirrored_s13;
-
-    wire [6:0] exp2_bend_offset1_address_s13 = {halvings_s13[15:10],
-            exp2_bend_offset1_distance_s13};
-
     // ROM exp2_bend_offset1: slope of 1 - x/2 - 2^-x over 2^-6 of x, times the distance from the
     // middle of bits 8 to 7 of x, in units of 2^-19, less a half
     reg [9:0] exp2_bend_offset1_rom [0:127];
     initial $readmemh(EXP2_BEND_OFFSET1_FILE, exp2_bend_offset1_rom);
-    wire signed [9:0] exp2_bend_offset1_word_s13 =
-            exp2_bend_offset1_rom[exp2_bend_offset1_address_s13];
-
+    wire signed [9:0] exp2_bend_offset1_word_s13 = exp2_bend_offset1_rom[{halvings_s13[15:10],
+            exp2_bend_offset1_distance_s13}];
     wire [1:0] exp2_bend_offset2_mirrored_s13 = ~halvings_s13[5:4];
-
     // distance from the middle of the field
-    wire [1:0] exp2_bend_offset2_distance_s13 = exp2_bend_offset2_upper_s13 ? halvings_s13[5:4] :
+    wire [1:0] exp2_bend_offset2_distance_s13 = halvings_s13[6] ? halvings_s13[5:4] :
             exp2_bend_offset2_mirrored_s13;
-
-    wire [6:0] exp2_bend_offset2_address_s13 = {halvings_s13[15:11],
-            exp2_bend_offset2_distance_s13};
-
     // ROM exp2_bend_offset2: slope of 1 - x/2 - 2^-x over 2^-5 of x, times the distance from the
     // middle of bits 6 to 4 of x, in units of 2^-19, less a half
     reg [7:0] exp2_bend_offset2_rom [0:127];
     initial $readmemh(EXP2_BEND_OFFSET2_FILE, exp2_bend_offset2_rom);
-    wire signed [7:0] exp2_bend_offset2_word_s13 =
-            exp2_bend_offset2_rom[exp2_bend_offset2_address_s13];
-
+    wire signed [7:0] exp2_bend_offset2_word_s13 = exp2_bend_offset2_rom[{halvings_s13[15:11],
+            exp2_bend_offset2_distance_s13}];
     wire fades_s13 = |halvings_s13;
     wire level_s13 = ~fades_s13;
-    wire peak_s13 = aligned_s13 | level_s13;  // f is 1.0, less an ulp
     wire signed [9:0] exp2_bend_offset1_opposite_s13 = ~exp2_bend_offset1_word_s13;  // s-10.19
-
-    // s-10.19: what the field adds, less half an ulp
-    wire signed [9:0] exp2_bend_offset1_term_s13 = exp2_bend_offset1_upper_s13 ?
-            exp2_bend_offset1_word_s13 : exp2_bend_offset1_opposite_s13;
-
     wire signed [7:0] exp2_bend_offset2_opposite_s13 = ~exp2_bend_offset2_word_s13;  // s-12.19
-
+    reg                peak_s14;                    // f is 1.0, less an ulp
+    // s-10.19: what the field adds, less half an ulp
+    reg  signed [9:0]  exp2_bend_offset1_term_s14;
     // s-12.19: what the field adds, less half an ulp
-    wire signed [7:0] exp2_bend_offset2_term_s13 = exp2_bend_offset2_upper_s13 ?
-            exp2_bend_offset2_word_s13 : exp2_bend_offset2_opposite_s13;
-
-    always @(posedge clk) begin
-        if (advance) begin
-            halvings_s14 <= halvings_s13;
-            exp2_bend_value_word_s14 <= exp2_bend_value_word_s13;
-            peak_s14 <= peak_s13;
-            exp2_bend_offset1_term_s14 <= exp2_bend_offset1_term_s13;
-            exp2_bend_offset2_term_s14 <= exp2_bend_offset2_term_s13;
-        end
+    reg  signed [7:0]  exp2_bend_offset2_term_s14;
+    reg         [20:0] halvings_s14;
+    reg         [14:0] exp2_bend_value_word_s14;
+    always @(posedge clk) if (advance) begin
+        halvings_s14 <= halvings_s13;
+        exp2_bend_value_word_s14 <= exp2_bend_value_word_s13;
+        peak_s14 <= aligned_s13 | level_s13;
+        exp2_bend_offset1_term_s14 <= halvings_s13[8] ? exp2_bend_offset1_word_s13 :
+                exp2_bend_offset1_opposite_s13;
+        exp2_bend_offset2_term_s14 <= halvings_s13[6] ? exp2_bend_offset2_word_s13 :
+                exp2_bend_offset2_opposite_s13;
     end
 
     // Stage 14, part of: tables of 2^-x addressed by the fraction; reflectance <- 2^-halvings
-    reg                peak_s15;                    // f is 1.0, less an ulp
-    reg                halvings_bits_2_bits_5_s15;
-    reg                halvings_bits_2_bits_4_s15;
-    reg                halvings_bits_2_bits_3_s15;
-    reg                halvings_bits_2_bits_2_s15;
-    reg                halvings_bits_2_bits_s15;
-    reg         [15:0] exp2_inverse_s15;            // u0.16
-    reg  signed [15:0] exp2_bend_offset2_sum_s15;   // s-4.19
-    // s-15.19: what the field adds, less half an ulp
-    reg  signed [4:0]  exp2_bend_offset3_term_s15;
-
-    wire [15:0] exp2_x_s14 = halvings_s14[15:0];  // u0.16
-    wire exp2_bend_offset3_upper_s14 = halvings_s14[3];
     wire [2:0] exp2_bend_offset3_mirrored_s14 = ~halvings_s14[2:0];
-
     // distance from the middle of the field
-    wire [2:0] exp2_bend_offset3_distance_s14 = exp2_bend_offset3_upper_s14 ? halvings_s14[2:0] :
+    wire [2:0] exp2_bend_offset3_distance_s14 = halvings_s14[3] ? halvings_s14[2:0] :
             exp2_bend_offset3_mirrored_s14;
-
-    wire [5:0] exp2_bend_offset3_address_s14 = {halvings_s14[15:13],
-            exp2_bend_offset3_distance_s14};
-
     // ROM exp2_bend_offset3: slope of 1 - x/2 - 2^-x over 2^-3 of x, times the distance from the
     // middle of bits 3 to 0 of x, in units of 2^-19, less a half
     reg [4:0] exp2_bend_offset3_rom [0:63];
     initial $readmemh(EXP2_BEND_OFFSET3_FILE, exp2_bend_offset3_rom);
-    wire signed [4:0] exp2_bend_offset3_word_s14 =
-            exp2_bend_offset3_rom[exp2_bend_offset3_address_s14];
-
-    wire [15:0] exp2_inverse_s14 = ~exp2_x_s14;  // u0.16
-
-    // s-4.19
+    wire signed [4:0] exp2_bend_offset3_word_s14 = exp2_bend_offset3_rom[{halvings_s14[15:13],
+            exp2_bend_offset3_distance_s14}];
     wire signed [15:0] exp2_bend_offset1_sum_s14 = {1'b0, exp2_bend_value_word_s14} +
             {{6{exp2_bend_offset1_term_s14[9]}}, exp2_bend_offset1_term_s14};
-
-    // s-4.19
-    wire signed [15:0] exp2_bend_offset2_sum_s14 = exp2_bend_offset1_sum_s14 +
-            {{8{exp2_bend_offset2_term_s14[7]}}, exp2_bend_offset2_term_s14};
-
     wire signed [4:0] exp2_bend_offset3_opposite_s14 = ~exp2_bend_offset3_word_s14;  // s-15.19
-
+    reg         [15:0] exp2_inverse_s15;            // u0.16
+    reg  signed [15:0] exp2_bend_offset2_sum_s15;   // s-4.19
     // s-15.19: what the field adds, less half an ulp
-    wire signed [4:0] exp2_bend_offset3_term_s14 = exp2_bend_offset3_upper_s14 ?
-            exp2_bend_offset3_word_s14 : exp2_bend_offset3_opposite_s14;
-
-    always @(posedge clk) begin
-        if (advance) begin
-            peak_s15 <= peak_s14;
-            halvings_bits_2_bits_5_s15 <= halvings_s14[16];
-            halvings_bits_2_bits_4_s15 <= halvings_s14[17];
-            halvings_bits_2_bits_3_s15 <= halvings_s14[18];
-            halvings_bits_2_bits_2_s15 <= halvings_s14[19];
-            halvings_bits_2_bits_s15 <= halvings_s14[20];
-            exp2_inverse_s15 <= exp2_inverse_s14;
-            exp2_bend_offset2_sum_s15 <= exp2_bend_offset2_sum_s14;
-            exp2_bend_offset3_term_s15 <= exp2_bend_offset3_term_s14;
-        end
+    reg  signed [4:0]  exp2_bend_offset3_term_s15;
+    reg                peak_s15, halvings_bits_2_bits_5_s15, halvings_bits_2_bits_4_s15;
+    reg                halvings_bits_2_bits_3_s15, halvings_bits_2_bits_2_s15, halvings_bits_2_bits_s15;
+    always @(posedge clk) if (advance) begin
+        peak_s15 <= peak_s14;
+        halvings_bits_2_bits_5_s15 <= halvings_s14[16];
+        halvings_bits_2_bits_4_s15 <= halvings_s14[17];
+        halvings_bits_2_bits_3_s15 <= halvings_s14[18];
+        halvings_bits_2_bits_2_s15 <= halvings_s14[19];
+        halvings_bits_2_bits_s15 <= halvings_s14[20];
+        exp2_inverse_s15 <= ~halvings_s14[15:0];
+        exp2_bend_offset2_sum_s15 <= exp2_bend_offset1_sum_s14 +
+                {{8{exp2_bend_offset2_term_s14[7]}}, exp2_bend_offset2_term_s14};
+        exp2_bend_offset3_term_s15 <= halvings_s14[3] ? exp2_bend_offset3_word_s14 :
+                exp2_bend_offset3_opposite_s14;
     end
 
     // Stage 15, part of: reflectance <- 2^-halvings
-    reg         peak_s16;                       // f is 1.0, less an ulp
-    reg         halvings_bits_2_bits_5_s16;
-    reg         halvings_bits_2_bits_4_s16;
-    reg         halvings_bits_2_bits_3_s16;
-    reg         halvings_bits_2_bits_2_s16;
-    reg         halvings_bits_2_bits_s16;
-    reg         exp2_mantissa_kept_bits_s16;
-    reg  [16:0] exp2_mantissa_kept_inside_s16;  // u0.17
-
-    // s-4.19
     wire signed [15:0] exp2_bend_offset3_sum_s15 = exp2_bend_offset2_sum_s15 +
             {{11{exp2_bend_offset3_term_s15[4]}}, exp2_bend_offset3_term_s15};
-
     // u1.19: 2^-x of the fraction x
     wire [19:0] exp2_mantissa_s15 = {2'd1, exp2_inverse_s15, 2'd0} -
             {{4{exp2_bend_offset3_sum_s15[15]}}, exp2_bend_offset3_sum_s15};
-
-    always @(posedge clk) begin
-        if (advance) begin
-            peak_s16 <= peak_s15;
-            halvings_bits_2_bits_5_s16 <= halvings_bits_2_bits_5_s15;
-            halvings_bits_2_bits_4_s16 <= halvings_bits_2_bits_4_s15;
-            halvings_bits_2_bits_3_s16 <= halvings_bits_2_bits_3_s15;
-            halvings_bits_2_bits_2_s16 <= halvings_bits_2_bits_2_s15;
-            halvings_bits_2_bits_s16 <= halvings_bits_2_bits_s15;
-            exp2_mantissa_kept_bits_s16 <= exp2_mantissa_s15[19];
-            exp2_mantissa_kept_inside_s16 <= exp2_mantissa_s15[18:2];
-        end
+    reg  [16:0] exp2_mantissa_kept_inside_s16;  // u0.17
+    reg         peak_s16, halvings_bits_2_bits_5_s16, halvings_bits_2_bits_4_s16;
+    reg         halvings_bits_2_bits_3_s16, halvings_bits_2_bits_2_s16, halvings_bits_2_bits_s16;
+    reg         exp2_mantissa_kept_bits_s16;
+    always @(posedge clk) if (advance) begin
+        peak_s16 <= peak_s15;
+        halvings_bits_2_bits_5_s16 <= halvings_bits_2_bits_5_s15;
+        halvings_bits_2_bits_4_s16 <= halvings_bits_2_bits_4_s15;
+        halvings_bits_2_bits_3_s16 <= halvings_bits_2_bits_3_s15;
+        halvings_bits_2_bits_2_s16 <= halvings_bits_2_bits_2_s15;
+        halvings_bits_2_bits_s16 <= halvings_bits_2_bits_s15;
+        exp2_mantissa_kept_bits_s16 <= exp2_mantissa_s15[19];
+        exp2_mantissa_kept_inside_s16 <= exp2_mantissa_s15[18:2];
     end
 
     // Stage 16, part of: reflectance <- 2^-halvings
-    reg         facing_s17;                  // the surface faces the half vector
-    reg         peak_s17;                    // f is 1.0, less an ulp
-    reg         halvings_bits_2_bits_5_s17;
-    reg  [16:0] exp2_shift_by2_s17;          // u0.17
-
-    // u0.17
     wire [16:0] exp2_kept_s16 = exp2_mantissa_kept_bits_s16 ? 17'h1ffff :
             exp2_mantissa_kept_inside_s16;
-
-    // u0.17
     wire [16:0] exp2_shift_by16_s16 = halvings_bits_2_bits_s16 ? {16'd0, exp2_kept_s16[16]} :
             exp2_kept_s16;
-
-    // u0.17
     wire [16:0] exp2_shift_by8_s16 = halvings_bits_2_bits_2_s16 ? {8'd0, exp2_shift_by16_s16[16:8]}
             : exp2_shift_by16_s16;
-
-    // u0.17
     wire [16:0] exp2_shift_by4_s16 = halvings_bits_2_bits_3_s16 ? {4'd0, exp2_shift_by8_s16[16:4]} :
             exp2_shift_by8_s16;
-
-    // u0.17
-    wire [16:0] exp2_shift_by2_s16 = halvings_bits_2_bits_4_s16 ? {2'd0, exp2_shift_by4_s16[16:2]} :
-            exp2_shift_by4_s16;
-
-    always @(posedge clk) begin
-        if (advance) begin
-            peak_s17 <= peak_s16;
-            halvings_bits_2_bits_5_s17 <= halvings_bits_2_bits_5_s16;
-            exp2_shift_by2_s17 <= exp2_shift_by2_s16;
-        end
+    reg  [16:0] exp2_shift_by2_s17;  // u0.17
+    wire        facing_s17;
+    reg         peak_s17, halvings_bits_2_bits_5_s17;
+    always @(posedge clk) if (advance) begin
+        peak_s17 <= peak_s16;
+        halvings_bits_2_bits_5_s17 <= halvings_bits_2_bits_5_s16;
+        exp2_shift_by2_s17 <= halvings_bits_2_bits_4_s16 ? {2'd0, exp2_shift_by4_s16[16:2]} :
+                exp2_shift_by4_s16;
     end
 
     // Stage 17, part of: reflectance <- 2^-halvings
-    reg  [7:0]  red_s18;          // intensity of the light times k_s
-    reg  [7:0]  green_s18;        // intensity of the light times k_s
-    reg  [7:0]  blue_s18;         // intensity of the light times k_s
-    reg  [15:0] reflectance_s18;  // u0.16: f
-
-    // u0.17
     wire [16:0] exp2_shift_by1_s17 = halvings_bits_2_bits_5_s17 ? {1'b0, exp2_shift_by2_s17[16:1]} :
             exp2_shift_by2_s17;
-
-    // u1.16
     wire [16:0] exp2_rounded_nearest_s17 = {1'b0, exp2_shift_by1_s17[16:1]} + {16'd0,
             exp2_shift_by1_s17[0]};
-
-    // u0.16
     wire [15:0] exp2_rounded_s17 = exp2_rounded_nearest_s17[16] ? 16'hffff :
             exp2_rounded_nearest_s17[15:0];
-
     wire [15:0] lit_s17 = peak_s17 ? 16'hffff : exp2_rounded_s17;  // u0.16
-    wire [15:0] reflectance_s17 = facing_s17 ? lit_s17 : 16'd0;  // u0.16: f
-
-    always @(posedge clk) begin
-        if (advance) begin
-            reflectance_s18 <= reflectance_s17;
-        end
-    end
+    reg  [15:0] reflectance_s18;  // u0.16: f
+    wire [7:0]  red_s18, green_s18, blue_s18;
+    always @(posedge clk) if (advance) reflectance_s18 <= facing_s17 ? lit_s17 : 16'd0;
 
     // Stage 18, part of: result
-    reg  [15:0] reflectance_s19;         // u0.16: f
-    reg  [7:0]  red_product_kept_s19;
-    reg         red_product_bits_s19;
-    reg  [7:0]  green_product_kept_s19;
-    reg         green_product_bits_s19;
-    reg  [7:0]  blue_product_kept_s19;
-    reg         blue_product_bits_s19;
-
     // u8.16: an output before it is rounded
     wire [23:0] red_product_s18 = reflectance_s18 * red_s18;
-
-    // u8.16: an output before it is rounded
     wire [23:0] green_product_s18 = reflectance_s18 * green_s18;
-
-    // u8.16: an output before it is rounded
     wire [23:0] blue_product_s18 = reflectance_s18 * blue_s18;
-
-    always @(posedge clk) begin
-        if (advance) begin
-            reflectance_s19 <= reflectance_s18;
-            red_product_kept_s19 <= red_product_s18[23:16];
-            red_product_bits_s19 <= red_product_s18[15];
-            green_product_kept_s19 <= green_product_s18[23:16];
-            green_product_bits_s19 <= green_product_s18[15];
-            blue_product_kept_s19 <= blue_product_s18[23:16];
-            blue_product_bits_s19 <= blue_product_s18[15];
-        end
+    reg  [15:0] reflectance_s19;
+    reg  [7:0]  red_product_kept_s19, green_product_kept_s19, blue_product_kept_s19;
+    reg         red_product_bits_s19, green_product_bits_s19, blue_product_bits_s19;
+    always @(posedge clk) if (advance) begin
+        reflectance_s19 <= reflectance_s18;
+        red_product_kept_s19 <= red_product_s18[23:16];
+        red_product_bits_s19 <= red_product_s18[15];
+        green_product_kept_s19 <= green_product_s18[23:16];
+        green_product_bits_s19 <= green_product_s18[15];
+        blue_product_kept_s19 <= blue_product_s18[23:16];
+        blue_product_bits_s19 <= blue_product_s18[15];
     end
 
     // Stage 19, part of: result
-    reg  [15:0] reflectance_s20;      // u0.16: f
-    reg  [7:0]  red_intensity_s20;
-    reg  [7:0]  green_intensity_s20;
-    reg  [7:0]  blue_intensity_s20;
-
-    wire [7:0] red_intensity_s19 = red_product_kept_s19 + {7'd0, red_product_bits_s19};
-    wire [7:0] green_intensity_s19 = green_product_kept_s19 + {7'd0, green_product_bits_s19};
-    wire [7:0] blue_intensity_s19 = blue_product_kept_s19 + {7'd0, blue_product_bits_s19};
-
-    always @(posedge clk) begin
-        if (advance) begin
-            reflectance_s20 <= reflectance_s19;
-            red_intensity_s20 <= red_intensity_s19;
-            green_intensity_s20 <= green_intensity_s19;
-            blue_intensity_s20 <= blue_intensity_s19;
-        end
+    reg  [15:0] reflectance_s20;
+    reg  [7:0]  red_intensity_s20, green_intensity_s20, blue_intensity_s20;
+    always @(posedge clk) if (advance) begin
+        reflectance_s20 <= reflectance_s19;
+        red_intensity_s20 <= red_product_kept_s19 + {7'd0, red_product_bits_s19};
+        green_intensity_s20 <= green_product_kept_s19 + {7'd0, green_product_bits_s19};
+        blue_intensity_s20 <= blue_product_kept_s19 + {7'd0, blue_product_bits_s19};
     end
 
-    // Delay lines: values that nothing reads for several stages lie in small memories. Whenever
-    // points move on, a slot gives the value that it holds and takes a new one; its turn comes
-    // again when all others have had theirs.
-    reg [2:0] slot_of_5;
-    initial slot_of_5 = 3'd0;
-    (* ram_style = "distributed", syn_ramstyle = "distributed" *)
-    reg [4:0] delay_s3_s9 [0:4];
-    reg [3:0] slot_of_9;
-    initial slot_of_9 = 4'd0;
-    (* ram_style = "distributed", syn_ramstyle = "distributed" *)
-    reg [9:0] delay_s0_s10 [0:8];
-    reg [3:0] slot_of_15;
-    initial slot_of_15 = 4'd0;
-    (* ram_style = "distributed", syn_ramstyle = "distributed" *)
-    reg  delay_s1_s17 [0:14];
-    reg [4:0] slot_of_17;
-    initial slot_of_17 = 5'd0;
-    (* ram_style = "distributed", syn_ramstyle = "distributed" *)
-    reg [23:0] delay_s0_s18 [0:16];
-
-    always @(posedge clk) begin
-        if (advance) begin
-            slot_of_5 <= slot_of_5 == 3'd4 ? 3'd0 : slot_of_5 + 3'd1;
-            octave_s9 <= delay_s3_s9[slot_of_5];
-            delay_s3_s9[slot_of_5] <= octave_s3;
-        end
-    end
-
-    always @(posedge clk) begin
-        if (advance) begin
-            slot_of_9 <= slot_of_9 == 4'd8 ? 4'd0 : slot_of_9 + 4'd1;
-            exponent_s10 <= delay_s0_s10[slot_of_9];
-            delay_s0_s10[slot_of_9] <= exponent;
-        end
-    end
-
-    always @(posedge clk) begin
-        if (advance) begin
-            slot_of_15 <= slot_of_15 == 4'd14 ? 4'd0 : slot_of_15 + 4'd1;
-            facing_s17 <= delay_s1_s17[slot_of_15];
-            delay_s1_s17[slot_of_15] <= facing_s1;
-        end
-    end
-
-    always @(posedge clk) begin
-        if (advance) begin
-            slot_of_17 <= slot_of_17 == 5'd16 ? 5'd0 : slot_of_17 + 5'd1;
-            {red_s18, green_s18, blue_s18} <= delay_s0_s18[slot_of_17];
-            delay_s0_s18[slot_of_17] <= {red, green, blue};
-        end
-    end
+    // Delay lines: what nothing reads for several stages goes through small memories
+    blinn_pipelined_delay #(.WIDTH(5), .WORDS(5), .BITS(3)) delay_of_6 (
+        .clk(clk), .rst_n(rst_n), .enable(advance),
+        .entering(octave_s3),
+        .leaving(octave_s9)
+    );
+    blinn_pipelined_delay #(.WIDTH(10), .WORDS(9), .BITS(4)) delay_of_10 (
+        .clk(clk), .rst_n(rst_n), .enable(advance),
+        .entering(exponent),
+        .leaving(exponent_s10)
+    );
+    blinn_pipelined_delay #(.WIDTH(1), .WORDS(15), .BITS(4)) delay_of_16 (
+        .clk(clk), .rst_n(rst_n), .enable(advance),
+        .entering(facing_s1),
+        .leaving(facing_s17)
+    );
+    blinn_pipelined_delay #(.WIDTH(24), .WORDS(17), .BITS(5)) delay_of_18 (
+        .clk(clk), .rst_n(rst_n), .enable(advance),
+        .entering({red, green, blue}),
+        .leaving({red_s18, green_s18, blue_s18})
+    );
 
     // Results
-
     assign f_out = reflectance_s20;  // u0.16: the reflectance, for a user's own multipliers
     assign red_out = red_intensity_s20;  // intensity on the output
     assign green_out = green_intensity_s20;  // intensity on the output
     assign blue_out = blue_intensity_s20;  // intensity on the output
 
     // Unused bits, among them those that narrowing drops.
-    wire unused = &{1'b0, octave_by1_s3[19], product_sum_s8[10:0], product_sum_2_s12[2:0],
-            exp2_mantissa_s15[1:0], red_product_s18[14:0], green_product_s18[14:0],
-            blue_product_s18[14:0]};
+    wire unused = &{1'b0, octave_by1_s3[19], product_row_2_s8[0], product_upper_3_s8[9:0],
+            product_upper_8_s12[2:0], exp2_mantissa_s15[1:0], red_product_s18[14:0],
+            green_product_s18[14:0], blue_product_s18[14:0]};
+endmodule
+
+// Values on their way, WORDS + 1 registers long. A slot of a small memory gives the value that it
+// holds and takes a new one; its turn comes again when all others have had theirs.
+/* verilator lint_off DECLFILENAME */
+module blinn_pipelined_delay #(
+    parameter WIDTH  = 8,
+    parameter WORDS  = 2,
+    parameter BITS   = 1,  // of the number of a slot
+    parameter MEMORY = 1   // 0: registers in place of the memory
+) (
+    input  wire             clk, rst_n, enable,
+    input  wire [WIDTH-1:0] entering,
+    output reg  [WIDTH-1:0] leaving
+);
+    generate
+        if (MEMORY != 0) begin : memory
+            localparam [BITS-1:0] LAST = WORDS[BITS-1:0] - 1'b1;
+            reg  [BITS-1:0]  slot;
+            reg  [WIDTH-1:0] words [0:WORDS-1];
+            // Of a power of two the number after the last is 0.
+            wire around = WORDS != 1 << BITS && slot == LAST;
+            always @(posedge clk) begin
+                if (!rst_n) slot <= {BITS{1'b0}};
+                else if (enable) slot <= around ? {BITS{1'b0}} : slot + 1'b1;
+                if (enable) begin
+                    leaving <= words[slot];
+                    words[slot] <= entering;
+                end
+            end
+        end else begin : registers
+            reg  [WIDTH*WORDS-1:0] words;
+            wire unused = &{1'b0, rst_n};
+            always @(posedge clk) if (enable) {leaving, words} <= {words, entering};
+        end
+    endgenerate
 endmodule
 
 `default_nettype wire

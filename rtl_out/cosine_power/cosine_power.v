@@ -23,8 +23,9 @@
 //  green_out        u8.0    result
 //  blue_out         u8.0    result
 //
-// The paper gives no circuit. This is the least that its formula asks for: one multiplier and one
-// accumulator; n/m is a shift by wiring.
+// The paper gives no circuit; n/m is a shift by wiring.
+//
+// The circuit is the least that the formula asks for: one multiplier and one accumulator.
 //
 // The sum is formed as a complement, 1 - n/m * (1 - cos gamma): every number is then a fraction
 // from 0 to 1, and the clamp beyond the zero of W is the saturation of the first product. The

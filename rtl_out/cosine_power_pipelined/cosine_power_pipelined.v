@@ -10,22 +10,7 @@
 // Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit apart) and F
 // fraction bits; the value of a signal is its integer times 2^-F.
 //
-//  rst_n              reset, active low, synchronous
-//  in_valid           a point is offered: the operands are its own
-//  cos_gamma  u1.20   operand
-//  exponent   u10.0   operand
-//  red        u8.0    operand
-//  green      u8.0    operand
-//  blue       u8.0    operand
-//  out_ready          the results are taken in this clock
-//  in_ready           the point that is offered is taken in this clock
-//  out_valid          results are on the outputs
-//  red_out    u8.0    result
-//  green_out  u8.0    result
-//  blue_out   u8.0    result
-//
-// The paper gives no circuit. This is the least that its formula asks for: one multiplier and one
-// accumulator; n/m is a shift by wiring.
+// The paper gives no circuit; n/m is a shift by wiring.
 //
 // The sum is formed as a complement, 1 - n/m * (1 - cos gamma): every number is then a fraction
 // from 0 to 1, and the clamp beyond the zero of W is the saturation of the first product. The
@@ -59,265 +44,158 @@ module cosine_power_pipelined (
     // Constants
     localparam [20:0] COS_GAMMA_MOST = 21'h100000;  // 1.0 in u1.20
 
-    // The handshake: which stage has a point, and when all of them move on
-    reg  valid_s1;   // stage 1 has a point
-    reg  valid_s2;   // stage 2 has a point
-    reg  valid_s3;   // stage 3 has a point
-    reg  valid_s4;   // stage 4 has a point
-    reg  valid_s5;   // stage 5 has a point
-    reg  valid_s6;   // stage 6 has a point
-    reg  valid_s7;   // stage 7 has a point
-    reg  valid_s8;   // stage 8 has a point
-    reg  valid_s9;   // stage 9 has a point
-    reg  valid_s10;  // the results are on the outputs
-
-    assign out_valid = valid_s10;  // the results are on the outputs
-    wire advance = out_ready | ~valid_s10;  // every point moves on by a stage
-    assign in_ready = advance;  // a point that is offered is taken in this clock
-
+    // The handshake: a bit for each stage that has a point; all points move on together
+    reg  [10:1] valid;
+    assign out_valid = valid[10];
+    wire advance = out_ready | ~valid[10];
+    assign in_ready = advance;
     always @(posedge clk) begin
-        if (!rst_n) begin
-            valid_s1 <= 1'b0;
-            valid_s2 <= 1'b0;
-            valid_s3 <= 1'b0;
-            valid_s4 <= 1'b0;
-            valid_s5 <= 1'b0;
-            valid_s6 <= 1'b0;
-            valid_s7 <= 1'b0;
-            valid_s8 <= 1'b0;
-            valid_s9 <= 1'b0;
-            valid_s10 <= 1'b0;
-        end else if (advance) begin
-            valid_s1 <= in_valid;
-            valid_s2 <= valid_s1;
-            valid_s3 <= valid_s2;
-            valid_s4 <= valid_s3;
-            valid_s5 <= valid_s4;
-            valid_s6 <= valid_s5;
-            valid_s7 <= valid_s6;
-            valid_s8 <= valid_s7;
-            valid_s9 <= valid_s8;
-            valid_s10 <= valid_s9;
-        end
+        if (!rst_n) valid <= 10'd0;
+        else if (advance) valid <= {valid[9:1], in_valid};
     end
 
     // Stage 0, part of: operands 1 - cos gamma, n/m
-    reg  [9:0]  exponent_s1;    // specular exponent n
+    // u1.20: cosine of the angle between normal and half vector
+    wire [20:0] cos_gamma_reg_s0 = cos_gamma[20] ? COS_GAMMA_MOST : cos_gamma;
     reg  [20:0] complement_s1;  // u1.20: 1.0 - cos gamma
     reg         facing_s1;      // the surface faces the half vector
-
-    wire cos_gamma_over_s0 = cos_gamma[20];
-
-    // u1.20: cosine of the angle between normal and half vector
-    wire [20:0] cos_gamma_reg_s0 = cos_gamma_over_s0 ? COS_GAMMA_MOST : cos_gamma;
-
-    // u1.20: 1.0 - cos gamma
-    wire [20:0] complement_s0 = cos_gamma_over_s0 ? 21'd0 : (COS_GAMMA_MOST - cos_gamma);
-
-    wire facing_s0 = |cos_gamma_reg_s0;  // the surface faces the half vector
-
-    always @(posedge clk) begin
-        if (advance) begin
-            exponent_s1 <= exponent;
-            complement_s1 <= complement_s0;
-            facing_s1 <= facing_s0;
-        end
+    reg  [9:0]  exponent_s1;
+    always @(posedge clk) if (advance) begin
+        exponent_s1 <= exponent;
+        complement_s1 <= cos_gamma[20] ? 21'd0 : (COS_GAMMA_MOST - cos_gamma);
+        facing_s1 <= |cos_gamma_reg_s0;
     end
 
     // Stage 1, part of: accumulator <- n/m * (1 - cos gamma)
-    reg         facing_s2;                // the surface faces the half vector
-    reg  [27:0] product_inside_upper_s2;
-    reg  [9:0]  product_inside_row_2_s2;
-    reg  [9:0]  product_inside_row_4_s2;
-    reg  [9:0]  product_at_highest_s2;
-
-    wire [27:0] product_inside_upper_s1 = complement_s1[19:2] * exponent_s1;
-    wire [9:0] product_at_highest_s1 = complement_s1[20] ? exponent_s1 : 10'd0;
-
-    always @(posedge clk) begin
-        if (advance) begin
-            facing_s2 <= facing_s1;
-            product_inside_upper_s2 <= product_inside_upper_s1;
-            product_inside_row_2_s2 <= complement_s1[0] ? exponent_s1 : 10'd0;
-            product_inside_row_4_s2 <= complement_s1[1] ? exponent_s1 : 10'd0;
-            product_at_highest_s2 <= product_at_highest_s1;
-        end
+    reg         facing_s2;
+    reg  [27:0] product_upper_s2;
+    reg  [9:0]  product_row_2_s2, product_row_4_s2, product_at_highest_s2;
+    always @(posedge clk) if (advance) begin
+        facing_s2 <= facing_s1;
+        product_upper_s2 <= complement_s1[19:2] * exponent_s1;
+        product_row_2_s2 <= complement_s1[0] ? exponent_s1 : 10'd0;
+        product_row_4_s2 <= complement_s1[1] ? exponent_s1 : 10'd0;
+        product_at_highest_s2 <= complement_s1[20] ? exponent_s1 : 10'd0;
     end
 
     // Stage 2, part of: accumulator <- n/m * (1 - cos gamma)
-    reg         facing_s3;                    // the surface faces the half vector
-    reg  [5:0]  product_view_kept_bits_s3;
+    wire [10:0] product_upper_4_s2 = {2'd0, product_row_2_s2[9:1]} + {1'b0, product_row_4_s2};
+    wire [27:0] product_upper_7_s2 = {18'd0, product_upper_4_s2[10:1]} + product_upper_s2;
+    wire [9:0] product_2_s2 = product_upper_7_s2[27:18] | product_at_highest_s2;
     reg  [15:0] product_view_kept_inside_s3;  // u0.16
-
-    wire [10:0] product_inside_rows_upper_3_s2 = {2'd0, product_inside_row_2_s2[9:1]} + {1'b0,
-            product_inside_row_4_s2};
-
-    wire [11:0] product_inside_rows_s2 = {product_inside_rows_upper_3_s2,
-            product_inside_row_2_s2[0]};
-
-    wire [27:0] product_inside_sum_upper_2_s2 = {18'd0, product_inside_rows_s2[11:2]} +
-            product_inside_upper_s2;
-
-    wire [9:0] product_2_s2 = product_inside_sum_upper_2_s2[27:18] | product_at_highest_s2;
-
-    always @(posedge clk) begin
-        if (advance) begin
-            facing_s3 <= facing_s2;
-            product_view_kept_bits_s3 <= product_2_s2[9:4];
-            product_view_kept_inside_s3 <= {product_2_s2[3:0], product_inside_sum_upper_2_s2[17:6]};
-        end
+    reg         facing_s3;
+    reg  [5:0]  product_view_kept_bits_s3;
+    always @(posedge clk) if (advance) begin
+        facing_s3 <= facing_s2;
+        product_view_kept_bits_s3 <= product_2_s2[9:4];
+        product_view_kept_inside_s3 <= {product_2_s2[3:0], product_upper_7_s2[17:6]};
     end
 
     // Stage 3, part of: accumulator <- n/m * (1 - cos gamma); accumulator <- base^2
-    reg  [15:0] base_s4;  // u0.16: base of the power
-
     // u0.16: n/m*(1 - cos gamma), then the powers of W's base
     wire [15:0] accumulator_s3 = (|product_view_kept_bits_s3) ? 16'hffff :
             product_view_kept_inside_s3;
-
     wire [15:0] inverse_s3 = ~accumulator_s3;  // u0.16: 1.0 - accumulator, less an ulp
-    wire [15:0] base_s3 = facing_s3 ? inverse_s3 : 16'd0;  // u0.16: base of the power
-
-    always @(posedge clk) begin
-        if (advance) begin
-            base_s4 <= base_s3;
-        end
-    end
+    reg  [15:0] base_s4;  // u0.16: base of the power
+    always @(posedge clk) if (advance) base_s4 <= facing_s3 ? inverse_s3 : 16'd0;
 
     // Stage 4, part of: accumulator <- base^2
-    reg  [15:0] accumulator_2_s5;  // u0.16: n/m*(1 - cos gamma), then the powers of W's base
-
-    // the shared product; its point depends on the operands
     wire [31:0] product_4_s4 = base_s4 * base_s4;
-
-    // u0.16: n/m*(1 - cos gamma), then the powers of W's base
-    wire [15:0] accumulator_2_s4 = product_4_s4[31:16];
-
-    always @(posedge clk) begin
-        if (advance) begin
-            accumulator_2_s5 <= accumulator_2_s4;
-        end
-    end
+    reg  [15:0] accumulator_2_s5;  // u0.16: n/m*(1 - cos gamma), then the powers of W's base
+    always @(posedge clk) if (advance) accumulator_2_s5 <= product_4_s4[31:16];
 
     // Stage 5, part of: accumulator <- accumulator^2
-    reg  [15:0] accumulator_3_s6;  // u0.16: n/m*(1 - cos gamma), then the powers of W's base
-
-    // the shared product; its point depends on the operands
     wire [31:0] product_5_s5 = accumulator_2_s5 * accumulator_2_s5;
-
-    // u0.16: n/m*(1 - cos gamma), then the powers of W's base
-    wire [15:0] accumulator_3_s5 = product_5_s5[31:16];
-
-    always @(posedge clk) begin
-        if (advance) begin
-            accumulator_3_s6 <= accumulator_3_s5;
-        end
-    end
+    reg  [15:0] accumulator_3_s6;  // u0.16: n/m*(1 - cos gamma), then the powers of W's base
+    always @(posedge clk) if (advance) accumulator_3_s6 <= product_5_s5[31:16];
 
     // Stage 6, part of: accumulator <- accumulator^2
-    reg  [15:0] accumulator_4_s7;  // u0.16: n/m*(1 - cos gamma), then the powers of W's base
-
-    // the shared product; its point depends on the operands
     wire [31:0] product_6_s6 = accumulator_3_s6 * accumulator_3_s6;
-
-    // u0.16: n/m*(1 - cos gamma), then the powers of W's base
-    wire [15:0] accumulator_4_s6 = product_6_s6[31:16];
-
-    always @(posedge clk) begin
-        if (advance) begin
-            accumulator_4_s7 <= accumulator_4_s6;
-        end
-    end
+    reg  [15:0] accumulator_4_s7;  // u0.16: n/m*(1 - cos gamma), then the powers of W's base
+    always @(posedge clk) if (advance) accumulator_4_s7 <= product_6_s6[31:16];
 
     // Stage 7, part of: accumulator <- accumulator^2
-    reg  [7:0]  red_s8;            // intensity of the light times k_s
-    reg  [7:0]  green_s8;          // intensity of the light times k_s
-    reg  [7:0]  blue_s8;           // intensity of the light times k_s
-    reg  [15:0] accumulator_5_s8;  // u0.16: n/m*(1 - cos gamma), then the powers of W's base
-
-    // the shared product; its point depends on the operands
     wire [31:0] product_7_s7 = accumulator_4_s7 * accumulator_4_s7;
-
-    // u0.16: n/m*(1 - cos gamma), then the powers of W's base
-    wire [15:0] accumulator_5_s7 = product_7_s7[31:16];
-
-    always @(posedge clk) begin
-        if (advance) begin
-            accumulator_5_s8 <= accumulator_5_s7;
-        end
-    end
+    reg  [15:0] accumulator_5_s8;  // u0.16: n/m*(1 - cos gamma), then the powers of W's base
+    wire [7:0]  red_s8, green_s8, blue_s8;
+    always @(posedge clk) if (advance) accumulator_5_s8 <= product_7_s7[31:16];
 
     // Stage 8, part of: result
-    reg  [7:0] red_product_kept_s9;
-    reg        red_product_bits_s9;
-    reg  [7:0] green_product_kept_s9;
-    reg        green_product_bits_s9;
-    reg  [7:0] blue_product_kept_s9;
-    reg        blue_product_bits_s9;
-
     // u8.16: an output before it is rounded
     wire [23:0] red_product_s8 = accumulator_5_s8 * red_s8;
-
-    // u8.16: an output before it is rounded
     wire [23:0] green_product_s8 = accumulator_5_s8 * green_s8;
-
-    // u8.16: an output before it is rounded
     wire [23:0] blue_product_s8 = accumulator_5_s8 * blue_s8;
-
-    always @(posedge clk) begin
-        if (advance) begin
-            red_product_kept_s9 <= red_product_s8[23:16];
-            red_product_bits_s9 <= red_product_s8[15];
-            green_product_kept_s9 <= green_product_s8[23:16];
-            green_product_bits_s9 <= green_product_s8[15];
-            blue_product_kept_s9 <= blue_product_s8[23:16];
-            blue_product_bits_s9 <= blue_product_s8[15];
-        end
+    reg  [7:0] red_product_kept_s9, green_product_kept_s9, blue_product_kept_s9;
+    reg        red_product_bits_s9, green_product_bits_s9, blue_product_bits_s9;
+    always @(posedge clk) if (advance) begin
+        red_product_kept_s9 <= red_product_s8[23:16];
+        red_product_bits_s9 <= red_product_s8[15];
+        green_product_kept_s9 <= green_product_s8[23:16];
+        green_product_bits_s9 <= green_product_s8[15];
+        blue_product_kept_s9 <= blue_product_s8[23:16];
+        blue_product_bits_s9 <= blue_product_s8[15];
     end
 
     // Stage 9, part of: result
-    reg  [7:0] red_intensity_s10;
-    reg  [7:0] green_intensity_s10;
-    reg  [7:0] blue_intensity_s10;
-
-    wire [7:0] red_intensity_s9 = red_product_kept_s9 + {7'd0, red_product_bits_s9};
-    wire [7:0] green_intensity_s9 = green_product_kept_s9 + {7'd0, green_product_bits_s9};
-    wire [7:0] blue_intensity_s9 = blue_product_kept_s9 + {7'd0, blue_product_bits_s9};
-
-    always @(posedge clk) begin
-        if (advance) begin
-            red_intensity_s10 <= red_intensity_s9;
-            green_intensity_s10 <= green_intensity_s9;
-            blue_intensity_s10 <= blue_intensity_s9;
-        end
+    reg  [7:0] red_intensity_s10, green_intensity_s10, blue_intensity_s10;
+    always @(posedge clk) if (advance) begin
+        red_intensity_s10 <= red_product_kept_s9 + {7'd0, red_product_bits_s9};
+        green_intensity_s10 <= green_product_kept_s9 + {7'd0, green_product_bits_s9};
+        blue_intensity_s10 <= blue_product_kept_s9 + {7'd0, blue_product_bits_s9};
     end
 
-    // Delay lines: values that nothing reads for several stages lie in small memories. Whenever
-    // points move on, a slot gives the value that it holds and takes a new one; its turn comes
-    // again when all others have had theirs.
-    reg [2:0] slot_of_7;
-    initial slot_of_7 = 3'd0;
-    (* ram_style = "distributed", syn_ramstyle = "distributed" *)
-    reg [23:0] delay_s0_s8 [0:6];
-
-    always @(posedge clk) begin
-        if (advance) begin
-            slot_of_7 <= slot_of_7 == 3'd6 ? 3'd0 : slot_of_7 + 3'd1;
-            {red_s8, green_s8, blue_s8} <= delay_s0_s8[slot_of_7];
-            delay_s0_s8[slot_of_7] <= {red, green, blue};
-        end
-    end
+    // Delay lines: what nothing reads for several stages goes through small memories
+    cosine_power_pipelined_delay #(.WIDTH(24), .WORDS(7), .BITS(3)) delay_of_8 (
+        .clk(clk), .rst_n(rst_n), .enable(advance),
+        .entering({red, green, blue}),
+        .leaving({red_s8, green_s8, blue_s8})
+    );
 
     // Results
-
     assign red_out = red_intensity_s10;  // intensity on the output
     assign green_out = green_intensity_s10;  // intensity on the output
     assign blue_out = blue_intensity_s10;  // intensity on the output
 
     // Unused bits, among them those that narrowing drops.
-    wire unused = &{1'b0, product_inside_rows_s2[1:0], product_inside_sum_upper_2_s2[5:0],
+    wire unused = &{1'b0, product_row_2_s2[0], product_upper_4_s2[0], product_upper_7_s2[5:0],
             product_4_s4[15:0], product_5_s5[15:0], product_6_s6[15:0], product_7_s7[15:0],
             red_product_s8[14:0], green_product_s8[14:0], blue_product_s8[14:0]};
+endmodule
+
+// Values on their way, WORDS + 1 registers long. A slot of a small memory gives the value that it
+// holds and takes a new one; its turn comes again when all others have had theirs.
+/* verilator lint_off DECLFILENAME */
+module cosine_power_pipelined_delay #(
+    parameter WIDTH  = 8,
+    parameter WORDS  = 2,
+    parameter BITS   = 1,  // of the number of a slot
+    parameter MEMORY = 1   // 0: registers in place of the memory
+) (
+    input  wire             clk, rst_n, enable,
+    input  wire [WIDTH-1:0] entering,
+    output reg  [WIDTH-1:0] leaving
+);
+    generate
+        if (MEMORY != 0) begin : memory
+            localparam [BITS-1:0] LAST = WORDS[BITS-1:0] - 1'b1;
+            reg  [BITS-1:0]  slot;
+            reg  [WIDTH-1:0] words [0:WORDS-1];
+            // Of a power of two the number after the last is 0.
+            wire around = WORDS != 1 << BITS && slot == LAST;
+            always @(posedge clk) begin
+                if (!rst_n) slot <= {BITS{1'b0}};
+                else if (enable) slot <= around ? {BITS{1'b0}} : slot + 1'b1;
+                if (enable) begin
+                    leaving <= words[slot];
+                    words[slot] <= entering;
+                end
+            end
+        end else begin : registers
+            reg  [WIDTH*WORDS-1:0] words;
+            wire unused = &{1'b0, rst_n};
+            always @(posedge clk) if (enable) {leaving, words} <= {words, entering};
+        end
+    endgenerate
 endmodule
 
 `default_nettype wire

@@ -11,28 +11,11 @@
 // fraction bits; the value of a signal is its integer times 2^-F. With negative I the first
 // fraction bits are always 0 and left out.
 //
-//  rst_n              reset, active low, synchronous
-//  in_valid           a point is offered: the operands are its own
-//  cos_gamma  u1.20   operand
-//  exponent   u10.0   operand
-//  red        u8.0    operand
-//  green      u8.0    operand
-//  blue       u8.0    operand
-//  out_ready          the results are taken in this clock
-//  in_ready           the point that is offered is taken in this clock
-//  out_valid          results are on the outputs
-//  f_out      u0.16   result
-//  red_out    u8.0    result
-//  green_out  u8.0    result
-//  blue_out   u8.0    result
-//
 // The seed gives no circuit. It prints gamma as the angle between H and L; the angle between N and
 // H, which is what makes the function comparable with cos^n, is taken here.
 //
-// Two products a point, in one shared multiplier (a second one would save a clock of six and cost
-// one to two DSP blocks): the rise within a segment of the decay, and n times the decay. 2^-x over
-// the fraction of n*decay comes from tables that are added (symmetric multipartite), for which it
-// is stored less the line 1 - x/2; the integer shifts it right.
+// 2^-x over the fraction of n*decay comes from tables that are added (symmetric multipartite), for
+// which it is stored less the line 1 - x/2; the integer shifts it right.
 //
 // The straight segments of the decay shrink toward cos gamma = 1, by factors of four of 1 - cos
 // gamma, so that the decay keeps its relative accuracy, which is what n multiplies. The table is
@@ -74,636 +57,387 @@ module gauss_pipelined #(
     // Constants
     localparam [20:0] COS_GAMMA_MOST = 21'h100000;  // 1.0 in u1.20
 
-    // The handshake: which stage has a point, and when all of them move on
-    reg  valid_s1;   // stage 1 has a point
-    reg  valid_s2;   // stage 2 has a point
-    reg  valid_s3;   // stage 3 has a point
-    reg  valid_s4;   // stage 4 has a point
-    reg  valid_s5;   // stage 5 has a point
-    reg  valid_s6;   // stage 6 has a point
-    reg  valid_s7;   // stage 7 has a point
-    reg  valid_s8;   // stage 8 has a point
-    reg  valid_s9;   // stage 9 has a point
-    reg  valid_s10;  // stage 10 has a point
-    reg  valid_s11;  // stage 11 has a point
-    reg  valid_s12;  // stage 12 has a point
-    reg  valid_s13;  // stage 13 has a point
-    reg  valid_s14;  // stage 14 has a point
-    reg  valid_s15;  // stage 15 has a point
-    reg  valid_s16;  // stage 16 has a point
-    reg  valid_s17;  // the results are on the outputs
-
-    assign out_valid = valid_s17;  // the results are on the outputs
-    wire advance = out_ready | ~valid_s17;  // every point moves on by a stage
-    assign in_ready = advance;  // a point that is offered is taken in this clock
-
+    // The handshake: a bit for each stage that has a point; all points move on together
+    reg  [17:1] valid;
+    assign out_valid = valid[17];
+    wire advance = out_ready | ~valid[17];
+    assign in_ready = advance;
     always @(posedge clk) begin
-        if (!rst_n) begin
-            valid_s1 <= 1'b0;
-            valid_s2 <= 1'b0;
-            valid_s3 <= 1'b0;
-            valid_s4 <= 1'b0;
-            valid_s5 <= 1'b0;
-            valid_s6 <= 1'b0;
-            valid_s7 <= 1'b0;
-            valid_s8 <= 1'b0;
-            valid_s9 <= 1'b0;
-            valid_s10 <= 1'b0;
-            valid_s11 <= 1'b0;
-            valid_s12 <= 1'b0;
-            valid_s13 <= 1'b0;
-            valid_s14 <= 1'b0;
-            valid_s15 <= 1'b0;
-            valid_s16 <= 1'b0;
-            valid_s17 <= 1'b0;
-        end else if (advance) begin
-            valid_s1 <= in_valid;
-            valid_s2 <= valid_s1;
-            valid_s3 <= valid_s2;
-            valid_s4 <= valid_s3;
-            valid_s5 <= valid_s4;
-            valid_s6 <= valid_s5;
-            valid_s7 <= valid_s6;
-            valid_s8 <= valid_s7;
-            valid_s9 <= valid_s8;
-            valid_s10 <= valid_s9;
-            valid_s11 <= valid_s10;
-            valid_s12 <= valid_s11;
-            valid_s13 <= valid_s12;
-            valid_s14 <= valid_s13;
-            valid_s15 <= valid_s14;
-            valid_s16 <= valid_s15;
-            valid_s17 <= valid_s16;
-        end
+        if (!rst_n) valid <= 17'd0;
+        else if (advance) valid <= {valid[16:1], in_valid};
     end
 
     // Stage 0, part of: segment of the decay addressed by cos gamma
-    reg  [20:0] cos_gamma_reg_s1;    // u1.20: cosine of the angle between normal and half vector
-    reg  [19:0] distance_s1;         // 1.0 - cos gamma, less an ulp
+    // u1.20: cosine of the angle between normal and half vector
+    wire [20:0] cos_gamma_reg_s0 = cos_gamma[20] ? COS_GAMMA_MOST : cos_gamma;
+    wire [19:0] distance_s0 = ~cos_gamma_reg_s0[19:0];  // 1.0 - cos gamma, less an ulp
     reg         curve_in_range3_s1;  // u is in range 3 or in one above
     reg         curve_in_range4_s1;  // u is in range 4 or in one above
     reg         curve_in_range1_s1;  // u is in range 1 or in one above
-
-    wire cos_gamma_over_s0 = cos_gamma[20];
-
-    // u1.20: cosine of the angle between normal and half vector
-    wire [20:0] cos_gamma_reg_s0 = cos_gamma_over_s0 ? COS_GAMMA_MOST : cos_gamma;
-
-    wire [19:0] distance_s0 = ~cos_gamma_reg_s0[19:0];  // 1.0 - cos gamma, less an ulp
-    wire curve_in_range3_s0 = |distance_s0[19:12];  // u is in range 3 or in one above
-    wire curve_in_range4_s0 = |distance_s0[19:10];  // u is in range 4 or in one above
-    wire curve_in_range1_s0 = |distance_s0[19:16];  // u is in range 1 or in one above
-
-    always @(posedge clk) begin
-        if (advance) begin
-            cos_gamma_reg_s1 <= cos_gamma_reg_s0;
-            distance_s1 <= distance_s0;
-            curve_in_range3_s1 <= curve_in_range3_s0;
-            curve_in_range4_s1 <= curve_in_range4_s0;
-            curve_in_range1_s1 <= curve_in_range1_s0;
-        end
+    reg  [20:0] cos_gamma_reg_s1;
+    reg  [19:0] distance_s1;
+    always @(posedge clk) if (advance) begin
+        cos_gamma_reg_s1 <= cos_gamma_reg_s0;
+        distance_s1 <= distance_s0;
+        curve_in_range3_s1 <= |distance_s0[19:12];
+        curve_in_range4_s1 <= |distance_s0[19:10];
+        curve_in_range1_s1 <= |distance_s0[19:16];
     end
 
     // Stage 1, part of: segment of the decay addressed by cos gamma
-    reg         facing_s2;      // the surface faces the half vector
-    reg         aligned_s2;     // cos gamma is 1.0
     reg  [44:0] curve_word_s2;
-
     wire curve_in_range2_s1 = |distance_s1[19:14];  // u is in range 2 or in one above
-
-    // u0.14
     wire [13:0] curve_rest4_s1 = curve_in_range4_s1 ? {distance_s1[9:0], 4'd0} : {distance_s1[8:0],
             5'd0};
-
-    // u0.14
     wire [13:0] curve_rest3_s1 = curve_in_range3_s1 ? {distance_s1[10:0], 3'd0} : curve_rest4_s1;
-
     wire curve_in_range0_s1 = |distance_s1[19:18];  // u is in range 0 or in one above
-
-    // u0.14
     wire [13:0] curve_rest1_s1 = curve_in_range1_s1 ? {distance_s1[12:0], 1'b0} :
             {distance_s1[11:0], 2'd0};
-
     wire [13:0] curve_rest0_s1 = curve_in_range0_s1 ? distance_s1[13:0] : curve_rest1_s1;  // u0.14
     wire [13:0] curve_rest2_s1 = curve_in_range2_s1 ? curve_rest0_s1 : curve_rest3_s1;  // u0.14
-    wire facing_s1 = |cos_gamma_reg_s1;  // the surface faces the half vector
-
     wire [6:0] curve_word4_s1 = curve_in_range4_s1 ? {5'd0, distance_s1[11:10]} : {6'd32,
             distance_s1[9]};
-
     wire [6:0] curve_word3_s1 = curve_in_range3_s1 ? {4'd8, distance_s1[13:11]} : curve_word4_s1;
-
     wire [6:0] curve_word1_s1 = curve_in_range1_s1 ? {2'd2, distance_s1[17:13]} : {3'd0,
             distance_s1[15:12]};
-
     wire [6:0] curve_word0_s1 = curve_in_range0_s1 ? {1'b0, distance_s1[19:14]} : curve_word1_s1;
     wire [6:0] curve_word2_s1 = curve_in_range2_s1 ? curve_word0_s1 : curve_word3_s1;
-    wire aligned_s1 = cos_gamma_reg_s1[20];  // cos gamma is 1.0
-
     // ROM curve: value at the start of a segment (u0.26), then its rise over the segment in units
     // of 2^-24 (19 bits)
     reg [44:0] curve_rom [0:95];
     initial $readmemh(CURVE_FILE, curve_rom);
     always @(posedge clk) if (advance) curve_word_s2 <= curve_rom[curve_word2_s1];
-
-    always @(posedge clk) begin
-        if (advance) begin
-            facing_s2 <= facing_s1;
-            aligned_s2 <= aligned_s1;
-        end
+    reg  facing_s2;   // the surface faces the half vector
+    reg  aligned_s2;  // cos gamma is 1.0
+    always @(posedge clk) if (advance) begin
+        facing_s2 <= |cos_gamma_reg_s1;
+        aligned_s2 <= cos_gamma_reg_s1[20];
     end
 
     // Stage 2, part of: segment of the decay addressed by cos gamma
-    reg         facing_s3;              // the surface faces the half vector
     reg  [25:0] curve_base_s3;          // u0.26
+    reg         facing_s3, product_row_s3, aligned_s3;
     reg  [17:0] product_upper_bits_s3;
-    reg         product_row_s3;
-    reg         aligned_s3;             // cos gamma is 1.0
-
-    wire [25:0] curve_base_s2 = curve_word_s2[44:19];  // u0.26
-
-    always @(posedge clk) begin
-        if (advance) begin
-            facing_s3 <= facing_s2;
-            curve_base_s3 <= curve_base_s2;
-            product_upper_bits_s3 <= curve_word_s2[18:1];
-            product_row_s3 <= curve_word_s2[0];
-            aligned_s3 <= aligned_s2;
-        end
+    always @(posedge clk) if (advance) begin
+        facing_s3 <= facing_s2;
+        curve_base_s3 <= curve_word_s2[44:19];
+        product_upper_bits_s3 <= curve_word_s2[18:1];
+        product_row_s3 <= curve_word_s2[0];
+        aligned_s3 <= aligned_s2;
     end
 
     // Stage 3: values on their way
-    reg  [13:0] curve_rest2_s4;         // u0.14
-    reg         facing_s4;              // the surface faces the half vector
-    reg  [25:0] curve_base_s4;          // u0.26
+    wire [13:0] curve_rest2_s4;
+    reg         facing_s4, product_row_s4, aligned_s4;
+    reg  [25:0] curve_base_s4;
     reg  [17:0] product_upper_bits_s4;
-    reg         product_row_s4;
-    reg         aligned_s4;             // cos gamma is 1.0
-
-    always @(posedge clk) begin
-        if (advance) begin
-            facing_s4 <= facing_s3;
-            curve_base_s4 <= curve_base_s3;
-            product_upper_bits_s4 <= product_upper_bits_s3;
-            product_row_s4 <= product_row_s3;
-            aligned_s4 <= aligned_s3;
-        end
+    always @(posedge clk) if (advance) begin
+        facing_s4 <= facing_s3;
+        curve_base_s4 <= curve_base_s3;
+        product_upper_bits_s4 <= product_upper_bits_s3;
+        product_row_s4 <= product_row_s3;
+        aligned_s4 <= aligned_s3;
     end
 
     // Stage 4, part of: decay <- base + slope * rest
-    reg         facing_s5;         // the surface faces the half vector
-    reg  [25:0] curve_base_s5;     // u0.26
+    reg         facing_s5, aligned_s5;
+    reg  [25:0] curve_base_s5;
     reg  [31:0] product_upper_s5;
     reg  [13:0] product_row_2_s5;
-    reg         aligned_s5;        // cos gamma is 1.0
-
-    wire [31:0] product_upper_s4 = product_upper_bits_s4 * curve_rest2_s4;
-
-    always @(posedge clk) begin
-        if (advance) begin
-            facing_s5 <= facing_s4;
-            curve_base_s5 <= curve_base_s4;
-            product_upper_s5 <= product_upper_s4;
-            product_row_2_s5 <= product_row_s4 ? curve_rest2_s4 : 14'd0;
-            aligned_s5 <= aligned_s4;
-        end
+    always @(posedge clk) if (advance) begin
+        facing_s5 <= facing_s4;
+        curve_base_s5 <= curve_base_s4;
+        product_upper_s5 <= product_upper_bits_s4 * curve_rest2_s4;
+        product_row_2_s5 <= product_row_s4 ? curve_rest2_s4 : 14'd0;
+        aligned_s5 <= aligned_s4;
     end
 
     // Stage 5, part of: decay <- base + slope * rest
-    reg         facing_s6;   // the surface faces the half vector
-    reg  [25:0] decay_s6;    // u0.26: gamma^2/(4 ln 2), half the decay
-    reg         aligned_s6;  // cos gamma is 1.0
-
-    wire [31:0] product_sum_upper_2_s5 = {19'd0, product_row_2_s5[13:1]} + product_upper_s5;
-    wire [32:0] product_sum_s5 = {product_sum_upper_2_s5, product_row_2_s5[0]};
-
-    // u0.26: gamma^2/(4 ln 2), half the decay
-    wire [25:0] decay_s5 = curve_base_s5 + {5'd0, product_sum_s5[32:12]};
-
-    always @(posedge clk) begin
-        if (advance) begin
-            facing_s6 <= facing_s5;
-            decay_s6 <= decay_s5;
-            aligned_s6 <= aligned_s5;
-        end
+    wire [31:0] product_upper_3_s5 = {19'd0, product_row_2_s5[13:1]} + product_upper_s5;
+    reg  [25:0] decay_s6;  // u0.26: gamma^2/(4 ln 2), half the decay
+    reg         facing_s6, aligned_s6;
+    always @(posedge clk) if (advance) begin
+        facing_s6 <= facing_s5;
+        decay_s6 <= curve_base_s5 + {5'd0, product_upper_3_s5[31:11]};
+        aligned_s6 <= aligned_s5;
     end
 
     // Stage 6, part of: halvings <- n * decay
-    reg  [9:0]  exponent_s7;     // specular exponent n
-    reg         facing_s7;       // the surface faces the half vector
-    reg         decay_small_s7;  // the decay is below 1/4, and all its bits count
-    reg  [23:0] factor_s7;       // the decay, its point by decay_small
-    reg         aligned_s7;      // cos gamma is 1.0
-
     wire decay_large_s6 = |decay_s6[25:24];
     wire decay_small_s6 = ~decay_large_s6;  // the decay is below 1/4, and all its bits count
-
-    // the decay, its point by decay_small
-    wire [23:0] factor_s6 = decay_small_s6 ? decay_s6[23:0] : decay_s6[25:2];
-
-    always @(posedge clk) begin
-        if (advance) begin
-            facing_s7 <= facing_s6;
-            decay_small_s7 <= decay_small_s6;
-            factor_s7 <= factor_s6;
-            aligned_s7 <= aligned_s6;
-        end
+    reg  [23:0] factor_s7;    // the decay, its point by decay_small
+    wire [9:0]  exponent_s7;
+    reg         facing_s7, decay_small_s7, aligned_s7;
+    always @(posedge clk) if (advance) begin
+        facing_s7 <= facing_s6;
+        decay_small_s7 <= decay_small_s6;
+        factor_s7 <= decay_small_s6 ? decay_s6[23:0] : decay_s6[25:2];
+        aligned_s7 <= aligned_s6;
     end
 
     // Stage 7, part of: halvings <- n * decay
-    reg         facing_s8;           // the surface faces the half vector
-    reg         decay_small_s8;      // the decay is below 1/4, and all its bits count
-    reg  [27:0] product_upper_2_s8;
+    reg         facing_s8, decay_small_s8, aligned_s8;
+    reg  [27:0] product_upper_5_s8;
     reg  [15:0] product_lower_s8;
-    reg         aligned_s8;          // cos gamma is 1.0
-
-    wire [27:0] product_upper_2_s7 = factor_s7[23:6] * exponent_s7;
-    wire [15:0] product_lower_s7 = factor_s7[5:0] * exponent_s7;
-
-    always @(posedge clk) begin
-        if (advance) begin
-            facing_s8 <= facing_s7;
-            decay_small_s8 <= decay_small_s7;
-            product_upper_2_s8 <= product_upper_2_s7;
-            product_lower_s8 <= product_lower_s7;
-            aligned_s8 <= aligned_s7;
-        end
+    always @(posedge clk) if (advance) begin
+        facing_s8 <= facing_s7;
+        decay_small_s8 <= decay_small_s7;
+        product_upper_5_s8 <= factor_s7[23:6] * exponent_s7;
+        product_lower_s8 <= factor_s7[5:0] * exponent_s7;
+        aligned_s8 <= aligned_s7;
     end
 
     // Stage 8, part of: halvings <- n * decay
-    reg         facing_s9;         // the surface faces the half vector
-    reg         decay_small_s9;    // the decay is below 1/4, and all its bits count
+    wire [27:0] product_upper_7_s8 = {18'd0, product_lower_s8[15:6]} + product_upper_5_s8;
+    reg         facing_s9, decay_small_s9, aligned_s9;
     reg  [33:0] product_sum_2_s9;
-    reg         aligned_s9;        // cos gamma is 1.0
-
-    wire [27:0] product_sum_upper_5_s8 = {18'd0, product_lower_s8[15:6]} + product_upper_2_s8;
-    wire [33:0] product_sum_2_s8 = {product_sum_upper_5_s8, product_lower_s8[5:0]};
-
-    always @(posedge clk) begin
-        if (advance) begin
-            facing_s9 <= facing_s8;
-            decay_small_s9 <= decay_small_s8;
-            product_sum_2_s9 <= product_sum_2_s8;
-            aligned_s9 <= aligned_s8;
-        end
+    always @(posedge clk) if (advance) begin
+        facing_s9 <= facing_s8;
+        decay_small_s9 <= decay_small_s8;
+        product_sum_2_s9 <= {product_upper_7_s8, product_lower_s8[5:0]};
+        aligned_s9 <= aligned_s8;
     end
 
     // Stage 9, part of: halvings <- n * decay
-    reg         facing_s10;    // the surface faces the half vector
-    reg  [20:0] halvings_s10;  // u5.16: n*decay: how often f is half of 1.0
-    reg         aligned_s10;   // cos gamma is 1.0
-
-    // u5.16
     wire [20:0] halvings_coarse_s9 = (|product_sum_2_s9[33:28]) ? 21'h1fffff :
             product_sum_2_s9[27:7];
-
-    // u5.16
     wire [20:0] halvings_fine_s9 = (|product_sum_2_s9[33:30]) ? 21'h1fffff : product_sum_2_s9[29:9];
-
-    // u5.16: n*decay: how often f is half of 1.0
-    wire [20:0] halvings_s9 = decay_small_s9 ? halvings_fine_s9 : halvings_coarse_s9;
-
-    always @(posedge clk) begin
-        if (advance) begin
-            facing_s10 <= facing_s9;
-            halvings_s10 <= halvings_s9;
-            aligned_s10 <= aligned_s9;
-        end
+    reg  [20:0] halvings_s10;  // u5.16: n*decay: how often f is half of 1.0
+    reg         facing_s10, aligned_s10;
+    always @(posedge clk) if (advance) begin
+        facing_s10 <= facing_s9;
+        halvings_s10 <= decay_small_s9 ? halvings_fine_s9 : halvings_coarse_s9;
+        aligned_s10 <= aligned_s9;
     end
 
     // Stage 10, part of: tables of 2^-x addressed by the fraction; reflectance <- 2^-halvings
-    reg                facing_s11;                  // the surface faces the half vector
-    reg         [20:0] halvings_s11;                // u5.16: n*decay: how often f is half of 1.0
-    reg         [14:0] exp2_bend_value_word_s11;    // u-4.19
-    reg                peak_s11;                    // f is 1.0, less an ulp
-    // s-10.19: what the field adds, less half an ulp
-    reg  signed [9:0]  exp2_bend_offset1_term_s11;
-    // s-12.19: what the field adds, less half an ulp
-    reg  signed [7:0]  exp2_bend_offset2_term_s11;
-
-    wire exp2_bend_offset1_upper_s10 = halvings_s10[8];
-    wire exp2_bend_offset2_upper_s10 = halvings_s10[6];
-
     // ROM exp2_bend_value: 1 - x/2 - 2^-x at the middle of each of 128 intervals of x, in units of
     // 2^-19
     reg [14:0] exp2_bend_value_rom [0:127];
     initial $readmemh(EXP2_BEND_VALUE_FILE, exp2_bend_value_rom);
     wire [14:0] exp2_bend_value_word_s10 = exp2_bend_value_rom[halvings_s10[15:9]];
-
     wire exp2_bend_offset1_mirrored_s10 = ~halvings_s10[7];
-
     // distance from the middle of the field
-    wire exp2_bend_offset1_distance_s10 = exp2_bend_offset1_upper_s10 ? halvings_s10[7] :
+    wire exp2_bend_offset1_distance_s10 = halvings_s10[8] ? halvings_s10[7] :
             exp2_bend_offset1_mirrored_s10;
-
-    wire [6:0] exp2_bend_offset1_address_s10 = {halvings_s10[15:10],
-            exp2_bend_offset1_distance_s10};
-
     // ROM exp2_bend_offset1: slope of 1 - x/2 - 2^-x over 2^-6 of x, times the distance from the
     // middle of bits 8 to 7 of x, in units of 2^-19, less a half
     reg [9:0] exp2_bend_offset1_rom [0:127];
     initial $readmemh(EXP2_BEND_OFFSET1_FILE, exp2_bend_offset1_rom);
-    wire signed [9:0] exp2_bend_offset1_word_s10 =
-            exp2_bend_offset1_rom[exp2_bend_offset1_address_s10];
-
+    wire signed [9:0] exp2_bend_offset1_word_s10 = exp2_bend_offset1_rom[{halvings_s10[15:10],
+            exp2_bend_offset1_distance_s10}];
     wire [1:0] exp2_bend_offset2_mirrored_s10 = ~halvings_s10[5:4];
-
     // distance from the middle of the field
-    wire [1:0] exp2_bend_offset2_distance_s10 = exp2_bend_offset2_upper_s10 ? halvings_s10[5:4] :
+    wire [1:0] exp2_bend_offset2_distance_s10 = halvings_s10[6] ? halvings_s10[5:4] :
             exp2_bend_offset2_mirrored_s10;
-
-    wire [6:0] exp2_bend_offset2_address_s10 = {halvings_s10[15:11],
-            exp2_bend_offset2_distance_s10};
-
     // ROM exp2_bend_offset2: slope of 1 - x/2 - 2^-x over 2^-5 of x, times the distance from the
     // middle of bits 6 to 4 of x, in units of 2^-19, less a half
     reg [7:0] exp2_bend_offset2_rom [0:127];
     initial $readmemh(EXP2_BEND_OFFSET2_FILE, exp2_bend_offset2_rom);
-    wire signed [7:0] exp2_bend_offset2_word_s10 =
-            exp2_bend_offset2_rom[exp2_bend_offset2_address_s10];
-
+    wire signed [7:0] exp2_bend_offset2_word_s10 = exp2_bend_offset2_rom[{halvings_s10[15:11],
+            exp2_bend_offset2_distance_s10}];
     wire fades_s10 = |halvings_s10;
     wire level_s10 = ~fades_s10;
-    wire peak_s10 = aligned_s10 | level_s10;  // f is 1.0, less an ulp
     wire signed [9:0] exp2_bend_offset1_opposite_s10 = ~exp2_bend_offset1_word_s10;  // s-10.19
-
-    // s-10.19: what the field adds, less half an ulp
-    wire signed [9:0] exp2_bend_offset1_term_s10 = exp2_bend_offset1_upper_s10 ?
-            exp2_bend_offset1_word_s10 : exp2_bend_offset1_opposite_s10;
-
     wire signed [7:0] exp2_bend_offset2_opposite_s10 = ~exp2_bend_offset2_word_s10;  // s-12.19
-
+    reg                peak_s11;                    // f is 1.0, less an ulp
+    // s-10.19: what the field adds, less half an ulp
+    reg  signed [9:0]  exp2_bend_offset1_term_s11;
     // s-12.19: what the field adds, less half an ulp
-    wire signed [7:0] exp2_bend_offset2_term_s10 = exp2_bend_offset2_upper_s10 ?
-            exp2_bend_offset2_word_s10 : exp2_bend_offset2_opposite_s10;
-
-    always @(posedge clk) begin
-        if (advance) begin
-            facing_s11 <= facing_s10;
-            halvings_s11 <= halvings_s10;
-            exp2_bend_value_word_s11 <= exp2_bend_value_word_s10;
-            peak_s11 <= peak_s10;
-            exp2_bend_offset1_term_s11 <= exp2_bend_offset1_term_s10;
-            exp2_bend_offset2_term_s11 <= exp2_bend_offset2_term_s10;
-        end
+    reg  signed [7:0]  exp2_bend_offset2_term_s11;
+    reg                facing_s11;
+    reg         [20:0] halvings_s11;
+    reg         [14:0] exp2_bend_value_word_s11;
+    always @(posedge clk) if (advance) begin
+        facing_s11 <= facing_s10;
+        halvings_s11 <= halvings_s10;
+        exp2_bend_value_word_s11 <= exp2_bend_value_word_s10;
+        peak_s11 <= aligned_s10 | level_s10;
+        exp2_bend_offset1_term_s11 <= halvings_s10[8] ? exp2_bend_offset1_word_s10 :
+                exp2_bend_offset1_opposite_s10;
+        exp2_bend_offset2_term_s11 <= halvings_s10[6] ? exp2_bend_offset2_word_s10 :
+                exp2_bend_offset2_opposite_s10;
     end
 
     // Stage 11, part of: tables of 2^-x addressed by the fraction; reflectance <- 2^-halvings
-    reg                facing_s12;                  // the surface faces the half vector
-    reg                peak_s12;                    // f is 1.0, less an ulp
-    reg                halvings_bits_2_bits_5_s12;
-    reg                halvings_bits_2_bits_4_s12;
-    reg                halvings_bits_2_bits_3_s12;
-    reg                halvings_bits_2_bits_2_s12;
-    reg                halvings_bits_2_bits_s12;
-    reg         [15:0] exp2_inverse_s12;            // u0.16
-    reg  signed [15:0] exp2_bend_offset2_sum_s12;   // s-4.19
-    // s-15.19: what the field adds, less half an ulp
-    reg  signed [4:0]  exp2_bend_offset3_term_s12;
-
-    wire [15:0] exp2_x_s11 = halvings_s11[15:0];  // u0.16
-    wire exp2_bend_offset3_upper_s11 = halvings_s11[3];
     wire [2:0] exp2_bend_offset3_mirrored_s11 = ~halvings_s11[2:0];
-
     // distance from the middle of the field
-    wire [2:0] exp2_bend_offset3_distance_s11 = exp2_bend_offset3_upper_s11 ? halvings_s11[2:0] :
+    wire [2:0] exp2_bend_offset3_distance_s11 = halvings_s11[3] ? halvings_s11[2:0] :
             exp2_bend_offset3_mirrored_s11;
-
-    wire [5:0] exp2_bend_offset3_address_s11 = {halvings_s11[15:13],
-            exp2_bend_offset3_distance_s11};
-
     // ROM exp2_bend_offset3: slope of 1 - x/2 - 2^-x over 2^-3 of x, times the distance from the
     // middle of bits 3 to 0 of x, in units of 2^-19, less a half
     reg [4:0] exp2_bend_offset3_rom [0:63];
     initial $readmemh(EXP2_BEND_OFFSET3_FILE, exp2_bend_offset3_rom);
-    wire signed [4:0] exp2_bend_offset3_word_s11 =
-            exp2_bend_offset3_rom[exp2_bend_offset3_address_s11];
-
-    wire [15:0] exp2_inverse_s11 = ~exp2_x_s11;  // u0.16
-
-    // s-4.19
+    wire signed [4:0] exp2_bend_offset3_word_s11 = exp2_bend_offset3_rom[{halvings_s11[15:13],
+            exp2_bend_offset3_distance_s11}];
     wire signed [15:0] exp2_bend_offset1_sum_s11 = {1'b0, exp2_bend_value_word_s11} +
             {{6{exp2_bend_offset1_term_s11[9]}}, exp2_bend_offset1_term_s11};
-
-    // s-4.19
-    wire signed [15:0] exp2_bend_offset2_sum_s11 = exp2_bend_offset1_sum_s11 +
-            {{8{exp2_bend_offset2_term_s11[7]}}, exp2_bend_offset2_term_s11};
-
     wire signed [4:0] exp2_bend_offset3_opposite_s11 = ~exp2_bend_offset3_word_s11;  // s-15.19
-
+    reg         [15:0] exp2_inverse_s12;            // u0.16
+    reg  signed [15:0] exp2_bend_offset2_sum_s12;   // s-4.19
     // s-15.19: what the field adds, less half an ulp
-    wire signed [4:0] exp2_bend_offset3_term_s11 = exp2_bend_offset3_upper_s11 ?
-            exp2_bend_offset3_word_s11 : exp2_bend_offset3_opposite_s11;
-
-    always @(posedge clk) begin
-        if (advance) begin
-            facing_s12 <= facing_s11;
-            peak_s12 <= peak_s11;
-            halvings_bits_2_bits_5_s12 <= halvings_s11[16];
-            halvings_bits_2_bits_4_s12 <= halvings_s11[17];
-            halvings_bits_2_bits_3_s12 <= halvings_s11[18];
-            halvings_bits_2_bits_2_s12 <= halvings_s11[19];
-            halvings_bits_2_bits_s12 <= halvings_s11[20];
-            exp2_inverse_s12 <= exp2_inverse_s11;
-            exp2_bend_offset2_sum_s12 <= exp2_bend_offset2_sum_s11;
-            exp2_bend_offset3_term_s12 <= exp2_bend_offset3_term_s11;
-        end
+    reg  signed [4:0]  exp2_bend_offset3_term_s12;
+    reg                facing_s12, peak_s12, halvings_bits_2_bits_5_s12, halvings_bits_2_bits_4_s12;
+    reg                halvings_bits_2_bits_3_s12, halvings_bits_2_bits_2_s12, halvings_bits_2_bits_s12;
+    always @(posedge clk) if (advance) begin
+        facing_s12 <= facing_s11;
+        peak_s12 <= peak_s11;
+        halvings_bits_2_bits_5_s12 <= halvings_s11[16];
+        halvings_bits_2_bits_4_s12 <= halvings_s11[17];
+        halvings_bits_2_bits_3_s12 <= halvings_s11[18];
+        halvings_bits_2_bits_2_s12 <= halvings_s11[19];
+        halvings_bits_2_bits_s12 <= halvings_s11[20];
+        exp2_inverse_s12 <= ~halvings_s11[15:0];
+        exp2_bend_offset2_sum_s12 <= exp2_bend_offset1_sum_s11 +
+                {{8{exp2_bend_offset2_term_s11[7]}}, exp2_bend_offset2_term_s11};
+        exp2_bend_offset3_term_s12 <= halvings_s11[3] ? exp2_bend_offset3_word_s11 :
+                exp2_bend_offset3_opposite_s11;
     end
 
     // Stage 12, part of: reflectance <- 2^-halvings
-    reg         facing_s13;                     // the surface faces the half vector
-    reg         peak_s13;                       // f is 1.0, less an ulp
-    reg         halvings_bits_2_bits_5_s13;
-    reg         halvings_bits_2_bits_4_s13;
-    reg         halvings_bits_2_bits_3_s13;
-    reg         halvings_bits_2_bits_2_s13;
-    reg         halvings_bits_2_bits_s13;
-    reg         exp2_mantissa_kept_bits_s13;
-    reg  [16:0] exp2_mantissa_kept_inside_s13;  // u0.17
-
-    // s-4.19
     wire signed [15:0] exp2_bend_offset3_sum_s12 = exp2_bend_offset2_sum_s12 +
             {{11{exp2_bend_offset3_term_s12[4]}}, exp2_bend_offset3_term_s12};
-
     // u1.19: 2^-x of the fraction x
     wire [19:0] exp2_mantissa_s12 = {2'd1, exp2_inverse_s12, 2'd0} -
             {{4{exp2_bend_offset3_sum_s12[15]}}, exp2_bend_offset3_sum_s12};
-
-    always @(posedge clk) begin
-        if (advance) begin
-            facing_s13 <= facing_s12;
-            peak_s13 <= peak_s12;
-            halvings_bits_2_bits_5_s13 <= halvings_bits_2_bits_5_s12;
-            halvings_bits_2_bits_4_s13 <= halvings_bits_2_bits_4_s12;
-            halvings_bits_2_bits_3_s13 <= halvings_bits_2_bits_3_s12;
-            halvings_bits_2_bits_2_s13 <= halvings_bits_2_bits_2_s12;
-            halvings_bits_2_bits_s13 <= halvings_bits_2_bits_s12;
-            exp2_mantissa_kept_bits_s13 <= exp2_mantissa_s12[19];
-            exp2_mantissa_kept_inside_s13 <= exp2_mantissa_s12[18:2];
-        end
+    reg  [16:0] exp2_mantissa_kept_inside_s13;  // u0.17
+    reg         facing_s13, peak_s13, halvings_bits_2_bits_5_s13, halvings_bits_2_bits_4_s13;
+    reg         halvings_bits_2_bits_3_s13, halvings_bits_2_bits_2_s13, halvings_bits_2_bits_s13;
+    reg         exp2_mantissa_kept_bits_s13;
+    always @(posedge clk) if (advance) begin
+        facing_s13 <= facing_s12;
+        peak_s13 <= peak_s12;
+        halvings_bits_2_bits_5_s13 <= halvings_bits_2_bits_5_s12;
+        halvings_bits_2_bits_4_s13 <= halvings_bits_2_bits_4_s12;
+        halvings_bits_2_bits_3_s13 <= halvings_bits_2_bits_3_s12;
+        halvings_bits_2_bits_2_s13 <= halvings_bits_2_bits_2_s12;
+        halvings_bits_2_bits_s13 <= halvings_bits_2_bits_s12;
+        exp2_mantissa_kept_bits_s13 <= exp2_mantissa_s12[19];
+        exp2_mantissa_kept_inside_s13 <= exp2_mantissa_s12[18:2];
     end
 
     // Stage 13, part of: reflectance <- 2^-halvings
-    reg         facing_s14;                  // the surface faces the half vector
-    reg         peak_s14;                    // f is 1.0, less an ulp
-    reg         halvings_bits_2_bits_5_s14;
-    reg  [16:0] exp2_shift_by2_s14;          // u0.17
-
-    // u0.17
     wire [16:0] exp2_kept_s13 = exp2_mantissa_kept_bits_s13 ? 17'h1ffff :
             exp2_mantissa_kept_inside_s13;
-
-    // u0.17
     wire [16:0] exp2_shift_by16_s13 = halvings_bits_2_bits_s13 ? {16'd0, exp2_kept_s13[16]} :
             exp2_kept_s13;
-
-    // u0.17
     wire [16:0] exp2_shift_by8_s13 = halvings_bits_2_bits_2_s13 ? {8'd0, exp2_shift_by16_s13[16:8]}
             : exp2_shift_by16_s13;
-
-    // u0.17
     wire [16:0] exp2_shift_by4_s13 = halvings_bits_2_bits_3_s13 ? {4'd0, exp2_shift_by8_s13[16:4]} :
             exp2_shift_by8_s13;
-
-    // u0.17
-    wire [16:0] exp2_shift_by2_s13 = halvings_bits_2_bits_4_s13 ? {2'd0, exp2_shift_by4_s13[16:2]} :
-            exp2_shift_by4_s13;
-
-    always @(posedge clk) begin
-        if (advance) begin
-            facing_s14 <= facing_s13;
-            peak_s14 <= peak_s13;
-            halvings_bits_2_bits_5_s14 <= halvings_bits_2_bits_5_s13;
-            exp2_shift_by2_s14 <= exp2_shift_by2_s13;
-        end
+    reg  [16:0] exp2_shift_by2_s14;  // u0.17
+    reg         facing_s14, peak_s14, halvings_bits_2_bits_5_s14;
+    always @(posedge clk) if (advance) begin
+        facing_s14 <= facing_s13;
+        peak_s14 <= peak_s13;
+        halvings_bits_2_bits_5_s14 <= halvings_bits_2_bits_5_s13;
+        exp2_shift_by2_s14 <= halvings_bits_2_bits_4_s13 ? {2'd0, exp2_shift_by4_s13[16:2]} :
+                exp2_shift_by4_s13;
     end
 
     // Stage 14, part of: reflectance <- 2^-halvings
-    reg  [7:0]  red_s15;          // intensity of the light times k_s
-    reg  [7:0]  green_s15;        // intensity of the light times k_s
-    reg  [7:0]  blue_s15;         // intensity of the light times k_s
-    reg  [15:0] reflectance_s15;  // u0.16: f
-
-    // u0.17
     wire [16:0] exp2_shift_by1_s14 = halvings_bits_2_bits_5_s14 ? {1'b0, exp2_shift_by2_s14[16:1]} :
             exp2_shift_by2_s14;
-
-    // u1.16
     wire [16:0] exp2_rounded_nearest_s14 = {1'b0, exp2_shift_by1_s14[16:1]} + {16'd0,
             exp2_shift_by1_s14[0]};
-
-    // u0.16
     wire [15:0] exp2_rounded_s14 = exp2_rounded_nearest_s14[16] ? 16'hffff :
             exp2_rounded_nearest_s14[15:0];
-
     wire [15:0] lit_s14 = peak_s14 ? 16'hffff : exp2_rounded_s14;  // u0.16
-    wire [15:0] reflectance_s14 = facing_s14 ? lit_s14 : 16'd0;  // u0.16: f
-
-    always @(posedge clk) begin
-        if (advance) begin
-            reflectance_s15 <= reflectance_s14;
-        end
-    end
+    reg  [15:0] reflectance_s15;  // u0.16: f
+    wire [7:0]  red_s15, green_s15, blue_s15;
+    always @(posedge clk) if (advance) reflectance_s15 <= facing_s14 ? lit_s14 : 16'd0;
 
     // Stage 15, part of: result
-    reg  [15:0] reflectance_s16;         // u0.16: f
-    reg  [7:0]  red_product_kept_s16;
-    reg         red_product_bits_s16;
-    reg  [7:0]  green_product_kept_s16;
-    reg         green_product_bits_s16;
-    reg  [7:0]  blue_product_kept_s16;
-    reg         blue_product_bits_s16;
-
     // u8.16: an output before it is rounded
     wire [23:0] red_product_s15 = reflectance_s15 * red_s15;
-
-    // u8.16: an output before it is rounded
     wire [23:0] green_product_s15 = reflectance_s15 * green_s15;
-
-    // u8.16: an output before it is rounded
     wire [23:0] blue_product_s15 = reflectance_s15 * blue_s15;
-
-    always @(posedge clk) begin
-        if (advance) begin
-            reflectance_s16 <= reflectance_s15;
-            red_product_kept_s16 <= red_product_s15[23:16];
-            red_product_bits_s16 <= red_product_s15[15];
-            green_product_kept_s16 <= green_product_s15[23:16];
-            green_product_bits_s16 <= green_product_s15[15];
-            blue_product_kept_s16 <= blue_product_s15[23:16];
-            blue_product_bits_s16 <= blue_product_s15[15];
-        end
+    reg  [15:0] reflectance_s16;
+    reg  [7:0]  red_product_kept_s16, green_product_kept_s16, blue_product_kept_s16;
+    reg         red_product_bits_s16, green_product_bits_s16, blue_product_bits_s16;
+    always @(posedge clk) if (advance) begin
+        reflectance_s16 <= reflectance_s15;
+        red_product_kept_s16 <= red_product_s15[23:16];
+        red_product_bits_s16 <= red_product_s15[15];
+        green_product_kept_s16 <= green_product_s15[23:16];
+        green_product_bits_s16 <= green_product_s15[15];
+        blue_product_kept_s16 <= blue_product_s15[23:16];
+        blue_product_bits_s16 <= blue_product_s15[15];
     end
 
     // Stage 16, part of: result
-    reg  [15:0] reflectance_s17;      // u0.16: f
-    reg  [7:0]  red_intensity_s17;
-    reg  [7:0]  green_intensity_s17;
-    reg  [7:0]  blue_intensity_s17;
-
-    wire [7:0] red_intensity_s16 = red_product_kept_s16 + {7'd0, red_product_bits_s16};
-    wire [7:0] green_intensity_s16 = green_product_kept_s16 + {7'd0, green_product_bits_s16};
-    wire [7:0] blue_intensity_s16 = blue_product_kept_s16 + {7'd0, blue_product_bits_s16};
-
-    always @(posedge clk) begin
-        if (advance) begin
-            reflectance_s17 <= reflectance_s16;
-            red_intensity_s17 <= red_intensity_s16;
-            green_intensity_s17 <= green_intensity_s16;
-            blue_intensity_s17 <= blue_intensity_s16;
-        end
+    reg  [15:0] reflectance_s17;
+    reg  [7:0]  red_intensity_s17, green_intensity_s17, blue_intensity_s17;
+    always @(posedge clk) if (advance) begin
+        reflectance_s17 <= reflectance_s16;
+        red_intensity_s17 <= red_product_kept_s16 + {7'd0, red_product_bits_s16};
+        green_intensity_s17 <= green_product_kept_s16 + {7'd0, green_product_bits_s16};
+        blue_intensity_s17 <= blue_product_kept_s16 + {7'd0, blue_product_bits_s16};
     end
 
-    // Delay lines: values that nothing reads for several stages lie in small memories. Whenever
-    // points move on, a slot gives the value that it holds and takes a new one; its turn comes
-    // again when all others have had theirs.
-    reg slot_of_2;
-    initial slot_of_2 = 1'b0;
-    (* ram_style = "distributed", syn_ramstyle = "distributed" *)
-    reg [13:0] delay_s1_s4 [0:1];
-    reg [2:0] slot_of_6;
-    initial slot_of_6 = 3'd0;
-    (* ram_style = "distributed", syn_ramstyle = "distributed" *)
-    reg [9:0] delay_s0_s7 [0:5];
-    reg [3:0] slot_of_14;
-    initial slot_of_14 = 4'd0;
-    (* ram_style = "distributed", syn_ramstyle = "distributed" *)
-    reg [23:0] delay_s0_s15 [0:13];
-
-    always @(posedge clk) begin
-        if (advance) begin
-            slot_of_2 <= slot_of_2 + 1'b1;
-            curve_rest2_s4 <= delay_s1_s4[slot_of_2];
-            delay_s1_s4[slot_of_2] <= curve_rest2_s1;
-        end
-    end
-
-    always @(posedge clk) begin
-        if (advance) begin
-            slot_of_6 <= slot_of_6 == 3'd5 ? 3'd0 : slot_of_6 + 3'd1;
-            exponent_s7 <= delay_s0_s7[slot_of_6];
-            delay_s0_s7[slot_of_6] <= exponent;
-        end
-    end
-
-    always @(posedge clk) begin
-        if (advance) begin
-            slot_of_14 <= slot_of_14 == 4'd13 ? 4'd0 : slot_of_14 + 4'd1;
-            {red_s15, green_s15, blue_s15} <= delay_s0_s15[slot_of_14];
-            delay_s0_s15[slot_of_14] <= {red, green, blue};
-        end
-    end
+    // Delay lines: what nothing reads for several stages goes through small memories
+    gauss_pipelined_delay #(.WIDTH(14), .WORDS(2), .BITS(1)) delay_of_3 (
+        .clk(clk), .rst_n(rst_n), .enable(advance),
+        .entering(curve_rest2_s1),
+        .leaving(curve_rest2_s4)
+    );
+    gauss_pipelined_delay #(.WIDTH(10), .WORDS(6), .BITS(3)) delay_of_7 (
+        .clk(clk), .rst_n(rst_n), .enable(advance),
+        .entering(exponent),
+        .leaving(exponent_s7)
+    );
+    gauss_pipelined_delay #(.WIDTH(24), .WORDS(14), .BITS(4)) delay_of_15 (
+        .clk(clk), .rst_n(rst_n), .enable(advance),
+        .entering({red, green, blue}),
+        .leaving({red_s15, green_s15, blue_s15})
+    );
 
     // Results
-
     assign f_out = reflectance_s17;  // u0.16: the reflectance, for a user's own multipliers
     assign red_out = red_intensity_s17;  // intensity on the output
     assign green_out = green_intensity_s17;  // intensity on the output
     assign blue_out = blue_intensity_s17;  // intensity on the output
 
     // Unused bits, among them those that narrowing drops.
-    wire unused = &{1'b0, product_sum_s5[11:0], product_sum_2_s9[6:0], exp2_mantissa_s12[1:0],
-            red_product_s15[14:0], green_product_s15[14:0], blue_product_s15[14:0]};
+    wire unused = &{1'b0, product_row_2_s5[0], product_upper_3_s5[10:0], product_sum_2_s9[6:0],
+            exp2_mantissa_s12[1:0], red_product_s15[14:0], green_product_s15[14:0],
+            blue_product_s15[14:0]};
+endmodule
+
+// Values on their way, WORDS + 1 registers long. A slot of a small memory gives the value that it
+// holds and takes a new one; its turn comes again when all others have had theirs.
+/* verilator lint_off DECLFILENAME */
+module gauss_pipelined_delay #(
+    parameter WIDTH  = 8,
+    parameter WORDS  = 2,
+    parameter BITS   = 1,  // of the number of a slot
+    parameter MEMORY = 1   // 0: registers in place of the memory
+) (
+    input  wire             clk, rst_n, enable,
+    input  wire [WIDTH-1:0] entering,
+    output reg  [WIDTH-1:0] leaving
+);
+    generate
+        if (MEMORY != 0) begin : memory
+            localparam [BITS-1:0] LAST = WORDS[BITS-1:0] - 1'b1;
+            reg  [BITS-1:0]  slot;
+            reg  [WIDTH-1:0] words [0:WORDS-1];
+            // Of a power of two the number after the last is 0.
+            wire around = WORDS != 1 << BITS && slot == LAST;
+            always @(posedge clk) begin
+                if (!rst_n) slot <= {BITS{1'b0}};
+                else if (enable) slot <= around ? {BITS{1'b0}} : slot + 1'b1;
+                if (enable) begin
+                    leaving <= words[slot];
+                    words[slot] <= entering;
+                end
+            end
+        end else begin : registers
+            reg  [WIDTH*WORDS-1:0] words;
+            wire unused = &{1'b0, rst_n};
+            always @(posedge clk) if (enable) {leaving, words} <= {words, entering};
+        end
+    endgenerate
 endmodule
 
 `default_nettype wire

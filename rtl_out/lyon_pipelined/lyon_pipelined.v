@@ -10,28 +10,10 @@
 // Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit apart) and F
 // fraction bits; the value of a signal is its integer times 2^-F.
 //
-//  rst_n              reset, active low, synchronous
-//  in_valid           a point is offered: the operands are its own
-//  dx         s1.16   operand
-//  dy         s1.16   operand
-//  dz         s1.16   operand
-//  shift      u4.0    operand
-//  red        u8.0    operand
-//  green      u8.0    operand
-//  blue       u8.0    operand
-//  out_ready          the results are taken in this clock
-//  in_ready           the point that is offered is taken in this clock
-//  out_valid          results are on the outputs
-//  red_out    u8.0    result
-//  green_out  u8.0    result
-//  blue_out   u8.0    result
-//
 // The seed lists the parts; the wiring is an interpretation. For unit vectors D^2 = 2*(1 - cos
 // gamma), so that this is the function of cosine-power, reached without a scalar product.
 //
-// The shift register shifts one place a clock under the counter, shift + 1 times, which then counts
-// the squarings. The host loads shift = log2 n, rounded: beta is within a factor of 1.42 of
-// n/(2*power).
+// The host loads shift = log2 n, rounded: beta is within a factor of 1.42 of n/(2*power).
 //
 // The formula knows no side that faces away: where cos gamma <= 0, that is D^2 >= 2, f is not 0 for
 // small n. A host that wants it to be 0 does not start the device there.
@@ -66,324 +48,147 @@ module lyon_pipelined (
     // Constants
     localparam [16:0] ONE = 17'h10000;  // 1.0 in u1.16
 
-    // The handshake: which stage has a point, and when all of them move on
-    reg  valid_s1;   // stage 1 has a point
-    reg  valid_s2;   // stage 2 has a point
-    reg  valid_s3;   // stage 3 has a point
-    reg  valid_s4;   // stage 4 has a point
-    reg  valid_s5;   // stage 5 has a point
-    reg  valid_s6;   // stage 6 has a point
-    reg  valid_s7;   // stage 7 has a point
-    reg  valid_s8;   // stage 8 has a point
-    reg  valid_s9;   // stage 9 has a point
-    reg  valid_s10;  // stage 10 has a point
-    reg  valid_s11;  // stage 11 has a point
-    reg  valid_s12;  // stage 12 has a point
-    reg  valid_s13;  // the results are on the outputs
-
-    assign out_valid = valid_s13;  // the results are on the outputs
-    wire advance = out_ready | ~valid_s13;  // every point moves on by a stage
-    assign in_ready = advance;  // a point that is offered is taken in this clock
-
+    // The handshake: a bit for each stage that has a point; all points move on together
+    reg  [13:1] valid;
+    assign out_valid = valid[13];
+    wire advance = out_ready | ~valid[13];
+    assign in_ready = advance;
     always @(posedge clk) begin
-        if (!rst_n) begin
-            valid_s1 <= 1'b0;
-            valid_s2 <= 1'b0;
-            valid_s3 <= 1'b0;
-            valid_s4 <= 1'b0;
-            valid_s5 <= 1'b0;
-            valid_s6 <= 1'b0;
-            valid_s7 <= 1'b0;
-            valid_s8 <= 1'b0;
-            valid_s9 <= 1'b0;
-            valid_s10 <= 1'b0;
-            valid_s11 <= 1'b0;
-            valid_s12 <= 1'b0;
-            valid_s13 <= 1'b0;
-        end else if (advance) begin
-            valid_s1 <= in_valid;
-            valid_s2 <= valid_s1;
-            valid_s3 <= valid_s2;
-            valid_s4 <= valid_s3;
-            valid_s5 <= valid_s4;
-            valid_s6 <= valid_s5;
-            valid_s7 <= valid_s6;
-            valid_s8 <= valid_s7;
-            valid_s9 <= valid_s8;
-            valid_s10 <= valid_s9;
-            valid_s11 <= valid_s10;
-            valid_s12 <= valid_s11;
-            valid_s13 <= valid_s12;
-        end
+        if (!rst_n) valid <= 13'd0;
+        else if (advance) valid <= {valid[12:1], in_valid};
     end
 
     // Stage 0: values on their way
-    reg  signed [17:0] dx_s1;  // s1.16: x of N - H, normal less half vector
-    reg  signed [17:0] dy_s1;  // s1.16: y of N - H, normal less half vector
-    reg  signed [17:0] dz_s1;  // s1.16: z of N - H, normal less half vector
-
-    always @(posedge clk) begin
-        if (advance) begin
-            dx_s1 <= dx;
-            dy_s1 <= dy;
-            dz_s1 <= dz;
-        end
+    reg  signed [17:0] dx_s1, dy_s1, dz_s1;
+    always @(posedge clk) if (advance) begin
+        dx_s1 <= dx;
+        dy_s1 <= dy;
+        dz_s1 <= dz;
     end
 
     // Stage 1, part of: operands dx, dy, dz
-    reg  signed [17:0] dz_s2;           // s1.16: z of N - H, normal less half vector
     reg  signed [35:0] multiplier1_s2;  // register 1, s3.32
     reg  signed [35:0] multiplier2_s2;  // register 2, s3.32
-
-    wire signed [35:0] multiplier1_s1 = dx_s1 * dx_s1;  // multiplier 1, s3.32
-    wire signed [35:0] multiplier2_s1 = dy_s1 * dy_s1;  // multiplier 2, s3.32
-
-    always @(posedge clk) begin
-        if (advance) begin
-            dz_s2 <= dz_s1;
-            multiplier1_s2 <= multiplier1_s1;
-            multiplier2_s2 <= multiplier2_s1;
-        end
+    reg  signed [17:0] dz_s2;
+    always @(posedge clk) if (advance) begin
+        dz_s2 <= dz_s1;
+        multiplier1_s2 <= dx_s1 * dx_s1;
+        multiplier2_s2 <= dy_s1 * dy_s1;
     end
 
     // Stage 2, part of: operands dx, dy, dz; shift_register <- D^2 / (4*power)
     reg  signed [35:0] multiplier3_s3;  // register 3, s3.32
     reg  signed [36:0] adder1_s3;       // register 1, s4.32
-
-    wire signed [35:0] multiplier3_s2 = dz_s2 * dz_s2;  // multiplier 3, s3.32
-
-    // adder 1, s4.32
-    wire signed [36:0] adder1_s2 = {multiplier1_s2[35], multiplier1_s2} + {multiplier2_s2[35],
-            multiplier2_s2};
-
-    always @(posedge clk) begin
-        if (advance) begin
-            multiplier3_s3 <= multiplier3_s2;
-            adder1_s3 <= adder1_s2;
-        end
+    always @(posedge clk) if (advance) begin
+        multiplier3_s3 <= dz_s2 * dz_s2;
+        adder1_s3 <= {multiplier1_s2[35], multiplier1_s2} + {multiplier2_s2[35], multiplier2_s2};
     end
 
     // Stage 3, part of: shift_register <- D^2 / (4*power); shift_register <- 2 * shift_register
-    // log2 of the specular exponent n, rounded
-    reg         [3:0]  shift_s4;
-    reg  signed [36:0] adder2_s4;                                // register 2, s4.32: D^2
-    reg                shift_register_shifted_scaled_bits_2_s4;
-
     // adder 2, s4.32: D^2
     wire signed [36:0] adder2_s3 = adder1_s3 + {multiplier3_s3[35], multiplier3_s3};
-
-    always @(posedge clk) begin
-        if (advance) begin
-            adder2_s4 <= adder2_s3;
-            shift_register_shifted_scaled_bits_2_s4 <= |adder2_s3[35:30];
-        end
+    wire        [3:0]  shift_s4;
+    reg  signed [36:0] adder2_s4;
+    reg                shift_register_shifted_scaled_bits_2_s4;
+    always @(posedge clk) if (advance) begin
+        adder2_s4 <= adder2_s3;
+        shift_register_shifted_scaled_bits_2_s4 <= |adder2_s3[35:30];
     end
 
     // Stage 4, part of: shift_register <- 2 * shift_register
+    // u1.26: beta*D^2, once it has shifted
+    wire [26:0] shift_register_s4 = {2'd0, adder2_s4[35:12], 1'b0};
+    wire [26:0] shift_register_6_s4 = shift_register_shifted_scaled_bits_2_s4 ? 27'h7ffffff :
+            {adder2_s4[29:12], 9'd0};
+    wire [26:0] shift_register_7_s4 = shift_s4[3] ? shift_register_6_s4 : shift_register_s4;
+    wire [26:0] shift_register_8_s4 = (|shift_register_7_s4[26:23]) ? 27'h7ffffff :
+            {shift_register_7_s4[22:0], 4'd0};
     reg  [26:0] shift_register_9_s5;  // u1.26: beta*D^2, once it has shifted
     reg         shift_reg_3_s5;       // log2 of the specular exponent n, rounded
     reg         shift_reg_4_s5;       // log2 of the specular exponent n, rounded
-
-    wire [23:0] distance_rounded_s4 = adder2_s4[35:12];  // u4.20
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_s4 = {2'd0, distance_rounded_s4, 1'b0};
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_6_s4 = shift_register_shifted_scaled_bits_2_s4 ? 27'h7ffffff :
-            {adder2_s4[29:12], 9'd0};
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_7_s4 = shift_s4[3] ? shift_register_6_s4 : shift_register_s4;
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_8_s4 = (|shift_register_7_s4[26:23]) ? 27'h7ffffff :
-            {shift_register_7_s4[22:0], 4'd0};
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_9_s4 = shift_s4[2] ? shift_register_8_s4 : shift_register_7_s4;
-
-    always @(posedge clk) begin
-        if (advance) begin
-            shift_register_9_s5 <= shift_register_9_s4;
-            shift_reg_3_s5 <= shift_s4[1];
-            shift_reg_4_s5 <= shift_s4[0];
-        end
+    always @(posedge clk) if (advance) begin
+        shift_register_9_s5 <= shift_s4[2] ? shift_register_8_s4 : shift_register_7_s4;
+        shift_reg_3_s5 <= shift_s4[1];
+        shift_reg_4_s5 <= shift_s4[0];
     end
 
     // Stage 5, part of: shift_register <- 2 * shift_register
-    reg  [26:0] shift_register_13_s6;  // u1.26: beta*D^2, once it has shifted
-
-    // u1.26: beta*D^2, once it has shifted
     wire [26:0] shift_register_10_s5 = (|shift_register_9_s5[26:25]) ? 27'h7ffffff :
             {shift_register_9_s5[24:0], 2'd0};
-
-    // u1.26: beta*D^2, once it has shifted
     wire [26:0] shift_register_11_s5 = shift_reg_3_s5 ? shift_register_10_s5 : shift_register_9_s5;
-
-    // u1.26: beta*D^2, once it has shifted
     wire [26:0] shift_register_12_s5 = shift_register_11_s5[26] ? 27'h7ffffff :
             {shift_register_11_s5[25:0], 1'b0};
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_13_s5 = shift_reg_4_s5 ? shift_register_12_s5 : shift_register_11_s5;
-
-    always @(posedge clk) begin
-        if (advance) begin
-            shift_register_13_s6 <= shift_register_13_s5;
-        end
+    reg  [26:0] shift_register_13_s6;  // u1.26: beta*D^2, once it has shifted
+    always @(posedge clk) if (advance) begin
+        shift_register_13_s6 <= shift_reg_4_s5 ? shift_register_12_s5 : shift_register_11_s5;
     end
 
     // Stage 6, part of: accumulator <- base^2
-    reg  [15:0] base_s7;  // u0.16: base of the power, or 0
-
     // u1.16: beta*D^2, to the point of f
     wire [16:0] beta_distance_s6 = shift_register_13_s6[26:10];
-
     wire comparator_s6 = beta_distance_s6 < ONE;  // beta*D^2 is below 1.0
     wire [15:0] inverse_s6 = ~shift_register_13_s6[25:10];  // u0.16: 1.0 - beta*D^2, less an ulp
-    wire [15:0] base_s6 = comparator_s6 ? inverse_s6 : 16'd0;  // u0.16: base of the power, or 0
-
-    always @(posedge clk) begin
-        if (advance) begin
-            base_s7 <= base_s6;
-        end
-    end
+    reg  [15:0] base_s7;  // u0.16: base of the power, or 0
+    always @(posedge clk) if (advance) base_s7 <= comparator_s6 ? inverse_s6 : 16'd0;
 
     // Stage 7, part of: accumulator <- base^2
-    reg  [15:0] accumulator_s8;  // u0.16: the powers of the base, in the end f
-
     wire [31:0] multiplier4_s7 = base_s7 * base_s7;  // multiplier 4, u0.32
-
-    // u0.16: the powers of the base, in the end f
-    wire [15:0] accumulator_s7 = multiplier4_s7[31:16];
-
-    always @(posedge clk) begin
-        if (advance) begin
-            accumulator_s8 <= accumulator_s7;
-        end
-    end
+    reg  [15:0] accumulator_s8;  // u0.16: the powers of the base, in the end f
+    always @(posedge clk) if (advance) accumulator_s8 <= multiplier4_s7[31:16];
 
     // Stage 8, part of: accumulator <- accumulator^2
-    reg  [15:0] accumulator_2_s9;  // u0.16: the powers of the base, in the end f
-
     wire [31:0] multiplier4_2_s8 = accumulator_s8 * accumulator_s8;  // multiplier 4, u0.32
-
-    // u0.16: the powers of the base, in the end f
-    wire [15:0] accumulator_2_s8 = multiplier4_2_s8[31:16];
-
-    always @(posedge clk) begin
-        if (advance) begin
-            accumulator_2_s9 <= accumulator_2_s8;
-        end
-    end
+    reg  [15:0] accumulator_2_s9;  // u0.16: the powers of the base, in the end f
+    always @(posedge clk) if (advance) accumulator_2_s9 <= multiplier4_2_s8[31:16];
 
     // Stage 9, part of: accumulator <- accumulator^2
-    reg  [15:0] accumulator_3_s10;  // u0.16: the powers of the base, in the end f
-
     wire [31:0] multiplier4_3_s9 = accumulator_2_s9 * accumulator_2_s9;  // multiplier 4, u0.32
-
-    // u0.16: the powers of the base, in the end f
-    wire [15:0] accumulator_3_s9 = multiplier4_3_s9[31:16];
-
-    always @(posedge clk) begin
-        if (advance) begin
-            accumulator_3_s10 <= accumulator_3_s9;
-        end
-    end
+    reg  [15:0] accumulator_3_s10;  // u0.16: the powers of the base, in the end f
+    always @(posedge clk) if (advance) accumulator_3_s10 <= multiplier4_3_s9[31:16];
 
     // Stage 10, part of: accumulator <- accumulator^2
-    reg  [7:0]  red_s11;            // intensity of the light times k_s
-    reg  [7:0]  green_s11;          // intensity of the light times k_s
-    reg  [7:0]  blue_s11;           // intensity of the light times k_s
-    reg  [15:0] accumulator_4_s11;  // u0.16: the powers of the base, in the end f
-
     wire [31:0] multiplier4_4_s10 = accumulator_3_s10 * accumulator_3_s10;  // multiplier 4, u0.32
-
-    // u0.16: the powers of the base, in the end f
-    wire [15:0] accumulator_4_s10 = multiplier4_4_s10[31:16];
-
-    always @(posedge clk) begin
-        if (advance) begin
-            accumulator_4_s11 <= accumulator_4_s10;
-        end
-    end
+    reg  [15:0] accumulator_4_s11;  // u0.16: the powers of the base, in the end f
+    wire [7:0]  red_s11, green_s11, blue_s11;
+    always @(posedge clk) if (advance) accumulator_4_s11 <= multiplier4_4_s10[31:16];
 
     // Stage 11, part of: result
-    reg  [7:0] red_product_kept_s12;
-    reg        red_product_bits_s12;
-    reg  [7:0] green_product_kept_s12;
-    reg        green_product_bits_s12;
-    reg  [7:0] blue_product_kept_s12;
-    reg        blue_product_bits_s12;
-
     // u8.16: an output before it is rounded
     wire [23:0] red_product_s11 = accumulator_4_s11 * red_s11;
-
-    // u8.16: an output before it is rounded
     wire [23:0] green_product_s11 = accumulator_4_s11 * green_s11;
-
-    // u8.16: an output before it is rounded
     wire [23:0] blue_product_s11 = accumulator_4_s11 * blue_s11;
-
-    always @(posedge clk) begin
-        if (advance) begin
-            red_product_kept_s12 <= red_product_s11[23:16];
-            red_product_bits_s12 <= red_product_s11[15];
-            green_product_kept_s12 <= green_product_s11[23:16];
-            green_product_bits_s12 <= green_product_s11[15];
-            blue_product_kept_s12 <= blue_product_s11[23:16];
-            blue_product_bits_s12 <= blue_product_s11[15];
-        end
+    reg  [7:0] red_product_kept_s12, green_product_kept_s12, blue_product_kept_s12;
+    reg        red_product_bits_s12, green_product_bits_s12, blue_product_bits_s12;
+    always @(posedge clk) if (advance) begin
+        red_product_kept_s12 <= red_product_s11[23:16];
+        red_product_bits_s12 <= red_product_s11[15];
+        green_product_kept_s12 <= green_product_s11[23:16];
+        green_product_bits_s12 <= green_product_s11[15];
+        blue_product_kept_s12 <= blue_product_s11[23:16];
+        blue_product_bits_s12 <= blue_product_s11[15];
     end
 
     // Stage 12, part of: result
-    reg  [7:0] red_intensity_s13;
-    reg  [7:0] green_intensity_s13;
-    reg  [7:0] blue_intensity_s13;
-
-    wire [7:0] red_intensity_s12 = red_product_kept_s12 + {7'd0, red_product_bits_s12};
-    wire [7:0] green_intensity_s12 = green_product_kept_s12 + {7'd0, green_product_bits_s12};
-    wire [7:0] blue_intensity_s12 = blue_product_kept_s12 + {7'd0, blue_product_bits_s12};
-
-    always @(posedge clk) begin
-        if (advance) begin
-            red_intensity_s13 <= red_intensity_s12;
-            green_intensity_s13 <= green_intensity_s12;
-            blue_intensity_s13 <= blue_intensity_s12;
-        end
+    reg  [7:0] red_intensity_s13, green_intensity_s13, blue_intensity_s13;
+    always @(posedge clk) if (advance) begin
+        red_intensity_s13 <= red_product_kept_s12 + {7'd0, red_product_bits_s12};
+        green_intensity_s13 <= green_product_kept_s12 + {7'd0, green_product_bits_s12};
+        blue_intensity_s13 <= blue_product_kept_s12 + {7'd0, blue_product_bits_s12};
     end
 
-    // Delay lines: values that nothing reads for several stages lie in small memories. Whenever
-    // points move on, a slot gives the value that it holds and takes a new one; its turn comes
-    // again when all others have had theirs.
-    reg [1:0] slot_of_3;
-    initial slot_of_3 = 2'd0;
-    (* ram_style = "distributed", syn_ramstyle = "distributed" *)
-    reg [3:0] delay_s0_s4 [0:2];
-    reg [3:0] slot_of_10;
-    initial slot_of_10 = 4'd0;
-    (* ram_style = "distributed", syn_ramstyle = "distributed" *)
-    reg [23:0] delay_s0_s11 [0:9];
-
-    always @(posedge clk) begin
-        if (advance) begin
-            slot_of_3 <= slot_of_3 == 2'd2 ? 2'd0 : slot_of_3 + 2'd1;
-            shift_s4 <= delay_s0_s4[slot_of_3];
-            delay_s0_s4[slot_of_3] <= shift;
-        end
-    end
-
-    always @(posedge clk) begin
-        if (advance) begin
-            slot_of_10 <= slot_of_10 == 4'd9 ? 4'd0 : slot_of_10 + 4'd1;
-            {red_s11, green_s11, blue_s11} <= delay_s0_s11[slot_of_10];
-            delay_s0_s11[slot_of_10] <= {red, green, blue};
-        end
-    end
+    // Delay lines: what nothing reads for several stages goes through small memories
+    lyon_pipelined_delay #(.WIDTH(4), .WORDS(3), .BITS(2)) delay_of_4 (
+        .clk(clk), .rst_n(rst_n), .enable(advance),
+        .entering(shift),
+        .leaving(shift_s4)
+    );
+    lyon_pipelined_delay #(.WIDTH(24), .WORDS(10), .BITS(4)) delay_of_11 (
+        .clk(clk), .rst_n(rst_n), .enable(advance),
+        .entering({red, green, blue}),
+        .leaving({red_s11, green_s11, blue_s11})
+    );
 
     // Results
-
     assign red_out = red_intensity_s13;  // intensity on the output
     assign green_out = green_intensity_s13;  // intensity on the output
     assign blue_out = blue_intensity_s13;  // intensity on the output
@@ -393,6 +198,42 @@ module lyon_pipelined (
             multiplier4_s7[15:0], multiplier4_2_s8[15:0], multiplier4_3_s9[15:0],
             multiplier4_4_s10[15:0], red_product_s11[14:0], green_product_s11[14:0],
             blue_product_s11[14:0]};
+endmodule
+
+// Values on their way, WORDS + 1 registers long. A slot of a small memory gives the value that it
+// holds and takes a new one; its turn comes again when all others have had theirs.
+/* verilator lint_off DECLFILENAME */
+module lyon_pipelined_delay #(
+    parameter WIDTH  = 8,
+    parameter WORDS  = 2,
+    parameter BITS   = 1,  // of the number of a slot
+    parameter MEMORY = 1   // 0: registers in place of the memory
+) (
+    input  wire             clk, rst_n, enable,
+    input  wire [WIDTH-1:0] entering,
+    output reg  [WIDTH-1:0] leaving
+);
+    generate
+        if (MEMORY != 0) begin : memory
+            localparam [BITS-1:0] LAST = WORDS[BITS-1:0] - 1'b1;
+            reg  [BITS-1:0]  slot;
+            reg  [WIDTH-1:0] words [0:WORDS-1];
+            // Of a power of two the number after the last is 0.
+            wire around = WORDS != 1 << BITS && slot == LAST;
+            always @(posedge clk) begin
+                if (!rst_n) slot <= {BITS{1'b0}};
+                else if (enable) slot <= around ? {BITS{1'b0}} : slot + 1'b1;
+                if (enable) begin
+                    leaving <= words[slot];
+                    words[slot] <= entering;
+                end
+            end
+        end else begin : registers
+            reg  [WIDTH*WORDS-1:0] words;
+            wire unused = &{1'b0, rst_n};
+            always @(posedge clk) if (enable) {leaving, words} <= {words, entering};
+        end
+    endgenerate
 endmodule
 
 `default_nettype wire

@@ -11,20 +11,6 @@
 // Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit apart) and F
 // fraction bits; the value of a signal is its integer times 2^-F.
 //
-//  rst_n              reset, active low, synchronous
-//  in_valid           a point is offered: the operands are its own
-//  exponent   u10.0   operand
-//  cos_gamma  u1.20   operand
-//  red        u8.0    operand
-//  green      u8.0    operand
-//  blue       u8.0    operand
-//  out_ready          the results are taken in this clock
-//  in_ready           the point that is offered is taken in this clock
-//  out_valid          results are on the outputs
-//  red_out    u8.0    result
-//  green_out  u8.0    result
-//  blue_out   u8.0    result
-//
 // Below its zero at c = 1 - 1/a(n) the parabola is clamped to 0. The seed has no clamp, but no
 // negative numbers either.
 //
@@ -64,261 +50,179 @@ module quadratic_pipelined #(
     // Constants
     localparam [20:0] COS_GAMMA_MOST = 21'h100000;  // 1.0 in u1.20
 
-    // The handshake: which stage has a point, and when all of them move on
-    reg  valid_s1;  // stage 1 has a point
-    reg  valid_s2;  // stage 2 has a point
-    reg  valid_s3;  // stage 3 has a point
-    reg  valid_s4;  // stage 4 has a point
-    reg  valid_s5;  // stage 5 has a point
-    reg  valid_s6;  // stage 6 has a point
-    reg  valid_s7;  // stage 7 has a point
-    reg  valid_s8;  // the results are on the outputs
-
-    assign out_valid = valid_s8;  // the results are on the outputs
-    wire advance = out_ready | ~valid_s8;  // every point moves on by a stage
-    assign in_ready = advance;  // a point that is offered is taken in this clock
-
+    // The handshake: a bit for each stage that has a point; all points move on together
+    reg  [8:1] valid;
+    assign out_valid = valid[8];
+    wire advance = out_ready | ~valid[8];
+    assign in_ready = advance;
     always @(posedge clk) begin
-        if (!rst_n) begin
-            valid_s1 <= 1'b0;
-            valid_s2 <= 1'b0;
-            valid_s3 <= 1'b0;
-            valid_s4 <= 1'b0;
-            valid_s5 <= 1'b0;
-            valid_s6 <= 1'b0;
-            valid_s7 <= 1'b0;
-            valid_s8 <= 1'b0;
-        end else if (advance) begin
-            valid_s1 <= in_valid;
-            valid_s2 <= valid_s1;
-            valid_s3 <= valid_s2;
-            valid_s4 <= valid_s3;
-            valid_s5 <= valid_s4;
-            valid_s6 <= valid_s5;
-            valid_s7 <= valid_s6;
-            valid_s8 <= valid_s7;
-        end
+        if (!rst_n) valid <= 8'd0;
+        else if (advance) valid <= {valid[7:1], in_valid};
     end
 
     // Stage 0, part of: operands; ROM(n) addressed
-    // register 2, u1.20: c, the cosine of the angle between normal and half vector
-    reg  [20:0] cos_gamma_reg_s1;
     reg  [17:0] coefficient_word_s1;  // u10.8
-
-    wire cos_gamma_over_s0 = cos_gamma[20];
-
-    // mux 2, u1.20: c, the cosine of the angle between normal and half vector
-    wire [20:0] cos_gamma_reg_s0 = cos_gamma_over_s0 ? COS_GAMMA_MOST : cos_gamma;
-
     // ROM coefficient: a(n), minimax, for an exponent n (the address)
     reg [17:0] coefficient_rom [0:1023];
     initial $readmemh(COEFFICIENT_FILE, coefficient_rom);
     always @(posedge clk) if (advance) coefficient_word_s1 <= coefficient_rom[exponent];
-
-    always @(posedge clk) begin
-        if (advance) begin
-            cos_gamma_reg_s1 <= cos_gamma_reg_s0;
-        end
+    // register 2, u1.20: c, the cosine of the angle between normal and half vector
+    reg  [20:0] cos_gamma_reg_s1;
+    always @(posedge clk) if (advance) begin
+        cos_gamma_reg_s1 <= cos_gamma[20] ? COS_GAMMA_MOST : cos_gamma;
     end
 
     // Stage 1, part of: operands; ROM(n) addressed
-    // register 2, u1.20: c, the cosine of the angle between normal and half vector
+    wire [20:0] multiplier5_row_2_s1 = cos_gamma_reg_s1[0] ? {cos_gamma_reg_s1[19:2], 1'b0,
+            cos_gamma_reg_s1[1:0]} : 21'd0;
+    wire [20:0] multiplier5_row_4_s1 = cos_gamma_reg_s1[1] ? {cos_gamma_reg_s1[19:2], 1'b0,
+            cos_gamma_reg_s1[1:0]} : 21'd0;
     reg  [20:0] cos_gamma_reg_s2;
-    reg  [35:0] multiplier5_inside_upper_s2;         // register 5
-    reg  [21:0] multiplier5_inside_rows_upper_3_s2;  // register 5
-    reg         multiplier5_inside_rows_upper_4_s2;  // register 5
-    reg  [17:0] coefficient_word_s2;                 // u10.8
-
-    // multiplier 5
-    wire [35:0] multiplier5_inside_upper_s1 = cos_gamma_reg_s1[19:2] * cos_gamma_reg_s1[19:2];
-
-    // mux 5
-    wire [20:0] multiplier5_inside_row_2_s1 = cos_gamma_reg_s1[0] ? {cos_gamma_reg_s1[19:2], 1'b0,
-            cos_gamma_reg_s1[1:0]} : 21'd0;
-
-    // mux 5
-    wire [20:0] multiplier5_inside_row_4_s1 = cos_gamma_reg_s1[1] ? {cos_gamma_reg_s1[19:2], 1'b0,
-            cos_gamma_reg_s1[1:0]} : 21'd0;
-
-    always @(posedge clk) begin
-        if (advance) begin
-            cos_gamma_reg_s2 <= cos_gamma_reg_s1;
-            multiplier5_inside_upper_s2 <= multiplier5_inside_upper_s1;
-            multiplier5_inside_rows_upper_3_s2 <= {2'd0, multiplier5_inside_row_2_s1[20:1]} + {1'b0,
-                    multiplier5_inside_row_4_s1};
-            multiplier5_inside_rows_upper_4_s2 <= multiplier5_inside_row_2_s1[0];
-            coefficient_word_s2 <= coefficient_word_s1;
-        end
+    reg  [35:0] multiplier5_upper_s2;
+    reg  [21:0] multiplier5_upper_4_s2;
+    reg         multiplier5_upper_5_s2;
+    reg  [17:0] coefficient_word_s2;
+    always @(posedge clk) if (advance) begin
+        cos_gamma_reg_s2 <= cos_gamma_reg_s1;
+        multiplier5_upper_s2 <= cos_gamma_reg_s1[19:2] * cos_gamma_reg_s1[19:2];
+        multiplier5_upper_4_s2 <= {2'd0, multiplier5_row_2_s1[20:1]} + {1'b0, multiplier5_row_4_s1};
+        multiplier5_upper_5_s2 <= multiplier5_row_2_s1[0];
+        coefficient_word_s2 <= coefficient_word_s1;
     end
 
     // Stage 2, part of: operands; ROM(n) addressed; difference <- c^2 - c
-    // register 2, u1.20: c, the cosine of the angle between normal and half vector
-    reg  [20:0] cos_gamma_reg_s3;
-    reg  [17:0] coefficient_word_s3;   // u10.8
-    reg         multiplier1_sign_s3;   // register 1
-    reg  [16:0] multiplier1_below_s3;  // register 1
-
-    // block 5
-    wire [22:0] multiplier5_inside_rows_s2 = {multiplier5_inside_rows_upper_3_s2,
-            multiplier5_inside_rows_upper_4_s2};
-
-    // adder 5
-    wire [35:0] multiplier5_inside_sum_upper_2_s2 = {17'd0, multiplier5_inside_rows_s2[22:4]} +
-            multiplier5_inside_upper_s2;
-
-    // block 5
-    wire [39:0] multiplier5_inside_sum_s2 = {multiplier5_inside_sum_upper_2_s2,
-            multiplier5_inside_rows_upper_3_s2[2:0], multiplier5_inside_rows_upper_4_s2};
-
-    // adder 1: c^2 - c
-    wire [21:0] adder1_upper_3_s2 = {1'b0, cos_gamma_reg_s2[20], multiplier5_inside_sum_s2[39:20]} -
+    wire [35:0] multiplier5_upper_7_s2 = {17'd0, multiplier5_upper_4_s2[21:3]} +
+            multiplier5_upper_s2;
+    wire [21:0] adder1_upper_3_s2 = {1'b0, cos_gamma_reg_s2[20], multiplier5_upper_7_s2[35:16]} -
             {1'b0, cos_gamma_reg_s2};
-
-    always @(posedge clk) begin
-        if (advance) begin
-            cos_gamma_reg_s3 <= cos_gamma_reg_s2;
-            coefficient_word_s3 <= coefficient_word_s2;
-            multiplier1_sign_s3 <= adder1_upper_3_s2[18];
-            multiplier1_below_s3 <= adder1_upper_3_s2[17:1];
-        end
+    reg  [20:0] cos_gamma_reg_s3;
+    reg  [17:0] coefficient_word_s3;
+    reg         multiplier1_sign_s3;
+    reg  [16:0] multiplier1_below_s3;
+    always @(posedge clk) if (advance) begin
+        cos_gamma_reg_s3 <= cos_gamma_reg_s2;
+        coefficient_word_s3 <= coefficient_word_s2;
+        multiplier1_sign_s3 <= adder1_upper_3_s2[18];
+        multiplier1_below_s3 <= adder1_upper_3_s2[17:1];
     end
 
     // Stage 3, part of: intensity <- c + a(n) * difference, not below 0
-    // register 2, u1.20: c, the cosine of the angle between normal and half vector
-    reg  [20:0] cos_gamma_reg_s4;
-    reg  [17:0] multiplier1_at_sign_s4;  // register 1
+    wire [34:0] multiplier1_inside_s3 = coefficient_word_s3 * multiplier1_below_s3;
     reg  [17:0] multiplier1_s4;          // register 1
     reg  [9:0]  multiplier1_2_s4;        // register 1
-    reg  [6:0]  adder2_upper_3_s4;       // register 2: c + a(n)*(c^2 - c)
-
-    wire [34:0] multiplier1_inside_s3 = coefficient_word_s3 * multiplier1_below_s3;  // multiplier 1
-
-    // mux 1
-    wire [17:0] multiplier1_at_sign_s3 = multiplier1_sign_s3 ? coefficient_word_s3 : 18'd0;
-
-    always @(posedge clk) begin
-        if (advance) begin
-            cos_gamma_reg_s4 <= cos_gamma_reg_s3;
-            multiplier1_at_sign_s4 <= multiplier1_at_sign_s3;
-            multiplier1_s4 <= multiplier1_inside_s3[34:17];
-            multiplier1_2_s4 <= multiplier1_inside_s3[16:7];
-            adder2_upper_3_s4 <= multiplier1_inside_s3[6:0];
-        end
+    reg  [20:0] cos_gamma_reg_s4;
+    reg  [17:0] multiplier1_at_sign_s4;
+    reg  [6:0]  adder2_upper_3_s4;
+    always @(posedge clk) if (advance) begin
+        cos_gamma_reg_s4 <= cos_gamma_reg_s3;
+        multiplier1_at_sign_s4 <= multiplier1_sign_s3 ? coefficient_word_s3 : 18'd0;
+        multiplier1_s4 <= multiplier1_inside_s3[34:17];
+        multiplier1_2_s4 <= multiplier1_inside_s3[16:7];
+        adder2_upper_3_s4 <= multiplier1_inside_s3[6:0];
     end
 
     // Stage 4, part of: intensity <- c + a(n) * difference, not below 0
-    reg         adder2_kept_bits_s5;
-    reg  [7:0]  adder2_kept_bits_2_s5;
-    reg  [15:0] adder2_kept_inside_s5;  // u0.16
-
-    // adder 1, s18.0
     wire signed [18:0] multiplier1_upper_s4 = {1'b0, multiplier1_s4} - {1'b0,
             multiplier1_at_sign_s4};
-
-    // adder 2: c + a(n)*(c^2 - c)
     wire [28:0] adder2_upper_2_s4 = {multiplier1_upper_s4, multiplier1_2_s4} + {8'd0,
             cos_gamma_reg_s4};
-
     // block 2, s8.27: c + a(n)*(c^2 - c)
     wire signed [35:0] adder2_s4 = {adder2_upper_2_s4, adder2_upper_3_s4};
-
-    always @(posedge clk) begin
-        if (advance) begin
-            adder2_kept_bits_s5 <= adder2_s4[35];
-            adder2_kept_bits_2_s5 <= adder2_s4[34:27];
-            adder2_kept_inside_s5 <= adder2_s4[26:11];
-        end
+    reg  [15:0] adder2_kept_inside_s5;  // u0.16
+    reg         adder2_kept_bits_s5;
+    reg  [7:0]  adder2_kept_bits_2_s5;
+    always @(posedge clk) if (advance) begin
+        adder2_kept_bits_s5 <= adder2_s4[35];
+        adder2_kept_bits_2_s5 <= adder2_s4[34:27];
+        adder2_kept_inside_s5 <= adder2_s4[26:11];
     end
 
     // Stage 5, part of: intensity <- c + a(n) * difference, not below 0
-    reg  [7:0]  red_s6;        // register 3: intensity of the light times k_s
-    reg  [7:0]  green_s6;      // register 4: intensity of the light times k_s
-    reg  [7:0]  blue_s6;       // register 5: intensity of the light times k_s
-    reg  [15:0] intensity_s6;  // u0.16: the reflectance f
-
-    // u0.16
     wire [15:0] clamped_limited_s5 = (|adder2_kept_bits_2_s5) ? 16'hffff : adder2_kept_inside_s5;
-
-    // u0.16: the reflectance f
-    wire [15:0] intensity_s5 = adder2_kept_bits_s5 ? 16'd0 : clamped_limited_s5;
-
-    always @(posedge clk) begin
-        if (advance) begin
-            intensity_s6 <= intensity_s5;
-        end
+    reg  [15:0] intensity_s6;  // u0.16: the reflectance f
+    wire [7:0]  red_s6, green_s6, blue_s6;
+    always @(posedge clk) if (advance) begin
+        intensity_s6 <= adder2_kept_bits_s5 ? 16'd0 : clamped_limited_s5;
     end
 
     // Stage 6, part of: result
-    reg  [7:0] red_product_kept_s7;
-    reg        red_product_bits_s7;
-    reg  [7:0] green_product_kept_s7;
-    reg        green_product_bits_s7;
-    reg  [7:0] blue_product_kept_s7;
-    reg        blue_product_bits_s7;
-
     // multiplier 2, u8.16: an output before it is rounded
     wire [23:0] red_product_s6 = intensity_s6 * red_s6;
-
     // multiplier 3, u8.16: an output before it is rounded
     wire [23:0] green_product_s6 = intensity_s6 * green_s6;
-
     // multiplier 4, u8.16: an output before it is rounded
     wire [23:0] blue_product_s6 = intensity_s6 * blue_s6;
-
-    always @(posedge clk) begin
-        if (advance) begin
-            red_product_kept_s7 <= red_product_s6[23:16];
-            red_product_bits_s7 <= red_product_s6[15];
-            green_product_kept_s7 <= green_product_s6[23:16];
-            green_product_bits_s7 <= green_product_s6[15];
-            blue_product_kept_s7 <= blue_product_s6[23:16];
-            blue_product_bits_s7 <= blue_product_s6[15];
-        end
+    reg  [7:0] red_product_kept_s7, green_product_kept_s7, blue_product_kept_s7;
+    reg        red_product_bits_s7, green_product_bits_s7, blue_product_bits_s7;
+    always @(posedge clk) if (advance) begin
+        red_product_kept_s7 <= red_product_s6[23:16];
+        red_product_bits_s7 <= red_product_s6[15];
+        green_product_kept_s7 <= green_product_s6[23:16];
+        green_product_bits_s7 <= green_product_s6[15];
+        blue_product_kept_s7 <= blue_product_s6[23:16];
+        blue_product_bits_s7 <= blue_product_s6[15];
     end
 
     // Stage 7, part of: result
-    reg  [7:0] red_intensity_s8;
-    reg  [7:0] green_intensity_s8;
-    reg  [7:0] blue_intensity_s8;
-
-    wire [7:0] red_intensity_s7 = red_product_kept_s7 + {7'd0, red_product_bits_s7};
-    wire [7:0] green_intensity_s7 = green_product_kept_s7 + {7'd0, green_product_bits_s7};
-    wire [7:0] blue_intensity_s7 = blue_product_kept_s7 + {7'd0, blue_product_bits_s7};
-
-    always @(posedge clk) begin
-        if (advance) begin
-            red_intensity_s8 <= red_intensity_s7;
-            green_intensity_s8 <= green_intensity_s7;
-            blue_intensity_s8 <= blue_intensity_s7;
-        end
+    reg  [7:0] red_intensity_s8, green_intensity_s8, blue_intensity_s8;
+    always @(posedge clk) if (advance) begin
+        red_intensity_s8 <= red_product_kept_s7 + {7'd0, red_product_bits_s7};
+        green_intensity_s8 <= green_product_kept_s7 + {7'd0, green_product_bits_s7};
+        blue_intensity_s8 <= blue_product_kept_s7 + {7'd0, blue_product_bits_s7};
     end
 
-    // Delay lines: values that nothing reads for several stages lie in small memories. Whenever
-    // points move on, a slot gives the value that it holds and takes a new one; its turn comes
-    // again when all others have had theirs.
-    reg [2:0] slot_of_5;
-    initial slot_of_5 = 3'd0;
-    (* ram_style = "distributed", syn_ramstyle = "distributed" *)
-    reg [23:0] delay_s0_s6 [0:4];
-
-    always @(posedge clk) begin
-        if (advance) begin
-            slot_of_5 <= slot_of_5 == 3'd4 ? 3'd0 : slot_of_5 + 3'd1;
-            {red_s6, green_s6, blue_s6} <= delay_s0_s6[slot_of_5];
-            delay_s0_s6[slot_of_5] <= {red, green, blue};
-        end
-    end
+    // Delay lines: what nothing reads for several stages goes through small memories
+    quadratic_pipelined_delay #(.WIDTH(24), .WORDS(5), .BITS(3)) delay_of_6 (
+        .clk(clk), .rst_n(rst_n), .enable(advance),
+        .entering({red, green, blue}),
+        .leaving({red_s6, green_s6, blue_s6})
+    );
 
     // Results
-
     assign red_out = red_intensity_s8;  // output 1: intensity on the output
     assign green_out = green_intensity_s8;  // output 2: intensity on the output
     assign blue_out = blue_intensity_s8;  // output 3: intensity on the output
 
     // Unused bits, among them those that narrowing drops.
-    wire unused = &{1'b0, multiplier5_inside_rows_s2[3:0], multiplier5_inside_sum_s2[19:0],
-            adder1_upper_3_s2[0], adder1_upper_3_s2[21:19], adder2_s4[10:0], red_product_s6[14:0],
-            green_product_s6[14:0], blue_product_s6[14:0]};
+    wire unused = &{1'b0, multiplier5_upper_4_s2[2:0], multiplier5_upper_5_s2,
+            multiplier5_upper_7_s2[15:0], adder1_upper_3_s2[0], adder1_upper_3_s2[21:19],
+            adder2_s4[10:0], red_product_s6[14:0], green_product_s6[14:0], blue_product_s6[14:0]};
+endmodule
+
+// Values on their way, WORDS + 1 registers long. A slot of a small memory gives the value that it
+// holds and takes a new one; its turn comes again when all others have had theirs.
+/* verilator lint_off DECLFILENAME */
+module quadratic_pipelined_delay #(
+    parameter WIDTH  = 8,
+    parameter WORDS  = 2,
+    parameter BITS   = 1,  // of the number of a slot
+    parameter MEMORY = 1   // 0: registers in place of the memory
+) (
+    input  wire             clk, rst_n, enable,
+    input  wire [WIDTH-1:0] entering,
+    output reg  [WIDTH-1:0] leaving
+);
+    generate
+        if (MEMORY != 0) begin : memory
+            localparam [BITS-1:0] LAST = WORDS[BITS-1:0] - 1'b1;
+            reg  [BITS-1:0]  slot;
+            reg  [WIDTH-1:0] words [0:WORDS-1];
+            // Of a power of two the number after the last is 0.
+            wire around = WORDS != 1 << BITS && slot == LAST;
+            always @(posedge clk) begin
+                if (!rst_n) slot <= {BITS{1'b0}};
+                else if (enable) slot <= around ? {BITS{1'b0}} : slot + 1'b1;
+                if (enable) begin
+                    leaving <= words[slot];
+                    words[slot] <= entering;
+                end
+            end
+        end else begin : registers
+            reg  [WIDTH*WORDS-1:0] words;
+            wire unused = &{1'b0, rst_n};
+            always @(posedge clk) if (enable) {leaving, words} <= {words, entering};
+        end
+    endgenerate
 endmodule
 
 `default_nettype wire

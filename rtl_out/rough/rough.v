@@ -26,8 +26,9 @@
 //  green_out              u8.0    result
 //  blue_out               u8.0    result
 //
-// Registers, muxes, adders and multipliers carry the numbers of the patent's figure 1; the control
-// ROM is its table 1, bit for bit.
+// Registers, muxes, adders and multipliers carry the numbers of the patent's figure 1.
+//
+// The control ROM is the patent's table 1, bit for bit.
 //
 // Muxes 8 and 9 are followed by registers: the multiplier takes what the microinstruction before
 // selected. The patent's settling microinstructions leave the time for that. A synchronous ROM 18

@@ -11,28 +11,7 @@
 // fraction bits; the value of a signal is its integer times 2^-F. With negative I the first
 // fraction bits are always 0 and left out.
 //
-//  rst_n                    reset, active low, synchronous
-//  in_valid                 a point is offered: the operands are its own
-//  cos_gamma        u1.20   operand
-//  cos_dgamma       u1.20   operand
-//  exponent         u10.0   operand
-//  dgamma_negative          operand
-//  red              u8.0    operand
-//  green            u8.0    operand
-//  blue             u8.0    operand
-//  out_ready                the results are taken in this clock
-//  in_ready                 the point that is offered is taken in this clock
-//  out_valid                results are on the outputs
-//  red_out          u8.0    result
-//  green_out        u8.0    result
-//  blue_out         u8.0    result
-//
-// Registers, muxes, adders and multipliers carry the numbers of the patent's figure 1; the control
-// ROM is its table 1, bit for bit.
-//
-// Muxes 8 and 9 are followed by registers: the multiplier takes what the microinstruction before
-// selected. The patent's settling microinstructions leave the time for that. A synchronous ROM 18
-// is addressed with dgamma one microinstruction before line 47 says so.
+// Registers, muxes, adders and multipliers carry the numbers of the patent's figure 1.
 //
 // Cosines are limited to 0 ... 1.0 as they are written; cos gamma <= 0 gives 0.
 //
@@ -70,73 +49,14 @@ module rough_pipelined #(
     localparam [16:0] RESULT_MOST = 17'hffff;  // 0.9999847412109375 in s0.16
     localparam [16:0] MINUS_ONE = 17'h10000;  // -1.0 in s0.16
 
-    // The handshake: which stage has a point, and when all of them move on
-    reg  valid_s1;   // stage 1 has a point
-    reg  valid_s2;   // stage 2 has a point
-    reg  valid_s3;   // stage 3 has a point
-    reg  valid_s4;   // stage 4 has a point
-    reg  valid_s5;   // stage 5 has a point
-    reg  valid_s6;   // stage 6 has a point
-    reg  valid_s7;   // stage 7 has a point
-    reg  valid_s8;   // stage 8 has a point
-    reg  valid_s9;   // stage 9 has a point
-    reg  valid_s10;  // stage 10 has a point
-    reg  valid_s11;  // stage 11 has a point
-    reg  valid_s12;  // stage 12 has a point
-    reg  valid_s13;  // stage 13 has a point
-    reg  valid_s14;  // stage 14 has a point
-    reg  valid_s15;  // stage 15 has a point
-    reg  valid_s16;  // stage 16 has a point
-    reg  valid_s17;  // stage 17 has a point
-    reg  valid_s18;  // stage 18 has a point
-    reg  valid_s19;  // the results are on the outputs
-
-    assign out_valid = valid_s19;  // the results are on the outputs
-    wire advance = out_ready | ~valid_s19;  // every point moves on by a stage
-    assign in_ready = advance;  // a point that is offered is taken in this clock
-
+    // The handshake: a bit for each stage that has a point; all points move on together
+    reg  [19:1] valid;
+    assign out_valid = valid[19];
+    wire advance = out_ready | ~valid[19];
+    assign in_ready = advance;
     always @(posedge clk) begin
-        if (!rst_n) begin
-            valid_s1 <= 1'b0;
-            valid_s2 <= 1'b0;
-            valid_s3 <= 1'b0;
-            valid_s4 <= 1'b0;
-            valid_s5 <= 1'b0;
-            valid_s6 <= 1'b0;
-            valid_s7 <= 1'b0;
-            valid_s8 <= 1'b0;
-            valid_s9 <= 1'b0;
-            valid_s10 <= 1'b0;
-            valid_s11 <= 1'b0;
-            valid_s12 <= 1'b0;
-            valid_s13 <= 1'b0;
-            valid_s14 <= 1'b0;
-            valid_s15 <= 1'b0;
-            valid_s16 <= 1'b0;
-            valid_s17 <= 1'b0;
-            valid_s18 <= 1'b0;
-            valid_s19 <= 1'b0;
-        end else if (advance) begin
-            valid_s1 <= in_valid;
-            valid_s2 <= valid_s1;
-            valid_s3 <= valid_s2;
-            valid_s4 <= valid_s3;
-            valid_s5 <= valid_s4;
-            valid_s6 <= valid_s5;
-            valid_s7 <= valid_s6;
-            valid_s8 <= valid_s7;
-            valid_s9 <= valid_s8;
-            valid_s10 <= valid_s9;
-            valid_s11 <= valid_s10;
-            valid_s12 <= valid_s11;
-            valid_s13 <= valid_s12;
-            valid_s14 <= valid_s13;
-            valid_s15 <= valid_s14;
-            valid_s16 <= valid_s15;
-            valid_s17 <= valid_s16;
-            valid_s18 <= valid_s17;
-            valid_s19 <= valid_s18;
-        end
+        if (!rst_n) valid <= 19'd0;
+        else if (advance) valid <= {valid[18:1], in_valid};
     end
 
     // Stage 0, part of: operands cos gamma, cos dgamma; sine of gamma addressed; 19 <- sin gamma;
@@ -145,808 +65,478 @@ module rough_pipelined #(
     reg  [20:0] cos_gamma_reg_s1;
     // register 2, u1.20: cosine of the angle by which the normal is perturbed
     reg  [20:0] cos_dgamma_reg_s1;
-    // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
-    reg         dgamma_negative_s1;
     reg  [20:0] complement_s1;       // u1.20: 1.0 - cos
     reg  [20:0] complement_2_s1;     // u1.20: 1.0 - cos
-
-    wire cos_gamma_over_s0 = cos_gamma[20];
-
-    // mux 1, u1.20: cosine of the angle between normal and half vector
-    wire [20:0] cos_gamma_reg_s0 = cos_gamma_over_s0 ? COS_GAMMA_MOST : cos_gamma;
-
-    wire cos_dgamma_over_s0 = cos_dgamma[20];
-
-    // mux 2, u1.20: cosine of the angle by which the normal is perturbed
-    wire [20:0] cos_dgamma_reg_s0 = cos_dgamma_over_s0 ? COS_GAMMA_MOST : cos_dgamma;
-
-    // u1.20: 1.0 - cos
-    wire [20:0] complement_s0 = cos_gamma_over_s0 ? 21'd0 : (COS_GAMMA_MOST - cos_gamma);
-
-    // u1.20: 1.0 - cos
-    wire [20:0] complement_2_s0 = cos_dgamma_over_s0 ? 21'd0 : (COS_GAMMA_MOST - cos_dgamma);
-
-    always @(posedge clk) begin
-        if (advance) begin
-            cos_gamma_reg_s1 <= cos_gamma_reg_s0;
-            cos_dgamma_reg_s1 <= cos_dgamma_reg_s0;
-            dgamma_negative_s1 <= dgamma_negative;
-            complement_s1 <= complement_s0;
-            complement_2_s1 <= complement_2_s0;
-        end
+    reg         dgamma_negative_s1;
+    always @(posedge clk) if (advance) begin
+        cos_gamma_reg_s1 <= cos_gamma[20] ? COS_GAMMA_MOST : cos_gamma;
+        cos_dgamma_reg_s1 <= cos_dgamma[20] ? COS_GAMMA_MOST : cos_dgamma;
+        dgamma_negative_s1 <= dgamma_negative;
+        complement_s1 <= cos_gamma[20] ? 21'd0 : (COS_GAMMA_MOST - cos_gamma);
+        complement_2_s1 <= cos_dgamma[20] ? 21'd0 : (COS_GAMMA_MOST - cos_dgamma);
     end
 
     // Stage 1, part of: operands cos gamma, cos dgamma; sine of gamma addressed; 19 <- sin gamma;
     // 11 <- cos gamma * cos dgamma
-    // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
-    reg         dgamma_negative_s2;
-    reg  [20:0] complement_s2;                                   // u1.20: 1.0 - cos
-    reg         sine_in_range6_s2;                               // u is in range 6 or in one above
-    reg         sine_in_range7_s2;                               // u is in range 7 or in one above
-    reg         sine_in_range8_s2;                               // u is in range 8 or in one above
-    reg  [1:0]  complement_shifted_bits_18_s2;                   // u0.2
-    reg         sine_in_range5_s2;                               // u is in range 5 or in one above
-    reg         sine_in_range1_s2;                               // u is in range 1 or in one above
-    reg         sine_in_range2_s2;                               // u is in range 2 or in one above
-    reg         sine_in_range3_s2;                               // u is in range 3 or in one above
-    reg         sine_in_range0_s2;                               // u is in range 0 or in one above
-    // the surface faces the half vector
-    reg         facing_s2;
-    reg  [9:0]  sine_word8_s2;
-    reg  [9:0]  sine_word1_s2;
-    reg  [17:0] multiplier10_inside_inside_upper_bits_s2;        // register 10
-    reg  [17:0] multiplier10_inside_inside_upper_upper_bits_s2;  // register 10
-    reg  [17:0] multiplier10_inside_inside_upper_row_2_s2;       // register 10
-    reg  [17:0] multiplier10_inside_inside_upper_row_4_s2;       // register 10
-    reg  [19:0] multiplier10_inside_inside_row_2_s2;             // register 10
-    reg  [19:0] multiplier10_inside_inside_row_4_s2;             // register 10
-    reg  [19:0] multiplier10_inside_at_highest_s2;               // register 10
-    reg  [20:0] multiplier10_at_highest_s2;                      // register 10
-    reg  [20:0] complement_2_s2;                                 // u1.20: 1.0 - cos
-    reg         sine_in_range6_2_s2;                             // u is in range 6 or in one above
-    reg         sine_in_range7_2_s2;                             // u is in range 7 or in one above
-    reg         sine_in_range8_2_s2;                             // u is in range 8 or in one above
-    reg  [1:0]  complement_shifted_bits_18_2_s2;                 // u0.2
-    reg         sine_in_range5_2_s2;                             // u is in range 5 or in one above
-    reg         sine_in_range1_2_s2;                             // u is in range 1 or in one above
-    reg         sine_in_range2_2_s2;                             // u is in range 2 or in one above
-    reg         sine_in_range3_2_s2;                             // u is in range 3 or in one above
-    reg         sine_in_range0_2_s2;                             // u is in range 0 or in one above
-    reg  [9:0]  sine_word8_2_s2;
-    reg  [9:0]  sine_word1_2_s2;
-
-    wire sine_in_range6_s1 = |complement_s1[20:6];  // u is in range 6 or in one above
-    wire sine_in_range7_s1 = |complement_s1[20:4];  // u is in range 7 or in one above
     wire sine_in_range8_s1 = |complement_s1[20:2];  // u is in range 8 or in one above
-    wire sine_in_range5_s1 = |complement_s1[20:8];  // u is in range 5 or in one above
     wire sine_in_range1_s1 = |complement_s1[20:16];  // u is in range 1 or in one above
     wire sine_in_range2_s1 = |complement_s1[20:14];  // u is in range 2 or in one above
     wire sine_in_range3_s1 = |complement_s1[20:12];  // u is in range 3 or in one above
     wire sine_in_range0_s1 = |complement_s1[20:18];  // u is in range 0 or in one above
-    wire facing_s1 = |cos_gamma_reg_s1;  // the surface faces the half vector
-
-    wire [9:0] sine_word8_s1 = sine_in_range8_s1 ? {8'd144, complement_s1[3:2]} : {8'd145,
-            complement_s1[1:0]};
-
     wire [9:0] sine_word3_s1 = sine_in_range3_s1 ? {4'd7, complement_s1[13:8]} : {5'd16,
             complement_s1[11:7]};
-
     wire [9:0] sine_word2_s1 = sine_in_range2_s1 ? {3'd2, complement_s1[15:9]} : sine_word3_s1;
-
     wire [8:0] sine_word0_s1 = sine_in_range0_s1 ? {3'd6, complement_s1[19:14]} : {1'b0,
             complement_s1[17:10]};
-
-    wire [9:0] sine_word1_s1 = sine_in_range1_s1 ? {1'b0, sine_word0_s1} : sine_word2_s1;
-
-    // mux 10
-    wire [19:0] multiplier10_inside_at_highest_s1 = cos_dgamma_reg_s1[20] ? cos_gamma_reg_s1[19:0] :
-            20'd0;
-
-    // mux 10
-    wire [20:0] multiplier10_at_highest_s1 = cos_gamma_reg_s1[20] ? cos_dgamma_reg_s1 : 21'd0;
-
-    wire sine_in_range6_2_s1 = |complement_2_s1[20:6];  // u is in range 6 or in one above
-    wire sine_in_range7_2_s1 = |complement_2_s1[20:4];  // u is in range 7 or in one above
     wire sine_in_range8_2_s1 = |complement_2_s1[20:2];  // u is in range 8 or in one above
-    wire sine_in_range5_2_s1 = |complement_2_s1[20:8];  // u is in range 5 or in one above
     wire sine_in_range1_2_s1 = |complement_2_s1[20:16];  // u is in range 1 or in one above
     wire sine_in_range2_2_s1 = |complement_2_s1[20:14];  // u is in range 2 or in one above
     wire sine_in_range3_2_s1 = |complement_2_s1[20:12];  // u is in range 3 or in one above
     wire sine_in_range0_2_s1 = |complement_2_s1[20:18];  // u is in range 0 or in one above
-
-    wire [9:0] sine_word8_2_s1 = sine_in_range8_2_s1 ? {8'd144, complement_2_s1[3:2]} : {8'd145,
-            complement_2_s1[1:0]};
-
     wire [9:0] sine_word3_2_s1 = sine_in_range3_2_s1 ? {4'd7, complement_2_s1[13:8]} : {5'd16,
             complement_2_s1[11:7]};
-
     wire [9:0] sine_word2_2_s1 = sine_in_range2_2_s1 ? {3'd2, complement_2_s1[15:9]} :
             sine_word3_2_s1;
-
     wire [8:0] sine_word0_2_s1 = sine_in_range0_2_s1 ? {3'd6, complement_2_s1[19:14]} : {1'b0,
             complement_2_s1[17:10]};
-
-    wire [9:0] sine_word1_2_s1 = sine_in_range1_2_s1 ? {1'b0, sine_word0_2_s1} : sine_word2_2_s1;
-
-    always @(posedge clk) begin
-        if (advance) begin
-            dgamma_negative_s2 <= dgamma_negative_s1;
-            complement_s2 <= complement_s1;
-            sine_in_range6_s2 <= sine_in_range6_s1;
-            sine_in_range7_s2 <= sine_in_range7_s1;
-            sine_in_range8_s2 <= sine_in_range8_s1;
-            complement_shifted_bits_18_s2 <= complement_s1[1:0];
-            sine_in_range5_s2 <= sine_in_range5_s1;
-            sine_in_range1_s2 <= sine_in_range1_s1;
-            sine_in_range2_s2 <= sine_in_range2_s1;
-            sine_in_range3_s2 <= sine_in_range3_s1;
-            sine_in_range0_s2 <= sine_in_range0_s1;
-            facing_s2 <= facing_s1;
-            sine_word8_s2 <= sine_word8_s1;
-            sine_word1_s2 <= sine_word1_s1;
-            multiplier10_inside_inside_upper_bits_s2 <= cos_dgamma_reg_s1[19:2];
-            multiplier10_inside_inside_upper_upper_bits_s2 <= cos_gamma_reg_s1[19:2];
-            multiplier10_inside_inside_upper_row_2_s2 <= cos_gamma_reg_s1[0] ?
-                    cos_dgamma_reg_s1[19:2] : 18'd0;
-            multiplier10_inside_inside_upper_row_4_s2 <= cos_gamma_reg_s1[1] ?
-                    cos_dgamma_reg_s1[19:2] : 18'd0;
-            multiplier10_inside_inside_row_2_s2 <= cos_dgamma_reg_s1[0] ? cos_gamma_reg_s1[19:0] :
-                    20'd0;
-            multiplier10_inside_inside_row_4_s2 <= cos_dgamma_reg_s1[1] ? cos_gamma_reg_s1[19:0] :
-                    20'd0;
-            multiplier10_inside_at_highest_s2 <= multiplier10_inside_at_highest_s1;
-            multiplier10_at_highest_s2 <= multiplier10_at_highest_s1;
-            complement_2_s2 <= complement_2_s1;
-            sine_in_range6_2_s2 <= sine_in_range6_2_s1;
-            sine_in_range7_2_s2 <= sine_in_range7_2_s1;
-            sine_in_range8_2_s2 <= sine_in_range8_2_s1;
-            complement_shifted_bits_18_2_s2 <= complement_2_s1[1:0];
-            sine_in_range5_2_s2 <= sine_in_range5_2_s1;
-            sine_in_range1_2_s2 <= sine_in_range1_2_s1;
-            sine_in_range2_2_s2 <= sine_in_range2_2_s1;
-            sine_in_range3_2_s2 <= sine_in_range3_2_s1;
-            sine_in_range0_2_s2 <= sine_in_range0_2_s1;
-            sine_word8_2_s2 <= sine_word8_2_s1;
-            sine_word1_2_s2 <= sine_word1_2_s1;
-        end
+    reg         sine_in_range6_s2;                // u is in range 6 or in one above
+    reg         sine_in_range7_s2;                // u is in range 7 or in one above
+    reg  [1:0]  complement_shifted_bits_18_s2;    // u0.2
+    reg         sine_in_range5_s2;                // u is in range 5 or in one above
+    reg         facing_s2;                        // the surface faces the half vector
+    reg         sine_in_range6_2_s2;              // u is in range 6 or in one above
+    reg         sine_in_range7_2_s2;              // u is in range 7 or in one above
+    reg  [1:0]  complement_shifted_bits_18_2_s2;  // u0.2
+    reg         sine_in_range5_2_s2;              // u is in range 5 or in one above
+    reg         dgamma_negative_s2, sine_in_range8_s2, sine_in_range1_s2, sine_in_range2_s2;
+    reg  [20:0] complement_s2, multiplier10_at_highest_2_s2, complement_2_s2;
+    reg         sine_in_range3_s2, sine_in_range0_s2, sine_in_range8_2_s2, sine_in_range1_2_s2;
+    reg  [9:0]  sine_word8_s2, sine_word1_s2, sine_word8_2_s2, sine_word1_2_s2;
+    reg  [17:0] multiplier10_upper_bits_s2, multiplier10_upper_bits_2_s2, multiplier10_row_2_s2;
+    reg  [17:0] multiplier10_row_4_s2;
+    reg  [19:0] multiplier10_row_7_s2, multiplier10_row_9_s2, multiplier10_at_highest_s2;
+    reg         sine_in_range2_2_s2, sine_in_range3_2_s2, sine_in_range0_2_s2;
+    always @(posedge clk) if (advance) begin
+        dgamma_negative_s2 <= dgamma_negative_s1;
+        complement_s2 <= complement_s1;
+        sine_in_range6_s2 <= |complement_s1[20:6];
+        sine_in_range7_s2 <= |complement_s1[20:4];
+        sine_in_range8_s2 <= sine_in_range8_s1;
+        complement_shifted_bits_18_s2 <= complement_s1[1:0];
+        sine_in_range5_s2 <= |complement_s1[20:8];
+        sine_in_range1_s2 <= sine_in_range1_s1;
+        sine_in_range2_s2 <= sine_in_range2_s1;
+        sine_in_range3_s2 <= sine_in_range3_s1;
+        sine_in_range0_s2 <= sine_in_range0_s1;
+        facing_s2 <= |cos_gamma_reg_s1;
+        sine_word8_s2 <= sine_in_range8_s1 ? {8'd144, complement_s1[3:2]} : {8'd145,
+                complement_s1[1:0]};
+        sine_word1_s2 <= sine_in_range1_s1 ? {1'b0, sine_word0_s1} : sine_word2_s1;
+        multiplier10_upper_bits_s2 <= cos_dgamma_reg_s1[19:2];
+        multiplier10_upper_bits_2_s2 <= cos_gamma_reg_s1[19:2];
+        multiplier10_row_2_s2 <= cos_gamma_reg_s1[0] ? cos_dgamma_reg_s1[19:2] : 18'd0;
+        multiplier10_row_4_s2 <= cos_gamma_reg_s1[1] ? cos_dgamma_reg_s1[19:2] : 18'd0;
+        multiplier10_row_7_s2 <= cos_dgamma_reg_s1[0] ? cos_gamma_reg_s1[19:0] : 20'd0;
+        multiplier10_row_9_s2 <= cos_dgamma_reg_s1[1] ? cos_gamma_reg_s1[19:0] : 20'd0;
+        multiplier10_at_highest_s2 <= cos_dgamma_reg_s1[20] ? cos_gamma_reg_s1[19:0] : 20'd0;
+        multiplier10_at_highest_2_s2 <= cos_gamma_reg_s1[20] ? cos_dgamma_reg_s1 : 21'd0;
+        complement_2_s2 <= complement_2_s1;
+        sine_in_range6_2_s2 <= |complement_2_s1[20:6];
+        sine_in_range7_2_s2 <= |complement_2_s1[20:4];
+        sine_in_range8_2_s2 <= sine_in_range8_2_s1;
+        complement_shifted_bits_18_2_s2 <= complement_2_s1[1:0];
+        sine_in_range5_2_s2 <= |complement_2_s1[20:8];
+        sine_in_range1_2_s2 <= sine_in_range1_2_s1;
+        sine_in_range2_2_s2 <= sine_in_range2_2_s1;
+        sine_in_range3_2_s2 <= sine_in_range3_2_s1;
+        sine_in_range0_2_s2 <= sine_in_range0_2_s1;
+        sine_word8_2_s2 <= sine_in_range8_2_s1 ? {8'd144, complement_2_s1[3:2]} : {8'd145,
+                complement_2_s1[1:0]};
+        sine_word1_2_s2 <= sine_in_range1_2_s1 ? {1'b0, sine_word0_2_s1} : sine_word2_2_s1;
     end
 
     // Stage 2, part of: operands cos gamma, cos dgamma; sine of gamma addressed; 19 <- sin gamma;
     // 11 <- cos gamma * cos dgamma
-    // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
-    reg         dgamma_negative_s3;
-    reg         facing_s3;                                  // the surface faces the half vector
-    reg  [35:0] multiplier10_inside_inside_upper_upper_s3;  // register 10
-    reg  [20:0] multiplier10_inside_inside_sum_upper_3_s3;  // register 10
-    reg  [1:0]  multiplier10_inside_inside_rows_3_s3;       // register 10
-    reg  [19:0] multiplier10_inside_at_highest_s3;          // register 10
-    reg  [20:0] multiplier10_at_highest_s3;                 // register 10
     reg  [34:0] sine_word_s3;
     reg  [34:0] sine_word_2_s3;
-
     wire sine_in_range4_s2 = |complement_s2[20:10];  // u is in range 4 or in one above
-
-    // u0.14
     wire [13:0] sine_rest8_s2 = sine_in_range8_s2 ? {complement_shifted_bits_18_s2, 12'd0} : 14'd0;
-
-    // u0.14
     wire [13:0] sine_rest7_s2 = sine_in_range7_s2 ? {complement_s2[2:0], 11'd0} : sine_rest8_s2;
-
-    // u0.14
     wire [13:0] sine_rest5_s2 = sine_in_range5_s2 ? {complement_s2[5:0], 8'd0} :
             {complement_s2[4:0], 9'd0};
-
     wire [13:0] sine_rest6_s2 = sine_in_range6_s2 ? sine_rest5_s2 : sine_rest7_s2;  // u0.14
-
-    // u0.14
     wire [13:0] sine_rest3_s2 = sine_in_range3_s2 ? {complement_s2[7:0], 6'd0} :
             {complement_s2[6:0], 7'd0};
-
-    // u0.14
     wire [13:0] sine_rest2_s2 = sine_in_range2_s2 ? {complement_s2[8:0], 5'd0} : sine_rest3_s2;
-
-    // u0.14
     wire [13:0] sine_rest0_s2 = sine_in_range0_s2 ? complement_s2[13:0] : {complement_s2[9:0],
             4'd0};
-
     wire [13:0] sine_rest1_s2 = sine_in_range1_s2 ? sine_rest0_s2 : sine_rest2_s2;  // u0.14
     wire [13:0] sine_rest4_s2 = sine_in_range4_s2 ? sine_rest1_s2 : sine_rest6_s2;  // u0.14
     wire [9:0] sine_word7_s2 = sine_in_range7_s2 ? {7'd71, complement_s2[5:3]} : sine_word8_s2;
-
     wire [9:0] sine_word5_s2 = sine_in_range5_s2 ? {6'd34, complement_s2[9:6]} : {7'd70,
             complement_s2[7:5]};
-
     wire [9:0] sine_word6_s2 = sine_in_range6_s2 ? sine_word5_s2 : sine_word7_s2;
     wire [9:0] sine_word4_s2 = sine_in_range4_s2 ? sine_word1_s2 : sine_word6_s2;
-
-    // multiplier 10
-    wire [35:0] multiplier10_inside_inside_upper_upper_s2 =
-            multiplier10_inside_inside_upper_upper_bits_s2 *
-            multiplier10_inside_inside_upper_bits_s2;
-
-    // adder 10
-    wire [18:0] multiplier10_inside_inside_upper_rows_upper_3_s2 = {2'd0,
-            multiplier10_inside_inside_upper_row_2_s2[17:1]} + {1'b0,
-            multiplier10_inside_inside_upper_row_4_s2};
-
-    // block 10
-    wire [19:0] multiplier10_inside_inside_upper_rows_s2 =
-            {multiplier10_inside_inside_upper_rows_upper_3_s2,
-            multiplier10_inside_inside_upper_row_2_s2[0]};
-
-    // adder 10
-    wire [20:0] multiplier10_inside_inside_rows_upper_3_s2 = {2'd0,
-            multiplier10_inside_inside_row_2_s2[19:1]} + {1'b0,
-            multiplier10_inside_inside_row_4_s2};
-
-    // block 10
-    wire [21:0] multiplier10_inside_inside_rows_s2 = {multiplier10_inside_inside_rows_upper_3_s2,
-            multiplier10_inside_inside_row_2_s2[0]};
-
+    wire [18:0] multiplier10_upper_4_s2 = {2'd0, multiplier10_row_2_s2[17:1]} + {1'b0,
+            multiplier10_row_4_s2};
+    wire [20:0] multiplier10_upper_8_s2 = {2'd0, multiplier10_row_7_s2[19:1]} + {1'b0,
+            multiplier10_row_9_s2};
     wire sine_in_range4_2_s2 = |complement_2_s2[20:10];  // u is in range 4 or in one above
-
-    // u0.14
     wire [13:0] sine_rest8_2_s2 = sine_in_range8_2_s2 ? {complement_shifted_bits_18_2_s2, 12'd0} :
             14'd0;
-
-    // u0.14
     wire [13:0] sine_rest7_2_s2 = sine_in_range7_2_s2 ? {complement_2_s2[2:0], 11'd0} :
             sine_rest8_2_s2;
-
-    // u0.14
     wire [13:0] sine_rest5_2_s2 = sine_in_range5_2_s2 ? {complement_2_s2[5:0], 8'd0} :
             {complement_2_s2[4:0], 9'd0};
-
     wire [13:0] sine_rest6_2_s2 = sine_in_range6_2_s2 ? sine_rest5_2_s2 : sine_rest7_2_s2;  // u0.14
-
-    // u0.14
     wire [13:0] sine_rest3_2_s2 = sine_in_range3_2_s2 ? {complement_2_s2[7:0], 6'd0} :
             {complement_2_s2[6:0], 7'd0};
-
-    // u0.14
     wire [13:0] sine_rest2_2_s2 = sine_in_range2_2_s2 ? {complement_2_s2[8:0], 5'd0} :
             sine_rest3_2_s2;
-
-    // u0.14
     wire [13:0] sine_rest0_2_s2 = sine_in_range0_2_s2 ? complement_2_s2[13:0] :
             {complement_2_s2[9:0], 4'd0};
-
     wire [13:0] sine_rest1_2_s2 = sine_in_range1_2_s2 ? sine_rest0_2_s2 : sine_rest2_2_s2;  // u0.14
     wire [13:0] sine_rest4_2_s2 = sine_in_range4_2_s2 ? sine_rest1_2_s2 : sine_rest6_2_s2;  // u0.14
-
     wire [9:0] sine_word7_2_s2 = sine_in_range7_2_s2 ? {7'd71, complement_2_s2[5:3]} :
             sine_word8_2_s2;
-
     wire [9:0] sine_word5_2_s2 = sine_in_range5_2_s2 ? {6'd34, complement_2_s2[9:6]} : {7'd70,
             complement_2_s2[7:5]};
-
     wire [9:0] sine_word6_2_s2 = sine_in_range6_2_s2 ? sine_word5_2_s2 : sine_word7_2_s2;
     wire [9:0] sine_word4_2_s2 = sine_in_range4_2_s2 ? sine_word1_2_s2 : sine_word6_2_s2;
-
     // ROM 18: value at the start of a segment (u0.22), then its rise over the segment in units of
     // 2^-18 (13 bits)
     reg [34:0] sine_rom [0:583];
     initial $readmemh(SINE_FILE, sine_rom);
     always @(posedge clk) if (advance) sine_word_s3 <= sine_rom[sine_word4_s2];
-
     // ROM 18: value at the start of a segment (u0.22), then its rise over the segment in units of
     // 2^-18 (13 bits)
     always @(posedge clk) if (advance) sine_word_2_s3 <= sine_rom[sine_word4_2_s2];
-
-    always @(posedge clk) begin
-        if (advance) begin
-            dgamma_negative_s3 <= dgamma_negative_s2;
-            facing_s3 <= facing_s2;
-            multiplier10_inside_inside_upper_upper_s3 <= multiplier10_inside_inside_upper_upper_s2;
-            multiplier10_inside_inside_sum_upper_3_s3 <= {1'b0,
-                    multiplier10_inside_inside_rows_s2[21:2]} + {1'b0,
-                    multiplier10_inside_inside_upper_rows_s2};
-            multiplier10_inside_inside_rows_3_s3 <= {multiplier10_inside_inside_rows_upper_3_s2[0],
-                    multiplier10_inside_inside_row_2_s2[0]};
-            multiplier10_inside_at_highest_s3 <= multiplier10_inside_at_highest_s2;
-            multiplier10_at_highest_s3 <= multiplier10_at_highest_s2;
-        end
+    reg         dgamma_negative_s3, facing_s3;
+    reg  [35:0] multiplier10_upper_s3;
+    reg  [20:0] multiplier10_upper_12_s3, multiplier10_at_highest_2_s3;
+    reg  [1:0]  multiplier10_rows_4_s3;
+    reg  [19:0] multiplier10_at_highest_s3;
+    always @(posedge clk) if (advance) begin
+        dgamma_negative_s3 <= dgamma_negative_s2;
+        facing_s3 <= facing_s2;
+        multiplier10_upper_s3 <= multiplier10_upper_bits_2_s2 * multiplier10_upper_bits_s2;
+        multiplier10_upper_12_s3 <= {1'b0, multiplier10_upper_8_s2[20:1]} + {1'b0,
+                multiplier10_upper_4_s2, multiplier10_row_2_s2[0]};
+        multiplier10_rows_4_s3 <= {multiplier10_upper_8_s2[0], multiplier10_row_7_s2[0]};
+        multiplier10_at_highest_s3 <= multiplier10_at_highest_s2;
+        multiplier10_at_highest_2_s3 <= multiplier10_at_highest_2_s2;
     end
 
     // Stage 3, part of: operands cos gamma, cos dgamma; sine of gamma addressed; 19 <- sin gamma;
     // 11 <- cos gamma * cos dgamma
-    // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
-    reg         dgamma_negative_s4;
-    reg         facing_s4;           // the surface faces the half vector
-    reg  [21:0] sine_base_s4;        // u0.22
-    reg  [12:0] sine_slope_s4;       // u-5.18
-    reg  [21:0] sine_base_2_s4;      // u0.22
-    reg  [12:0] sine_slope_2_s4;     // u-5.18
-
-    wire [21:0] sine_base_s3 = sine_word_s3[34:13];  // u0.22
-    wire [12:0] sine_slope_s3 = sine_word_s3[12:0];  // u-5.18
-
+    wire [35:0] multiplier10_upper_14_s3 = {17'd0, multiplier10_upper_12_s3[20:2]} +
+            multiplier10_upper_s3;
+    wire [19:0] multiplier10_inside_3_s3 = multiplier10_upper_14_s3[35:16] |
+            multiplier10_at_highest_s3;
     // block 10
-    wire [22:0] multiplier10_inside_inside_sum_s3 = {multiplier10_inside_inside_sum_upper_3_s3,
-            multiplier10_inside_inside_rows_3_s3};
-
-    // adder 10
-    wire [35:0] multiplier10_inside_inside_sum_upper_5_s3 = {17'd0,
-            multiplier10_inside_inside_sum_s3[22:4]} + multiplier10_inside_inside_upper_upper_s3;
-
-    // block 10
-    wire [19:0] multiplier10_inside_2_s3 = multiplier10_inside_inside_sum_upper_5_s3[35:16] |
-            multiplier10_inside_at_highest_s3;
-
-    // block 10
-    wire [20:0] multiplier10_2_s3 = {1'b0, multiplier10_inside_2_s3} | multiplier10_at_highest_s3;
-
+    wire [20:0] multiplier10_2_s3 = {1'b0, multiplier10_inside_3_s3} | multiplier10_at_highest_2_s3;
     // block 11, u1.22: cos gamma * cos dgamma
-    wire [22:0] reg11_cos_cos_s3 = {multiplier10_2_s3,
-            multiplier10_inside_inside_sum_upper_5_s3[15:14]};
-
-    wire [21:0] sine_base_2_s3 = sine_word_2_s3[34:13];  // u0.22
-    wire [12:0] sine_slope_2_s3 = sine_word_2_s3[12:0];  // u-5.18
-
-    always @(posedge clk) begin
-        if (advance) begin
-            dgamma_negative_s4 <= dgamma_negative_s3;
-            facing_s4 <= facing_s3;
-            sine_base_s4 <= sine_base_s3;
-            sine_slope_s4 <= sine_slope_s3;
-            sine_base_2_s4 <= sine_base_2_s3;
-            sine_slope_2_s4 <= sine_slope_2_s3;
-        end
+    wire [22:0] reg11_cos_cos_s3 = {multiplier10_2_s3, multiplier10_upper_14_s3[15:14]};
+    reg  [21:0] sine_base_s4;     // u0.22
+    reg  [12:0] sine_slope_s4;    // u-5.18
+    reg  [21:0] sine_base_2_s4;   // u0.22
+    reg  [12:0] sine_slope_2_s4;  // u-5.18
+    reg         dgamma_negative_s4, facing_s4;
+    always @(posedge clk) if (advance) begin
+        dgamma_negative_s4 <= dgamma_negative_s3;
+        facing_s4 <= facing_s3;
+        sine_base_s4 <= sine_word_s3[34:13];
+        sine_slope_s4 <= sine_word_s3[12:0];
+        sine_base_2_s4 <= sine_word_2_s3[34:13];
+        sine_slope_2_s4 <= sine_word_2_s3[12:0];
     end
 
     // Stage 4: values on their way
-    // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
-    reg         dgamma_negative_s5;
-    reg  [13:0] sine_rest4_s5;       // u0.14
-    reg         facing_s5;           // the surface faces the half vector
-    reg  [21:0] sine_base_s5;        // u0.22
-    reg  [12:0] sine_slope_s5;       // u-5.18
-    reg  [13:0] sine_rest4_2_s5;     // u0.14
-    reg  [21:0] sine_base_2_s5;      // u0.22
-    reg  [12:0] sine_slope_2_s5;     // u-5.18
-
-    always @(posedge clk) begin
-        if (advance) begin
-            dgamma_negative_s5 <= dgamma_negative_s4;
-            facing_s5 <= facing_s4;
-            sine_base_s5 <= sine_base_s4;
-            sine_slope_s5 <= sine_slope_s4;
-            sine_base_2_s5 <= sine_base_2_s4;
-            sine_slope_2_s5 <= sine_slope_2_s4;
-        end
+    reg         dgamma_negative_s5, facing_s5;
+    wire [13:0] sine_rest4_s5, sine_rest4_2_s5;
+    reg  [21:0] sine_base_s5, sine_base_2_s5;
+    reg  [12:0] sine_slope_s5, sine_slope_2_s5;
+    always @(posedge clk) if (advance) begin
+        dgamma_negative_s5 <= dgamma_negative_s4;
+        facing_s5 <= facing_s4;
+        sine_base_s5 <= sine_base_s4;
+        sine_slope_s5 <= sine_slope_s4;
+        sine_base_2_s5 <= sine_base_2_s4;
+        sine_slope_2_s5 <= sine_slope_2_s4;
     end
 
     // Stage 5, part of: 19 <- sin gamma; 11 <- cos gamma * cos dgamma; operands sin dgamma, sin
     // gamma
-    // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
-    reg         dgamma_negative_s6;
-    reg         facing_s6;            // the surface faces the half vector
-    reg  [21:0] sine_base_s6;         // u0.22
-    reg  [16:0] sine_rise_kept_s6;    // u-5.22
-    reg  [21:0] sine_base_2_s6;       // u0.22
-    reg  [16:0] sine_rise_kept_2_s6;  // u-5.22
-
     wire [26:0] sine_rise_s5 = sine_slope_s5 * sine_rest4_s5;  // u-5.32
     wire [26:0] sine_rise_2_s5 = sine_slope_2_s5 * sine_rest4_2_s5;  // u-5.32
-
-    always @(posedge clk) begin
-        if (advance) begin
-            dgamma_negative_s6 <= dgamma_negative_s5;
-            facing_s6 <= facing_s5;
-            sine_base_s6 <= sine_base_s5;
-            sine_rise_kept_s6 <= sine_rise_s5[26:10];
-            sine_base_2_s6 <= sine_base_2_s5;
-            sine_rise_kept_2_s6 <= sine_rise_2_s5[26:10];
-        end
+    reg  [16:0] sine_rise_kept_s6;    // u-5.22
+    reg  [16:0] sine_rise_kept_2_s6;  // u-5.22
+    reg         dgamma_negative_s6, facing_s6;
+    reg  [21:0] sine_base_s6, sine_base_2_s6;
+    always @(posedge clk) if (advance) begin
+        dgamma_negative_s6 <= dgamma_negative_s5;
+        facing_s6 <= facing_s5;
+        sine_base_s6 <= sine_base_s5;
+        sine_rise_kept_s6 <= sine_rise_s5[26:10];
+        sine_base_2_s6 <= sine_base_2_s5;
+        sine_rise_kept_2_s6 <= sine_rise_2_s5[26:10];
     end
 
     // Stage 6, part of: 19 <- sin gamma; 11 <- cos gamma * cos dgamma; operands sin dgamma, sin
     // gamma
-    // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
-    reg         dgamma_negative_s7;
-    reg         facing_s7;           // the surface faces the half vector
+    wire [22:0] sine_sum_s6 = {1'b0, sine_base_s6} + {6'd0, sine_rise_kept_s6};  // u1.22
+    wire [22:0] sine_sum_2_s6 = {1'b0, sine_base_2_s6} + {6'd0, sine_rise_kept_2_s6};  // u1.22
     reg  [21:0] reg19_sin_gamma_s7;  // register 19, u0.22: sin gamma
     reg  [21:0] sine_value_s7;       // u0.22: sine of the addressed cosine
-
-    wire [22:0] sine_sum_s6 = {1'b0, sine_base_s6} + {6'd0, sine_rise_kept_s6};  // u1.22
-
-    // mux 19, u0.22: sin gamma
-    wire [21:0] reg19_sin_gamma_s6 = sine_sum_s6[22] ? 22'h3fffff : sine_sum_s6[21:0];
-
-    wire [22:0] sine_sum_2_s6 = {1'b0, sine_base_2_s6} + {6'd0, sine_rise_kept_2_s6};  // u1.22
-
-    // u0.22: sine of the addressed cosine
-    wire [21:0] sine_value_s6 = sine_sum_2_s6[22] ? 22'h3fffff : sine_sum_2_s6[21:0];
-
-    always @(posedge clk) begin
-        if (advance) begin
-            dgamma_negative_s7 <= dgamma_negative_s6;
-            facing_s7 <= facing_s6;
-            reg19_sin_gamma_s7 <= reg19_sin_gamma_s6;
-            sine_value_s7 <= sine_value_s6;
-        end
+    reg         dgamma_negative_s7, facing_s7;
+    always @(posedge clk) if (advance) begin
+        dgamma_negative_s7 <= dgamma_negative_s6;
+        facing_s7 <= facing_s6;
+        reg19_sin_gamma_s7 <= sine_sum_s6[22] ? 22'h3fffff : sine_sum_s6[21:0];
+        sine_value_s7 <= sine_sum_2_s6[22] ? 22'h3fffff : sine_sum_2_s6[21:0];
     end
 
     // Stage 7, part of: 12 <- sin gamma * sin dgamma
-    // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
-    reg         dgamma_negative_s8;
-    reg         facing_s8;                         // the surface faces the half vector
-    reg  [17:0] multiplier10_upper_bits_s8;        // register 10
-    reg  [17:0] multiplier10_upper_upper_bits_s8;  // register 10
-    reg  [21:0] multiplier10_upper_lower_s8;       // register 10
-    reg  [21:0] multiplier10_lower_upper_s8;       // register 10
-    reg  [3:0]  multiplier10_lower_row_2_s8;       // register 10
-    reg  [3:0]  multiplier10_lower_row_4_s8;       // register 10
-    reg  [3:0]  multiplier10_lower_row_7_s8;       // register 10
-    reg  [3:0]  multiplier10_lower_row_10_s8;      // register 10
-
-    // multiplier 10
-    wire [21:0] multiplier10_upper_lower_s7 = reg19_sin_gamma_s7[3:0] * sine_value_s7[21:4];
-
-    // multiplier 10
-    wire [21:0] multiplier10_lower_upper_s7 = reg19_sin_gamma_s7[21:4] * sine_value_s7[3:0];
-
-    always @(posedge clk) begin
-        if (advance) begin
-            dgamma_negative_s8 <= dgamma_negative_s7;
-            facing_s8 <= facing_s7;
-            multiplier10_upper_bits_s8 <= sine_value_s7[21:4];
-            multiplier10_upper_upper_bits_s8 <= reg19_sin_gamma_s7[21:4];
-            multiplier10_upper_lower_s8 <= multiplier10_upper_lower_s7;
-            multiplier10_lower_upper_s8 <= multiplier10_lower_upper_s7;
-            multiplier10_lower_row_2_s8 <= reg19_sin_gamma_s7[0] ? sine_value_s7[3:0] : 4'd0;
-            multiplier10_lower_row_4_s8 <= reg19_sin_gamma_s7[1] ? sine_value_s7[3:0] : 4'd0;
-            multiplier10_lower_row_7_s8 <= reg19_sin_gamma_s7[2] ? sine_value_s7[3:0] : 4'd0;
-            multiplier10_lower_row_10_s8 <= reg19_sin_gamma_s7[3] ? sine_value_s7[3:0] : 4'd0;
-        end
+    reg         dgamma_negative_s8, facing_s8;
+    reg  [17:0] multiplier10_upper_bits_3_s8, multiplier10_upper_bits_4_s8;
+    reg  [21:0] multiplier10_lower_s8, multiplier10_upper_16_s8;
+    reg  [3:0]  multiplier10_row_12_s8, multiplier10_row_14_s8, multiplier10_row_17_s8;
+    reg  [3:0]  multiplier10_row_20_s8;
+    always @(posedge clk) if (advance) begin
+        dgamma_negative_s8 <= dgamma_negative_s7;
+        facing_s8 <= facing_s7;
+        multiplier10_upper_bits_3_s8 <= sine_value_s7[21:4];
+        multiplier10_upper_bits_4_s8 <= reg19_sin_gamma_s7[21:4];
+        multiplier10_lower_s8 <= reg19_sin_gamma_s7[3:0] * sine_value_s7[21:4];
+        multiplier10_upper_16_s8 <= reg19_sin_gamma_s7[21:4] * sine_value_s7[3:0];
+        multiplier10_row_12_s8 <= reg19_sin_gamma_s7[0] ? sine_value_s7[3:0] : 4'd0;
+        multiplier10_row_14_s8 <= reg19_sin_gamma_s7[1] ? sine_value_s7[3:0] : 4'd0;
+        multiplier10_row_17_s8 <= reg19_sin_gamma_s7[2] ? sine_value_s7[3:0] : 4'd0;
+        multiplier10_row_20_s8 <= reg19_sin_gamma_s7[3] ? sine_value_s7[3:0] : 4'd0;
     end
 
     // Stage 8, part of: 12 <- sin gamma * sin dgamma
-    // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
-    reg         dgamma_negative_s9;
-    reg         facing_s9;                            // the surface faces the half vector
-    reg  [35:0] multiplier10_upper_upper_s9;          // register 10
-    reg  [4:0]  multiplier10_lower_rows_upper_10_s9;  // register 10
-    reg  [2:0]  multiplier10_lower_rows_6_s9;         // register 10
-    reg  [22:0] multiplier10_sum_upper_3_s9;          // register 10
-
-    // multiplier 10
-    wire [35:0] multiplier10_upper_upper_s8 = multiplier10_upper_upper_bits_s8 *
-            multiplier10_upper_bits_s8;
-
-    // adder 10
-    wire [4:0] multiplier10_lower_rows_upper_3_s8 = {2'd0, multiplier10_lower_row_2_s8[3:1]} +
-            {1'b0, multiplier10_lower_row_4_s8};
-
-    // block 10
-    wire [5:0] multiplier10_lower_rows_s8 = {multiplier10_lower_rows_upper_3_s8,
-            multiplier10_lower_row_2_s8[0]};
-
-    // adder 10
-    wire [4:0] multiplier10_lower_rows_upper_7_s8 = {1'b0, multiplier10_lower_rows_s8[5:2]} + {1'b0,
-            multiplier10_lower_row_7_s8};
-
-    // block 10
-    wire [6:0] multiplier10_lower_rows_4_s8 = {multiplier10_lower_rows_upper_7_s8,
-            multiplier10_lower_rows_upper_3_s8[0], multiplier10_lower_row_2_s8[0]};
-
-    always @(posedge clk) begin
-        if (advance) begin
-            dgamma_negative_s9 <= dgamma_negative_s8;
-            facing_s9 <= facing_s8;
-            multiplier10_upper_upper_s9 <= multiplier10_upper_upper_s8;
-            multiplier10_lower_rows_upper_10_s9 <= {1'b0, multiplier10_lower_rows_4_s8[6:3]} +
-                    {1'b0, multiplier10_lower_row_10_s8};
-            multiplier10_lower_rows_6_s9 <= {multiplier10_lower_rows_upper_7_s8[0],
-                    multiplier10_lower_rows_upper_3_s8[0], multiplier10_lower_row_2_s8[0]};
-            multiplier10_sum_upper_3_s9 <= {1'b0, multiplier10_upper_lower_s8} + {1'b0,
-                    multiplier10_lower_upper_s8};
-        end
+    wire [4:0] multiplier10_upper_19_s8 = {2'd0, multiplier10_row_12_s8[3:1]} + {1'b0,
+            multiplier10_row_14_s8};
+    wire [4:0] multiplier10_upper_23_s8 = {1'b0, multiplier10_upper_19_s8[4:1]} + {1'b0,
+            multiplier10_row_17_s8};
+    reg         dgamma_negative_s9, facing_s9;
+    reg  [35:0] multiplier10_upper_15_s9;
+    reg  [4:0]  multiplier10_upper_26_s9;
+    reg  [2:0]  multiplier10_rows_10_s9;
+    reg  [22:0] multiplier10_upper_29_s9;
+    always @(posedge clk) if (advance) begin
+        dgamma_negative_s9 <= dgamma_negative_s8;
+        facing_s9 <= facing_s8;
+        multiplier10_upper_15_s9 <= multiplier10_upper_bits_4_s8 * multiplier10_upper_bits_3_s8;
+        multiplier10_upper_26_s9 <= {1'b0, multiplier10_upper_23_s8[4:1]} + {1'b0,
+                multiplier10_row_20_s8};
+        multiplier10_rows_10_s9 <= {multiplier10_upper_23_s8[0], multiplier10_upper_19_s8[0],
+                multiplier10_row_12_s8[0]};
+        multiplier10_upper_29_s9 <= {1'b0, multiplier10_lower_s8} + {1'b0,
+                multiplier10_upper_16_s8};
     end
 
     // Stage 9, part of: 12 <- sin gamma * sin dgamma
-    // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
-    reg         dgamma_negative_s10;
-    reg         facing_s10;           // the surface faces the half vector
-    reg  [22:0] reg11_cos_cos_s10;    // register 11, u1.22: cos gamma * cos dgamma
-    reg  [21:0] reg12_sin_sin_s10;    // register 12, u0.22: sin gamma * sin dgamma
-
-    // block 10
-    wire [7:0] multiplier10_lower_rows_7_s9 = {multiplier10_lower_rows_upper_10_s9,
-            multiplier10_lower_rows_6_s9};
-
-    wire [26:0] multiplier10_sum_s9 = {multiplier10_sum_upper_3_s9, 4'd0};  // block 10
-
-    // adder 10
-    wire [23:0] multiplier10_sum_upper_6_s9 = {20'd0, multiplier10_lower_rows_7_s9[7:4]} + {1'b0,
-            multiplier10_sum_s9[26:4]};
-
-    // block 10
-    wire [27:0] multiplier10_sum_2_s9 = {multiplier10_sum_upper_6_s9,
-            multiplier10_lower_rows_upper_10_s9[0], multiplier10_lower_rows_6_s9};
-
-    // adder 10
-    wire [35:0] multiplier10_sum_upper_8_s9 = {16'd0, multiplier10_sum_2_s9[27:8]} +
-            multiplier10_upper_upper_s9;
-
-    // block 10
-    wire [43:0] multiplier10_sum_5_s9 = {multiplier10_sum_upper_8_s9,
-            multiplier10_sum_upper_6_s9[3:0], multiplier10_lower_rows_upper_10_s9[0],
-            multiplier10_lower_rows_6_s9};
-
-    // block 12, u0.22: sin gamma * sin dgamma
-    wire [21:0] reg12_sin_sin_s9 = multiplier10_sum_5_s9[43:22];
-
-    always @(posedge clk) begin
-        if (advance) begin
-            dgamma_negative_s10 <= dgamma_negative_s9;
-            facing_s10 <= facing_s9;
-            reg12_sin_sin_s10 <= reg12_sin_sin_s9;
-        end
+    wire [23:0] multiplier10_upper_32_s9 = {20'd0, multiplier10_upper_26_s9[4:1]} + {1'b0,
+            multiplier10_upper_29_s9};
+    wire [35:0] multiplier10_upper_34_s9 = {16'd0, multiplier10_upper_32_s9[23:4]} +
+            multiplier10_upper_15_s9;
+    wire [43:0] multiplier10_sum_10_s9 = {multiplier10_upper_34_s9, multiplier10_upper_32_s9[3:0],
+            multiplier10_upper_26_s9[0], multiplier10_rows_10_s9};
+    reg  [21:0] reg12_sin_sin_s10;  // register 12, u0.22: sin gamma * sin dgamma
+    reg         dgamma_negative_s10, facing_s10;
+    wire [22:0] reg11_cos_cos_s10;
+    always @(posedge clk) if (advance) begin
+        dgamma_negative_s10 <= dgamma_negative_s9;
+        facing_s10 <= facing_s9;
+        reg12_sin_sin_s10 <= multiplier10_sum_10_s9[43:22];
     end
 
     // Stage 10, part of: operands adder 15, n/2
-    reg         [9:0]  exponent_s11;  // register 3: specular exponent n
-    reg                facing_s11;    // the surface faces the half vector
-    reg  signed [23:0] adder15_s11;   // register 15, s1.22: cos(gamma +- dgamma) - 1.0
-
     wire [22:0] raised12_s10 = {1'b1, reg12_sin_sin_s10};  // u1.22: register 12 + 1.0, by wiring
-
     // s1.22: -(register 12) - 1.0, less an ulp
     wire signed [23:0] inverse12_s10 = ~{1'b0, raised12_s10};
-
     // block 31, s0.22: register 12 - 1.0
     wire signed [22:0] adder31_s10 = {1'b1, reg12_sin_sin_s10};
-
     // mux 14, s1.22: what adder 15 adds to register 11
     wire signed [23:0] mux14_s10 = dgamma_negative_s10 ? {adder31_s10[22], adder31_s10} :
             inverse12_s10;
-
     wire subtracts_s10 = ~dgamma_negative_s10;  // carry-in of adder 15
-
-    // adder 15, s1.22: cos(gamma +- dgamma) - 1.0
-    wire signed [23:0] adder15_s10 = {1'b0, reg11_cos_cos_s10} + mux14_s10 + {23'd0, subtracts_s10};
-
-    always @(posedge clk) begin
-        if (advance) begin
-            facing_s11 <= facing_s10;
-            adder15_s11 <= adder15_s10;
-        end
+    reg  signed [23:0] adder15_s11;   // register 15, s1.22: cos(gamma +- dgamma) - 1.0
+    wire        [9:0]  exponent_s11;
+    reg                facing_s11;
+    always @(posedge clk) if (advance) begin
+        facing_s11 <= facing_s10;
+        adder15_s11 <= {1'b0, reg11_cos_cos_s10} + mux14_s10 + {23'd0, subtracts_s10};
     end
 
     // Stage 11, part of: 13 <- n/2 * (cos(gamma +- dgamma) - 1)
-    reg         facing_s12;               // the surface faces the half vector
-    reg  [27:0] multiplier10_upper_s12;   // register 10
-    reg  [14:0] multiplier10_lower_s12;   // register 10
     // what the product of a negative operand is too large by, above its sign
     reg  [9:0]  multiplier10_excess_s12;
-
-    wire [27:0] multiplier10_upper_s11 = adder15_s11[22:5] * exponent_s11;  // multiplier 10
-    wire [14:0] multiplier10_lower_s11 = adder15_s11[4:0] * exponent_s11;  // multiplier 10
-
-    // what the product of a negative operand is too large by, above its sign
-    wire [9:0] multiplier10_excess_s11 = adder15_s11[23] ? exponent_s11 : 10'd0;
-
-    always @(posedge clk) begin
-        if (advance) begin
-            facing_s12 <= facing_s11;
-            multiplier10_upper_s12 <= multiplier10_upper_s11;
-            multiplier10_lower_s12 <= multiplier10_lower_s11;
-            multiplier10_excess_s12 <= multiplier10_excess_s11;
-        end
+    reg         facing_s12;
+    reg  [27:0] multiplier10_upper_35_s12;
+    reg  [14:0] multiplier10_lower_2_s12;
+    always @(posedge clk) if (advance) begin
+        facing_s12 <= facing_s11;
+        multiplier10_upper_35_s12 <= adder15_s11[22:5] * exponent_s11;
+        multiplier10_lower_2_s12 <= adder15_s11[4:0] * exponent_s11;
+        multiplier10_excess_s12 <= adder15_s11[23] ? exponent_s11 : 10'd0;
     end
 
     // Stage 12, part of: 13 <- n/2 * (cos(gamma +- dgamma) - 1)
-    reg         facing_s13;                // the surface faces the half vector
-    reg  [10:0] multiplier10_upper_2_s13;
+    wire [27:0] multiplier10_upper_37_s12 = {18'd0, multiplier10_lower_2_s12[14:5]} +
+            multiplier10_upper_35_s12;
+    reg         facing_s13;
+    reg  [10:0] multiplier10_upper_39_s13;
     reg  [15:0] multiplier10_view_3_s13;
-
-    // adder 10
-    wire [27:0] multiplier10_sum_upper_10_s12 = {18'd0, multiplier10_lower_s12[14:5]} +
-            multiplier10_upper_s12;
-
-    // block 10
-    wire [32:0] multiplier10_sum_6_s12 = {multiplier10_sum_upper_10_s12,
-            multiplier10_lower_s12[4:0]};
-
-    always @(posedge clk) begin
-        if (advance) begin
-            facing_s13 <= facing_s12;
-            multiplier10_upper_2_s13 <= {1'b0, multiplier10_sum_6_s12[32:23]} - {1'b0,
-                    multiplier10_excess_s12};
-            multiplier10_view_3_s13 <= multiplier10_sum_6_s12[22:7];
-        end
+    always @(posedge clk) if (advance) begin
+        facing_s13 <= facing_s12;
+        multiplier10_upper_39_s13 <= {1'b0, multiplier10_upper_37_s12[27:18]} - {1'b0,
+                multiplier10_excess_s12};
+        multiplier10_view_3_s13 <= multiplier10_upper_37_s12[17:2];
     end
 
     // Stage 13, part of: 13 <- n/2 * (cos(gamma +- dgamma) - 1)
-    reg                facing_s14;        // the surface faces the half vector
+    wire signed [16:0] result_limited_s13 = (~multiplier10_upper_39_s13[10] &
+            (|multiplier10_upper_39_s13[9:0])) ? RESULT_MOST : {multiplier10_upper_39_s13[0],
+            multiplier10_view_3_s13};
+    wire signed [16:0] result_s13 = (multiplier10_upper_39_s13[10] &
+            ~(&multiplier10_upper_39_s13[9:0])) ? MINUS_ONE : result_limited_s13;
     // register 13, s0.16: n/2*(cos(gamma +- dgamma) - 1), then f
     reg  signed [16:0] reg13_result_s14;
-
-    // s0.16
-    wire signed [16:0] result_limited_s13 = (~multiplier10_upper_2_s13[10] &
-            (|multiplier10_upper_2_s13[9:0])) ? RESULT_MOST : {multiplier10_upper_2_s13[0],
-            multiplier10_view_3_s13};
-
-    // s0.16
-    wire signed [16:0] result_s13 = (multiplier10_upper_2_s13[10] &
-            ~(&multiplier10_upper_2_s13[9:0])) ? MINUS_ONE : result_limited_s13;
-
-    // mux 13, s0.16: n/2*(cos(gamma +- dgamma) - 1), then f
-    wire signed [16:0] reg13_result_s13 = facing_s13 ? result_s13 : MINUS_ONE;
-
-    always @(posedge clk) begin
-        if (advance) begin
-            facing_s14 <= facing_s13;
-            reg13_result_s14 <= reg13_result_s13;
-        end
+    reg                facing_s14;
+    always @(posedge clk) if (advance) begin
+        facing_s14 <= facing_s13;
+        reg13_result_s14 <= facing_s13 ? result_s13 : MINUS_ONE;
     end
 
     // Stage 14, part of: operands adder 16, adder 16
-    reg         facing_s15;           // the surface faces the half vector
-    reg         adder16_upper_2_s15;  // register 16: register 13 + 1.0
-    reg  [15:0] adder16_upper_3_s15;  // register 16: register 13 + 1.0
-
-    always @(posedge clk) begin
-        if (advance) begin
-            facing_s15 <= facing_s14;
-            adder16_upper_2_s15 <= ~reg13_result_s14[16];
-            adder16_upper_3_s15 <= reg13_result_s14[15:0];
-        end
+    reg         facing_s15, adder16_upper_2_s15;
+    reg  [15:0] adder16_upper_3_s15;
+    always @(posedge clk) if (advance) begin
+        facing_s15 <= facing_s14;
+        adder16_upper_2_s15 <= ~reg13_result_s14[16];
+        adder16_upper_3_s15 <= reg13_result_s14[15:0];
     end
 
     // Stage 15, part of: 13 <- (... + 1)^2
-    reg                facing_s16;                        // the surface faces the half vector
-    reg         [9:0]  line_or_square_kept_bits_2_2_s16;
-    reg  signed [16:0] line_or_square_kept_inside_s16;    // s0.16
-
     // block 16, u1.16: register 13 + 1.0
     wire [16:0] adder16_s15 = {adder16_upper_2_s15, adder16_upper_3_s15};
-
-    // multiplier 10: the shared product; its point depends on the operands
-    wire [33:0] multiplier10_6_s15 = adder16_s15 * adder16_s15;
-
-    always @(posedge clk) begin
-        if (advance) begin
-            facing_s16 <= facing_s15;
-            line_or_square_kept_bits_2_2_s16 <= {8'd0, multiplier10_6_s15[33:32]};
-            line_or_square_kept_inside_s16 <= multiplier10_6_s15[32:16];
-        end
+    wire [33:0] multiplier10_6_s15 = adder16_s15 * adder16_s15;  // multiplier 10
+    reg  signed [16:0] line_or_square_kept_inside_s16;    // s0.16
+    reg                facing_s16;
+    reg         [9:0]  line_or_square_kept_bits_2_2_s16;
+    always @(posedge clk) if (advance) begin
+        facing_s16 <= facing_s15;
+        line_or_square_kept_bits_2_2_s16 <= {8'd0, multiplier10_6_s15[33:32]};
+        line_or_square_kept_inside_s16 <= multiplier10_6_s15[32:16];
     end
 
     // Stage 16, part of: 13 <- (... + 1)^2
-    reg  [7:0]  red_s17;    // register 5: intensity of the light times k_s
-    reg  [7:0]  green_s17;  // register 6: intensity of the light times k_s
-    reg  [7:0]  blue_s17;   // register 7: intensity of the light times k_s
-    reg  [15:0] f_s17;      // u0.16: the reflectance, once register 13 holds the square
-
-    // s0.16
     wire signed [16:0] result_2_s16 = (|line_or_square_kept_bits_2_2_s16) ? RESULT_MOST :
             line_or_square_kept_inside_s16;
-
     // mux 13, s0.16: n/2*(cos(gamma +- dgamma) - 1), then f
     wire signed [16:0] reg13_result_2_s16 = facing_s16 ? result_2_s16 : MINUS_ONE;
-
-    // u0.16: the reflectance, once register 13 holds the square
-    wire [15:0] f_s16 = reg13_result_2_s16[15:0];
-
-    always @(posedge clk) begin
-        if (advance) begin
-            f_s17 <= f_s16;
-        end
-    end
+    reg  [15:0] f_s17;  // u0.16: the reflectance, once register 13 holds the square
+    wire [7:0]  red_s17, green_s17, blue_s17;
+    always @(posedge clk) if (advance) f_s17 <= reg13_result_2_s16[15:0];
 
     // Stage 17, part of: valid: intensities on the outputs
-    reg  [7:0] red_product_kept_s18;
-    reg        red_product_bits_s18;
-    reg  [7:0] green_product_kept_s18;
-    reg        green_product_bits_s18;
-    reg  [7:0] blue_product_kept_s18;
-    reg        blue_product_bits_s18;
-
     // multiplier 20, u8.16: an output before it is rounded
     wire [23:0] red_product_s17 = f_s17 * red_s17;
-
     // multiplier 21, u8.16: an output before it is rounded
     wire [23:0] green_product_s17 = f_s17 * green_s17;
-
     // multiplier 22, u8.16: an output before it is rounded
     wire [23:0] blue_product_s17 = f_s17 * blue_s17;
-
-    always @(posedge clk) begin
-        if (advance) begin
-            red_product_kept_s18 <= red_product_s17[23:16];
-            red_product_bits_s18 <= red_product_s17[15];
-            green_product_kept_s18 <= green_product_s17[23:16];
-            green_product_bits_s18 <= green_product_s17[15];
-            blue_product_kept_s18 <= blue_product_s17[23:16];
-            blue_product_bits_s18 <= blue_product_s17[15];
-        end
+    reg  [7:0] red_product_kept_s18, green_product_kept_s18, blue_product_kept_s18;
+    reg        red_product_bits_s18, green_product_bits_s18, blue_product_bits_s18;
+    always @(posedge clk) if (advance) begin
+        red_product_kept_s18 <= red_product_s17[23:16];
+        red_product_bits_s18 <= red_product_s17[15];
+        green_product_kept_s18 <= green_product_s17[23:16];
+        green_product_bits_s18 <= green_product_s17[15];
+        blue_product_kept_s18 <= blue_product_s17[23:16];
+        blue_product_bits_s18 <= blue_product_s17[15];
     end
 
     // Stage 18, part of: valid: intensities on the outputs
-    reg  [7:0] red_intensity_s19;
-    reg  [7:0] green_intensity_s19;
-    reg  [7:0] blue_intensity_s19;
-
-    wire [7:0] red_intensity_s18 = red_product_kept_s18 + {7'd0, red_product_bits_s18};
-    wire [7:0] green_intensity_s18 = green_product_kept_s18 + {7'd0, green_product_bits_s18};
-    wire [7:0] blue_intensity_s18 = blue_product_kept_s18 + {7'd0, blue_product_bits_s18};
-
-    always @(posedge clk) begin
-        if (advance) begin
-            red_intensity_s19 <= red_intensity_s18;
-            green_intensity_s19 <= green_intensity_s18;
-            blue_intensity_s19 <= blue_intensity_s18;
-        end
+    reg  [7:0] red_intensity_s19, green_intensity_s19, blue_intensity_s19;
+    always @(posedge clk) if (advance) begin
+        red_intensity_s19 <= red_product_kept_s18 + {7'd0, red_product_bits_s18};
+        green_intensity_s19 <= green_product_kept_s18 + {7'd0, green_product_bits_s18};
+        blue_intensity_s19 <= blue_product_kept_s18 + {7'd0, blue_product_bits_s18};
     end
 
-    // Delay lines: values that nothing reads for several stages lie in small memories. Whenever
-    // points move on, a slot gives the value that it holds and takes a new one; its turn comes
-    // again when all others have had theirs.
-    reg slot_of_2;
-    initial slot_of_2 = 1'b0;
-    (* ram_style = "distributed", syn_ramstyle = "distributed" *)
-    reg [27:0] delay_s2_s5 [0:1];
-    reg [2:0] slot_of_6;
-    initial slot_of_6 = 3'd0;
-    (* ram_style = "distributed", syn_ramstyle = "distributed" *)
-    reg [22:0] delay_s3_s10 [0:5];
-    reg [3:0] slot_of_10;
-    initial slot_of_10 = 4'd0;
-    (* ram_style = "distributed", syn_ramstyle = "distributed" *)
-    reg [9:0] delay_s0_s11 [0:9];
-    reg [3:0] slot_of_16;
-    initial slot_of_16 = 4'd0;
-    (* ram_style = "distributed", syn_ramstyle = "distributed" *)
-    reg [23:0] delay_s0_s17 [0:15];
-
-    always @(posedge clk) begin
-        if (advance) begin
-            slot_of_2 <= slot_of_2 + 1'b1;
-            {sine_rest4_s5, sine_rest4_2_s5} <= delay_s2_s5[slot_of_2];
-            delay_s2_s5[slot_of_2] <= {sine_rest4_s2, sine_rest4_2_s2};
-        end
-    end
-
-    always @(posedge clk) begin
-        if (advance) begin
-            slot_of_6 <= slot_of_6 == 3'd5 ? 3'd0 : slot_of_6 + 3'd1;
-            reg11_cos_cos_s10 <= delay_s3_s10[slot_of_6];
-            delay_s3_s10[slot_of_6] <= reg11_cos_cos_s3;
-        end
-    end
-
-    always @(posedge clk) begin
-        if (advance) begin
-            slot_of_10 <= slot_of_10 == 4'd9 ? 4'd0 : slot_of_10 + 4'd1;
-            exponent_s11 <= delay_s0_s11[slot_of_10];
-            delay_s0_s11[slot_of_10] <= exponent;
-        end
-    end
-
-    always @(posedge clk) begin
-        if (advance) begin
-            slot_of_16 <= slot_of_16 + 4'd1;
-            {red_s17, green_s17, blue_s17} <= delay_s0_s17[slot_of_16];
-            delay_s0_s17[slot_of_16] <= {red, green, blue};
-        end
-    end
+    // Delay lines: what nothing reads for several stages goes through small memories
+    rough_pipelined_delay #(.WIDTH(28), .WORDS(2), .BITS(1)) delay_of_3 (
+        .clk(clk), .rst_n(rst_n), .enable(advance),
+        .entering({sine_rest4_s2, sine_rest4_2_s2}),
+        .leaving({sine_rest4_s5, sine_rest4_2_s5})
+    );
+    rough_pipelined_delay #(.WIDTH(23), .WORDS(6), .BITS(3)) delay_of_7 (
+        .clk(clk), .rst_n(rst_n), .enable(advance),
+        .entering(reg11_cos_cos_s3),
+        .leaving(reg11_cos_cos_s10)
+    );
+    rough_pipelined_delay #(.WIDTH(10), .WORDS(10), .BITS(4)) delay_of_11 (
+        .clk(clk), .rst_n(rst_n), .enable(advance),
+        .entering(exponent),
+        .leaving(exponent_s11)
+    );
+    rough_pipelined_delay #(.WIDTH(24), .WORDS(16), .BITS(4)) delay_of_17 (
+        .clk(clk), .rst_n(rst_n), .enable(advance),
+        .entering({red, green, blue}),
+        .leaving({red_s17, green_s17, blue_s17})
+    );
 
     // Results
-
     assign red_out = red_intensity_s19;  // output 40: intensity on the output
     assign green_out = green_intensity_s19;  // output 41: intensity on the output
     assign blue_out = blue_intensity_s19;  // output 42: intensity on the output
 
     // Unused bits, among them those that narrowing drops.
-    wire unused = &{1'b0, sine_rise_s5[9:0], multiplier10_inside_inside_rows_s2[1:0],
-            multiplier10_inside_inside_sum_s3[3:0], multiplier10_inside_inside_sum_upper_5_s3[13:0],
-            sine_rise_2_s5[9:0], multiplier10_lower_rows_s8[1:0], multiplier10_lower_rows_4_s8[2:0],
-            multiplier10_lower_rows_7_s9[3:0], multiplier10_sum_s9[3:0], multiplier10_sum_2_s9[7:0],
-            multiplier10_sum_5_s9[21:0], multiplier10_sum_6_s12[6:0], multiplier10_6_s15[15:0],
+    wire unused = &{1'b0, sine_rise_s5[9:0], multiplier10_upper_12_s3[1:0], multiplier10_rows_4_s3,
+            multiplier10_upper_14_s3[13:0], sine_rise_2_s5[9:0], multiplier10_sum_10_s9[21:0],
+            multiplier10_lower_2_s12[4:0], multiplier10_upper_37_s12[1:0], multiplier10_6_s15[15:0],
             reg13_result_2_s16[16], red_product_s17[14:0], green_product_s17[14:0],
             blue_product_s17[14:0]};
+endmodule
+
+// Values on their way, WORDS + 1 registers long. A slot of a small memory gives the value that it
+// holds and takes a new one; its turn comes again when all others have had theirs.
+/* verilator lint_off DECLFILENAME */
+module rough_pipelined_delay #(
+    parameter WIDTH  = 8,
+    parameter WORDS  = 2,
+    parameter BITS   = 1,  // of the number of a slot
+    parameter MEMORY = 1   // 0: registers in place of the memory
+) (
+    input  wire             clk, rst_n, enable,
+    input  wire [WIDTH-1:0] entering,
+    output reg  [WIDTH-1:0] leaving
+);
+    generate
+        if (MEMORY != 0) begin : memory
+            localparam [BITS-1:0] LAST = WORDS[BITS-1:0] - 1'b1;
+            reg  [BITS-1:0]  slot;
+            reg  [WIDTH-1:0] words [0:WORDS-1];
+            // Of a power of two the number after the last is 0.
+            wire around = WORDS != 1 << BITS && slot == LAST;
+            always @(posedge clk) begin
+                if (!rst_n) slot <= {BITS{1'b0}};
+                else if (enable) slot <= around ? {BITS{1'b0}} : slot + 1'b1;
+                if (enable) begin
+                    leaving <= words[slot];
+                    words[slot] <= entering;
+                end
+            end
+        end else begin : registers
+            reg  [WIDTH*WORDS-1:0] words;
+            wire unused = &{1'b0, rst_n};
+            always @(posedge clk) if (enable) {leaving, words} <= {words, entering};
+        end
+    endgenerate
 endmodule
 
 `default_nettype wire

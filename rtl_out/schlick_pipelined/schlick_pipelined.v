@@ -10,23 +10,8 @@
 // Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit apart) and F
 // fraction bits; the value of a signal is its integer times 2^-F.
 //
-//  rst_n              reset, active low, synchronous
-//  in_valid           a point is offered: the operands are its own
-//  cos_gamma  u1.20   operand
-//  exponent   u10.0   operand
-//  red        u8.0    operand
-//  green      u8.0    operand
-//  blue       u8.0    operand
-//  out_ready          the results are taken in this clock
-//  in_ready           the point that is offered is taken in this clock
-//  out_valid          results are on the outputs
-//  red_out    u8.0    result
-//  green_out  u8.0    result
-//  blue_out   u8.0    result
-//
 // The quotient is truncated to 10 bits and exact to the last of them: the divider keeps the whole
-// remainder. One bit takes a clock. The quotient 1.0, of cos gamma = 1.0 or n = 0, is the largest
-// fraction, an ulp less.
+// remainder. The quotient 1.0, of cos gamma = 1.0 or n = 0, is the largest fraction, an ulp less.
 //
 // Cosines are limited to 0 ... 1.0 as they are written; cos gamma <= 0 gives 0. A division by zero
 // cannot occur: the divisor is 0 for cos gamma = 0 and n = 0 alone, and cos gamma = 0 adds an ulp
@@ -60,495 +45,314 @@ module schlick_pipelined (
     // Constants
     localparam [20:0] COS_GAMMA_MOST = 21'h100000;  // 1.0 in u1.20
 
-    // The handshake: which stage has a point, and when all of them move on
-    reg  valid_s1;   // stage 1 has a point
-    reg  valid_s2;   // stage 2 has a point
-    reg  valid_s3;   // stage 3 has a point
-    reg  valid_s4;   // stage 4 has a point
-    reg  valid_s5;   // stage 5 has a point
-    reg  valid_s6;   // stage 6 has a point
-    reg  valid_s7;   // stage 7 has a point
-    reg  valid_s8;   // stage 8 has a point
-    reg  valid_s9;   // stage 9 has a point
-    reg  valid_s10;  // stage 10 has a point
-    reg  valid_s11;  // stage 11 has a point
-    reg  valid_s12;  // stage 12 has a point
-    reg  valid_s13;  // stage 13 has a point
-    reg  valid_s14;  // stage 14 has a point
-    reg  valid_s15;  // the results are on the outputs
-
-    assign out_valid = valid_s15;  // the results are on the outputs
-    wire advance = out_ready | ~valid_s15;  // every point moves on by a stage
-    assign in_ready = advance;  // a point that is offered is taken in this clock
-
+    // The handshake: a bit for each stage that has a point; all points move on together
+    reg  [15:1] valid;
+    assign out_valid = valid[15];
+    wire advance = out_ready | ~valid[15];
+    assign in_ready = advance;
     always @(posedge clk) begin
-        if (!rst_n) begin
-            valid_s1 <= 1'b0;
-            valid_s2 <= 1'b0;
-            valid_s3 <= 1'b0;
-            valid_s4 <= 1'b0;
-            valid_s5 <= 1'b0;
-            valid_s6 <= 1'b0;
-            valid_s7 <= 1'b0;
-            valid_s8 <= 1'b0;
-            valid_s9 <= 1'b0;
-            valid_s10 <= 1'b0;
-            valid_s11 <= 1'b0;
-            valid_s12 <= 1'b0;
-            valid_s13 <= 1'b0;
-            valid_s14 <= 1'b0;
-            valid_s15 <= 1'b0;
-        end else if (advance) begin
-            valid_s1 <= in_valid;
-            valid_s2 <= valid_s1;
-            valid_s3 <= valid_s2;
-            valid_s4 <= valid_s3;
-            valid_s5 <= valid_s4;
-            valid_s6 <= valid_s5;
-            valid_s7 <= valid_s6;
-            valid_s8 <= valid_s7;
-            valid_s9 <= valid_s8;
-            valid_s10 <= valid_s9;
-            valid_s11 <= valid_s10;
-            valid_s12 <= valid_s11;
-            valid_s13 <= valid_s12;
-            valid_s14 <= valid_s13;
-            valid_s15 <= valid_s14;
-        end
+        if (!rst_n) valid <= 15'd0;
+        else if (advance) valid <= {valid[14:1], in_valid};
     end
 
     // Stage 0, part of: operands cos gamma, n
-    // u1.20: cosine of the angle between normal and half vector
-    reg  [20:0] cos_gamma_reg_s1;
-    reg  [9:0]  exponent_s1;                  // specular exponent n
-    reg         scaled_highest_s1;
-    reg  [17:0] scaled_inside_upper_bits_s1;
-    reg         scaled_inside_row_s1;
-    reg         scaled_inside_row_3_s1;
-
-    wire cos_gamma_over_s0 = cos_gamma[20];
-
-    // u1.20: cosine of the angle between normal and half vector
-    wire [20:0] cos_gamma_reg_s0 = cos_gamma_over_s0 ? COS_GAMMA_MOST : cos_gamma;
-
     // u1.20: 1.0 - cos gamma
-    wire [20:0] complement_s0 = cos_gamma_over_s0 ? 21'd0 : (COS_GAMMA_MOST - cos_gamma);
-
-    always @(posedge clk) begin
-        if (advance) begin
-            cos_gamma_reg_s1 <= cos_gamma_reg_s0;
-            exponent_s1 <= exponent;
-            scaled_highest_s1 <= complement_s0[20];
-            scaled_inside_upper_bits_s1 <= complement_s0[19:2];
-            scaled_inside_row_s1 <= complement_s0[0];
-            scaled_inside_row_3_s1 <= complement_s0[1];
-        end
+    wire [20:0] complement_s0 = cos_gamma[20] ? 21'd0 : (COS_GAMMA_MOST - cos_gamma);
+    reg  [20:0] cos_gamma_reg_s1;      // u1.20: cosine of the angle between normal and half vector
+    reg  [9:0]  exponent_s1;
+    reg         scaled_highest_s1, scaled_row_s1, scaled_row_3_s1;
+    reg  [17:0] scaled_upper_bits_s1;
+    always @(posedge clk) if (advance) begin
+        cos_gamma_reg_s1 <= cos_gamma[20] ? COS_GAMMA_MOST : cos_gamma;
+        exponent_s1 <= exponent;
+        scaled_highest_s1 <= complement_s0[20];
+        scaled_upper_bits_s1 <= complement_s0[19:2];
+        scaled_row_s1 <= complement_s0[0];
+        scaled_row_3_s1 <= complement_s0[1];
     end
 
     // Stage 1, part of: cos gamma by n*(1 - cos gamma) + cos gamma
-    // u1.20: cosine of the angle between normal and half vector
     reg  [20:0] cos_gamma_reg_s2;
-    reg  [27:0] scaled_inside_upper_s2;
-    reg  [9:0]  scaled_inside_row_2_s2;
-    reg  [9:0]  scaled_inside_row_4_s2;
-    reg  [9:0]  scaled_at_highest_s2;
-
-    wire [27:0] scaled_inside_upper_s1 = scaled_inside_upper_bits_s1 * exponent_s1;
-    wire [9:0] scaled_at_highest_s1 = scaled_highest_s1 ? exponent_s1 : 10'd0;
-
-    always @(posedge clk) begin
-        if (advance) begin
-            cos_gamma_reg_s2 <= cos_gamma_reg_s1;
-            scaled_inside_upper_s2 <= scaled_inside_upper_s1;
-            scaled_inside_row_2_s2 <= scaled_inside_row_s1 ? exponent_s1 : 10'd0;
-            scaled_inside_row_4_s2 <= scaled_inside_row_3_s1 ? exponent_s1 : 10'd0;
-            scaled_at_highest_s2 <= scaled_at_highest_s1;
-        end
+    reg  [27:0] scaled_upper_s2;
+    reg  [9:0]  scaled_row_2_s2, scaled_row_4_s2, scaled_at_highest_s2;
+    always @(posedge clk) if (advance) begin
+        cos_gamma_reg_s2 <= cos_gamma_reg_s1;
+        scaled_upper_s2 <= scaled_upper_bits_s1 * exponent_s1;
+        scaled_row_2_s2 <= scaled_row_s1 ? exponent_s1 : 10'd0;
+        scaled_row_4_s2 <= scaled_row_3_s1 ? exponent_s1 : 10'd0;
+        scaled_at_highest_s2 <= scaled_highest_s1 ? exponent_s1 : 10'd0;
     end
 
     // Stage 2, part of: cos gamma by n*(1 - cos gamma) + cos gamma
-    // u1.20: cosine of the angle between normal and half vector
-    reg  [20:0] cos_gamma_reg_s3;
-    reg  [1:0]  scaled_inside_rows_3_s3;
-    reg  [9:0]  scaled_2_s3;
-    reg  [17:0] scaled_inside_sum_s3;
-    reg         dark_s3;                  // an ulp for the divisor, which n = 0 would leave at 0
-
-    wire [10:0] scaled_inside_rows_upper_3_s2 = {2'd0, scaled_inside_row_2_s2[9:1]} + {1'b0,
-            scaled_inside_row_4_s2};
-
-    wire [11:0] scaled_inside_rows_s2 = {scaled_inside_rows_upper_3_s2, scaled_inside_row_2_s2[0]};
-
-    wire [27:0] scaled_inside_sum_upper_2_s2 = {18'd0, scaled_inside_rows_s2[11:2]} +
-            scaled_inside_upper_s2;
-
+    wire [10:0] scaled_upper_4_s2 = {2'd0, scaled_row_2_s2[9:1]} + {1'b0, scaled_row_4_s2};
+    wire [27:0] scaled_upper_7_s2 = {18'd0, scaled_upper_4_s2[10:1]} + scaled_upper_s2;
     wire facing_s2 = |cos_gamma_reg_s2;  // the surface faces the half vector
-    wire dark_s2 = ~facing_s2;  // an ulp for the divisor, which n = 0 would leave at 0
-
-    always @(posedge clk) begin
-        if (advance) begin
-            cos_gamma_reg_s3 <= cos_gamma_reg_s2;
-            scaled_inside_rows_3_s3 <= {scaled_inside_rows_upper_3_s2[0],
-                    scaled_inside_row_2_s2[0]};
-            scaled_2_s3 <= scaled_inside_sum_upper_2_s2[27:18] | scaled_at_highest_s2;
-            scaled_inside_sum_s3 <= scaled_inside_sum_upper_2_s2[17:0];
-            dark_s3 <= dark_s2;
-        end
+    reg         dark_s3;           // an ulp for the divisor, which n = 0 would leave at 0
+    reg  [20:0] cos_gamma_reg_s3;
+    reg  [1:0]  scaled_rows_3_s3;
+    reg  [9:0]  scaled_2_s3;
+    reg  [17:0] scaled_sum_s3;
+    always @(posedge clk) if (advance) begin
+        cos_gamma_reg_s3 <= cos_gamma_reg_s2;
+        scaled_rows_3_s3 <= {scaled_upper_4_s2[0], scaled_row_2_s2[0]};
+        scaled_2_s3 <= scaled_upper_7_s2[27:18] | scaled_at_highest_s2;
+        scaled_sum_s3 <= scaled_upper_7_s2[17:0];
+        dark_s3 <= ~facing_s2;
     end
 
     // Stage 3, part of: cos gamma by n*(1 - cos gamma) + cos gamma; next bit of the quotient
+    wire [30:0] denominator_s3 = {1'b0, scaled_2_s3, scaled_sum_s3, scaled_rows_3_s3} + {10'd0,
+            cos_gamma_reg_s3} + {30'd0, dark_s3};
     reg         [29:0] quotient_divisor_s4;                   // u10.20: the divisor
     reg         [30:0] quotient_remainder_shifted_scaled_s4;  // u11.20
     // s11.20: negative where the divisor does not fit
     reg  signed [31:0] quotient_trial_s4;
-
-    // u11.20
-    wire [30:0] denominator_s3 = {1'b0, scaled_2_s3, scaled_inside_sum_s3, scaled_inside_rows_3_s3}
-            + {10'd0, cos_gamma_reg_s3} + {30'd0, dark_s3};
-
-    wire [29:0] quotient_divisor_s3 = denominator_s3[29:0];  // u10.20: the divisor
-
-    // s11.20: negative where the divisor does not fit
-    wire signed [31:0] quotient_trial_s3 = {10'd0, cos_gamma_reg_s3, 1'b0} - {2'd0,
-            quotient_divisor_s3};
-
-    always @(posedge clk) begin
-        if (advance) begin
-            quotient_divisor_s4 <= quotient_divisor_s3;
-            quotient_remainder_shifted_scaled_s4 <= {9'd0, cos_gamma_reg_s3, 1'b0};
-            quotient_trial_s4 <= quotient_trial_s3;
-        end
+    always @(posedge clk) if (advance) begin
+        quotient_divisor_s4 <= denominator_s3[29:0];
+        quotient_remainder_shifted_scaled_s4 <= {9'd0, cos_gamma_reg_s3, 1'b0};
+        quotient_trial_s4 <= {10'd0, cos_gamma_reg_s3, 1'b0} - {2'd0, denominator_s3[29:0]};
     end
 
     // Stage 4, part of: next bit of the quotient
-    reg  [29:0] quotient_divisor_s5;      // u10.20: the divisor
-    // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
-    reg  [29:0] quotient_remainder_2_s5;
-    reg  [1:0]  quotient_s5;              // the quotient, which bits enter at the bottom
-
     // the divisor fits: the next bit of the quotient
     wire quotient_bit_s4 = ~quotient_trial_s4[31];
-
-    // s11.20
     wire signed [31:0] quotient_left_s4 = quotient_bit_s4 ? quotient_trial_s4 : {1'b0,
             quotient_remainder_shifted_scaled_s4};
-
     // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
     wire [29:0] quotient_remainder_s4 = quotient_left_s4[29:0];
-
     // s11.20: negative where the divisor does not fit
     wire signed [31:0] quotient_trial_2_s4 = {1'b0, quotient_remainder_s4, 1'b0} - {2'd0,
             quotient_divisor_s4};
-
     // the divisor fits: the next bit of the quotient
     wire quotient_bit_2_s4 = ~quotient_trial_2_s4[31];
-
-    // s11.20
     wire signed [31:0] quotient_left_2_s4 = quotient_bit_2_s4 ? quotient_trial_2_s4 : {1'b0,
             quotient_remainder_s4, 1'b0};
-
     // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
-    wire [29:0] quotient_remainder_2_s4 = quotient_left_2_s4[29:0];
-
-    always @(posedge clk) begin
-        if (advance) begin
-            quotient_divisor_s5 <= quotient_divisor_s4;
-            quotient_remainder_2_s5 <= quotient_remainder_2_s4;
-            quotient_s5 <= {quotient_bit_s4, quotient_bit_2_s4};
-        end
+    reg  [29:0] quotient_remainder_2_s5;
+    reg  [1:0]  quotient_s5;              // the quotient, which bits enter at the bottom
+    reg  [29:0] quotient_divisor_s5;
+    always @(posedge clk) if (advance) begin
+        quotient_divisor_s5 <= quotient_divisor_s4;
+        quotient_remainder_2_s5 <= quotient_left_2_s4[29:0];
+        quotient_s5 <= {quotient_bit_s4, quotient_bit_2_s4};
     end
 
     // Stage 5, part of: next bit of the quotient
-    reg  [29:0] quotient_divisor_s6;      // u10.20: the divisor
-    // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
-    reg  [29:0] quotient_remainder_3_s6;
-    reg  [2:0]  quotient_2_s6;            // the quotient, which bits enter at the bottom
-
     // s11.20: negative where the divisor does not fit
     wire signed [31:0] quotient_trial_3_s5 = {1'b0, quotient_remainder_2_s5, 1'b0} - {2'd0,
             quotient_divisor_s5};
-
     // the divisor fits: the next bit of the quotient
     wire quotient_bit_3_s5 = ~quotient_trial_3_s5[31];
-
-    // s11.20
     wire signed [31:0] quotient_left_3_s5 = quotient_bit_3_s5 ? quotient_trial_3_s5 : {1'b0,
             quotient_remainder_2_s5, 1'b0};
-
     // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
-    wire [29:0] quotient_remainder_3_s5 = quotient_left_3_s5[29:0];
-
-    always @(posedge clk) begin
-        if (advance) begin
-            quotient_divisor_s6 <= quotient_divisor_s5;
-            quotient_remainder_3_s6 <= quotient_remainder_3_s5;
-            quotient_2_s6 <= {quotient_s5, quotient_bit_3_s5};
-        end
+    reg  [29:0] quotient_remainder_3_s6;
+    reg  [2:0]  quotient_2_s6;            // the quotient, which bits enter at the bottom
+    reg  [29:0] quotient_divisor_s6;
+    always @(posedge clk) if (advance) begin
+        quotient_divisor_s6 <= quotient_divisor_s5;
+        quotient_remainder_3_s6 <= quotient_left_3_s5[29:0];
+        quotient_2_s6 <= {quotient_s5, quotient_bit_3_s5};
     end
 
     // Stage 6, part of: next bit of the quotient
-    reg  [29:0] quotient_divisor_s7;      // u10.20: the divisor
-    // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
-    reg  [29:0] quotient_remainder_4_s7;
-    reg  [3:0]  quotient_3_s7;            // the quotient, which bits enter at the bottom
-
     // s11.20: negative where the divisor does not fit
     wire signed [31:0] quotient_trial_4_s6 = {1'b0, quotient_remainder_3_s6, 1'b0} - {2'd0,
             quotient_divisor_s6};
-
     // the divisor fits: the next bit of the quotient
     wire quotient_bit_4_s6 = ~quotient_trial_4_s6[31];
-
-    // s11.20
     wire signed [31:0] quotient_left_4_s6 = quotient_bit_4_s6 ? quotient_trial_4_s6 : {1'b0,
             quotient_remainder_3_s6, 1'b0};
-
     // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
-    wire [29:0] quotient_remainder_4_s6 = quotient_left_4_s6[29:0];
-
-    always @(posedge clk) begin
-        if (advance) begin
-            quotient_divisor_s7 <= quotient_divisor_s6;
-            quotient_remainder_4_s7 <= quotient_remainder_4_s6;
-            quotient_3_s7 <= {quotient_2_s6, quotient_bit_4_s6};
-        end
+    reg  [29:0] quotient_remainder_4_s7;
+    reg  [3:0]  quotient_3_s7;            // the quotient, which bits enter at the bottom
+    reg  [29:0] quotient_divisor_s7;
+    always @(posedge clk) if (advance) begin
+        quotient_divisor_s7 <= quotient_divisor_s6;
+        quotient_remainder_4_s7 <= quotient_left_4_s6[29:0];
+        quotient_3_s7 <= {quotient_2_s6, quotient_bit_4_s6};
     end
 
     // Stage 7, part of: next bit of the quotient
-    reg  [29:0] quotient_divisor_s8;      // u10.20: the divisor
-    // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
-    reg  [29:0] quotient_remainder_5_s8;
-    reg  [4:0]  quotient_4_s8;            // the quotient, which bits enter at the bottom
-
     // s11.20: negative where the divisor does not fit
     wire signed [31:0] quotient_trial_5_s7 = {1'b0, quotient_remainder_4_s7, 1'b0} - {2'd0,
             quotient_divisor_s7};
-
     // the divisor fits: the next bit of the quotient
     wire quotient_bit_5_s7 = ~quotient_trial_5_s7[31];
-
-    // s11.20
     wire signed [31:0] quotient_left_5_s7 = quotient_bit_5_s7 ? quotient_trial_5_s7 : {1'b0,
             quotient_remainder_4_s7, 1'b0};
-
     // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
-    wire [29:0] quotient_remainder_5_s7 = quotient_left_5_s7[29:0];
-
-    always @(posedge clk) begin
-        if (advance) begin
-            quotient_divisor_s8 <= quotient_divisor_s7;
-            quotient_remainder_5_s8 <= quotient_remainder_5_s7;
-            quotient_4_s8 <= {quotient_3_s7, quotient_bit_5_s7};
-        end
+    reg  [29:0] quotient_remainder_5_s8;
+    reg  [4:0]  quotient_4_s8;            // the quotient, which bits enter at the bottom
+    reg  [29:0] quotient_divisor_s8;
+    always @(posedge clk) if (advance) begin
+        quotient_divisor_s8 <= quotient_divisor_s7;
+        quotient_remainder_5_s8 <= quotient_left_5_s7[29:0];
+        quotient_4_s8 <= {quotient_3_s7, quotient_bit_5_s7};
     end
 
     // Stage 8, part of: next bit of the quotient
-    reg  [29:0] quotient_divisor_s9;      // u10.20: the divisor
-    // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
-    reg  [29:0] quotient_remainder_6_s9;
-    reg  [5:0]  quotient_5_s9;            // the quotient, which bits enter at the bottom
-
     // s11.20: negative where the divisor does not fit
     wire signed [31:0] quotient_trial_6_s8 = {1'b0, quotient_remainder_5_s8, 1'b0} - {2'd0,
             quotient_divisor_s8};
-
     // the divisor fits: the next bit of the quotient
     wire quotient_bit_6_s8 = ~quotient_trial_6_s8[31];
-
-    // s11.20
     wire signed [31:0] quotient_left_6_s8 = quotient_bit_6_s8 ? quotient_trial_6_s8 : {1'b0,
             quotient_remainder_5_s8, 1'b0};
-
     // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
-    wire [29:0] quotient_remainder_6_s8 = quotient_left_6_s8[29:0];
-
-    always @(posedge clk) begin
-        if (advance) begin
-            quotient_divisor_s9 <= quotient_divisor_s8;
-            quotient_remainder_6_s9 <= quotient_remainder_6_s8;
-            quotient_5_s9 <= {quotient_4_s8, quotient_bit_6_s8};
-        end
+    reg  [29:0] quotient_remainder_6_s9;
+    reg  [5:0]  quotient_5_s9;            // the quotient, which bits enter at the bottom
+    reg  [29:0] quotient_divisor_s9;
+    always @(posedge clk) if (advance) begin
+        quotient_divisor_s9 <= quotient_divisor_s8;
+        quotient_remainder_6_s9 <= quotient_left_6_s8[29:0];
+        quotient_5_s9 <= {quotient_4_s8, quotient_bit_6_s8};
     end
 
     // Stage 9, part of: next bit of the quotient
-    reg  [29:0] quotient_divisor_s10;      // u10.20: the divisor
-    // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
-    reg  [29:0] quotient_remainder_7_s10;
-    reg  [6:0]  quotient_6_s10;            // the quotient, which bits enter at the bottom
-
     // s11.20: negative where the divisor does not fit
     wire signed [31:0] quotient_trial_7_s9 = {1'b0, quotient_remainder_6_s9, 1'b0} - {2'd0,
             quotient_divisor_s9};
-
     // the divisor fits: the next bit of the quotient
     wire quotient_bit_7_s9 = ~quotient_trial_7_s9[31];
-
-    // s11.20
     wire signed [31:0] quotient_left_7_s9 = quotient_bit_7_s9 ? quotient_trial_7_s9 : {1'b0,
             quotient_remainder_6_s9, 1'b0};
-
     // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
-    wire [29:0] quotient_remainder_7_s9 = quotient_left_7_s9[29:0];
-
-    always @(posedge clk) begin
-        if (advance) begin
-            quotient_divisor_s10 <= quotient_divisor_s9;
-            quotient_remainder_7_s10 <= quotient_remainder_7_s9;
-            quotient_6_s10 <= {quotient_5_s9, quotient_bit_7_s9};
-        end
+    reg  [29:0] quotient_remainder_7_s10;
+    reg  [6:0]  quotient_6_s10;            // the quotient, which bits enter at the bottom
+    reg  [29:0] quotient_divisor_s10;
+    always @(posedge clk) if (advance) begin
+        quotient_divisor_s10 <= quotient_divisor_s9;
+        quotient_remainder_7_s10 <= quotient_left_7_s9[29:0];
+        quotient_6_s10 <= {quotient_5_s9, quotient_bit_7_s9};
     end
 
     // Stage 10, part of: next bit of the quotient
-    reg  [29:0] quotient_divisor_s11;      // u10.20: the divisor
-    // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
-    reg  [29:0] quotient_remainder_8_s11;
-    reg  [7:0]  quotient_7_s11;            // the quotient, which bits enter at the bottom
-
     // s11.20: negative where the divisor does not fit
     wire signed [31:0] quotient_trial_8_s10 = {1'b0, quotient_remainder_7_s10, 1'b0} - {2'd0,
             quotient_divisor_s10};
-
     // the divisor fits: the next bit of the quotient
     wire quotient_bit_8_s10 = ~quotient_trial_8_s10[31];
-
-    // s11.20
     wire signed [31:0] quotient_left_8_s10 = quotient_bit_8_s10 ? quotient_trial_8_s10 : {1'b0,
             quotient_remainder_7_s10, 1'b0};
-
     // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
-    wire [29:0] quotient_remainder_8_s10 = quotient_left_8_s10[29:0];
-
-    always @(posedge clk) begin
-        if (advance) begin
-            quotient_divisor_s11 <= quotient_divisor_s10;
-            quotient_remainder_8_s11 <= quotient_remainder_8_s10;
-            quotient_7_s11 <= {quotient_6_s10, quotient_bit_8_s10};
-        end
+    reg  [29:0] quotient_remainder_8_s11;
+    reg  [7:0]  quotient_7_s11;            // the quotient, which bits enter at the bottom
+    reg  [29:0] quotient_divisor_s11;
+    always @(posedge clk) if (advance) begin
+        quotient_divisor_s11 <= quotient_divisor_s10;
+        quotient_remainder_8_s11 <= quotient_left_8_s10[29:0];
+        quotient_7_s11 <= {quotient_6_s10, quotient_bit_8_s10};
     end
 
     // Stage 11, part of: next bit of the quotient
-    reg  [29:0] quotient_divisor_s12;      // u10.20: the divisor
-    // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
-    reg  [29:0] quotient_remainder_9_s12;
-    reg  [8:0]  quotient_8_s12;            // the quotient, which bits enter at the bottom
-
     // s11.20: negative where the divisor does not fit
     wire signed [31:0] quotient_trial_9_s11 = {1'b0, quotient_remainder_8_s11, 1'b0} - {2'd0,
             quotient_divisor_s11};
-
     // the divisor fits: the next bit of the quotient
     wire quotient_bit_9_s11 = ~quotient_trial_9_s11[31];
-
-    // s11.20
     wire signed [31:0] quotient_left_9_s11 = quotient_bit_9_s11 ? quotient_trial_9_s11 : {1'b0,
             quotient_remainder_8_s11, 1'b0};
-
     // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
-    wire [29:0] quotient_remainder_9_s11 = quotient_left_9_s11[29:0];
-
-    always @(posedge clk) begin
-        if (advance) begin
-            quotient_divisor_s12 <= quotient_divisor_s11;
-            quotient_remainder_9_s12 <= quotient_remainder_9_s11;
-            quotient_8_s12 <= {quotient_7_s11, quotient_bit_9_s11};
-        end
+    reg  [29:0] quotient_remainder_9_s12;
+    reg  [8:0]  quotient_8_s12;            // the quotient, which bits enter at the bottom
+    reg  [29:0] quotient_divisor_s12;
+    always @(posedge clk) if (advance) begin
+        quotient_divisor_s12 <= quotient_divisor_s11;
+        quotient_remainder_9_s12 <= quotient_left_9_s11[29:0];
+        quotient_8_s12 <= {quotient_7_s11, quotient_bit_9_s11};
     end
 
     // Stage 12, part of: next bit of the quotient
-    reg  [7:0] red_s13;         // intensity of the light times k_s
-    reg  [7:0] green_s13;       // intensity of the light times k_s
-    reg  [7:0] blue_s13;        // intensity of the light times k_s
-    reg  [9:0] quotient_9_s13;  // u0.10: the quotient, which bits enter at the bottom
-
     // s11.20: negative where the divisor does not fit
     wire signed [31:0] quotient_trial_10_s12 = {1'b0, quotient_remainder_9_s12, 1'b0} - {2'd0,
             quotient_divisor_s12};
-
     // the divisor fits: the next bit of the quotient
     wire quotient_bit_10_s12 = ~quotient_trial_10_s12[31];
-
-    // u0.10: the quotient, which bits enter at the bottom
-    wire [9:0] quotient_9_s12 = {quotient_8_s12, quotient_bit_10_s12};
-
-    always @(posedge clk) begin
-        if (advance) begin
-            quotient_9_s13 <= quotient_9_s12;
-        end
+    reg  [9:0] quotient_9_s13;  // u0.10: the quotient, which bits enter at the bottom
+    wire [7:0] red_s13, green_s13, blue_s13;
+    always @(posedge clk) if (advance) begin
+        quotient_9_s13 <= {quotient_8_s12, quotient_bit_10_s12};
     end
 
     // Stage 13, part of: result
-    reg  [7:0] red_product_kept_s14;
-    reg        red_product_bits_s14;
-    reg  [7:0] green_product_kept_s14;
-    reg        green_product_bits_s14;
-    reg  [7:0] blue_product_kept_s14;
-    reg        blue_product_bits_s14;
-
     // u8.10: an output before it is rounded
     wire [17:0] red_product_s13 = quotient_9_s13 * red_s13;
-
-    // u8.10: an output before it is rounded
     wire [17:0] green_product_s13 = quotient_9_s13 * green_s13;
-
-    // u8.10: an output before it is rounded
     wire [17:0] blue_product_s13 = quotient_9_s13 * blue_s13;
-
-    always @(posedge clk) begin
-        if (advance) begin
-            red_product_kept_s14 <= red_product_s13[17:10];
-            red_product_bits_s14 <= red_product_s13[9];
-            green_product_kept_s14 <= green_product_s13[17:10];
-            green_product_bits_s14 <= green_product_s13[9];
-            blue_product_kept_s14 <= blue_product_s13[17:10];
-            blue_product_bits_s14 <= blue_product_s13[9];
-        end
+    reg  [7:0] red_product_kept_s14, green_product_kept_s14, blue_product_kept_s14;
+    reg        red_product_bits_s14, green_product_bits_s14, blue_product_bits_s14;
+    always @(posedge clk) if (advance) begin
+        red_product_kept_s14 <= red_product_s13[17:10];
+        red_product_bits_s14 <= red_product_s13[9];
+        green_product_kept_s14 <= green_product_s13[17:10];
+        green_product_bits_s14 <= green_product_s13[9];
+        blue_product_kept_s14 <= blue_product_s13[17:10];
+        blue_product_bits_s14 <= blue_product_s13[9];
     end
 
     // Stage 14, part of: result
-    reg  [7:0] red_intensity_s15;
-    reg  [7:0] green_intensity_s15;
-    reg  [7:0] blue_intensity_s15;
-
-    wire [7:0] red_intensity_s14 = red_product_kept_s14 + {7'd0, red_product_bits_s14};
-    wire [7:0] green_intensity_s14 = green_product_kept_s14 + {7'd0, green_product_bits_s14};
-    wire [7:0] blue_intensity_s14 = blue_product_kept_s14 + {7'd0, blue_product_bits_s14};
-
-    always @(posedge clk) begin
-        if (advance) begin
-            red_intensity_s15 <= red_intensity_s14;
-            green_intensity_s15 <= green_intensity_s14;
-            blue_intensity_s15 <= blue_intensity_s14;
-        end
+    reg  [7:0] red_intensity_s15, green_intensity_s15, blue_intensity_s15;
+    always @(posedge clk) if (advance) begin
+        red_intensity_s15 <= red_product_kept_s14 + {7'd0, red_product_bits_s14};
+        green_intensity_s15 <= green_product_kept_s14 + {7'd0, green_product_bits_s14};
+        blue_intensity_s15 <= blue_product_kept_s14 + {7'd0, blue_product_bits_s14};
     end
 
-    // Delay lines: values that nothing reads for several stages lie in small memories. Whenever
-    // points move on, a slot gives the value that it holds and takes a new one; its turn comes
-    // again when all others have had theirs.
-    reg [3:0] slot_of_12;
-    initial slot_of_12 = 4'd0;
-    (* ram_style = "distributed", syn_ramstyle = "distributed" *)
-    reg [23:0] delay_s0_s13 [0:11];
-
-    always @(posedge clk) begin
-        if (advance) begin
-            slot_of_12 <= slot_of_12 == 4'd11 ? 4'd0 : slot_of_12 + 4'd1;
-            {red_s13, green_s13, blue_s13} <= delay_s0_s13[slot_of_12];
-            delay_s0_s13[slot_of_12] <= {red, green, blue};
-        end
-    end
+    // Delay lines: what nothing reads for several stages goes through small memories
+    schlick_pipelined_delay #(.WIDTH(24), .WORDS(12), .BITS(4)) delay_of_13 (
+        .clk(clk), .rst_n(rst_n), .enable(advance),
+        .entering({red, green, blue}),
+        .leaving({red_s13, green_s13, blue_s13})
+    );
 
     // Results
-
     assign red_out = red_intensity_s15;  // intensity on the output
     assign green_out = green_intensity_s15;  // intensity on the output
     assign blue_out = blue_intensity_s15;  // intensity on the output
 
     // Unused bits, among them those that narrowing drops.
-    wire unused = &{1'b0, scaled_inside_rows_s2[1:0], denominator_s3[30], quotient_left_s4[31:30],
-            quotient_left_2_s4[31:30], quotient_left_3_s5[31:30], quotient_left_4_s6[31:30],
-            quotient_left_5_s7[31:30], quotient_left_6_s8[31:30], quotient_left_7_s9[31:30],
-            quotient_left_8_s10[31:30], quotient_left_9_s11[31:30], quotient_trial_10_s12[30:0],
-            red_product_s13[8:0], green_product_s13[8:0], blue_product_s13[8:0]};
+    wire unused = &{1'b0, denominator_s3[30], quotient_left_s4[31:30], quotient_left_2_s4[31:30],
+            quotient_left_3_s5[31:30], quotient_left_4_s6[31:30], quotient_left_5_s7[31:30],
+            quotient_left_6_s8[31:30], quotient_left_7_s9[31:30], quotient_left_8_s10[31:30],
+            quotient_left_9_s11[31:30], quotient_trial_10_s12[30:0], red_product_s13[8:0],
+            green_product_s13[8:0], blue_product_s13[8:0]};
+endmodule
+
+// Values on their way, WORDS + 1 registers long. A slot of a small memory gives the value that it
+// holds and takes a new one; its turn comes again when all others have had theirs.
+/* verilator lint_off DECLFILENAME */
+module schlick_pipelined_delay #(
+    parameter WIDTH  = 8,
+    parameter WORDS  = 2,
+    parameter BITS   = 1,  // of the number of a slot
+    parameter MEMORY = 1   // 0: registers in place of the memory
+) (
+    input  wire             clk, rst_n, enable,
+    input  wire [WIDTH-1:0] entering,
+    output reg  [WIDTH-1:0] leaving
+);
+    generate
+        if (MEMORY != 0) begin : memory
+            localparam [BITS-1:0] LAST = WORDS[BITS-1:0] - 1'b1;
+            reg  [BITS-1:0]  slot;
+            reg  [WIDTH-1:0] words [0:WORDS-1];
+            // Of a power of two the number after the last is 0.
+            wire around = WORDS != 1 << BITS && slot == LAST;
+            always @(posedge clk) begin
+                if (!rst_n) slot <= {BITS{1'b0}};
+                else if (enable) slot <= around ? {BITS{1'b0}} : slot + 1'b1;
+                if (enable) begin
+                    leaving <= words[slot];
+                    words[slot] <= entering;
+                end
+            end
+        end else begin : registers
+            reg  [WIDTH*WORDS-1:0] words;
+            wire unused = &{1'b0, rst_n};
+            always @(posedge clk) if (enable) {leaving, words} <= {words, entering};
+        end
+    endgenerate
 endmodule
 
 `default_nettype wire

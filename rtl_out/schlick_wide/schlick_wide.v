@@ -24,8 +24,9 @@
 //  blue_out         u12.0   result
 //
 // The quotient is truncated to 14 bits and exact to the last of them: the divider keeps the whole
-// remainder. One bit takes a clock. The quotient 1.0, of cos gamma = 1.0 or n = 0, is the largest
-// fraction, an ulp less.
+// remainder. The quotient 1.0, of cos gamma = 1.0 or n = 0, is the largest fraction, an ulp less.
+//
+// One bit of the quotient takes a clock.
 //
 // Cosines are limited to 0 ... 1.0 as they are written; cos gamma <= 0 gives 0. A division by zero
 // cannot occur: the divisor is 0 for cos gamma = 0 and n = 0 alone, and cos gamma = 0 adds an ulp

@@ -11,20 +11,6 @@
 // Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit apart) and F
 // fraction bits; the value of a signal is its integer times 2^-F.
 //
-//  rst_n              reset, active low, synchronous
-//  in_valid           a point is offered: the operands are its own
-//  cos_gamma  u1.20   operand
-//  exponent   u10.0   operand
-//  red        u8.0    operand
-//  green      u8.0    operand
-//  blue       u8.0    operand
-//  out_ready          the results are taken in this clock
-//  in_ready           the point that is offered is taken in this clock
-//  out_valid          results are on the outputs
-//  red_out    u8.0    result
-//  green_out  u8.0    result
-//  blue_out   u8.0    result
-//
 // The seed multiplies by n; for cos^n to be approximated it must be n/2, which is wiring.
 //
 // "- 1" and "+ 1" are 1.0 here. The seed's adder 1 adds all ones and its adder 2 a carry: an ulp
@@ -67,269 +53,188 @@ module threshold_pipelined #(
     localparam [20:0] COS_GAMMA_MOST = 21'h100000;  // 1.0 in u1.20
     localparam [16:0] MULTIPLIER1_ROUNDED_LEAST = 17'h10000;  // -1.0 in s0.16
 
-    // The handshake: which stage has a point, and when all of them move on
-    reg  valid_s1;  // stage 1 has a point
-    reg  valid_s2;  // stage 2 has a point
-    reg  valid_s3;  // stage 3 has a point
-    reg  valid_s4;  // stage 4 has a point
-    reg  valid_s5;  // stage 5 has a point
-    reg  valid_s6;  // stage 6 has a point
-    reg  valid_s7;  // stage 7 has a point
-    reg  valid_s8;  // stage 8 has a point
-    reg  valid_s9;  // the results are on the outputs
-
-    assign out_valid = valid_s9;  // the results are on the outputs
-    wire advance = out_ready | ~valid_s9;  // every point moves on by a stage
-    assign in_ready = advance;  // a point that is offered is taken in this clock
-
+    // The handshake: a bit for each stage that has a point; all points move on together
+    reg  [9:1] valid;
+    assign out_valid = valid[9];
+    wire advance = out_ready | ~valid[9];
+    assign in_ready = advance;
     always @(posedge clk) begin
-        if (!rst_n) begin
-            valid_s1 <= 1'b0;
-            valid_s2 <= 1'b0;
-            valid_s3 <= 1'b0;
-            valid_s4 <= 1'b0;
-            valid_s5 <= 1'b0;
-            valid_s6 <= 1'b0;
-            valid_s7 <= 1'b0;
-            valid_s8 <= 1'b0;
-            valid_s9 <= 1'b0;
-        end else if (advance) begin
-            valid_s1 <= in_valid;
-            valid_s2 <= valid_s1;
-            valid_s3 <= valid_s2;
-            valid_s4 <= valid_s3;
-            valid_s5 <= valid_s4;
-            valid_s6 <= valid_s5;
-            valid_s7 <= valid_s6;
-            valid_s8 <= valid_s7;
-            valid_s9 <= valid_s8;
-        end
+        if (!rst_n) valid <= 9'd0;
+        else if (advance) valid <= {valid[8:1], in_valid};
     end
 
     // Stage 0, part of: operands; ROM(n) addressed
     // register 1, u1.20: cosine of the angle between normal and half vector
     reg  [20:0] cos_gamma_reg_s1;
-    reg  [9:0]  exponent_s1;       // register 2: specular exponent n
-
-    wire cos_gamma_over_s0 = cos_gamma[20];
-
-    // mux 1, u1.20: cosine of the angle between normal and half vector
-    wire [20:0] cos_gamma_reg_s0 = cos_gamma_over_s0 ? COS_GAMMA_MOST : cos_gamma;
-
-    always @(posedge clk) begin
-        if (advance) begin
-            cos_gamma_reg_s1 <= cos_gamma_reg_s0;
-            exponent_s1 <= exponent;
-        end
+    reg  [9:0]  exponent_s1;
+    always @(posedge clk) if (advance) begin
+        cos_gamma_reg_s1 <= cos_gamma[20] ? COS_GAMMA_MOST : cos_gamma;
+        exponent_s1 <= exponent;
     end
 
     // Stage 1, part of: scaled <- n/2 * (cos gamma - 1); intensity <- (scaled + 1)^2, or 0 below
     // ROM(n)
-    reg  [9:0]  exponent_s2;                         // register 2: specular exponent n
-    reg  [27:0] multiplier1_inside_upper_s2;         // register 1
-    reg  [10:0] multiplier1_inside_rows_upper_3_s2;  // register 1
-    reg         multiplier1_inside_rows_upper_4_s2;  // register 1
-    reg  [9:0]  multiplier1_at_sign_s2;              // register 1
-    reg         facing_s2;                           // the surface faces the half vector
-
-    wire [27:0] multiplier1_inside_upper_s1 = cos_gamma_reg_s1[19:2] * exponent_s1;  // multiplier 1
-    wire [9:0] multiplier1_inside_row_2_s1 = cos_gamma_reg_s1[0] ? exponent_s1 : 10'd0;  // mux 1
-    wire [9:0] multiplier1_inside_row_4_s1 = cos_gamma_reg_s1[1] ? exponent_s1 : 10'd0;  // mux 1
-    wire [9:0] multiplier1_at_sign_s1 = ~cos_gamma_reg_s1[20] ? exponent_s1 : 10'd0;  // mux 1
-    wire facing_s1 = |cos_gamma_reg_s1;  // the surface faces the half vector
-
-    always @(posedge clk) begin
-        if (advance) begin
-            exponent_s2 <= exponent_s1;
-            multiplier1_inside_upper_s2 <= multiplier1_inside_upper_s1;
-            multiplier1_inside_rows_upper_3_s2 <= {2'd0, multiplier1_inside_row_2_s1[9:1]} + {1'b0,
-                    multiplier1_inside_row_4_s1};
-            multiplier1_inside_rows_upper_4_s2 <= multiplier1_inside_row_2_s1[0];
-            multiplier1_at_sign_s2 <= multiplier1_at_sign_s1;
-            facing_s2 <= facing_s1;
-        end
+    wire [9:0] multiplier1_row_2_s1 = cos_gamma_reg_s1[0] ? exponent_s1 : 10'd0;
+    wire [9:0] multiplier1_row_4_s1 = cos_gamma_reg_s1[1] ? exponent_s1 : 10'd0;
+    reg         facing_s2;               // the surface faces the half vector
+    reg  [9:0]  exponent_s2, multiplier1_at_sign_s2;
+    reg  [27:0] multiplier1_upper_s2;
+    reg  [10:0] multiplier1_upper_4_s2;
+    reg         multiplier1_upper_5_s2;
+    always @(posedge clk) if (advance) begin
+        exponent_s2 <= exponent_s1;
+        multiplier1_upper_s2 <= cos_gamma_reg_s1[19:2] * exponent_s1;
+        multiplier1_upper_4_s2 <= {2'd0, multiplier1_row_2_s1[9:1]} + {1'b0, multiplier1_row_4_s1};
+        multiplier1_upper_5_s2 <= multiplier1_row_2_s1[0];
+        multiplier1_at_sign_s2 <= ~cos_gamma_reg_s1[20] ? exponent_s1 : 10'd0;
+        facing_s2 <= |cos_gamma_reg_s1;
     end
 
     // Stage 2, part of: scaled <- n/2 * (cos gamma - 1)
-    reg         [9:0]  exponent_s3;                 // register 2: specular exponent n
-    reg                multiplier1_kept_bits_s3;
-    reg         [9:0]  multiplier1_kept_bits_2_s3;
+    wire [27:0] multiplier1_upper_7_s2 = {18'd0, multiplier1_upper_4_s2[10:1]} +
+            multiplier1_upper_s2;
+    wire signed [10:0] multiplier1_upper_8_s2 = {1'b0, multiplier1_upper_7_s2[27:18]} - {1'b0,
+            multiplier1_at_sign_s2};
     reg  signed [16:0] multiplier1_kept_inside_s3;  // s0.16
-    reg                facing_s3;                   // the surface faces the half vector
-
-    // block 1
-    wire [11:0] multiplier1_inside_rows_s2 = {multiplier1_inside_rows_upper_3_s2,
-            multiplier1_inside_rows_upper_4_s2};
-
-    // adder 1
-    wire [27:0] multiplier1_inside_sum_upper_2_s2 = {18'd0, multiplier1_inside_rows_s2[11:2]} +
-            multiplier1_inside_upper_s2;
-
-    // adder 1, s10.0
-    wire signed [10:0] multiplier1_upper_s2 = {1'b0, multiplier1_inside_sum_upper_2_s2[27:18]} -
-            {1'b0, multiplier1_at_sign_s2};
-
-    always @(posedge clk) begin
-        if (advance) begin
-            exponent_s3 <= exponent_s2;
-            multiplier1_kept_bits_s3 <= multiplier1_upper_s2[10];
-            multiplier1_kept_bits_2_s3 <= multiplier1_upper_s2[10:1];
-            multiplier1_kept_inside_s3 <= {multiplier1_upper_s2[1:0],
-                    multiplier1_inside_sum_upper_2_s2[17:3]};
-            facing_s3 <= facing_s2;
-        end
+    reg         [9:0]  exponent_s3, multiplier1_kept_bits_2_s3;
+    reg                multiplier1_kept_bits_s3, facing_s3;
+    always @(posedge clk) if (advance) begin
+        exponent_s3 <= exponent_s2;
+        multiplier1_kept_bits_s3 <= multiplier1_upper_8_s2[10];
+        multiplier1_kept_bits_2_s3 <= multiplier1_upper_8_s2[10:1];
+        multiplier1_kept_inside_s3 <= {multiplier1_upper_8_s2[1:0], multiplier1_upper_7_s2[17:3]};
+        facing_s3 <= facing_s2;
     end
 
     // Stage 3, part of: scaled <- n/2 * (cos gamma - 1); intensity <- (scaled + 1)^2, or 0 below
     // ROM(n)
-    reg  [9:0]  exponent_s4;        // register 2: specular exponent n
-    reg         facing_s4;          // the surface faces the half vector
-    reg         adder2_upper_2_s4;  // register 2: base of the square, 0 ... 1.0
-    reg  [15:0] adder2_upper_3_s4;  // register 2: base of the square, 0 ... 1.0
-
     // s0.16: n/2*(cos gamma - 1), not below -1.0
     wire signed [16:0] scaled_s3 = (multiplier1_kept_bits_s3 & ~(&multiplier1_kept_bits_2_s3)) ?
             MULTIPLIER1_ROUNDED_LEAST : multiplier1_kept_inside_s3;
-
-    always @(posedge clk) begin
-        if (advance) begin
-            exponent_s4 <= exponent_s3;
-            facing_s4 <= facing_s3;
-            adder2_upper_2_s4 <= ~scaled_s3[16];
-            adder2_upper_3_s4 <= scaled_s3[15:0];
-        end
+    reg  [9:0]  exponent_s4;
+    reg         facing_s4, adder2_upper_2_s4;
+    reg  [15:0] adder2_upper_3_s4;
+    always @(posedge clk) if (advance) begin
+        exponent_s4 <= exponent_s3;
+        facing_s4 <= facing_s3;
+        adder2_upper_2_s4 <= ~scaled_s3[16];
+        adder2_upper_3_s4 <= scaled_s3[15:0];
     end
 
     // Stage 4, part of: intensity <- (scaled + 1)^2, or 0 below ROM(n)
-    reg         facing_s5;                   // the surface faces the half vector
-    reg  [1:0]  multiplier2_kept_bits_s5;
-    reg  [15:0] multiplier2_kept_inside_s5;  // u0.16
-    reg  [15:0] levels_word_s5;              // u0.16
-
+    reg  [15:0] levels_word_s5;  // u0.16
     // block 2, u1.16: base of the square, 0 ... 1.0
     wire [16:0] adder2_s4 = {adder2_upper_2_s4, adder2_upper_3_s4};
-
     wire [33:0] multiplier2_s4 = adder2_s4 * adder2_s4;  // multiplier 2, u2.32
-
     // ROM levels: the smallest f that is shown for an exponent n (the address)
     reg [15:0] levels_rom [0:1023];
     initial $readmemh(LEVELS_FILE, levels_rom);
     always @(posedge clk) if (advance) levels_word_s5 <= levels_rom[exponent_s4];
-
-    always @(posedge clk) begin
-        if (advance) begin
-            facing_s5 <= facing_s4;
-            multiplier2_kept_bits_s5 <= multiplier2_s4[33:32];
-            multiplier2_kept_inside_s5 <= multiplier2_s4[31:16];
-        end
+    reg  [15:0] multiplier2_kept_inside_s5;  // u0.16
+    reg         facing_s5;
+    reg  [1:0]  multiplier2_kept_bits_s5;
+    always @(posedge clk) if (advance) begin
+        facing_s5 <= facing_s4;
+        multiplier2_kept_bits_s5 <= multiplier2_s4[33:32];
+        multiplier2_kept_inside_s5 <= multiplier2_s4[31:16];
     end
 
     // Stage 5, part of: operands; ROM(n) addressed; intensity <- (scaled + 1)^2, or 0 below ROM(n)
-    reg  [15:0] levels_word_s6;  // u0.16
-    reg         facing_s6;       // the surface faces the half vector
     reg  [15:0] square_s6;       // u0.16
-
-    // u0.16
-    wire [15:0] square_s5 = (|multiplier2_kept_bits_s5) ? 16'hffff : multiplier2_kept_inside_s5;
-
-    always @(posedge clk) begin
-        if (advance) begin
-            levels_word_s6 <= levels_word_s5;
-            facing_s6 <= facing_s5;
-            square_s6 <= square_s5;
-        end
+    reg  [15:0] levels_word_s6;
+    reg         facing_s6;
+    always @(posedge clk) if (advance) begin
+        levels_word_s6 <= levels_word_s5;
+        facing_s6 <= facing_s5;
+        square_s6 <= (|multiplier2_kept_bits_s5) ? 16'hffff : multiplier2_kept_inside_s5;
     end
 
     // Stage 6, part of: intensity <- (scaled + 1)^2, or 0 below ROM(n)
-    reg  [7:0]  red_s7;        // register 3: intensity of the light times k_s
-    reg  [7:0]  green_s7;      // register 4: intensity of the light times k_s
-    reg  [7:0]  blue_s7;       // register 5: intensity of the light times k_s
-    reg  [15:0] intensity_s7;  // u0.16: the reflectance f: what the gates passed
-
     wire comparator_s6 = square_s6 < levels_word_s6;  // the square is below the level of visibility
     wire visible_s6 = ~comparator_s6;
     wire pass_s6 = facing_s6 & visible_s6;  // opens the gates
-
-    // u0.16: the reflectance f: what the gates passed
-    wire [15:0] intensity_s6 = pass_s6 ? square_s6 : 16'd0;
-
-    always @(posedge clk) begin
-        if (advance) begin
-            intensity_s7 <= intensity_s6;
-        end
-    end
+    reg  [15:0] intensity_s7;  // u0.16: the reflectance f: what the gates passed
+    wire [7:0]  red_s7, green_s7, blue_s7;
+    always @(posedge clk) if (advance) intensity_s7 <= pass_s6 ? square_s6 : 16'd0;
 
     // Stage 7, part of: result
-    reg  [7:0] red_product_kept_s8;
-    reg        red_product_bits_s8;
-    reg  [7:0] green_product_kept_s8;
-    reg        green_product_bits_s8;
-    reg  [7:0] blue_product_kept_s8;
-    reg        blue_product_bits_s8;
-
     // multiplier 3, u8.16: an output before it is rounded
     wire [23:0] red_product_s7 = intensity_s7 * red_s7;
-
     // multiplier 4, u8.16: an output before it is rounded
     wire [23:0] green_product_s7 = intensity_s7 * green_s7;
-
     // multiplier 5, u8.16: an output before it is rounded
     wire [23:0] blue_product_s7 = intensity_s7 * blue_s7;
-
-    always @(posedge clk) begin
-        if (advance) begin
-            red_product_kept_s8 <= red_product_s7[23:16];
-            red_product_bits_s8 <= red_product_s7[15];
-            green_product_kept_s8 <= green_product_s7[23:16];
-            green_product_bits_s8 <= green_product_s7[15];
-            blue_product_kept_s8 <= blue_product_s7[23:16];
-            blue_product_bits_s8 <= blue_product_s7[15];
-        end
+    reg  [7:0] red_product_kept_s8, green_product_kept_s8, blue_product_kept_s8;
+    reg        red_product_bits_s8, green_product_bits_s8, blue_product_bits_s8;
+    always @(posedge clk) if (advance) begin
+        red_product_kept_s8 <= red_product_s7[23:16];
+        red_product_bits_s8 <= red_product_s7[15];
+        green_product_kept_s8 <= green_product_s7[23:16];
+        green_product_bits_s8 <= green_product_s7[15];
+        blue_product_kept_s8 <= blue_product_s7[23:16];
+        blue_product_bits_s8 <= blue_product_s7[15];
     end
 
     // Stage 8, part of: result
-    reg  [7:0] red_intensity_s9;
-    reg  [7:0] green_intensity_s9;
-    reg  [7:0] blue_intensity_s9;
-
-    wire [7:0] red_intensity_s8 = red_product_kept_s8 + {7'd0, red_product_bits_s8};
-    wire [7:0] green_intensity_s8 = green_product_kept_s8 + {7'd0, green_product_bits_s8};
-    wire [7:0] blue_intensity_s8 = blue_product_kept_s8 + {7'd0, blue_product_bits_s8};
-
-    always @(posedge clk) begin
-        if (advance) begin
-            red_intensity_s9 <= red_intensity_s8;
-            green_intensity_s9 <= green_intensity_s8;
-            blue_intensity_s9 <= blue_intensity_s8;
-        end
+    reg  [7:0] red_intensity_s9, green_intensity_s9, blue_intensity_s9;
+    always @(posedge clk) if (advance) begin
+        red_intensity_s9 <= red_product_kept_s8 + {7'd0, red_product_bits_s8};
+        green_intensity_s9 <= green_product_kept_s8 + {7'd0, green_product_bits_s8};
+        blue_intensity_s9 <= blue_product_kept_s8 + {7'd0, blue_product_bits_s8};
     end
 
-    // Delay lines: values that nothing reads for several stages lie in small memories. Whenever
-    // points move on, a slot gives the value that it holds and takes a new one; its turn comes
-    // again when all others have had theirs.
-    reg [2:0] slot_of_6;
-    initial slot_of_6 = 3'd0;
-    (* ram_style = "distributed", syn_ramstyle = "distributed" *)
-    reg [23:0] delay_s0_s7 [0:5];
-
-    always @(posedge clk) begin
-        if (advance) begin
-            slot_of_6 <= slot_of_6 == 3'd5 ? 3'd0 : slot_of_6 + 3'd1;
-            {red_s7, green_s7, blue_s7} <= delay_s0_s7[slot_of_6];
-            delay_s0_s7[slot_of_6] <= {red, green, blue};
-        end
-    end
+    // Delay lines: what nothing reads for several stages goes through small memories
+    threshold_pipelined_delay #(.WIDTH(24), .WORDS(6), .BITS(3)) delay_of_7 (
+        .clk(clk), .rst_n(rst_n), .enable(advance),
+        .entering({red, green, blue}),
+        .leaving({red_s7, green_s7, blue_s7})
+    );
 
     // Results
-
     assign red_out = red_intensity_s9;  // output 1: intensity on the output
     assign green_out = green_intensity_s9;  // output 2: intensity on the output
     assign blue_out = blue_intensity_s9;  // output 3: intensity on the output
 
     // Unused bits, among them those that narrowing drops.
-    wire unused = &{1'b0, multiplier1_inside_rows_s2[1:0], multiplier1_inside_sum_upper_2_s2[2:0],
-            multiplier2_s4[15:0], red_product_s7[14:0], green_product_s7[14:0],
-            blue_product_s7[14:0]};
+    wire unused = &{1'b0, multiplier1_upper_4_s2[0], multiplier1_upper_5_s2,
+            multiplier1_upper_7_s2[2:0], multiplier2_s4[15:0], red_product_s7[14:0],
+            green_product_s7[14:0], blue_product_s7[14:0]};
+endmodule
+
+// Values on their way, WORDS + 1 registers long. A slot of a small memory gives the value that it
+// holds and takes a new one; its turn comes again when all others have had theirs.
+/* verilator lint_off DECLFILENAME */
+module threshold_pipelined_delay #(
+    parameter WIDTH  = 8,
+    parameter WORDS  = 2,
+    parameter BITS   = 1,  // of the number of a slot
+    parameter MEMORY = 1   // 0: registers in place of the memory
+) (
+    input  wire             clk, rst_n, enable,
+    input  wire [WIDTH-1:0] entering,
+    output reg  [WIDTH-1:0] leaving
+);
+    generate
+        if (MEMORY != 0) begin : memory
+            localparam [BITS-1:0] LAST = WORDS[BITS-1:0] - 1'b1;
+            reg  [BITS-1:0]  slot;
+            reg  [WIDTH-1:0] words [0:WORDS-1];
+            // Of a power of two the number after the last is 0.
+            wire around = WORDS != 1 << BITS && slot == LAST;
+            always @(posedge clk) begin
+                if (!rst_n) slot <= {BITS{1'b0}};
+                else if (enable) slot <= around ? {BITS{1'b0}} : slot + 1'b1;
+                if (enable) begin
+                    leaving <= words[slot];
+                    words[slot] <= entering;
+                end
+            end
+        end else begin : registers
+            reg  [WIDTH*WORDS-1:0] words;
+            wire unused = &{1'b0, rst_n};
+            always @(posedge clk) if (enable) {leaving, words} <= {words, entering};
+        end
+    endgenerate
 endmodule
 
 `default_nettype wire

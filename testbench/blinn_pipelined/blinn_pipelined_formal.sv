@@ -52,48 +52,8 @@ module blinn_pipelined_formal (
     always @* if ($initstate) assume (!rst_n);
 
     // Which stage of the pipeline has a point.
-    (* hierconn *) wire \dut.valid_s1 ;
-    (* hierconn *) wire \dut.valid_s2 ;
-    (* hierconn *) wire \dut.valid_s3 ;
-    (* hierconn *) wire \dut.valid_s4 ;
-    (* hierconn *) wire \dut.valid_s5 ;
-    (* hierconn *) wire \dut.valid_s6 ;
-    (* hierconn *) wire \dut.valid_s7 ;
-    (* hierconn *) wire \dut.valid_s8 ;
-    (* hierconn *) wire \dut.valid_s9 ;
-    (* hierconn *) wire \dut.valid_s10 ;
-    (* hierconn *) wire \dut.valid_s11 ;
-    (* hierconn *) wire \dut.valid_s12 ;
-    (* hierconn *) wire \dut.valid_s13 ;
-    (* hierconn *) wire \dut.valid_s14 ;
-    (* hierconn *) wire \dut.valid_s15 ;
-    (* hierconn *) wire \dut.valid_s16 ;
-    (* hierconn *) wire \dut.valid_s17 ;
-    (* hierconn *) wire \dut.valid_s18 ;
-    (* hierconn *) wire \dut.valid_s19 ;
-    (* hierconn *) wire \dut.valid_s20 ;
-    wire [20:1] present = {
-        \dut.valid_s20 ,
-        \dut.valid_s19 ,
-        \dut.valid_s18 ,
-        \dut.valid_s17 ,
-        \dut.valid_s16 ,
-        \dut.valid_s15 ,
-        \dut.valid_s14 ,
-        \dut.valid_s13 ,
-        \dut.valid_s12 ,
-        \dut.valid_s11 ,
-        \dut.valid_s10 ,
-        \dut.valid_s9 ,
-        \dut.valid_s8 ,
-        \dut.valid_s7 ,
-        \dut.valid_s6 ,
-        \dut.valid_s5 ,
-        \dut.valid_s4 ,
-        \dut.valid_s3 ,
-        \dut.valid_s2 ,
-        \dut.valid_s1
-    };
+    (* hierconn *) wire [20:1] \dut.valid ;
+    wire [20:1] present = \dut.valid ;
 
     // The same for a queue beside it: all points in it move together, unless a result waits.
     wire moves = out_ready | ~out_valid;

@@ -50,24 +50,8 @@ module quadratic_pipelined_formal (
     always @* if ($initstate) assume (!rst_n);
 
     // Which stage of the pipeline has a point.
-    (* hierconn *) wire \dut.valid_s1 ;
-    (* hierconn *) wire \dut.valid_s2 ;
-    (* hierconn *) wire \dut.valid_s3 ;
-    (* hierconn *) wire \dut.valid_s4 ;
-    (* hierconn *) wire \dut.valid_s5 ;
-    (* hierconn *) wire \dut.valid_s6 ;
-    (* hierconn *) wire \dut.valid_s7 ;
-    (* hierconn *) wire \dut.valid_s8 ;
-    wire [8:1] present = {
-        \dut.valid_s8 ,
-        \dut.valid_s7 ,
-        \dut.valid_s6 ,
-        \dut.valid_s5 ,
-        \dut.valid_s4 ,
-        \dut.valid_s3 ,
-        \dut.valid_s2 ,
-        \dut.valid_s1
-    };
+    (* hierconn *) wire [8:1] \dut.valid ;
+    wire [8:1] present = \dut.valid ;
 
     // The same for a queue beside it: all points in it move together, unless a result waits.
     wire moves = out_ready | ~out_valid;
