@@ -185,7 +185,7 @@ fn verilator_s_program_is_run_and_its_verdict_read() {
     assert!(outcome.passed);
     assert!(outcome.build.ends_with(" tb.v\n"), "only sources are compiled: {}", outcome.build);
     let text = message(Fakes::new(&[("verilator", "")]).bench(Simulator::Verilator));
-    assert!(text.contains("bench"), "{text}");
+    assert!(text.contains("made no program of `tb`"), "{text}");
 }
 
 #[test]
