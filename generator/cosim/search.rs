@@ -23,6 +23,9 @@ const MOST_BITS: u32 = 24;
 const HIGHEST: usize = 16;
 const AROUND: u64 = 1 << 18;
 
+/// How many starts are climbed from before only the highest places are kept: memory does not grow with the starts.
+const BATCH: u64 = 1 << 10;
+
 /// An error of an output, and where.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reached {
@@ -70,23 +73,29 @@ pub fn worst(
 ) -> Option<Reached> {
     let points = Points::new(contract);
     let climber = Climber::new(contract);
-    let ends = (0..starts).into_par_iter().map(|start| {
+    let climb = |start: u64| {
         let mut random = Random::new(seed ^ start.wrapping_mul(0xd134_2543_de82_ef95));
         let end = climber.from(points.of_domain(&mut random));
         progress();
         end
-    });
-    let mut ends: Vec<End> = ends.collect();
-    // Of errors that are equal that of the first start, whatever the order in which they come.
-    let outputs = ends.iter().filter_map(|end| Reached::at(contract, end.operands.clone()));
-    let climbed = outputs.reduce(larger)?;
-    ends.sort_by(|one, other| other.height.total_cmp(&one.height));
-    let around: Vec<Vec<i64>> = ends[..ends.len().min(HIGHEST)]
-        .par_iter()
-        .map(|end| climber.look_around(end.highest.clone()))
-        .collect();
+    };
+    let (mut climbed, mut highest) = (None, Vec::<End>::new());
+    let mut first = 0;
+    while first < starts {
+        let next = first.saturating_add(BATCH).min(starts);
+        let ends: Vec<End> = (first..next).into_par_iter().map(climb).collect();
+        // Of errors that are equal that of the first start, whatever the order in which they come.
+        let outputs = ends.iter().filter_map(|end| Reached::at(contract, end.operands.clone()));
+        climbed = climbed.into_iter().chain(outputs).reduce(larger);
+        highest.extend(ends);
+        highest.sort_by(|one, other| other.height.total_cmp(&one.height));
+        highest.truncate(HIGHEST);
+        first = next;
+    }
+    let around: Vec<Vec<i64>> =
+        highest.par_iter().map(|end| climber.look_around(end.highest.clone())).collect();
     let found = around.into_iter().filter_map(|operands| Reached::at(contract, operands));
-    Some(found.fold(climbed, larger))
+    Some(found.fold(climbed?, larger))
 }
 
 /// Where a climb ends.

@@ -26,7 +26,7 @@ const ROOMS: [(&str, &str); 26] = [
     ("synth", "base hdl/netlist package tools"),
     ("cosim", "base golden hdl/netlist hdl/sim observation package tools"),
     ("registry", "base config golden hdl/netlist hdl/dsl hdl/pipeline devices"),
-    ("core", "config golden hdl/netlist package tools cosim registry"),
+    ("core", "base config golden hdl/netlist package tools cosim registry"),
     ("certify", "base golden hdl/netlist hdl/pipeline tools"),
     ("mutate", "base golden hdl/netlist hdl/sim package tools cosim core"),
     ("render", "base config golden cosim core"),

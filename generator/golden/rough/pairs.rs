@@ -12,7 +12,7 @@
 use std::collections::BTreeMap;
 
 use super::Arithmetic;
-use super::bound::{Analysis, BIN, SLACK};
+use super::analysis::{Analysis, BIN, SLACK};
 use crate::base::fixed::exp2;
 use crate::golden::highlight::Reflectance;
 

@@ -64,7 +64,7 @@ fn until(needed: usize, thresholds: Thresholds) -> Thresholds {
 
 /// The clock, counted from that of the first microinstruction, from which on something is computed.
 fn clock(thresholds: Thresholds, places: Places) -> usize {
-    thresholds.iter().zip(places).filter(|(threshold, place)| place < *threshold).count()
+    thresholds.iter().zip(places).filter(|(limit, place)| place < *limit).count()
 }
 
 /// A cell that reads nets.
