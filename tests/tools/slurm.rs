@@ -7,8 +7,6 @@ use std::process::{Command, Output};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use rustix::process::{Pid, Signal, kill_process};
-
 /// 18 operand bits: long enough that a task can be met in its middle, short enough for a test.
 const CONFIG: &str = "device = \"cosine-power\"\ncosine.fraction = 8\nexponent.bits = 6\ncolour.bits = 1\nintensity.fraction = 8\n";
 
@@ -98,17 +96,10 @@ impl Drop for Loopback {
     }
 }
 
-/// The process that the program runs as for a part, if it does.
-fn process_of(part: &Path) -> Option<Pid> {
-    let path = part.to_str().expect("a plain name").as_bytes();
-    fs::read_dir("/proc").expect("/proc").find_map(|entry| {
-        let entry = entry.ok()?;
-        let words = fs::read(entry.path().join("cmdline")).ok()?;
-        let mut words = words.split(|&byte| byte == 0);
-        let is_glint = words.next()? == env!("CARGO_BIN_EXE_glint").as_bytes();
-        let number = entry.file_name().to_str()?.parse().ok()?;
-        (is_glint && words.any(|word| word == path)).then(|| Pid::from_raw(number))?
-    })
+/// Writes a program of the shell.
+fn program(path: &Path, script: &str) {
+    fs::write(path, format!("#!/bin/sh\n{script}")).expect("a program");
+    run(Command::new("chmod").arg("755").arg(path));
 }
 
 /// Waits until `done` is true.
@@ -125,20 +116,18 @@ fn a_job_array_with_tasks_put_back_and_killed_gives_the_record_of_one_process() 
     let dir = tempfile::tempdir().expect("a directory");
     let slurm = Loopback::start(dir.path().join("slurm"));
     let results = dir.path().join("results");
-    let array = slurm.submit(&mut submit(&results));
+    // The command of the second task is killed when it first begins.
+    let (killed, glint) = (dir.path().join("killed"), env!("CARGO_BIN_EXE_glint"));
+    let once = format!("[ -e {0} ] || {{ : > {0}; kill -KILL $$; }}", killed.display());
+    let path = dir.path().join("program");
+    program(&path, &format!("case \"$*\" in *part-2*) {once};; esac\nexec {glint} \"$@\"\n"));
+    let path = path.to_str().expect("a plain name");
+    let array = slurm.submit(&mut submit_with(&results, path));
     // The first task has begun: its state is there, and not complete.
     wait("the first part", || results.join("part-1.json").exists());
     run(slurm.command("scontrol").args(["requeue", &format!("{array}_1")]));
     let restarts = || run(slurm.command("scontrol").args(["show", "job", &format!("{array}_1")]));
     assert!(restarts().contains("Restarts=1"), "{}", restarts());
-    let mut killed = None;
-    wait("the second part", || {
-        let ended = results.join("done/2").exists();
-        assert!(!ended, "the second part is too short to be killed");
-        killed = process_of(&results.join("part-2.json"));
-        killed.is_some()
-    });
-    kill_process(killed.expect("a process"), Signal::KILL).expect("a signal");
     slurm.wait();
     let log = |name: &str| fs::read_to_string(results.join(name)).unwrap_or_default();
     let merged = fs::read_to_string(results.join("merged.json"))
@@ -147,12 +136,11 @@ fn a_job_array_with_tasks_put_back_and_killed_gives_the_record_of_one_process() 
     assert!(log("task-2.log").contains("killed; start 2 of 5"), "{}", log("task-2.log"));
 
     // A task that fails of its own accord, and one that is cancelled before it begins.
-    let (results, program) = (dir.path().join("failed"), dir.path().join("program"));
-    let script = "#!/bin/sh\ncase \"$*\" in *part-2*) exit 1;; *) sleep 2;; esac\n";
-    fs::write(&program, script).expect("a program");
-    run(Command::new("chmod").arg("755").arg(&program));
-    let program = program.to_str().expect("a plain name");
-    let array = slurm.submit(submit_with(&results, program).args(["-x", "--exclusive"]));
+    let results = dir.path().join("failed");
+    let path = dir.path().join("failing");
+    program(&path, "case \"$*\" in *part-2*) exit 1;; *) sleep 2;; esac\n");
+    let path = path.to_str().expect("a plain name");
+    let array = slurm.submit(submit_with(&results, path).args(["-x", "--exclusive"]));
     run(slurm.command("scancel").arg(format!("{array}_3")));
     slurm.wait();
     let missing = fs::read_to_string(results.join("missing")).expect("the names of tasks");

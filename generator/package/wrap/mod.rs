@@ -52,7 +52,9 @@ pub fn wrappers(
     if let Some((bus, map)) = map {
         add(registers::wrapper(design, inputs, bus, map)?);
     }
-    if let Some(vectors) = &inputs.vectors {
+    if let Some(vectors) = &inputs.vectors
+        && !made.rtl.is_empty()
+    {
         made.benches = bench::benches(design, inputs, map, vectors)?;
     }
     Ok(made)

@@ -47,7 +47,8 @@ fn litex_builds_systems_that_compute() {
         let outcome = run_bench(Simulator::Icarus, &files, "tb", LIMIT);
         let outcome = outcome.unwrap_or_else(|error| panic!("{name}, {face}: {error:#}"));
         assert!(outcome.passed, "{name}, {face}: {}", outcome.transcript);
-        assert!(outcome.transcript.starts_with("PASS: 12 points"), "{}", outcome.transcript);
+        // Before it Icarus warns of the processor's memory, which the program does not fill.
+        assert!(outcome.transcript.contains("PASS: 12 points"), "{}", outcome.transcript);
     });
 }
 
