@@ -253,7 +253,7 @@ struct Portions<'a> {
 impl Portions<'_> {
     /// Some rows of pixels, given by rows of samples.
     fn add(&mut self, rows: &[Shaded], compare: bool) -> Result<()> {
-        let mut points = Points::new(self.feed.len());
+        let mut points = Points::new(self.feed.operand_count());
         for row in rows {
             points.append(&row.points);
             self.beyond += row.beyond as u64;

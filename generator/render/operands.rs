@@ -177,7 +177,7 @@ impl Feed {
     }
 
     /// The number of operands.
-    pub fn len(&self) -> usize {
+    pub fn operand_count(&self) -> usize {
         self.operands.len()
     }
 

@@ -97,7 +97,7 @@ impl Shader<'_> {
     pub fn shade(&self, hits: &[Hit], ray: impl Fn(usize) -> Vector) -> Result<Shaded> {
         let mut shaded = Shaded {
             samples: Vec::with_capacity(hits.len()),
-            points: Points::new(self.feed.len()),
+            points: Points::new(self.feed.operand_count()),
             places: self.feed.longest().map(|_| Vec::new()),
             exact: Vec::new(),
             beyond: 0,

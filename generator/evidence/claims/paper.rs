@@ -190,11 +190,11 @@ fn failing(region: Region, holds: impl Fn(&dyn Fn(Function) -> f64) -> bool) -> 
     ALL.filter(fails).collect()
 }
 
+/// Whether a claim holds of the functions' errors.
+type Holds<'a> = dyn Fn(&dyn Fn(Function) -> f64) -> bool + 'a;
+
 /// A line of the ledger about all exponents: how many fail in each region.
-fn failures(
-    regions: [Region; 3],
-    holds: &dyn Fn(&dyn Fn(Function) -> f64) -> bool,
-) -> (Vec<Measured>, String) {
+fn failures(regions: [Region; 3], holds: &Holds) -> (Vec<Measured>, String) {
     let failing = regions.map(|region| (region, failing(region, holds)));
     let ours = failing.iter().map(|(region, failing)| {
         let text =
