@@ -31,7 +31,7 @@ pub enum BlockKind {
     Subtractor,
     /// A comparison of two numbers.
     Comparator,
-    /// Operators that one statement of the description makes, how many of each [`OPERATORS`].
+    /// Operators that one statement of the description makes, how many of each of `OPERATORS`.
     Several([u16; 5]),
     /// All bits inverted.
     Inverter,
