@@ -3,27 +3,9 @@
 use glint::config::Config;
 use glint::fixed::{Format, Rounding, exp2};
 use glint::golden::device::{self, Formula};
-use glint::golden::frame::{Datapath, Frame, Slot, State, idle, step};
+use glint::golden::frame::{Frame, idle, step};
 use glint::golden::narrow::{Narrow, rounding_error};
 use glint::golden::{Axis, Contract, Model, Sweep, Term, Values, keys};
-
-/// Operands and registers, and the arithmetic that is not plain.
-struct DotProduct {
-    n: [Slot; 3],
-    h: [Slot; 3],
-    sum: Slot,
-    cosine: Slot,
-    rounded: Limited,
-}
-
-impl DotProduct {
-    /// The product of the components of one axis.
-    fn product(&self, s: &State, axis: usize) -> i64 {
-        s[self.n[axis]] * s[self.h[axis]]
-    }
-}
-
-impl Datapath for DotProduct {}
 
 /// A sum of products to a cosine of 0 ... 1.
 #[derive(Clone, Copy)]
@@ -39,29 +21,25 @@ impl Limited {
 }
 
 /// What each microinstruction does.
-fn device(config: &Config) -> device::Device<DotProduct> {
-    let cosine = Cosine::new(config);
-    let (fraction, kept) = (cosine.fraction as i32, cosine.kept as i32);
+fn device(config: &Config) -> device::Device {
+    let Cosine { fraction, kept, limited, .. } = Cosine::new(config);
+    let (fraction, kept) = (fraction as i32, kept as i32);
     let one = 1 << fraction;
     let mut frame = Frame::default();
     let mut component = |name| frame.clamped(name, Format::signed(1, fraction), -one, one);
-    let it = DotProduct {
-        n: ["nx", "ny", "nz"].map(&mut component),
-        h: ["hx", "hy", "hz"].map(&mut component),
-        sum: frame.register("sum", Format::signed(2, 2 * fraction)),
-        cosine: frame.register("cosine", Format::unsigned(1, kept)),
-        rounded: cosine.limited,
-    };
-    frame.shows("cosine_out", it.cosine);
-    let program = [
+    let [nx, ny, nz] = ["nx", "ny", "nz"].map(&mut component);
+    let [hx, hy, hz] = ["hx", "hy", "hz"].map(&mut component);
+    let sum = frame.register("sum", Format::signed(2, 2 * fraction));
+    let cosine = frame.register("cosine", Format::unsigned(1, kept));
+    frame.shows("cosine_out", cosine);
+    frame.device([
         idle(),
-        step(|d: &DotProduct, s| s[d.sum] = d.product(s, 0)),
-        step(|d: &DotProduct, s| s[d.sum] += d.product(s, 1)),
-        step(|d: &DotProduct, s| s[d.sum] += d.product(s, 2)),
-        step(|d: &DotProduct, s| s[d.cosine] = d.rounded.apply(s[d.sum])),
+        step(move |s| s[sum] = s[nx] * s[hx]),
+        step(move |s| s[sum] += s[ny] * s[hy]),
+        step(move |s| s[sum] += s[nz] * s[hz]),
+        step(move |s| s[cosine] = limited.apply(s[sum])),
         idle().valid().end(),
-    ];
-    frame.device(it, program)
+    ])
 }
 
 /// The golden model.

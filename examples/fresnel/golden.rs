@@ -1,16 +1,17 @@
 //! The golden model: the device once more, from the formula, in integers. It never looks at the description; that
 //! `cosim` finds both equal on every clock is what makes the description right. The contract follows.
 
+use std::sync::Arc;
+
 use glint::config::Config;
 use glint::fixed::{Format, Rounding, exp2};
 use glint::golden::contract::{ErrorShare, control};
-use glint::golden::frame::{Frame, Slot, idle, step};
-use glint::golden::highlight::{Highlight, Products, Reflectance, Shading, shading};
+use glint::golden::frame::{Frame, idle, step_by};
+use glint::golden::highlight::{Highlight, Products, Reflectance};
 use glint::golden::narrow::{Narrow, rounding_error};
 use glint::golden::{Contract, Model, keys};
 
 /// The arithmetic, one operation a method.
-#[derive(Clone)]
 struct Fresnel {
     /// Fraction bits of c, of f0 and of the powers.
     cosine: u32,
@@ -70,33 +71,22 @@ fn products(it: &Fresnel, config: &Config) -> Products {
     Products::colours(it.formats()[2], keys::bits(config, "colour.bits"), rounding)
 }
 
-/// The device at one clock: where its operands and registers are in the state that the frame keeps.
-struct Device {
-    it: Fresnel,
-    c: Slot,
-    f0: Slot,
-    power: Slot,
-    f: Slot,
-}
-
-/// The golden model.
+/// The golden model: operands and registers, and what each microinstruction does to them.
 pub fn model(config: &Config) -> Box<dyn Model> {
-    let it = Fresnel::new(config);
-    let [cosine, reflectance, power] = it.formats();
+    let it = Arc::new(Fresnel::new(config));
+    let [cosine, reflectance, powers] = it.formats();
     let mut frame = Frame::default();
     let c = frame.clamped("cos_half", cosine, 0, 1 << it.cosine);
     let f0 = frame.operand("f0", reflectance);
-    let (held, f) = (frame.register("power", power), frame.register("f", power));
-    let products = products(&it, config);
-    let device = Device { it, c, f0, power: held, f };
+    let (power, f) = (frame.register("power", powers), frame.register("f", powers));
     let program = vec![
         idle(),
-        step(|d: &Shading<Device>, s| s[d.power] = d.it.square(s[d.c])),
-        step(|d: &Shading<Device>, s| s[d.power] = d.it.fourth(s[d.power])),
-        step(|d: &Shading<Device>, s| s[d.power] = d.it.fifth(s[d.power], s[d.c])),
-        step(|d: &Shading<Device>, s| s[d.f] = d.it.blend(s[d.power], s[d.f0])),
+        step_by(&it, move |it, s| s[power] = it.square(s[c])),
+        step_by(&it, move |it, s| s[power] = it.fourth(s[power])),
+        step_by(&it, move |it, s| s[power] = it.fifth(s[power], s[c])),
+        step_by(&it, move |it, s| s[f] = it.blend(s[power], s[f0])),
     ];
-    Box::new(shading(frame, device, (products, f), program))
+    Box::new(products(&it, config).behind(frame, f, program))
 }
 
 /// Which function the device computes, and how far off it may be.

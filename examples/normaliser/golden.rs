@@ -1,16 +1,17 @@
 //! The golden model and the contract, from the formula.
 
+use std::sync::Arc;
+
 use glint::config::Config;
 use glint::fixed::{Format, Rounding, exp2, mask};
 use glint::golden::device::{self, Formula};
-use glint::golden::frame::{Datapath, Frame, Slot, State, idle, step};
+use glint::golden::frame::{Frame, Slot, idle, step, step_by};
 use glint::golden::narrow::{Narrow, rounding_error};
 use glint::golden::{Axis, Contract, Model, Sweep, Term, Values, keys};
 
 /// The most that the sum of squares can be: each component is at least −2.0.
 const FARTHEST: i64 = 12;
 
-#[derive(Clone)]
 struct Normaliser {
     fraction: u32,
     address: u32,
@@ -95,65 +96,43 @@ impl Normaliser {
     }
 }
 
-/// Operands and registers, and the arithmetic.
-struct Device {
-    it: Normaliser,
-    components: [Slot; 3],
-    sum: Slot,
-    mantissa: Slot,
-    shift: Slot,
-    inverse: Slot,
-    units: [Slot; 3],
-}
-
-impl Device {
-    fn square(&self, s: &State, axis: usize) -> i64 {
-        s[self.components[axis]] * s[self.components[axis]]
-    }
-
-    fn scale(&self, s: &mut State, axis: usize) {
-        let component = s[self.components[axis]];
-        s[self.units[axis]] = self.it.scaled(component, s[self.shift], s[self.inverse]);
-    }
-}
-
-impl Datapath for Device {}
-
 /// What each microinstruction does.
-fn device(config: &Config) -> device::Device<Device> {
-    let it = Normaliser::new(config);
+fn device(config: &Config) -> device::Device {
+    let it = Arc::new(Normaliser::new(config));
     let mut frame = Frame::default();
-    let device = Device {
-        components: ["x", "y", "z"].map(|name| frame.operand(name, it.vector())),
-        sum: frame.register("sum", Format::unsigned(4, 2 * it.fraction as i32)),
-        mantissa: frame.register("mantissa", Format::unsigned(it.width() as i32, 0)),
-        shift: frame.register("shift", Format::unsigned(it.pair_bits() as i32, 0)),
-        inverse: frame.register("inverse", Format::unsigned(1, it.inverse as i32)),
-        units: ["unit_x", "unit_y", "unit_z"].map(|name| {
-            let unit = frame.register(name, it.result());
-            frame.shows(&format!("{name}_out"), unit);
-            unit
-        }),
-        it,
+    let components = ["x", "y", "z"].map(|name| frame.operand(name, it.vector()));
+    let sum = frame.register("sum", Format::unsigned(4, 2 * it.fraction as i32));
+    let mantissa = frame.register("mantissa", Format::unsigned(it.width() as i32, 0));
+    let shift = frame.register("shift", Format::unsigned(it.pair_bits() as i32, 0));
+    let inverse = frame.register("inverse", Format::unsigned(1, it.inverse as i32));
+    let units = ["unit_x", "unit_y", "unit_z"].map(|name| {
+        let unit = frame.register(name, it.result());
+        frame.shows(&format!("{name}_out"), unit);
+        unit
+    });
+    let square =
+        |first: bool, x: Slot| step(move |s| s[sum] = s[x] * s[x] + if first { 0 } else { s[sum] });
+    let scale = |x: Slot, unit: Slot| {
+        step_by(&it, move |it, s| s[unit] = it.scaled(s[x], s[shift], s[inverse]))
     };
-    let program = [
+    let [x, y, z] = components;
+    frame.device([
         idle(),
-        step(|d: &Device, s| s[d.sum] = d.square(s, 0)),
-        step(|d: &Device, s| s[d.sum] += d.square(s, 1)),
-        step(|d: &Device, s| s[d.sum] += d.square(s, 2)),
-        step(|d: &Device, s| {
-            s[d.shift] = d.it.pairs(s[d.sum]);
-            s[d.mantissa] = d.it.mantissa(s[d.sum], s[d.shift]);
+        square(true, x),
+        square(false, y),
+        square(false, z),
+        step_by(&it, move |it, s| {
+            s[shift] = it.pairs(s[sum]);
+            s[mantissa] = it.mantissa(s[sum], s[shift]);
         }),
         // The table reads.
         idle(),
-        step(|d: &Device, s| s[d.inverse] = d.it.inverse_root(s[d.mantissa])),
-        step(|d: &Device, s| d.scale(s, 0)),
-        step(|d: &Device, s| d.scale(s, 1)),
-        step(|d: &Device, s| d.scale(s, 2)),
+        step_by(&it, move |it, s| s[inverse] = it.inverse_root(s[mantissa])),
+        scale(x, units[0]),
+        scale(y, units[1]),
+        scale(z, units[2]),
         idle().valid().end(),
-    ];
-    frame.device(device, program)
+    ])
 }
 
 /// The golden model.

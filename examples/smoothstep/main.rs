@@ -18,7 +18,7 @@ use glint::config::{Config, Key, Problems, Schema};
 use glint::dsl::{About, Designer, end, step, valid};
 use glint::fixed::{Format, Overflow, Rounding};
 use glint::golden::device::{self, Formula};
-use glint::golden::frame::{Datapath, Frame, Slot, idle, step as execute};
+use glint::golden::frame::{Frame, idle, step as execute};
 use glint::golden::narrow::Narrow;
 use glint::golden::{Contract, Model, keys};
 use glint::registry::{Device, Registry};
@@ -72,37 +72,23 @@ fn describe(d: &Designer, config: &Config) {
     ]);
 }
 
-/// The golden model's registers and roundings.
-struct Smoothstep {
-    x: Slot,
-    square: Slot,
-    smooth: Slot,
-    three: i64,
-    cut: Narrow,
-    rounded: Narrow,
-}
-
-impl Datapath for Smoothstep {}
-
-fn device(config: &Config) -> device::Device<Smoothstep> {
+/// The golden model: registers, and what each microinstruction does to them.
+fn device(config: &Config) -> device::Device {
     let (fraction, kept) = bits(config);
     let [wide, result] = [kept + GUARD, kept].map(|fraction| Format::unsigned(1, fraction));
+    let cut = Narrow::new(2 * fraction as u32, wide, Rounding::Truncate);
+    let rounded = Narrow::new((fraction + wide.frac) as u32, result, Rounding::Nearest);
     let mut frame = Frame::default();
-    let product = (fraction + kept + GUARD) as u32;
-    let it = Smoothstep {
-        x: frame.clamped("x", Format::unsigned(1, fraction), 0, 1 << fraction),
-        square: frame.register("square", wide),
-        smooth: frame.register("smooth", result),
-        three: 3 << fraction,
-        cut: Narrow::new(2 * fraction as u32, wide, Rounding::Truncate),
-        rounded: Narrow::new(product, result, Rounding::Nearest),
-    };
-    frame.shows("smooth_out", it.smooth);
-    let square = execute(|d: &Smoothstep, s| s[d.square] = d.cut.apply(s[d.x] * s[d.x]));
-    let smooth = execute(|d: &Smoothstep, s| {
-        s[d.smooth] = d.rounded.apply(s[d.square] * (d.three - 2 * s[d.x]));
-    });
-    frame.device(it, [idle(), square, smooth, idle().valid().end()])
+    let x = frame.clamped("x", Format::unsigned(1, fraction), 0, 1 << fraction);
+    let square = frame.register("square", wide);
+    let smooth = frame.register("smooth", result);
+    frame.shows("smooth_out", smooth);
+    frame.device([
+        idle(),
+        execute(move |s| s[square] = cut.apply(s[x] * s[x])),
+        execute(move |s| s[smooth] = rounded.apply(s[square] * ((3 << fraction) - 2 * s[x]))),
+        idle().valid().end(),
+    ])
 }
 
 fn model(config: &Config) -> Box<dyn Model> {

@@ -1,8 +1,10 @@
 //! `cosine-power`: the paper's W(n, γ) = (n/m·(cos γ − 1) + 1)^m (seed 002), by formula.
 
+use std::sync::Arc;
+
 use super::contract::{self, ErrorShare};
-use super::frame::{Clocked, Frame, Slot, idle, step};
-use super::highlight::{Highlight, Keys, Reflectance, Shading, shading};
+use super::frame::{Clocked, Frame, idle, step_by};
+use super::highlight::{Highlight, Keys, Reflectance};
 use super::narrow::{Narrow, rounding_error};
 use super::{Contract, Model, keys};
 use crate::base::fixed::{Format, Rounding, exp2};
@@ -10,7 +12,6 @@ use crate::config::Config;
 use crate::golden::formulas;
 
 /// The arithmetic of the device, one operation a method. f is the accumulator.
-#[derive(Clone)]
 struct Arithmetic {
     keys: Keys,
     /// `power`: m, a power of two, 2 … 16.
@@ -65,53 +66,37 @@ impl Arithmetic {
 
 /// The golden model.
 pub fn model(config: &Config) -> Box<dyn Model> {
-    Box::new(clocked(&Arithmetic::of(config)))
+    Box::new(clocked(Arithmetic::of(config)))
 }
 
 /// The device, clock by clock.
-struct Device {
-    it: Arithmetic,
-    cosine: Slot,
-    exponent: Slot,
-    accumulator: Slot,
-    remaining: Slot,
-}
-
-fn clocked(it: &Arithmetic) -> Clocked<Shading<Device>> {
+fn clocked(it: Arithmetic) -> Clocked {
+    let it = Arc::new(it);
     let mut frame = Frame::default();
     let [cosine, exponent] = it.keys.slots(&mut frame);
+    let accumulator = frame.register("accumulator", it.keys.f_format());
     // A single squaring needs no count of the squarings that remain.
     let counted = it.squarings > 1;
-    let accumulator = frame.register("accumulator", it.keys.f_format());
-    let device = Device {
-        it: it.clone(),
-        cosine,
-        exponent,
-        accumulator,
-        remaining: if counted {
-            frame.register("remaining", Format::unsigned(2, 0))
-        } else {
-            frame.hidden()
-        },
-    };
+    let count = Format::unsigned(2, 0);
+    let remaining = if counted { frame.register("remaining", count) } else { frame.hidden() };
     // The accumulator takes n/m·(1 − cos γ).
-    let scale = step(|d: &Shading<Device>, s| {
-        s[d.accumulator] = d.it.scaled(s[d.cosine], s[d.exponent]);
-        s[d.remaining] = i64::from(d.it.squarings) - 1;
+    let scale = step_by(&it, move |it, s| {
+        s[accumulator] = it.scaled(s[cosine], s[exponent]);
+        s[remaining] = i64::from(it.squarings) - 1;
     });
     // It takes the square of its inverse …
-    let base = step(|d: &Shading<Device>, s| {
-        s[d.accumulator] = d.it.square(d.it.base(s[d.cosine], s[d.accumulator]));
+    let base = step_by(&it, move |it, s| {
+        s[accumulator] = it.square(it.base(s[cosine], s[accumulator]));
     });
     // … and then its own square, until log₂ m squarings are done.
-    let square = step(|d: &Shading<Device>, s| {
-        s[d.accumulator] = d.it.square(s[d.accumulator]);
-        s[d.remaining] -= 1;
+    let square = step_by(&it, move |it, s| {
+        s[accumulator] = it.square(s[accumulator]);
+        s[remaining] -= 1;
     })
-    .repeat_while(|d, s| s[d.remaining] > 1);
+    .repeat_while(move |s| s[remaining] > 1);
     let mut program = vec![idle(), scale, base];
     program.extend(counted.then_some(square));
-    shading(frame, device, (it.keys.products(), accumulator), program)
+    it.keys.products().behind(frame, accumulator, program)
 }
 
 /// The accuracy contract. Control operands: `cos_gamma`, `exponent`.
@@ -239,7 +224,7 @@ mod tests {
     /// One point with m = 8 followed clock by clock: microinstructions 0, 1, 2, 3, 3, 4 and idle.
     #[test]
     fn a_point_clock_by_clock() {
-        let mut model = clocked(&small(8));
+        let mut model = clocked(small(8));
         // c = 14/16, n = 12, red 15, written together with start: t = 2/16·12/8 = 3/16; base 12.
         let first = [1, 1, 14, 1, 12, 1, 15, 1, 0, 0, 0, 0];
         // Writes while busy change nothing.

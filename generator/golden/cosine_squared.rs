@@ -3,9 +3,9 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::contract::ErrorShare;
-use super::frame::{Clocked, Datapath, Frame, Slot, State};
-use super::highlight::{Highlight, ProductSlots, Reflectance};
-use super::line::{self, CosineTable, LineKeys, Walker, magnitude};
+use super::frame::{Clocked, Frame};
+use super::highlight::{Highlight, Reflectance};
+use super::line::{self, CosineTable, LineKeys, magnitude};
 use super::{Axis, Contract, Model, Operand, Sweep, Values, keys};
 use crate::base::fixed::{Format, exp2};
 use crate::config::Config;
@@ -30,7 +30,6 @@ impl Params {
 }
 
 /// The arithmetic of the device, one operation a method.
-#[derive(Clone)]
 struct Arithmetic {
     params: Params,
     /// ROM 12.
@@ -66,56 +65,29 @@ pub fn model(config: &Config) -> Box<dyn Model> {
 }
 
 /// The device, clock by clock.
-struct Device {
-    it: Arithmetic,
-    walker: Walker,
-    /// What ROM 12 read at the latest edge.
-    cosine: Slot,
-    /// Of a staged line: the address of ROM 12, and the word that it read an edge earlier.
-    stages: Option<(Slot, Slot)>,
-    products: ProductSlots,
-}
-
-impl AsRef<Walker> for Device {
-    fn as_ref(&self) -> &Walker {
-        &self.walker
-    }
-}
-
-impl Datapath for Device {
-    #[inline]
-    fn edge(&self, s: &mut State) {
-        let Some((address, cosine)) = self.stages else {
-            s[self.cosine] = self.it.cosine_of(s[self.walker.angle]);
-            return;
-        };
-        // From the output back to the angle: each takes what the one before it held.
-        self.products.show(s);
-        s[cosine] = s[self.cosine];
-        s[self.cosine] = self.it.table.words[s[address] as usize];
-        s[address] = self.it.step_of(s[self.walker.angle]);
-    }
-
-    #[inline]
-    fn outputs(&self, s: &mut State) {
-        // Of a staged line an edge makes them.
-        if self.stages.is_none() {
-            self.products.show(s);
-        }
-    }
-}
-
-fn clocked(params: Params) -> Clocked<Device> {
+fn clocked(params: Params) -> Clocked {
     let mut frame = Frame::default();
-    let walker =
-        Walker::new(&mut frame, params.angle_format(), params.keys.length_bits, params.keys.stages);
-    let program = walker.program();
+    let LineKeys { length_bits, stages, .. } = params.keys;
+    let (angle, program) = line::walker(&mut frame, params.angle_format(), length_bits, stages);
+    // What ROM 12 read at the latest edge.
     let cosine = frame.hidden();
-    let stages = (params.keys.stages > 2).then(|| (frame.hidden(), frame.hidden()));
-    let products =
-        params.keys.products().slots(&mut frame, stages.map_or(cosine, |(_, last)| last));
-    let device = Device { it: Arithmetic::new(params), walker, cosine, stages, products };
-    frame.model(device, program)
+    let products = params.keys.products();
+    let it = Arithmetic::new(params);
+    if stages == 2 {
+        products.slots(&mut frame, cosine);
+        frame.every_edge(move |s| s[cosine] = it.cosine_of(s[angle]));
+    } else {
+        // The address of ROM 12, and the word that it read an edge earlier.
+        let (address, held) = (frame.hidden(), frame.hidden());
+        products.slots(&mut frame, held);
+        // From the output back to the angle: each takes what the one before it held.
+        frame.every_edge(move |s| {
+            s[held] = s[cosine];
+            s[cosine] = it.table.words[s[address] as usize];
+            s[address] = it.step_of(s[angle]);
+        });
+    }
+    frame.model(program)
 }
 
 /// The accuracy contract. Control operands: `delta_zeta`, `zeta_start`, `length`; those of a point have its

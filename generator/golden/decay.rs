@@ -4,12 +4,13 @@
 mod tests;
 
 use std::f64::consts::LN_2;
+use std::sync::Arc;
 
 use super::contract::{self, ErrorShare};
 use super::curve::{self, Curve, Piece};
-use super::frame::{Clocked, Frame, Slot, idle, step};
+use super::frame::{Clocked, Frame, idle, step_by};
 use super::halving::{self, Halving};
-use super::highlight::{Highlight, Keys, Reflectance, Shading, shading};
+use super::highlight::{Highlight, Keys, Reflectance};
 use super::narrow::Narrow;
 use super::{Contract, Model, keys};
 use crate::base::fixed::{Format, Rounding, exp2};
@@ -118,7 +119,6 @@ impl Params {
 }
 
 /// The arithmetic of the device, one operation a method.
-#[derive(Clone)]
 struct Arithmetic {
     params: Params,
     keys: Keys,
@@ -234,43 +234,29 @@ impl Arithmetic {
 
 /// The golden model of one of the devices.
 pub fn model(config: &Config, function: Function) -> Box<dyn Model> {
-    Box::new(clocked(&Arithmetic::new(Params::new(config, function))))
+    Box::new(clocked(Arithmetic::new(Params::new(config, function))))
 }
 
 /// The device, clock by clock.
 ///
 /// Synchronous tables are addressed by registers that the microinstruction before did not change, so that they
 /// show the same as others would.
-struct Device {
-    it: Arithmetic,
-    cosine: Slot,
-    exponent: Slot,
-    decay: Slot,
-    halvings: Slot,
-    reflectance: Slot,
-}
-
-fn clocked(it: &Arithmetic) -> Clocked<Shading<Device>> {
+fn clocked(it: Arithmetic) -> Clocked {
+    let it = Arc::new(it);
     let mut frame = Frame::default();
     let [cosine, exponent] = it.keys.slots(&mut frame);
     let decay = frame.register("decay", Format::unsigned(0, it.params.decay_fraction as i32));
     let halvings = frame.register("halvings", it.halvings);
     let reflectance = frame.register("reflectance", it.keys.f_format());
-    let device = Device { it: it.clone(), cosine, exponent, decay, halvings, reflectance };
     frame.shows("f_out", reflectance);
-    let decay = step(|d: &Shading<Device>, s| s[d.decay] = d.it.decay(s[d.cosine]));
-    let multiply = step(|d: &Shading<Device>, s| {
-        s[d.halvings] = d.it.halvings(s[d.cosine], s[d.decay], s[d.exponent]);
-    });
-    let halve = step(|d: &Shading<Device>, s| {
-        s[d.reflectance] = d.it.reflectance(s[d.cosine], s[d.halvings]);
-    });
-    shading(
-        frame,
-        device,
-        (it.keys.products(), reflectance),
-        vec![idle(), decay, multiply, idle(), halve],
-    )
+    let program = vec![
+        idle(),
+        step_by(&it, move |it, s| s[decay] = it.decay(s[cosine])),
+        step_by(&it, move |it, s| s[halvings] = it.halvings(s[cosine], s[decay], s[exponent])),
+        idle(),
+        step_by(&it, move |it, s| s[reflectance] = it.reflectance(s[cosine], s[halvings])),
+    ];
+    it.keys.products().behind(frame, reflectance, program)
 }
 
 /// The accuracy contract of one of the devices. Control operands: `cos_gamma`, `exponent`.

@@ -6,16 +6,8 @@
 //! ```
 //! use glint::fixed::Format;
 //! use glint::golden::device::Formula;
-//! use glint::golden::frame::{Datapath, Frame, Slot, idle, step};
+//! use glint::golden::frame::{Frame, idle, step};
 //! use glint::golden::{Contract, Term};
-//!
-//! /// The square of its operand, with half the fraction bits of the product.
-//! struct Square {
-//!     x: Slot,
-//!     square: Slot,
-//! }
-//!
-//! impl Datapath for Square {}
 //!
 //! struct Formulas;
 //!
@@ -30,14 +22,13 @@
 //!     }
 //! }
 //!
+//! // The square of its operand, with half the fraction bits of the product.
 //! let mut frame = Frame::default();
-//! let device = Square {
-//!     x: frame.operand("x", Format::unsigned(0, 4)),
-//!     square: frame.register("square", Format::unsigned(0, 4)),
-//! };
-//! frame.shows("square_out", device.square);
-//! let square = step(|it: &Square, s| s[it.square] = (s[it.x] * s[it.x]) >> 4);
-//! let contract = frame.device(device, [idle(), square, idle().valid().end()]).contract(Formulas);
+//! let x = frame.operand("x", Format::unsigned(0, 4));
+//! let square = frame.register("square", Format::unsigned(0, 4));
+//! frame.shows("square_out", square);
+//! let squares = step(move |s| s[square] = (s[x] * s[x]) >> 4);
+//! let contract = frame.device([idle(), squares, idle().valid().end()]).contract(Formulas);
 //! let (mut raw, mut exact) = (Vec::new(), Vec::new());
 //! contract.results(&[13], 0, &mut raw);
 //! contract.exact(&[13], 0, &mut exact);
@@ -45,7 +36,7 @@
 //! assert_eq!((raw, exact), (vec![10], vec![[0.66015625; 2]]));
 //! ```
 
-use super::frame::{Clocked, Datapath, Frame, Microinstruction};
+use super::frame::{Clocked, Frame, Microinstruction};
 use super::{Bound, Contract, Model, Operand, Output, Sweep, Term};
 
 /// More clocks than any computation takes.
@@ -55,8 +46,8 @@ const LONGEST: u32 = 1 << 20;
 const NEVER: i64 = i64::MAX >> 1;
 
 /// A device that is described by its microinstructions.
-pub struct Device<D> {
-    model: Clocked<D>,
+pub struct Device {
+    model: Clocked,
     operands: Vec<Operand>,
     outputs: Vec<Output>,
 }
@@ -66,11 +57,7 @@ impl Frame {
     ///
     /// # Panics
     /// If there is no microinstruction.
-    pub fn device<D: Datapath>(
-        self,
-        datapath: D,
-        program: impl IntoIterator<Item = Microinstruction<D>>,
-    ) -> Device<D> {
+    pub fn device(self, program: impl IntoIterator<Item = Microinstruction>) -> Device {
         let operands = self.operands().map(|(name, format, domain)| Operand {
             name: name.to_owned(),
             format,
@@ -81,11 +68,11 @@ impl Frame {
         let operands = operands.collect();
         let outputs = self.results().map(|(name, format)| Output { name: name.to_owned(), format });
         let outputs = outputs.collect();
-        Device { model: self.model(datapath, program), operands, outputs }
+        Device { model: self.model(program), operands, outputs }
     }
 }
 
-impl<D: Datapath> Device<D> {
+impl Device {
     /// Its clock model.
     pub fn model(self) -> Box<dyn Model> {
         Box::new(self.model)
@@ -149,14 +136,14 @@ pub trait Formula: Send + Sync {
 }
 
 /// A contract whose results are those of a model.
-struct OfModel<D, F> {
-    device: Device<D>,
+struct OfModel<F> {
+    device: Device,
     /// Where the outputs are among the signals of the model.
     shown: Vec<usize>,
     formula: F,
 }
 
-impl<D: Datapath, F> OfModel<D, F> {
+impl<F> OfModel<F> {
     /// The raw outputs with the result of a number, from power-up; none if it is never shown.
     fn shown(&self, operands: &[i64], index: u64) -> Option<Vec<i64>> {
         let mut model = self.device.model.clone();
@@ -185,7 +172,7 @@ impl<D: Datapath, F> OfModel<D, F> {
     }
 }
 
-impl<D: Datapath, F: Formula> Contract for OfModel<D, F> {
+impl<F: Formula> Contract for OfModel<F> {
     fn operands(&self) -> &[Operand] {
         &self.device.operands
     }

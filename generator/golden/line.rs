@@ -68,73 +68,49 @@ impl LineKeys {
     /// The product of the word of ROM 12 with the amplitude.
     pub fn products(&self) -> Products {
         let f = Format::unsigned(0, self.intensity_fraction as i32);
-        Products::amplitude(f, self.colour_bits, self.output_rounding)
+        Products::amplitude(f, self.colour_bits, self.output_rounding).at_edges(self.stages > 2)
     }
 }
 
 /// Control block 14 with the accumulator: counter 5, adder 6, mux 7, register 8, and the operand registers
-/// that they use.
-pub struct Walker {
+/// that they use, with angles of `format`. The slot of register 8, and the microinstructions; the outputs show a point
+/// `stages` clocks after the pulse on output 37.
+pub fn walker(
+    frame: &mut Frame,
     format: Format,
-    delta: Slot,
-    start: Slot,
-    length: Slot,
-    /// Counter 5: intervals still to go.
-    intervals: Slot,
-    /// Register 8, raw.
-    pub angle: Slot,
-    /// Outputs 34, 36 and 37 of control block 14.
-    count: Slot,
-    accumulate: Slot,
-    write_angle: Slot,
+    length_bits: u32,
     stages: u32,
-}
-
-impl Walker {
-    /// With angles of `format`. The outputs show a point `stages` clocks after the pulse on output 37.
-    pub fn new(frame: &mut Frame, format: Format, length_bits: u32, stages: u32) -> Self {
-        frame.delay_valid(stages);
-        let length = length_format(length_bits);
-        Self {
-            format,
-            delta: frame.operand("delta_zeta", format),
-            start: frame.operand("zeta_start", format),
-            length: frame.operand("length", length),
-            intervals: frame.register("intervals", length),
-            angle: frame.register("angle", format),
-            count: frame.flag("count"),
-            accumulate: frame.flag("accumulate"),
-            write_angle: frame.flag("write_angle"),
-            stages,
-        }
-    }
-
-    /// The microinstructions of a device that has this walker.
-    pub fn program<D: AsRef<Walker>>(&self) -> Vec<Microinstruction<D>> {
-        // The first pulse on output 37 loads ζ(X_start), and the counter is set to l.
-        let first = step(|d: &D, s| {
-            let it = d.as_ref();
-            s[it.angle] = s[it.start];
-            s[it.intervals] = s[it.length];
-        })
-        .skip_if(1, |d, s| s[d.as_ref().length] == 0);
-        // Each of the others adds Δζ and counts, until the counter comes to 0.
-        let next = step(|d: &D, s| {
-            let it = d.as_ref();
-            s[it.angle] = wrapped(it.format, s[it.angle] + s[it.delta]);
-            s[it.intervals] -= 1;
-        })
-        .repeat_while(|d, s| s[d.as_ref().intervals] > 1);
-        let mut program = vec![
-            idle(),
-            first.valid().asserts(self.write_angle),
-            next.valid().asserts(self.write_angle).asserts(self.count).asserts(self.accumulate),
-        ];
-        // The last point comes out.
-        program.extend((1..self.stages).map(|_| idle()));
-        program.push(idle().end());
-        program
-    }
+) -> (Slot, Vec<Microinstruction>) {
+    frame.delay_valid(stages);
+    let [delta, start] = ["delta_zeta", "zeta_start"].map(|name| frame.operand(name, format));
+    let length = frame.operand("length", length_format(length_bits));
+    // Counter 5: intervals still to go.
+    let intervals = frame.register("intervals", length_format(length_bits));
+    let angle = frame.register("angle", format);
+    // Outputs 34, 36 and 37 of control block 14.
+    let [count, accumulate, write_angle] =
+        ["count", "accumulate", "write_angle"].map(|name| frame.flag(name));
+    // The first pulse on output 37 loads ζ(X_start), and the counter is set to l.
+    let first = step(move |s| {
+        s[angle] = s[start];
+        s[intervals] = s[length];
+    })
+    .skip_if(1, move |s| s[length] == 0);
+    // Each of the others adds Δζ and counts, until the counter comes to 0.
+    let next = step(move |s| {
+        s[angle] = wrapped(format, s[angle] + s[delta]);
+        s[intervals] -= 1;
+    })
+    .repeat_while(move |s| s[intervals] > 1);
+    let mut program = vec![
+        idle(),
+        first.valid().asserts(write_angle),
+        next.valid().asserts(write_angle).asserts(count).asserts(accumulate),
+    ];
+    // The last point comes out.
+    program.extend((1..stages).map(|_| idle()));
+    program.push(idle().end());
+    (angle, program)
 }
 
 fn length_format(length_bits: u32) -> Format {
@@ -258,20 +234,6 @@ fn slope(power: u32) -> f64 {
 mod tests {
     use super::*;
     use crate::golden::Model;
-    use crate::golden::frame::{Datapath, State};
-
-    /// The walker without anything behind it.
-    struct Alone(Walker);
-
-    impl AsRef<Walker> for Alone {
-        fn as_ref(&self) -> &Walker {
-            &self.0
-        }
-    }
-
-    impl Datapath for Alone {
-        fn outputs(&self, _: &mut State) {}
-    }
 
     #[test]
     fn angles_wrap_as_the_circle_does() {
@@ -315,9 +277,8 @@ mod tests {
     #[test]
     fn a_line_of_three_intervals_event_by_event() {
         let mut frame = Frame::default();
-        let walker = Alone(Walker::new(&mut frame, Format::signed(1, 4), 4, 2));
-        let program = walker.0.program();
-        let mut model = frame.model(walker, program);
+        let (_, program) = walker(&mut frame, Format::signed(1, 4), 4, 2);
+        let mut model = frame.model(program);
         // Outputs 28, 29, 34, 36, 37, then done, counter 5 and register 8.
         let names =
             ["busy", "valid", "count", "accumulate", "write_angle", "done", "intervals", "angle"];

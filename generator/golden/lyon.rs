@@ -6,8 +6,10 @@ mod tests;
 
 pub use contract::contract;
 
-use super::frame::{Clocked, Frame, Microinstruction, Slot, idle, step};
-use super::highlight::{Keys, Shading, shading};
+use std::sync::Arc;
+
+use super::frame::{Clocked, Frame, idle, step, step_by};
+use super::highlight::Keys;
 use super::narrow::Narrow;
 use super::{Model, keys};
 use crate::base::fixed::{Format, Rounding};
@@ -111,7 +113,6 @@ impl Params {
 }
 
 /// The arithmetic of the device, one operation a method.
-#[derive(Clone)]
 struct Arithmetic {
     params: Params,
     squarings: u32,
@@ -197,29 +198,15 @@ impl Arithmetic {
 
 /// The golden model.
 pub fn model(config: &Config) -> Box<dyn Model> {
-    Box::new(clocked(&Arithmetic::new(Params::of(config))))
+    Box::new(clocked(Params::of(config)))
 }
 
 /// The device, clock by clock.
-struct Device {
-    it: Arithmetic,
-    vector: [Slot; 3],
-    /// `shift` or `exponent`.
-    scale: Slot,
-    /// The sum of the first squares, where one multiplier makes all.
-    sum: Slot,
-    /// D², where a multiplier scales it; otherwise the shift register.
-    distance: Slot,
-    /// β·D² behind the multiplier.
-    scaled: Slot,
-    accumulator: Slot,
-    remaining: Slot,
-}
-
-fn clocked(it: &Arithmetic) -> Clocked<Shading<Device>> {
+fn clocked(params: Params) -> Clocked {
+    let it = Arc::new(Arithmetic::new(params));
     let (params, squarings) = (&it.params, it.squarings);
+    let (shift, in_turn) = (params.scale == Scale::Shift, params.squares_in_turn);
     let (vector, scale) = (params.vector_format(), params.scale_format());
-    let shift = params.scale == Scale::Shift;
     // The counter counts squarings after the first, and shifts.
     let remaining = match (shift, squarings) {
         (false, _) => 2,
@@ -227,75 +214,63 @@ fn clocked(it: &Arithmetic) -> Clocked<Shading<Device>> {
         (true, _) => scale.width(),
     };
     let point = params.distance_fraction as i32;
-    let shifted = Format::unsigned(1, point + squarings as i32 + 2);
     let mut frame = Frame::default();
     let vector = ["dx", "dy", "dz"].map(|name| frame.operand(name, vector));
-    let scale = frame.operand(params.scale_name(), scale);
-    let mut register_if = |there: bool, name, format| {
+    let operand = frame.operand(params.scale_name(), scale);
+    let mut register_if = |there: bool, name, int: i32, frac: i32| {
+        let format = Format::unsigned(int, frac);
         if there { frame.register(name, format) } else { frame.hidden() }
     };
-    let sum = Format::unsigned(4, 2 * params.vector_fraction as i32);
-    let sum = register_if(params.squares_in_turn, "distance_sum", sum);
+    // The sum of the first squares, where one multiplier makes all.
+    let sum = register_if(in_turn, "distance_sum", 4, 2 * params.vector_fraction as i32);
+    // D², where a multiplier scales it; otherwise the shift register.
     let distance = if shift {
-        register_if(true, "shift_register", shifted)
+        register_if(true, "shift_register", 1, point + squarings as i32 + 2)
     } else {
-        register_if(true, "distance", Format::unsigned(4, point))
+        register_if(true, "distance", 4, point)
     };
-    let scaled = Format::unsigned(1, params.keys.intensity_fraction as i32);
-    let scaled = register_if(!shift, "scaled", scaled);
-    let accumulator = register_if(true, "accumulator", params.keys.f_format());
-    let remaining = Format::unsigned(remaining as i32, 0);
-    let remaining = register_if(shift || squarings > 1, "remaining", remaining);
-    let (it, products) = (it.clone(), params.keys.products());
-    let device = Device { it, vector, scale, sum, distance, scaled, accumulator, remaining };
-    let distance = step(|d: &Shading<Device>, s| {
-        let vector = d.vector.map(|component| s[component]);
-        s[d.distance] = if d.it.params.squares_in_turn {
-            d.it.distance.apply(s[d.sum] + vector[2] * vector[2])
-        } else {
-            d.it.distance(vector)
-        };
-        if d.it.params.scale == Scale::Shift {
-            s[d.remaining] = s[d.scale];
+    // β·D² behind the multiplier.
+    let f = params.keys.intensity_fraction as i32;
+    let scaled = register_if(!shift, "scaled", 1, f);
+    let accumulator = register_if(true, "accumulator", 0, f);
+    let remaining = register_if(shift || squarings > 1, "remaining", remaining as i32, 0);
+    let mut program = vec![idle()];
+    if in_turn {
+        program.push(step(move |s| s[sum] = s[vector[0]] * s[vector[0]]));
+        program.push(step(move |s| s[sum] += s[vector[1]] * s[vector[1]]));
+    }
+    program.push(step_by(&it, move |it, s| {
+        let [x, y, z] = vector.map(|component| s[component] * s[component]);
+        s[distance] = it.distance.apply(z + if in_turn { s[sum] } else { x + y });
+        if shift {
+            s[remaining] = s[operand];
         }
+    }));
+    // β·D²: one place of the shift register, or the product.
+    program.push(if shift {
+        step_by(&it, move |it, s| {
+            s[distance] = it.shifted(s[distance]);
+            s[remaining] -= 1;
+        })
+        .repeat_while(move |s| s[remaining] > 0)
+    } else {
+        step_by(&it, move |it, s| s[scaled] = it.scaled.apply(s[distance] * s[operand]))
     });
     // The accumulator takes the square of the base …
-    let base = step(|d: &Shading<Device>, s| {
-        let scaled = match d.it.params.scale {
-            Scale::Shift => d.it.scaled.apply(s[d.distance]),
-            Scale::Multiplier => s[d.scaled],
-        };
-        s[d.accumulator] = d.it.square(d.it.base(scaled));
-        if d.it.squarings > 1 {
-            s[d.remaining] = i64::from(d.it.squarings) - 1;
+    program.push(step_by(&it, move |it, s| {
+        let scaled = if shift { it.scaled.apply(s[distance]) } else { s[scaled] };
+        s[accumulator] = it.square(it.base(scaled));
+        if squarings > 1 {
+            s[remaining] = i64::from(squarings) - 1;
         }
-    });
+    }));
     // … and then its own.
-    let square = step(|d: &Shading<Device>, s| {
-        s[d.accumulator] = d.it.square(s[d.accumulator]);
-        s[d.remaining] -= 1;
-    })
-    .repeat_while(|d, s| s[d.remaining] > 1);
-    let mut program = vec![idle()];
-    if params.squares_in_turn {
-        program.push(step(|d: &Shading<Device>, s| s[d.sum] = s[d.vector[0]] * s[d.vector[0]]));
-        program.push(step(|d: &Shading<Device>, s| s[d.sum] += s[d.vector[1]] * s[d.vector[1]]));
+    if squarings > 1 {
+        let square = step_by(&it, move |it, s| {
+            s[accumulator] = it.square(s[accumulator]);
+            s[remaining] -= 1;
+        });
+        program.push(square.repeat_while(move |s| s[remaining] > 1));
     }
-    program.extend([distance, scale_step(params.scale), base]);
-    program.extend((squarings > 1).then_some(square));
-    shading(frame, device, (products, accumulator), program)
-}
-
-/// β·D²: the product, or one place of the shift register.
-fn scale_step(scale: Scale) -> Microinstruction<Shading<Device>> {
-    match scale {
-        Scale::Multiplier => step(|d: &Shading<Device>, s| {
-            s[d.scaled] = d.it.scaled.apply(s[d.distance] * s[d.scale])
-        }),
-        Scale::Shift => step(|d: &Shading<Device>, s| {
-            s[d.distance] = d.it.shifted(s[d.distance]);
-            s[d.remaining] -= 1;
-        })
-        .repeat_while(|d, s| s[d.remaining] > 0),
-    }
+    params.keys.products().behind(frame, accumulator, program)
 }

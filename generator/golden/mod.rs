@@ -15,7 +15,6 @@ pub mod formulas;
 pub mod frame;
 pub mod gauss;
 pub mod halving;
-mod handshake;
 pub mod highlight;
 pub mod keys;
 pub mod line;

@@ -6,9 +6,8 @@ mod tests;
 
 pub use contract::contract;
 
-use super::frame::{Clocked, Datapath, Frame, Slot, State};
-use super::highlight::ProductSlots;
-use super::line::{CosineTable, LineKeys, Walker, magnitude};
+use super::frame::{Clocked, Frame};
+use super::line::{self, CosineTable, LineKeys, magnitude};
 use super::{Model, keys};
 use crate::base::fixed::Format;
 use crate::config::Config;
@@ -65,7 +64,6 @@ fn range_of(n: i64) -> usize {
 const POWERS: [i64; 4] = [1, 2, 4, 16];
 
 /// The arithmetic of the device, one operation a method.
-#[derive(Clone)]
 struct Arithmetic {
     params: Params,
     /// ROM 9, a word for each n.
@@ -129,106 +127,41 @@ pub fn model(config: &Config) -> Box<dyn Model> {
 }
 
 /// The device, clock by clock.
-struct Device {
-    it: Arithmetic,
-    walker: Walker,
-    exponent: Slot,
-    /// What ROM 9 read at the latest edge.
-    root: Slot,
-    /// What ROM 12 read.
-    cosine: Slot,
-    stages: Option<Stages>,
-    products: ProductSlots,
-}
-
-/// The registers on the way from the angle to the output that a staged line has beyond ROM 9 and ROM 12.
-struct Stages {
-    /// The magnitude of the angle, or nothing.
-    magnitude: Slot,
-    within: Slot,
-    root: Slot,
-    /// The magnitude times the root, and whether there was one.
-    scaled: Slot,
-    scaled_within: Slot,
-    /// The address of ROM 12: the range of n, and the step.
-    range: Slot,
-    step: Slot,
-    /// The word of ROM 12.
-    cosine: Slot,
-}
-
-impl Stages {
-    fn new(frame: &mut Frame) -> Self {
-        Self {
-            magnitude: frame.hidden(),
-            within: frame.hidden(),
-            root: frame.hidden(),
-            scaled: frame.hidden(),
-            scaled_within: frame.hidden(),
-            range: frame.hidden(),
-            step: frame.hidden(),
-            cosine: frame.hidden(),
-        }
-    }
-
-    /// A rising edge, from the output back to the angle: each takes what the one before it held.
-    #[inline]
-    fn edge(&self, device: &Device, s: &mut State) {
-        let Device { it, walker, exponent, root, cosine, products, .. } = device;
-        products.show(s);
-        s[self.cosine] = s[*cosine];
-        s[*cosine] = it.tables[s[self.range] as usize].words[s[self.step] as usize];
-        let scaled = if s[self.scaled_within] == 1 { s[self.scaled] } else { i64::MAX };
-        s[self.step] = it.step_of(scaled) as i64;
-        s[self.range] = range_of(s[*exponent]) as i64;
-        s[self.scaled] = s[self.magnitude] * s[self.root];
-        s[self.scaled_within] = s[self.within];
-        s[self.root] = s[*root];
-        let magnitude = it.magnitude(s[walker.angle]);
-        s[self.magnitude] = magnitude.unwrap_or_default();
-        s[self.within] = magnitude.is_some().into();
-    }
-}
-
-impl AsRef<Walker> for Device {
-    fn as_ref(&self) -> &Walker {
-        &self.walker
-    }
-}
-
-impl Datapath for Device {
-    #[inline]
-    fn edge(&self, s: &mut State) {
-        let n = s[self.exponent];
-        if let Some(stages) = &self.stages {
-            stages.edge(self, s);
-        } else {
-            let magnitude = self.it.magnitude(s[self.walker.angle]);
-            s[self.cosine] = self.it.cosine_of(n, magnitude, s[self.root]);
-        }
-        s[self.root] = self.it.root(n);
-    }
-
-    #[inline]
-    fn outputs(&self, s: &mut State) {
-        // Of a staged line an edge makes them.
-        if self.stages.is_none() {
-            self.products.show(s);
-        }
-    }
-}
-
-fn clocked(params: Params) -> Clocked<Device> {
+fn clocked(params: Params) -> Clocked {
     let mut frame = Frame::default();
-    let walker =
-        Walker::new(&mut frame, params.angle_format(), params.keys.length_bits, params.keys.stages);
-    let program = walker.program();
+    let LineKeys { length_bits, stages, .. } = params.keys;
+    let (angle, program) = line::walker(&mut frame, params.angle_format(), length_bits, stages);
     let exponent = frame.operand("exponent", params.exponent_format());
+    // What ROM 9 and ROM 12 read at the latest edge.
     let (root, cosine) = (frame.hidden(), frame.hidden());
-    let stages = (params.keys.stages > 2).then(|| Stages::new(&mut frame));
-    let shown = stages.as_ref().map_or(cosine, |stages| stages.cosine);
-    let products = params.keys.products().slots(&mut frame, shown);
+    let products = params.keys.products();
     let it = Arithmetic::new(params);
-    let device = Device { it, walker, exponent, root, cosine, stages, products };
-    frame.model(device, program)
+    if stages == 2 {
+        products.slots(&mut frame, cosine);
+        frame.every_edge(move |s| {
+            s[cosine] = it.cosine_of(s[exponent], it.magnitude(s[angle]), s[root]);
+            s[root] = it.root(s[exponent]);
+        });
+        return frame.model(program);
+    }
+    // The magnitude of the angle, or nothing, and the word of ROM 9; the magnitude times the root, and whether there was one.
+    let [magnitude, within, held_root, scaled, scaled_within] = [(); 5].map(|()| frame.hidden());
+    // The address of ROM 12: the range of n, and the step. Then its word.
+    let [range, step, held] = [(); 3].map(|()| frame.hidden());
+    products.slots(&mut frame, held);
+    // From the output back to the angle: each takes what the one before it held.
+    frame.every_edge(move |s| {
+        s[held] = s[cosine];
+        s[cosine] = it.tables[s[range] as usize].words[s[step] as usize];
+        s[step] = it.step_of(if s[scaled_within] == 1 { s[scaled] } else { i64::MAX }) as i64;
+        s[range] = range_of(s[exponent]) as i64;
+        s[scaled] = s[magnitude] * s[held_root];
+        s[scaled_within] = s[within];
+        s[held_root] = s[root];
+        let taken = it.magnitude(s[angle]);
+        s[magnitude] = taken.unwrap_or_default();
+        s[within] = taken.is_some().into();
+        s[root] = it.root(s[exponent]);
+    });
+    frame.model(program)
 }

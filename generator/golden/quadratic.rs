@@ -4,9 +4,11 @@ pub mod coefficient;
 #[cfg(test)]
 mod tests;
 
+use std::sync::Arc;
+
 use super::contract::{self, ErrorShare};
-use super::frame::{Clocked, Frame, Slot, idle, step};
-use super::highlight::{Highlight, Keys, Reflectance, Shading, shading};
+use super::frame::{Clocked, Frame, idle, step_by};
+use super::highlight::{Highlight, Keys, Reflectance};
 use super::narrow::{Narrow, rounding_error};
 use super::{Contract, Model, keys};
 use crate::base::fixed::{Format, Rounding, exp2};
@@ -32,7 +34,6 @@ impl CoefficientScheme {
 }
 
 /// The arithmetic of the device, one operation a method.
-#[derive(Clone)]
 struct Arithmetic {
     keys: Keys,
     scheme: CoefficientScheme,
@@ -111,29 +112,24 @@ fn difference_format(fraction: u32) -> Format {
 
 /// The golden model.
 pub fn model(config: &Config) -> Box<dyn Model> {
-    Box::new(clocked(&Arithmetic::of(config)))
+    Box::new(clocked(Arithmetic::of(config)))
 }
 
 /// The device, clock by clock.
-struct Device {
-    it: Arithmetic,
-    cosine: Slot,
-    exponent: Slot,
-    difference: Slot,
-    intensity: Slot,
-}
-
-fn clocked(it: &Arithmetic) -> Clocked<Shading<Device>> {
+fn clocked(it: Arithmetic) -> Clocked {
+    let it = Arc::new(it);
     let mut frame = Frame::default();
     let [cosine, exponent] = it.keys.slots(&mut frame);
     let difference = frame.register("difference", difference_format(it.difference_fraction));
     let intensity = frame.register("intensity", it.keys.f_format());
-    let device = Device { it: it.clone(), cosine, exponent, difference, intensity };
-    let subtract = step(|d: &Shading<Device>, s| s[d.difference] = d.it.difference(s[d.cosine]));
-    let blend = step(|d: &Shading<Device>, s| {
-        s[d.intensity] = d.it.intensity(s[d.cosine], s[d.exponent], s[d.difference]);
-    });
-    shading(frame, device, (it.keys.products(), intensity), vec![idle(), subtract, blend])
+    let program = vec![
+        idle(),
+        step_by(&it, move |it, s| s[difference] = it.difference(s[cosine])),
+        step_by(&it, move |it, s| {
+            s[intensity] = it.intensity(s[cosine], s[exponent], s[difference]);
+        }),
+    ];
+    it.keys.products().behind(frame, intensity, program)
 }
 
 /// The accuracy contract. Control operands: `cos_gamma`, `exponent`.

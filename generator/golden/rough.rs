@@ -49,8 +49,6 @@ struct Params {
     sine_scheme: TableScheme,
     /// `sine.fraction`: fraction bits of the sine, S.
     sine_fraction: u32,
-    /// `sine.synchronous`: ROM 18 answers a clock later.
-    sine_synchronous: bool,
     /// `domain.deviation`: the contract's largest dγ, in degrees, 0 … 90.
     deviation: f64,
 }
@@ -87,7 +85,6 @@ impl Params {
             intensity_rounding: keys::rounding(config, "intensity.rounding"),
             sine_scheme,
             sine_fraction: keys::bits(config, "sine.fraction"),
-            sine_synchronous: config.flag("sine.synchronous"),
             deviation: config.number("domain.deviation"),
         }
     }
@@ -131,14 +128,12 @@ impl Params {
 }
 
 /// The blocks between the registers, one a method. Words are raw values.
-#[derive(Clone)]
 struct Arithmetic {
     params: Params,
     sine: Sine,
     kind: Blocks,
 }
 
-#[derive(Clone)]
 enum Blocks {
     Exact {
         /// 1.0 of registers 11 and 12, and of register 13.

@@ -1,8 +1,8 @@
 //! `schlick`: c / (n − n·c + c), c = cos γ (seed 002), by formula.
 
 use super::contract::{self, ErrorShare};
-use super::frame::{Clocked, Frame, Slot, idle, step};
-use super::highlight::{Highlight, Keys, Reflectance, Shading, shading};
+use super::frame::{Clocked, Frame, idle, step};
+use super::highlight::{Highlight, Keys, Reflectance};
 use super::{Contract, Model};
 use crate::base::fixed::{Format, exp2, mask};
 use crate::config::Config;
@@ -10,7 +10,6 @@ use crate::golden::formulas;
 
 /// The arithmetic of the device. Cosines, divisors and remainders are in ulps of the cosine, and the quotient
 /// is f.
-#[derive(Clone)]
 struct Arithmetic(Keys);
 
 impl Arithmetic {
@@ -31,67 +30,45 @@ fn divide(dividend: i64, divisor: i64, bits: u32) -> (i64, i64) {
 
 /// The golden model.
 pub fn model(config: &Config) -> Box<dyn Model> {
-    Box::new(clocked(&Arithmetic(Keys::new(config))))
+    Box::new(clocked(Arithmetic(Keys::new(config))))
 }
 
 /// The device, clock by clock.
 ///
 /// The divider's registers are predicted from the division as a whole: after k steps the quotient ends
 /// in the first k bits of the true one, and the remainder is what these leave.
-struct Device {
-    it: Arithmetic,
-    cosine: Slot,
-    exponent: Slot,
-    quotient: Slot,
-    divisor: Slot,
-    remainder: Slot,
-    remaining: Slot,
-    /// Bits found.
-    found: Slot,
-    /// What the quotient's register held before.
-    before: Slot,
-}
-
-fn clocked(it: &Arithmetic) -> Clocked<Shading<Device>> {
+fn clocked(it: Arithmetic) -> Clocked {
     let Keys { intensity_fraction: bits, cosine_fraction, exponent_bits, .. } = it.0;
+    let products = it.0.products();
     let mut frame = Frame::default();
     let [cosine, exponent] = it.0.slots(&mut frame);
     // Up to 1.0 + n.
-    let divisor = Format::unsigned(exponent_bits as i32 + 1, cosine_fraction as i32);
+    let format = Format::unsigned(exponent_bits as i32 + 1, cosine_fraction as i32);
     let quotient = frame.register("quotient", it.0.f_format());
-    let device = Device {
-        it: it.clone(),
-        cosine,
-        exponent,
-        quotient,
-        divisor: frame.register("quotient_divisor", divisor),
-        remainder: frame.register("quotient_remainder", divisor),
-        remaining: frame
-            .register("quotient_remaining", Format::unsigned((bits - 1).ilog2() as i32 + 1, 0)),
-        found: frame.hidden(),
-        before: frame.hidden(),
-    };
+    let divisor = frame.register("quotient_divisor", format);
+    let remainder = frame.register("quotient_remainder", format);
+    let counter = Format::unsigned((bits - 1).ilog2() as i32 + 1, 0);
+    let remaining = frame.register("quotient_remaining", counter);
+    // Bits found, and what the quotient's register held before.
+    let (found, before) = (frame.hidden(), frame.hidden());
     // The divider takes cos γ and n − n·cos γ + cos γ.
-    let begin = step(|d: &Shading<Device>, s| {
-        let cosine = s[d.cosine];
-        s[d.divisor] = d.it.divisor(cosine, s[d.exponent]);
-        s[d.remainder] = cosine;
-        s[d.remaining] = i64::from(d.it.0.intensity_fraction) - 1;
-        s[d.found] = 0;
-        s[d.before] = s[d.quotient];
+    let begin = step(move |s| {
+        s[divisor] = it.divisor(s[cosine], s[exponent]);
+        s[remainder] = s[cosine];
+        s[remaining] = i64::from(bits) - 1;
+        s[found] = 0;
+        s[before] = s[quotient];
     });
     // It finds a bit of the quotient, as often as the quotient has bits.
-    let bit = step(|d: &Shading<Device>, s| {
-        s[d.found] += 1;
-        let found = s[d.found] as u32;
-        let (quotient, remainder) = divide(s[d.cosine], s[d.divisor], found);
-        let shifted = (s[d.before] << found | quotient) as u64;
-        s[d.quotient] = (shifted & mask(d.it.0.intensity_fraction)) as i64;
-        s[d.remainder] = remainder;
-        s[d.remaining] -= 1;
+    let bit = step(move |s| {
+        s[found] += 1;
+        let (first, rest) = divide(s[cosine], s[divisor], s[found] as u32);
+        s[quotient] = ((s[before] << s[found] | first) as u64 & mask(bits)) as i64;
+        s[remainder] = rest;
+        s[remaining] -= 1;
     });
-    let program = vec![idle(), begin, bit.repeat_while(|d, s| s[d.remaining] != 0)];
-    shading(frame, device, (it.0.products(), quotient), program)
+    let program = vec![idle(), begin, bit.repeat_while(move |s| s[remaining] != 0)];
+    products.behind(frame, quotient, program)
 }
 
 /// The accuracy contract. Control operands: `cos_gamma`, `exponent`.
@@ -153,7 +130,7 @@ mod tests {
     /// One point followed clock by clock: microinstructions 0, 1, 2 four times, 3 and idle.
     #[test]
     fn a_point_clock_by_clock() {
-        let mut model = clocked(&small());
+        let mut model = clocked(small());
         // c = 14/16, n = 6, red 15, written together with start.
         let first = [1, 1, 14, 1, 6, 1, 15, 1, 0, 0, 0, 0];
         // Writes while busy change nothing.

@@ -3,9 +3,11 @@
 #[cfg(test)]
 mod tests;
 
+use std::sync::Arc;
+
 use super::contract::{self, ErrorShare};
-use super::frame::{Clocked, Frame, Slot, idle, step};
-use super::highlight::{Highlight, Keys, Reflectance, Shading, shading};
+use super::frame::{Clocked, Frame, idle, step_by};
+use super::highlight::{Highlight, Keys, Reflectance};
 use super::narrow::{Narrow, rounding_error};
 use super::{Contract, Model, keys};
 use crate::base::fixed::{Format, Rounding, exp2};
@@ -13,7 +15,6 @@ use crate::config::Config;
 use crate::golden::formulas;
 
 /// The arithmetic of the device, one operation a method.
-#[derive(Clone)]
 struct Arithmetic {
     keys: Keys,
     /// `intensity.rounding`: of the base and of its square.
@@ -96,31 +97,23 @@ impl Arithmetic {
 
 /// The golden model.
 pub fn model(config: &Config) -> Box<dyn Model> {
-    Box::new(clocked(&Arithmetic::of(config)))
+    Box::new(clocked(Arithmetic::of(config)))
 }
 
 /// The device, clock by clock.
-struct Device {
-    it: Arithmetic,
-    cosine: Slot,
-    exponent: Slot,
-    scaled: Slot,
-    intensity: Slot,
-}
-
-fn clocked(it: &Arithmetic) -> Clocked<Shading<Device>> {
+fn clocked(it: Arithmetic) -> Clocked {
+    let it = Arc::new(it);
     let mut frame = Frame::default();
     let [cosine, exponent] = it.keys.slots(&mut frame);
     let fraction = it.keys.intensity_fraction as i32;
     let scaled = frame.register("scaled", Format::signed(0, fraction));
     let intensity = frame.register("intensity", it.keys.f_format());
-    let device = Device { it: it.clone(), cosine, exponent, scaled, intensity };
-    let scale =
-        step(|d: &Shading<Device>, s| s[d.scaled] = d.it.scaled(s[d.cosine], s[d.exponent]));
-    let gate = step(|d: &Shading<Device>, s| {
-        s[d.intensity] = d.it.gated(s[d.cosine], s[d.exponent], s[d.scaled]);
-    });
-    shading(frame, device, (it.keys.products(), intensity), vec![idle(), scale, gate])
+    let program = vec![
+        idle(),
+        step_by(&it, move |it, s| s[scaled] = it.scaled(s[cosine], s[exponent])),
+        step_by(&it, move |it, s| s[intensity] = it.gated(s[cosine], s[exponent], s[scaled])),
+    ];
+    it.keys.products().behind(frame, intensity, program)
 }
 
 /// The accuracy contract. Control operands: `cos_gamma`, `exponent`.

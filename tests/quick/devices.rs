@@ -18,7 +18,7 @@ use glint::dsl::{Designer, end, step, valid};
 use glint::fixed::Format;
 use glint::golden::Contract;
 use glint::golden::device::{self, Formula};
-use glint::golden::frame::{Datapath, Frame, Slot, idle, step as execute};
+use glint::golden::frame::{Frame, idle, step as execute};
 use glint::registry::Device;
 use normaliser::NORMALISER;
 
@@ -178,13 +178,7 @@ fn vectors_by_hand() {
 }
 
 /// A sum of two points, this and the one before.
-struct Sum {
-    x: Slot,
-    before: Slot,
-    sum: Slot,
-}
-
-impl Datapath for Sum {}
+struct Sum;
 
 impl Formula for Sum {
     fn exact(&self, x: &[f64]) -> Vec<f64> {
@@ -192,27 +186,18 @@ impl Formula for Sum {
     }
 }
 
-fn sum_model(shows: bool) -> device::Device<Sum> {
+fn sum_model(shows: bool) -> device::Device {
     let mut frame = Frame::default();
-    let it = Sum {
-        x: frame.operand("x", Format::unsigned(8, 0)),
-        before: frame.register("earlier", Format::unsigned(8, 0)),
-        sum: frame.register("sum", Format::unsigned(9, 0)),
-    };
-    frame.shows("sum_out", it.sum);
-    let add = execute(|it: &Sum, s| {
-        s[it.sum] = s[it.before] + s[it.x];
-        s[it.before] = s[it.x];
+    let x = frame.operand("x", Format::unsigned(8, 0));
+    let before = frame.register("earlier", Format::unsigned(8, 0));
+    let sum = frame.register("sum", Format::unsigned(9, 0));
+    frame.shows("sum_out", sum);
+    let add = execute(move |s| {
+        s[sum] = s[before] + s[x];
+        s[before] = s[x];
     });
     let result = if shows { idle().valid() } else { idle() };
-    frame.device(it, [idle(), add, result.end()])
-}
-
-fn sum_of(shows: bool) -> Box<dyn Contract> {
-    let slot = sum_model(shows);
-    let mut frame = Frame::default();
-    let at = frame.hidden();
-    slot.contract(Sum { x: at, before: at, sum: at })
+    frame.device([idle(), add, result.end()])
 }
 
 /// Every command builds the core first.
@@ -233,9 +218,9 @@ fn results_that_depend_on_the_past_and_results_that_never_come_are_refused() {
             d.microprogram([step("idle", []), add, step("result", [valid(), end()])]);
         },
         model: |_| sum_model(true).model(),
-        contract: |_| sum_of(true),
+        contract: |_| sum_model(true).contract(Sum),
     };
-    let silent = Device { contract: |_| sum_of(false), ..sum };
+    let silent = Device { contract: |_| sum_model(false).contract(Sum), ..sum };
     for (device, expected) in [
         (sum, "`sum_out` depends on what `earlier` held before the computation; load `earlier`"),
         (silent, "shows no result within"),

@@ -68,7 +68,7 @@ fn gauss_by_hand() {
 /// One point clock by clock: words 0 to 5, and idle.
 #[test]
 fn a_point_clock_by_clock() {
-    let mut model = clocked(&small(Function::Logarithm));
+    let mut model = clocked(small(Function::Logarithm));
     // c = 14/16, n = 3, red 15, written together with start.
     model.clock(&[1, 1, 14, 1, 3, 1, 15, 1, 0, 0, 0, 0]);
     let names = ["run", "word_address", "decay", "halvings", "reflectance", "valid", "done"];

@@ -1,14 +1,51 @@
 //! A device that the frame runs, clock by clock.
 
+use std::mem;
 use std::sync::Arc;
 
-use super::{Datapath, Frame, Microinstruction, Next, Operand, Slot, State};
+use super::{Does, Frame, Microinstruction, Next, Operand, Slot, State, Value, idle};
 use crate::base::fixed::mask;
 use crate::golden::Model;
-use crate::golden::handshake::{After, Handshake};
 
-/// The handshake's own, which stand before the device's.
-pub(super) const HANDSHAKE: [&str; 5] = ["valid", "busy", "done", "run", "word_address"];
+/// The handshake's own signals, which stand before the device's.
+const HANDSHAKE: [&str; 5] = ["valid", "busy", "done", "run", "word_address"];
+
+/// What does not change.
+#[derive(Clone)]
+struct Fixed {
+    program: Vec<Microinstruction>,
+    operands: Vec<Operand>,
+    shown: Vec<(Slot, u64)>,
+    /// Outputs that are logic.
+    logic: Vec<(Slot, Value)>,
+    edges: Vec<Does>,
+    /// Results with the registers that take them.
+    taken: Vec<(Slot, Slot)>,
+    /// What takes the writes of each operand; empty where the operand registers do.
+    buffers: Vec<Slot>,
+    flags: Vec<Slot>,
+    valid_delay: u32,
+    inputs: Vec<String>,
+    signals: Vec<String>,
+}
+
+/// A device, clock by clock.
+///
+/// It idles in microinstruction 0, and executes it once more in the clock after `start`: 1 and on follow. A register
+/// that a microinstruction loads takes its value at the rising edge that ends it, whether `rst_n` is low at that edge or
+/// not.
+#[derive(Clone)]
+pub struct Clocked {
+    fixed: Arc<Fixed>,
+    /// A point is in flight: also the output `busy`.
+    run: bool,
+    /// The microinstruction in force; 0 when idle.
+    address: usize,
+    /// Whether the microinstructions of the latest clocks said `valid`, the latest in bit 0.
+    pulses: u64,
+    state: State,
+    values: Box<[u64]>,
+}
 
 impl Frame {
     /// The model at power-up. The first microinstruction is the one in which the device idles, the last ends
@@ -16,111 +53,77 @@ impl Frame {
     ///
     /// # Panics
     /// If there is no microinstruction.
-    pub fn model<D: Datapath>(
-        mut self,
-        datapath: D,
-        program: impl IntoIterator<Item = Microinstruction<D>>,
-    ) -> Clocked<D> {
+    pub fn model(mut self, program: impl IntoIterator<Item = Microinstruction>) -> Clocked {
         let program: Vec<_> = program.into_iter().collect();
         assert!(!program.is_empty(), "a device idles in its first microinstruction");
         // Of signals that differ in one clock the first is reported: one that a user of the device sees.
         self.shown.sort_by_key(|shown| !shown.output);
-        let signals = self.shown.iter().map(|shown| shown.name.clone()).collect();
-        let operands = self.operands.iter();
         let inputs =
-            operands.flat_map(|it| [it.name.clone(), format!("{}_write", it.name)]).collect();
-        let names = |first: &[&str], then: Vec<String>| {
-            first.iter().map(|&name| name.to_owned()).chain(then).collect::<Vec<_>>()
+            self.operands.iter().flat_map(|it| [it.name.clone(), it.name.clone() + "_write"]);
+        let signals = self.shown.iter().map(|shown| shown.name.clone());
+        let fixed = Fixed {
+            inputs: ["rst_n", "start"].map(str::to_owned).into_iter().chain(inputs).collect(),
+            signals: HANDSHAKE.map(str::to_owned).into_iter().chain(signals).collect(),
+            shown: self.shown.iter().map(|it| (it.slot, mask(it.format.width()))).collect(),
+            program,
+            operands: self.operands,
+            logic: self.logic,
+            edges: self.edges,
+            taken: Vec::new(),
+            buffers: Vec::new(),
+            flags: self.flags,
+            valid_delay: self.valid_delay,
         };
-        let is_register =
-            |slot: Slot| self.shown.iter().any(|shown| !shown.output && shown.slot == slot);
-        let shows_flags = self.shown.iter().any(|shown| self.flags.contains(&shown.slot));
-        let logic = (self.shown.iter().enumerate())
-            .filter(|(_, it)| it.output && !self.flags.contains(&it.slot) && !is_register(it.slot))
-            .map(|(at, _)| at)
-            .collect();
-        let mut model = Clocked {
-            datapath: Arc::new(datapath),
-            handshake: Handshake::default(),
+        Clocked::at_power_up(fixed, self.slots)
+    }
+}
+
+impl Fixed {
+    /// What the buffers take of data and strobes, and at a start the operand registers of the buffers. Whether there was
+    /// anything to take.
+    fn write_buffers(&self, state: &mut State, ports: &[u64], starts: bool) -> bool {
+        let mut taken = starts;
+        let buffers = self.operands.iter().zip(&self.buffers);
+        for ((operand, &buffer), ports) in buffers.zip(ports.chunks_exact(2)) {
+            if ports[1] & 1 == 1 {
+                taken = true;
+                state[buffer] = operand.held(ports[0]);
+            }
+            if starts {
+                state[operand.slot] = state[buffer];
+            }
+        }
+        taken
+    }
+
+    /// What the operand registers take. Whether there was anything to take.
+    fn write_operands(&self, state: &mut State, ports: &[u64]) -> bool {
+        let mut taken = false;
+        for (operand, ports) in self.operands.iter().zip(ports.chunks_exact(2)) {
+            if ports[1] & 1 == 1 {
+                taken = true;
+                state[operand.slot] = operand.held(ports[0]);
+            }
+        }
+        taken
+    }
+}
+
+impl Clocked {
+    /// The device with so many slots, all 0.
+    fn at_power_up(fixed: Fixed, slots: usize) -> Self {
+        let mut model = Self {
+            run: false,
+            address: 0,
             pulses: 0,
-            state: State(vec![0; self.slots].into()),
-            values: vec![0; HANDSHAKE.len() + self.shown.len()].into(),
-            fixed: Arc::new(Fixed {
-                inputs: names(&["rst_n", "start"], inputs),
-                signals: names(&HANDSHAKE, signals),
-                operands: self.operands,
-                shown: self
-                    .shown
-                    .into_iter()
-                    .map(|shown| (shown.slot, mask(shown.format.width())))
-                    .collect(),
-                levels: levels(&program, &self.flags),
-                flags: self.flags,
-                shows_flags,
-                valid_delay: self.valid_delay,
-                program,
-                logic,
-                taken: Vec::new(),
-                buffers: Vec::new(),
-            }),
+            state: State(vec![0; slots].into()),
+            values: vec![0; fixed.signals.len()].into(),
+            fixed: Arc::new(fixed),
         };
         model.settle(false);
         model
     }
-}
 
-/// What does not change.
-pub(super) struct Fixed<D> {
-    pub(super) program: Vec<Microinstruction<D>>,
-    pub(super) operands: Vec<Operand>,
-    pub(super) shown: Vec<(Slot, u64)>,
-    /// Where among these the results are that are logic.
-    pub(super) logic: Vec<usize>,
-    /// Results with the registers that take them.
-    pub(super) taken: Vec<(Slot, Slot)>,
-    /// What takes the writes of each operand; empty where the operand registers do.
-    pub(super) buffers: Vec<Slot>,
-    pub(super) flags: Vec<Slot>,
-    /// What each microinstruction makes of them.
-    pub(super) levels: Vec<Vec<i64>>,
-    /// Some of them are outputs.
-    pub(super) shows_flags: bool,
-    pub(super) valid_delay: u32,
-    pub(super) inputs: Vec<String>,
-    pub(super) signals: Vec<String>,
-}
-
-/// The levels of flags in each microinstruction.
-pub(super) fn levels<D>(program: &[Microinstruction<D>], flags: &[Slot]) -> Vec<Vec<i64>> {
-    let level = |it: &Microinstruction<D>, flag| i64::from(it.asserts.contains(flag));
-    program.iter().map(|it| flags.iter().map(|flag| level(it, flag)).collect()).collect()
-}
-
-/// A device, clock by clock.
-pub struct Clocked<D> {
-    pub(super) datapath: Arc<D>,
-    pub(super) fixed: Arc<Fixed<D>>,
-    pub(super) handshake: Handshake,
-    /// Whether the microinstructions of the latest clocks said `valid`, the latest in bit 0.
-    pub(super) pulses: u64,
-    pub(super) state: State,
-    pub(super) values: Box<[u64]>,
-}
-
-impl<D> Clone for Clocked<D> {
-    fn clone(&self) -> Self {
-        Self {
-            datapath: self.datapath.clone(),
-            fixed: self.fixed.clone(),
-            handshake: self.handshake,
-            pulses: self.pulses,
-            state: self.state.clone(),
-            values: self.values.clone(),
-        }
-    }
-}
-
-impl<D: Datapath> Clocked<D> {
     /// Whether `valid` is high.
     pub fn is_valid(&self) -> bool {
         self.values[0] == 1
@@ -128,34 +131,32 @@ impl<D: Datapath> Clocked<D> {
 
     /// What is shown of the state, of which nothing that is shown has changed if it is `still`.
     #[inline]
-    pub(super) fn settle(&mut self, still: bool) {
+    fn settle(&mut self, still: bool) {
         let it = &*self.fixed;
-        let Handshake { run, address } = self.handshake;
-        let here = &it.program[address as usize];
-        let state = &mut *self.state.0;
-        for (flag, &level) in it.flags.iter().zip(&it.levels[address as usize]) {
-            state[flag.0] = level;
+        let here = &it.program[self.address];
+        for &flag in &it.flags {
+            self.state[flag] = here.asserts.contains(&flag).into();
         }
         let valid = match it.valid_delay {
             0 => here.valid,
             clocks => self.pulses >> (clocks - 1) & 1 == 1,
         };
-        let done = run && matches!(here.next, Next::End);
-        let handshake = [valid.into(), run.into(), done.into(), run.into(), address.into()];
+        let (run, done) = (self.run.into(), self.run && matches!(here.next, Next::End));
         let (first, then) = self.values.split_at_mut(HANDSHAKE.len());
-        first.copy_from_slice(&handshake);
+        first.copy_from_slice(&[valid.into(), run, done.into(), run, self.address as u64]);
         if still {
             return;
         }
-        self.datapath.outputs(&mut self.state);
-        let state = &*self.state.0;
-        for (value, (slot, mask)) in then.iter_mut().zip(&it.shown) {
-            *value = state[slot.0] as u64 & mask;
+        for (slot, value) in &it.logic {
+            self.state[*slot] = value(&self.state);
+        }
+        for (value, &(slot, mask)) in then.iter_mut().zip(&it.shown) {
+            *value = self.state[slot] as u64 & mask;
         }
     }
 }
 
-impl<D: Datapath> Model for Clocked<D> {
+impl Model for Clocked {
     fn inputs(&self) -> &[String] {
         &self.fixed.inputs
     }
@@ -165,42 +166,44 @@ impl<D: Datapath> Model for Clocked<D> {
     }
 
     fn clock(&mut self, inputs: &[u64]) {
-        let it = &*self.fixed;
+        let (it, state) = (&*self.fixed, &mut self.state);
         let (rst_n, start) = (inputs[0] & 1 == 1, inputs[1] & 1 == 1);
-        let here = &it.program[self.handshake.address as usize];
-        let datapath = &*self.datapath;
+        let here = &it.program[self.address];
         if here.takes_results {
             for &(logic, register) in &it.taken {
-                self.state[register] = self.state[logic];
+                state[register] = state[logic];
             }
         }
-        datapath.edge(&mut self.state);
-        let after = match here.next {
-            Next::Following => After::Next,
-            Next::RepeatWhile(condition) if condition(datapath, &self.state) => After::Again,
-            Next::SkipIf(count, condition) if condition(datapath, &self.state) => {
-                After::To(self.handshake.address + 1 + count)
-            }
-            Next::RepeatWhile(_) | Next::SkipIf(..) => After::Next,
-            Next::End if start && !it.buffers.is_empty() => After::Restart,
-            Next::End => After::End,
+        it.edges.iter().for_each(|does| does(state));
+        let next = match &here.next {
+            Next::RepeatWhile(holds) if holds(state) => self.address,
+            Next::SkipIf(count, holds) if holds(state) => self.address + 1 + *count as usize,
+            Next::End => 0,
+            _ => self.address + 1,
         };
-        (here.does)(datapath, &mut self.state);
-        let mut still = here.idle && !here.takes_results && D::LOADS_ALONE && !it.shows_flags;
-        if !it.buffers.is_empty() {
-            let ends = matches!(here.next, Next::End);
-            let starts = start && (ends || !self.handshake.run);
-            still &= !it.write_buffers(&mut self.state, &inputs[2..], starts);
-        } else if !self.handshake.run {
-            for (operand, ports) in it.operands.iter().zip(inputs[2..].chunks_exact(2)) {
-                if ports[1] & 1 == 1 {
-                    still = false;
-                    self.state[operand.slot] = operand.held(ports[0]);
-                }
-            }
+        if let Some(does) = &here.does {
+            does(state);
         }
+        let buffered = !it.buffers.is_empty();
+        let ends = matches!(here.next, Next::End);
+        // With buffers a start is heard in the last microinstruction too.
+        let starts = start && (!self.run || ends && buffered);
+        let taken = if buffered {
+            it.write_buffers(state, &inputs[2..], starts)
+        } else {
+            !self.run && it.write_operands(state, &inputs[2..])
+        };
+        // Registers and outputs change by loads alone where no edge and no flag changes them.
+        let still = here.does.is_none()
+            && !(taken || here.takes_results)
+            && it.edges.is_empty()
+            && it.flags.is_empty();
         self.pulses = if rst_n { self.pulses << 1 | u64::from(here.valid) } else { 0 };
-        self.handshake.clock(rst_n, start, after);
+        (self.run, self.address) = match self.run {
+            _ if !rst_n => (false, 0),
+            false => (start, 0),
+            true => (!ends || starts, next),
+        };
         self.settle(still);
     }
 
@@ -208,12 +211,70 @@ impl<D: Datapath> Model for Clocked<D> {
         &self.values
     }
 
+    /// Results are taken in the microinstruction that was to set `valid`, and one more sets it. Where
+    /// `valid` comes later than a microinstruction says, they are taken in every clock.
     fn with_output_registers(&self) -> Option<Box<dyn Model>> {
-        let model: Self = Self::with_output_registers(self)?;
-        Some(Box::new(model))
+        let mut it = Fixed::clone(&self.fixed);
+        let mut slots = self.state.0.len();
+        for at in 0..it.shown.len() {
+            let (slot, mask) = it.shown[at];
+            if it.logic.iter().any(|(logic, _)| *logic == slot) {
+                let register = Slot(slots);
+                slots += 1;
+                it.taken.push((slot, register));
+                it.shown[at].0 = register;
+                it.shown.push((register, mask));
+                it.signals.push(format!("{}_reg", it.signals[HANDSHAKE.len() + at]));
+            }
+        }
+        if slots == self.state.0.len() {
+            return Some(Box::new(self.clone()));
+        }
+        if it.valid_delay > 0 {
+            it.valid_delay += 1;
+            it.program.last_mut()?.next = Next::Following;
+            it.program.push(idle().end());
+            it.program.iter_mut().for_each(|it| it.takes_results = true);
+        } else {
+            it.program = taking(&it.program)?;
+        }
+        Some(Box::new(Self::at_power_up(it, slots)))
     }
 
     fn with_operand_buffers(&self) -> Option<Box<dyn Model>> {
-        Some(Box::new(Self::with_operand_buffers(self)))
+        let mut it = Fixed::clone(&self.fixed);
+        let mut slots = self.state.0.len();
+        for operand in &it.operands {
+            let register = it.shown.iter().find(|(shown, _)| *shown == operand.slot);
+            it.buffers.push(Slot(slots));
+            it.shown.push((Slot(slots), register.map_or(0, |(_, mask)| *mask)));
+            it.signals.push(format!("{}_buffer", operand.name));
+            slots += 1;
+        }
+        Some(Box::new(Self::at_power_up(it, slots)))
     }
+}
+
+/// The program with one microinstruction more after each that was to set `valid`; none where such a one goes on by a
+/// condition.
+fn taking(program: &[Microinstruction]) -> Option<Vec<Microinstruction>> {
+    let mut longer = Vec::new();
+    for (at, here) in program.iter().enumerate() {
+        let mut here = here.clone();
+        if let Next::SkipIf(count, _) = &mut here.next {
+            let skipped = program.iter().skip(at + 1).take(*count as usize);
+            *count += skipped.filter(|it| it.valid).count() as u32;
+        }
+        if !here.valid {
+            longer.push(here);
+            continue;
+        }
+        if matches!(here.next, Next::RepeatWhile(_) | Next::SkipIf(..)) {
+            return None;
+        }
+        let next = mem::replace(&mut here.next, Next::Following);
+        longer.push(Microinstruction { valid: false, takes_results: true, ..here });
+        longer.push(Microinstruction { next, ..idle().valid() });
+    }
+    Some(longer)
 }

@@ -2,37 +2,21 @@
 //! `valid`, `done`.
 //!
 //! A device names its operands, registers and outputs once, in a [`Frame`], and gets a [`Slot`] for each. It
-//! says what each microinstruction does to them ([`step`]) and what its outputs show ([`Datapath`]); the
+//! says what each microinstruction does to them ([`step`]) and what its outputs show; the
 //! order of the microinstructions numbers them. [`Frame::model`] makes a [`Model`](super::Model) of that.
 //!
 //! ```
 //! use glint::fixed::Format;
 //! use glint::golden::Model;
-//! use glint::golden::frame::{Datapath, Frame, Slot, State, idle, step};
+//! use glint::golden::frame::{Frame, idle, step};
 //!
-//! /// It doubles its operand.
-//! struct Double {
-//!     operand: Slot,
-//!     doubled: Slot,
-//!     output: Slot,
-//! }
-//!
-//! impl Datapath for Double {
-//!     fn outputs(&self, state: &mut State) {
-//!         state[self.output] = state[self.doubled];
-//!     }
-//! }
-//!
+//! // It doubles its operand.
 //! let mut frame = Frame::default();
-//! let device = Double {
-//!     operand: frame.operand("x", Format::unsigned(4, 0)),
-//!     doubled: frame.register("doubled", Format::unsigned(5, 0)),
-//!     output: frame.output("x_out", Format::unsigned(5, 0)),
-//! };
-//! let mut model = frame.model(
-//!     device,
-//!     [idle(), step(|it: &Double, s| s[it.doubled] = 2 * s[it.operand]), idle().valid().end()],
-//! );
+//! let x = frame.operand("x", Format::unsigned(4, 0));
+//! let doubled = frame.register("doubled", Format::unsigned(5, 0));
+//! frame.output("x_out", Format::unsigned(5, 0), move |s| s[doubled]);
+//! let double = step(move |s| s[doubled] = 2 * s[x]);
+//! let mut model = frame.model([idle(), double, idle().valid().end()]);
 //! // rst_n, start, x, x_write.
 //! model.clock(&[1, 1, 5, 1]);
 //! model.clock(&[1, 0, 0, 0]);
@@ -40,14 +24,13 @@
 //! assert_eq!(["valid", "x_out"].map(|name| model.value(name)), [Some(1), Some(10)]);
 //! ```
 
-mod buffered;
 mod clocked;
-mod registered;
 
 #[cfg(test)]
 mod tests;
 
 use std::ops::{Index, IndexMut};
+use std::sync::Arc;
 
 pub use clocked::Clocked;
 
@@ -77,73 +60,34 @@ impl IndexMut<Slot> for State {
     }
 }
 
-/// What a device computes beside its microinstructions.
-pub trait Datapath: Send + Sync + 'static {
-    /// Registers and outputs change by loads alone: [`Datapath::edge`] changes none, and outputs show nothing but operands
-    /// and registers. After a clock in which nothing is loaded they are then not looked at.
-    const LOADS_ALONE: bool = false;
-
-    /// What every rising edge does, whatever microinstruction is in force: a synchronous ROM reads. It comes
-    /// before the microinstruction, and sees the values before the edge.
-    #[inline]
-    fn edge(&self, state: &mut State) {
-        let _ = state;
-    }
-
-    /// What the outputs show that are no register: combinational functions of operands and registers.
-    #[inline]
-    fn outputs(&self, state: &mut State) {
-        let _ = state;
-    }
-}
-
-type Does<D> = fn(&D, &mut State);
-type Condition<D> = fn(&D, &State) -> bool;
+type Does = Arc<dyn Fn(&mut State) + Send + Sync>;
+type Value = Arc<dyn Fn(&State) -> i64 + Send + Sync>;
+type Condition = Arc<dyn Fn(&State) -> bool + Send + Sync>;
 
 /// What follows a microinstruction.
-enum Next<D> {
+#[derive(Clone)]
+enum Next {
     Following,
-    RepeatWhile(Condition<D>),
-    SkipIf(u32, Condition<D>),
+    RepeatWhile(Condition),
+    SkipIf(u32, Condition),
     End,
 }
 
-impl<D> Clone for Next<D> {
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-
-impl<D> Copy for Next<D> {}
-
 /// One microinstruction.
-pub struct Microinstruction<D> {
-    does: Does<D>,
-    /// It does nothing.
-    idle: bool,
-    next: Next<D>,
+#[derive(Clone)]
+pub struct Microinstruction {
+    does: Option<Does>,
+    next: Next,
     valid: bool,
     asserts: Vec<Slot>,
     /// Registers behind the results take them.
     takes_results: bool,
 }
 
-impl<D> Clone for Microinstruction<D> {
-    fn clone(&self) -> Self {
-        Self { asserts: self.asserts.clone(), ..*self }
-    }
-}
-
 /// A microinstruction that changes no register.
-pub fn idle<D>() -> Microinstruction<D> {
-    Microinstruction { idle: true, ..step(|_, _| ()) }
-}
-
-/// A microinstruction by what its rising edge does to the registers.
-pub fn step<D>(does: fn(&D, &mut State)) -> Microinstruction<D> {
+pub fn idle() -> Microinstruction {
     Microinstruction {
-        does,
-        idle: false,
+        does: None,
         next: Next::Following,
         valid: false,
         asserts: Vec::new(),
@@ -151,7 +95,21 @@ pub fn step<D>(does: fn(&D, &mut State)) -> Microinstruction<D> {
     }
 }
 
-impl<D> Microinstruction<D> {
+/// A microinstruction by what its rising edge does to the registers.
+pub fn step(does: impl Fn(&mut State) + Send + Sync + 'static) -> Microinstruction {
+    Microinstruction { does: Some(Arc::new(does)), ..idle() }
+}
+
+/// A microinstruction as [`step`], by an arithmetic that several share.
+pub fn step_by<A: Send + Sync + 'static>(
+    arithmetic: &Arc<A>,
+    does: impl Fn(&A, &mut State) + Send + Sync + 'static,
+) -> Microinstruction {
+    let arithmetic = arithmetic.clone();
+    step(move |state| does(&arithmetic, state))
+}
+
+impl Microinstruction {
     /// The results are on the outputs.
     pub fn valid(self) -> Self {
         Self { valid: true, ..self }
@@ -163,13 +121,17 @@ impl<D> Microinstruction<D> {
     }
 
     /// It is in force once more while this holds of the values before the edge.
-    pub fn repeat_while(self, condition: fn(&D, &State) -> bool) -> Self {
-        Self { next: Next::RepeatWhile(condition), ..self }
+    pub fn repeat_while(self, holds: impl Fn(&State) -> bool + Send + Sync + 'static) -> Self {
+        Self { next: Next::RepeatWhile(Arc::new(holds)), ..self }
     }
 
     /// It skips the next `count` microinstructions if this holds of the values before the edge.
-    pub fn skip_if(self, count: u32, condition: fn(&D, &State) -> bool) -> Self {
-        Self { next: Next::SkipIf(count, condition), ..self }
+    pub fn skip_if(
+        self,
+        count: u32,
+        holds: impl Fn(&State) -> bool + Send + Sync + 'static,
+    ) -> Self {
+        Self { next: Next::SkipIf(count, Arc::new(holds)), ..self }
     }
 
     /// A flag that is 1 in this microinstruction.
@@ -212,6 +174,8 @@ pub struct Frame {
     shown: Vec<Shown>,
     slots: usize,
     flags: Vec<Slot>,
+    logic: Vec<(Slot, Value)>,
+    edges: Vec<Does>,
     valid_delay: u32,
 }
 
@@ -233,9 +197,15 @@ impl Frame {
         self.shown(name.to_owned(), format, false)
     }
 
-    /// An output that is logic, which [`Datapath::outputs`] sets.
-    pub fn output(&mut self, name: &str, format: Format) -> Slot {
-        self.shown(name.to_owned(), format, true)
+    /// An output that is logic: a function of operands and registers.
+    pub fn output(
+        &mut self,
+        name: &str,
+        format: Format,
+        value: impl Fn(&State) -> i64 + Send + Sync + 'static,
+    ) {
+        let slot = self.shown(name.to_owned(), format, true);
+        self.logic.push((slot, Arc::new(value)));
     }
 
     /// An output that shows a register.
@@ -250,14 +220,7 @@ impl Frame {
 
     /// An output of one bit that is 1 in the microinstructions that assert it.
     pub fn flag(&mut self, name: &str) -> Slot {
-        let slot = self.output(name, Format::BIT);
-        self.flags.push(slot);
-        slot
-    }
-
-    /// The same for the device alone.
-    pub fn hidden_flag(&mut self) -> Slot {
-        let slot = self.hidden();
+        let slot = self.shown(name.to_owned(), Format::BIT, true);
         self.flags.push(slot);
         slot
     }
@@ -272,6 +235,12 @@ impl Frame {
         let slot = self.shown(format!("{name}_reg"), format, false);
         self.operands.push(Operand { name: name.to_owned(), slot, format, min, max });
         slot
+    }
+
+    /// What every rising edge does, whatever microinstruction is in force: a synchronous ROM reads. It comes
+    /// before the microinstruction and after what was stated earlier, and sees the values before the edge.
+    pub fn every_edge(&mut self, does: impl Fn(&mut State) + Send + Sync + 'static) {
+        self.edges.push(Arc::new(does));
     }
 
     /// The operands: name, format, and the smallest and largest raw value that the register holds.

@@ -1,49 +1,29 @@
 use super::*;
 use crate::golden::Model;
 
-/// An operand that counts down by ones, or not at all where it is 0 (s1.2, clamped to 0 … 1.0).
-struct Countdown {
-    from: Slot,
-    count: Slot,
-    twice: Slot,
+/// An operand that counts down by ones, or not at all where it is 0 (s1.2, clamped to 0 … 1.0): its slot and that of the
+/// count.
+fn countdown(frame: &mut Frame) -> (Slot, Slot) {
+    let from = frame.clamped("from", Format::signed(1, 2), 0, 4);
+    let count = frame.register("count", Format::unsigned(3, 0));
+    frame.output("twice", Format::signed(4, 0), move |s| -2 * s[count]);
+    (from, count)
 }
 
-impl Datapath for Countdown {
-    fn outputs(&self, state: &mut State) {
-        state[self.twice] = -2 * state[self.count];
-    }
-}
-
-fn countdown(frame: &mut Frame) -> Countdown {
-    Countdown {
-        from: frame.clamped("from", Format::signed(1, 2), 0, 4),
-        count: frame.register("count", Format::unsigned(3, 0)),
-        twice: frame.output("twice", Format::signed(4, 0)),
-    }
-}
-
-fn model(valid_delay: u32) -> Clocked<Countdown> {
+fn model(valid_delay: u32) -> Clocked {
     let mut frame = Frame::default();
-    let device = countdown(&mut frame);
+    let (from, count) = countdown(&mut frame);
     let counts = frame.flag("counts");
     frame.delay_valid(valid_delay);
-    let load = step(|it: &Countdown, s| s[it.count] = s[it.from]);
-    let count = step(|it: &Countdown, s| s[it.count] -= 1);
-    frame.model(
-        device,
-        [
-            idle(),
-            load.skip_if(1, |it, s| s[it.from] == 0),
-            count.repeat_while(|it, s| s[it.count] > 1).asserts(counts),
-            idle().valid().end(),
-        ],
-    )
+    let load = step(move |s| s[count] = s[from]).skip_if(1, move |s| s[from] == 0);
+    let down = step(move |s| s[count] -= 1).repeat_while(move |s| s[count] > 1);
+    frame.model([idle(), load, down.asserts(counts), idle().valid().end()])
 }
 
 const NAMES: [&str; 7] = ["run", "word_address", "count", "twice", "counts", "valid", "done"];
 
 #[track_caller]
-fn assert_course(mut model: Clocked<Countdown>, from: u64, expected: &[[u64; 7]]) {
+fn assert_course(model: &mut dyn Model, from: u64, expected: &[[u64; 7]]) {
     model.clock(&[1, 1, from, 1]);
     for row in expected {
         assert_eq!(NAMES.map(|name| model.value(name).unwrap()), *row);
@@ -62,7 +42,7 @@ fn a_loop_runs_from_idle_to_the_end() {
         [1, 3, 0, 0, 0, 1, 1],
         [0, 0, 0, 0, 0, 0, 0],
     ];
-    assert_course(model(0), 2, &course);
+    assert_course(&mut model(0), 2, &course);
 }
 
 #[test]
@@ -74,7 +54,7 @@ fn a_microinstruction_is_passed_over() {
         [1, 3, 0, 0, 0, 1, 1],
         [0, 0, 0, 0, 0, 0, 0],
     ];
-    assert_course(model(0), 15, &course);
+    assert_course(&mut model(0), 15, &course);
 }
 
 #[test]
@@ -86,7 +66,7 @@ fn valid_comes_later_and_a_reset_forgets_it() {
         [0, 0, 0, 0, 0, 0, 0],
         [0, 0, 0, 0, 0, 1, 0],
     ];
-    assert_course(model(2), 0, &course);
+    assert_course(&mut model(2), 0, &course);
     let mut reset = model(2);
     for row in [[1, 1, 0, 1], [1, 0, 0, 0], [1, 0, 0, 0], [1, 0, 0, 0], [0, 0, 0, 0]] {
         reset.clock(&row);
@@ -111,7 +91,7 @@ fn an_operand_clamps_and_is_written_by_its_strobe() {
 /// `valid` moves to a microinstruction more, and the result to a register that is loaded before it.
 #[test]
 fn results_in_registers() {
-    let model = model(0).with_output_registers().expect("one result");
+    let mut model = model(0).with_output_registers().expect("one result");
     // The register shows −2 · 0 only after a load, and keeps it while `twice` itself would be −2 · 2.
     let course = [
         [1, 0, 0, 0, 0, 0, 0],
@@ -122,7 +102,7 @@ fn results_in_registers() {
         [1, 4, 0, 0, 0, 1, 1],
         [0, 0, 0, 0, 0, 0, 0],
     ];
-    assert_course(model, 2, &course);
+    assert_course(model.as_mut(), 2, &course);
 }
 
 /// What is skipped is as far as before where a microinstruction was put in between; the result holds from one
@@ -130,17 +110,17 @@ fn results_in_registers() {
 #[test]
 fn a_jump_beyond_a_result_in_a_register() {
     let mut frame = Frame::default();
-    let device = countdown(&mut frame);
+    let (from, count) = countdown(&mut frame);
     let counts = frame.flag("counts");
-    let load = step(|it: &Countdown, s| s[it.count] = s[it.from]);
+    let load = step(move |s| s[count] = s[from]);
     let program = [
         idle(),
         load,
-        idle().skip_if(1, |it: &Countdown, s| s[it.from] == 0),
+        idle().skip_if(1, move |s| s[from] == 0),
         idle().valid().asserts(counts),
         idle().end(),
     ];
-    let mut model = frame.model(device, program).with_output_registers().expect("one result");
+    let mut model = frame.model(program).with_output_registers().expect("one result");
     let mut course = |from: u64, clocks: usize| {
         let mut seen = Vec::new();
         for clock in 0..clocks {
@@ -173,7 +153,7 @@ fn a_jump_beyond_a_result_in_a_register() {
 /// Where `valid` comes later than a microinstruction says, results are taken in every clock.
 #[test]
 fn results_in_registers_that_follow() {
-    let model = model(2).with_output_registers().expect("one result");
+    let mut model = model(2).with_output_registers().expect("one result");
     let course = [
         [1, 0, 0, 0, 0, 0, 0],
         [1, 1, 0, 0, 0, 0, 0],
@@ -184,15 +164,37 @@ fn results_in_registers_that_follow() {
         [0, 0, 0, 0, 0, 0, 0],
         [0, 0, 0, 0, 0, 1, 0],
     ];
-    assert_course(model, 2, &course);
+    assert_course(model.as_mut(), 2, &course);
 }
 
 /// Before a microinstruction that decides where to go on, there is none that could load.
 #[test]
 fn no_registers_behind_a_result_that_decides() {
     let mut frame = Frame::default();
-    let device = countdown(&mut frame);
-    let again = idle().valid().repeat_while(|it: &Countdown, s| s[it.count] > 0);
-    let model = frame.model(device, [idle(), again, idle().end()]);
+    let (_, count) = countdown(&mut frame);
+    let again = idle().valid().repeat_while(move |s| s[count] > 0);
+    let model = frame.model([idle(), again, idle().end()]);
     assert!(model.with_output_registers().is_none());
+}
+
+/// A buffer takes writes at any time; a start in the last microinstruction is heard, and takes what is written in its clock.
+#[test]
+fn operands_in_buffers() {
+    let mut model = model(0).with_operand_buffers().expect("a frame's");
+    let names = ["run", "word_address", "from_buffer", "from_reg", "count"];
+    // rst_n, start, from, write; then what is there after the edge.
+    let course = [
+        ([1, 0, 1, 1], [0, 0, 1, 0, 0]),
+        ([1, 1, 9, 0], [1, 0, 1, 1, 0]),
+        ([1, 1, 3, 1], [1, 1, 3, 1, 0]),
+        ([1, 0, 9, 0], [1, 2, 3, 1, 1]),
+        ([1, 0, 9, 0], [1, 3, 3, 1, 0]),
+        ([1, 1, 2, 1], [1, 0, 2, 2, 0]),
+        ([1, 0, 9, 0], [1, 1, 2, 2, 0]),
+        ([0, 1, 9, 0], [0, 0, 2, 2, 2]),
+    ];
+    for (inputs, expected) in course {
+        model.clock(&inputs);
+        assert_eq!(names.map(|name| model.value(name).unwrap()), expected, "{inputs:?}");
+    }
 }

@@ -4,7 +4,7 @@ mod keys;
 mod products;
 
 pub use keys::Keys;
-pub use products::{ProductSlots, Products, Shading, shading};
+pub use products::Products;
 
 use std::borrow::Cow;
 use std::sync::OnceLock;

@@ -1,9 +1,7 @@
 //! What a reflectance multiplies.
 
-use std::ops::Deref;
-
 use crate::base::fixed::{Format, Rounding};
-use crate::golden::frame::{Clocked, Datapath, Frame, Microinstruction, Slot, State, idle, step};
+use crate::golden::frame::{Clocked, Frame, Microinstruction, Slot, State, idle, step};
 use crate::golden::narrow::Narrow;
 use crate::golden::{Operand, Output};
 
@@ -17,7 +15,18 @@ pub struct Products {
     pub(super) narrow: Narrow,
     pub(super) operands: Vec<Operand>,
     pub(super) outputs: Vec<Output>,
-    in_turn: bool,
+    made: Made,
+}
+
+/// When products are made.
+#[derive(Clone, Copy, Debug)]
+enum Made {
+    /// Whatever f and the colours are: outputs are logic.
+    AtOnce,
+    /// Each in a microinstruction.
+    InTurn,
+    /// At every rising edge.
+    AtEdges,
 }
 
 impl Products {
@@ -64,110 +73,52 @@ impl Products {
             narrow: Narrow::new(f.frac as u32, format, rounding),
             operands: operands.into_iter().map(operand).collect(),
             outputs: outputs.into_iter().map(|name| Output { name, format }).collect(),
-            in_turn: false,
+            made: Made::AtOnce,
         }
     }
 
-    /// The same colours made one after the other, a microinstruction each, if `in_turn`; each at once otherwise.
+    /// The same made one after the other, a microinstruction each, if `in_turn`; each at once otherwise.
     #[must_use]
     pub fn in_turn(self, in_turn: bool) -> Self {
-        Self { in_turn, ..self }
+        Self { made: if in_turn { Made::InTurn } else { Made::AtOnce }, ..self }
     }
 
-    /// Their operands and outputs in a clock model that has the raw f in a slot.
-    pub fn slots(&self, frame: &mut Frame, f: Slot) -> ProductSlots {
-        let pairs = self.operands.iter().zip(&self.outputs).map(|(operand, output)| {
-            let slot = if self.in_turn {
-                let held = frame.register(&format!("{}_intensity", operand.name), output.format);
-                frame.shows(&output.name, held);
-                held
-            } else {
-                frame.output(&output.name, output.format)
-            };
-            (frame.operand(&operand.name, operand.format), slot)
-        });
-        ProductSlots { f, pairs: pairs.collect(), narrow: self.narrow, in_turn: self.in_turn }
+    /// The same made at every rising edge if `at_edges`; at once otherwise.
+    #[must_use]
+    pub fn at_edges(self, at_edges: bool) -> Self {
+        Self { made: if at_edges { Made::AtEdges } else { Made::AtOnce }, ..self }
     }
-}
 
-/// Products in a clock model.
-pub struct ProductSlots {
-    f: Slot,
-    /// Operand and output, or the register that holds it.
-    pairs: Vec<(Slot, Slot)>,
-    narrow: Narrow,
-    in_turn: bool,
-}
-
-/// A device that multiplies colours by f: its slots, with those of the products. Registers and outputs change by loads
-/// alone.
-pub struct Shading<D> {
-    device: D,
-    products: ProductSlots,
-}
-
-impl<D> Deref for Shading<D> {
-    type Target = D;
-
-    #[inline]
-    fn deref(&self) -> &D {
-        &self.device
-    }
-}
-
-impl<D> AsRef<ProductSlots> for Shading<D> {
-    #[inline]
-    fn as_ref(&self) -> &ProductSlots {
-        &self.products
-    }
-}
-
-impl<D: Send + Sync + 'static> Datapath for Shading<D> {
-    const LOADS_ALONE: bool = true;
-
-    #[inline]
-    fn outputs(&self, state: &mut State) {
-        self.products.show(state);
-    }
-}
-
-/// The device at power-up: the products of what `program` leaves in the slot f are made, and shown in its last
-/// microinstruction.
-pub fn shading<D: Send + Sync + 'static>(
-    mut frame: Frame,
-    device: D,
-    (products, f): (Products, Slot),
-    mut program: Vec<Microinstruction<Shading<D>>>,
-) -> Clocked<Shading<D>> {
-    let products = products.slots(&mut frame, f);
-    program.extend(products.program());
-    program.push(idle().valid().end());
-    frame.model(Shading { device, products }, program)
-}
-
-impl ProductSlots {
-    /// The microinstructions that make the products, before the one with the result; none where they are made at once.
-    pub fn program<D: AsRef<Self>>(&self) -> Vec<Microinstruction<D>> {
-        fn make<D: AsRef<ProductSlots>, const COLOUR: usize>(device: &D, state: &mut State) {
-            let it = device.as_ref();
-            let (operand, held) = it.pairs[COLOUR];
-            state[held] = it.narrow.apply(state[it.f] * state[operand]);
+    /// Their operands and outputs in a clock model that has the raw f in a slot, and the microinstructions that make the
+    /// products, before the one with the result; none where they are made at once.
+    pub fn slots(&self, frame: &mut Frame, f: Slot) -> Vec<Microinstruction> {
+        let mut program = Vec::new();
+        for (operand, output) in self.operands.iter().zip(&self.outputs) {
+            let (colour, narrow) = (frame.operand(&operand.name, operand.format), self.narrow);
+            let product = move |s: &State| narrow.apply(s[f] * s[colour]);
+            match self.made {
+                Made::AtOnce => frame.output(&output.name, output.format, product),
+                Made::InTurn => {
+                    let name = format!("{}_intensity", operand.name);
+                    let held = frame.register(&name, output.format);
+                    frame.shows(&output.name, held);
+                    program.push(step(move |s| s[held] = product(s)));
+                }
+                Made::AtEdges => {
+                    let held = frame.hidden();
+                    frame.every_edge(move |s| s[held] = product(s));
+                    frame.output(&output.name, output.format, move |s| s[held]);
+                }
+            }
         }
-        if self.in_turn {
-            vec![step(make::<D, 0>), step(make::<D, 1>), step(make::<D, 2>)]
-        } else {
-            Vec::new()
-        }
+        program
     }
 
-    /// Sets the outputs, where they are made at once.
-    #[inline]
-    pub fn show(&self, state: &mut State) {
-        if self.in_turn {
-            return;
-        }
-        for &(operand, output) in &self.pairs {
-            state[output] = self.narrow.apply(state[self.f] * state[operand]);
-        }
+    /// The device at power-up: the products of what `program` leaves in the slot f are made, and shown in its last
+    /// microinstruction.
+    pub fn behind(&self, mut frame: Frame, f: Slot, mut program: Vec<Microinstruction>) -> Clocked {
+        program.extend(self.slots(&mut frame, f));
+        program.push(idle().valid().end());
+        frame.model(program)
     }
 }

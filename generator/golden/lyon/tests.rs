@@ -73,7 +73,7 @@ fn a_word_stands_for_an_interval() {
 /// One point with the shift register followed clock by clock.
 #[test]
 fn a_point_clock_by_clock() {
-    let mut model = clocked(&Arithmetic::new(small(4, Scale::Shift)));
+    let mut model = clocked(small(4, Scale::Shift));
     // D = (3, −2, 1)/16, shift 2, red 15, written together with start.
     let first = [1, 1, 3, 1, 62, 1, 1, 1, 2, 1, 15, 1, 0, 0, 0, 0];
     // Writes while busy change nothing.
@@ -101,7 +101,7 @@ fn a_point_clock_by_clock() {
 #[test]
 fn squares_in_turn_clock_by_clock() {
     let params = Params { squares_in_turn: true, ..small(4, Scale::Shift) };
-    let mut model = clocked(&Arithmetic::new(params));
+    let mut model = clocked(params);
     let first = [1, 1, 3, 1, 62, 1, 1, 1, 2, 1, 15, 1, 0, 0, 0, 0];
     let then = [1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0];
     let names = ["run", "word_address", "distance_sum", "shift_register", "accumulator", "valid"];

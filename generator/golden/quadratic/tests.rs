@@ -57,7 +57,7 @@ fn the_table_is_minimax() {
 /// One point followed clock by clock: words 0, 1, 2, 3 and idle.
 #[test]
 fn a_point_clock_by_clock() {
-    let mut model = clocked(&small(CoefficientScheme::Taylor));
+    let mut model = clocked(small(CoefficientScheme::Taylor));
     // c = 14/16, n = 5, red 15, written together with start.
     let first = [1, 1, 14, 1, 5, 1, 15, 1, 0, 0, 0, 0];
     // Writes while busy change nothing.
@@ -80,7 +80,7 @@ fn a_point_clock_by_clock() {
 fn colours_in_turn_clock_by_clock() {
     let it = small(CoefficientScheme::Taylor);
     let keys = Keys { colours_in_turn: true, ..it.keys.clone() };
-    let mut model = clocked(&Arithmetic { keys, ..it });
+    let mut model = clocked(Arithmetic { keys, ..it });
     // As above, with green 9 and blue 4.
     let first = [1, 1, 14, 1, 5, 1, 15, 1, 9, 1, 4, 1];
     // The last of these writes come when it is idle again, and change no output.

@@ -1,10 +1,9 @@
 //! `rough` worked by hand in words of a few bits.
 
-use super::clock_model::{Device, clocked};
+use super::clock_model::clocked;
 use super::*;
-use crate::golden::Model;
-use crate::golden::frame::Clocked;
 use crate::golden::highlight::Reflectance;
+use crate::golden::{Model, watch};
 
 /// C = 4, S = P = 6, F = 4, and the sine table that `sine.rs` works out by hand.
 fn small() -> Params {
@@ -17,7 +16,6 @@ fn small() -> Params {
         clamp: true,
         product_rounding: Rounding::Truncate,
         intensity_rounding: Rounding::Truncate,
-        sine_synchronous: true,
         deviation: 30.0,
     }
 }
@@ -82,77 +80,46 @@ fn patent_arithmetic() {
     assert_eq!(f(&params, [12, 14, 5, 1]), 10);
 }
 
-fn values(model: &Clocked<Device>, names: &[&str]) -> Vec<u64> {
-    names.iter().map(|name| model.value(name).unwrap()).collect()
-}
-
-/// c = 12/16, cd = 14/16, n = 4, dγ negative, red 15; all written.
-const WRITE: [u64; 14] = [12, 1, 14, 1, 4, 1, 1, 1, 15, 1, 0, 1, 0, 1];
-
-fn clock(model: &mut Clocked<Device>, rst_n: u64, start: u64, operands: &[u64; 14]) {
-    let mut inputs = vec![rst_n, start];
-    inputs.extend(operands);
-    model.clock(&inputs);
-}
+/// c = 12/16, cd = 14/16, n = 4, dγ negative, red 15; all written, together with start.
+const START: [u64; 16] = [1, 1, 12, 1, 14, 1, 4, 1, 1, 1, 15, 1, 0, 1, 0, 1];
 
 /// One point followed through the patent's ten words; the writes of the clock of `start` count, those
 /// while busy do not.
 #[test]
 fn a_point_clock_by_clock() {
-    for sine_synchronous in [false, true] {
-        let params = Params { sine_synchronous, ..small() };
-        let mut model = clocked(params);
-        let names = [
-            "run",
-            "word_address",
-            "reg19_sin_gamma",
-            "reg11_cos_cos",
-            "reg12_sin_sin",
-            "reg13_result",
-            "valid",
-            "done",
-        ];
-        let expected = [
-            [1, 0, 0, 0, 0, 0, 0, 0],
-            [1, 1, 0, 0, 0, 0, 0, 0],
-            [1, 2, 43, 42, 0, 0, 0, 0],
-            [1, 3, 43, 42, 0, 0, 0, 0],
-            [1, 4, 43, 42, 20, 0, 0, 0],
-            [1, 5, 43, 42, 20, 0, 0, 0],
-            // −1 in five bits.
-            [1, 6, 43, 42, 20, 31, 0, 0],
-            [1, 7, 43, 42, 20, 31, 0, 0],
-            [1, 8, 43, 42, 20, 14, 1, 0],
-            [1, 9, 43, 42, 20, 14, 0, 1],
-            [0, 0, 43, 42, 20, 14, 0, 0],
-        ];
-        clock(&mut model, 1, 1, &WRITE);
-        for row in expected {
-            assert_eq!(values(&model, &names), row);
-            let late = if row[0] == 1 { 1 } else { 0 };
-            clock(
-                &mut model,
-                1,
-                0,
-                &[1, late, 1, late, 1, late, 0, late, 1, late, 1, late, 1, late],
-            );
-        }
-        // 14/16 · 15 = 13.125.
-        assert_eq!(values(&model, &["red_out", "cos_gamma_reg"]), [13, 12]);
-    }
+    let mut model = clocked(small());
+    let names = ["reg19_sin_gamma", "reg11_cos_cos", "reg12_sin_sin", "reg13_result", "valid"];
+    let expected = [
+        [0, 0, 0, 0, 0],
+        [0, 0, 0, 0, 0],
+        [43, 42, 0, 0, 0],
+        [43, 42, 0, 0, 0],
+        [43, 42, 20, 0, 0],
+        [43, 42, 20, 0, 0],
+        // −1 in five bits.
+        [43, 42, 20, 31, 0],
+        [43, 42, 20, 31, 0],
+        [43, 42, 20, 14, 1],
+        [43, 42, 20, 14, 0],
+    ];
+    let late = [1, 0, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1];
+    assert_eq!(watch(&mut model, names, &START, &late), expected);
+    // 14/16 · 15 = 13.125.
+    let names = ["run", "word_address", "red_out", "cos_gamma_reg"];
+    assert_eq!(names.map(|name| model.value(name).unwrap()), [0, 0, 13, 12]);
 }
 
 /// A reset in word 5 ends the point, but the word's transfer still takes place.
 #[test]
 fn a_reset_stops_the_words_alone() {
     let mut model = clocked(small());
-    clock(&mut model, 1, 1, &WRITE);
-    for _ in 0..5 {
-        clock(&mut model, 1, 0, &[0; 14]);
-    }
-    clock(&mut model, 0, 1, &[0; 14]);
+    let mut inputs = [0; 16];
+    inputs[0] = 1;
+    let _: [[u64; 1]; 5] = watch(&mut model, ["run"], &START, &inputs);
+    inputs[..2].copy_from_slice(&[0, 1]);
+    model.clock(&inputs);
     let names = ["run", "word_address", "reg13_result", "exponent_reg"];
-    assert_eq!(values(&model, &names), [0, 0, 31, 4]);
+    assert_eq!(names.map(|name| model.value(name).unwrap()), [0, 0, 31, 4]);
 }
 
 /// The bound is that of every operand, one by one: never below the largest error, and where the search has found that, it.

@@ -52,7 +52,7 @@ fn either_side_of_the_level_is_right_and_no_other() {
 /// One point followed clock by clock: words 0, 1, 2, 3 and idle.
 #[test]
 fn a_point_clock_by_clock() {
-    let mut model = clocked(&small(&[50]));
+    let mut model = clocked(small(&[50]));
     // c = 14/16, n = 4, red 15, written together with start.
     let first = [1, 1, 14, 1, 4, 1, 15, 1, 0, 0, 0, 0];
     // Writes while busy change nothing.
