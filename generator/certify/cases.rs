@@ -6,14 +6,14 @@ use super::polynomial::Polynomial;
 use super::quotient::Quotient;
 use crate::base::cone;
 use crate::base::interval::{self, Interval, common, wrap};
-use crate::hdl::netlist::{NetId, Op, RomId, interval::of_cell};
-use crate::hdl::pipeline::{Cell, Graph};
+use crate::hdl::netlist::{RomId, interval::of_cell};
+use crate::hdl::pipeline::{Cell, Graph, NodeId, Op};
 
 /// More ways than this are not looked at, those that turn out to be none too.
 const MOST: usize = 4096;
 
 /// What is known of values beside where they come from: intervals of raw values by node.
-pub type Known = BTreeMap<NetId, Interval>;
+pub type Known = BTreeMap<NodeId, Interval>;
 
 /// One way.
 #[derive(Clone, Debug)]
@@ -23,7 +23,7 @@ pub struct Case {
     /// The raw values of every node.
     pub ranges: Vec<Interval>,
     /// Of these nodes the values are those of a parabola, which are fewer than intervals tell.
-    pub parabolas: BTreeMap<NetId, Polynomial>,
+    pub parabolas: BTreeMap<NodeId, Polynomial>,
 }
 
 /// The raw value of a word of a ROM.
@@ -37,19 +37,19 @@ pub struct View<'a> {
     /// The words of its tables.
     pub words: Words<'a>,
     /// Its quotients, by the node that joins the bits.
-    pub quotients: &'a BTreeMap<NetId, Quotient>,
+    pub quotients: &'a BTreeMap<NodeId, Quotient>,
 }
 
 impl View<'_> {
     /// Every node that these need, themselves too, in order. Of a quotient that are its operands, and no bits.
-    fn cone(&self, roots: &[NetId]) -> Vec<NetId> {
-        let operands = |at| self.operands(NetId(at as u32)).into_iter().map(NetId::index);
+    fn cone(&self, roots: &[NodeId]) -> Vec<NodeId> {
+        let operands = |at| self.operands(NodeId(at as u32)).into_iter().map(NodeId::index);
         let roots = roots.iter().map(|root| root.index());
         let live = cone::needed(self.graph.nodes.len(), roots, operands);
-        (0..live.len()).filter(|&at| live[at]).map(|at| NetId(at as u32)).collect()
+        (0..live.len()).filter(|&at| live[at]).map(|at| NodeId(at as u32)).collect()
     }
 
-    fn operands(&self, id: NetId) -> Vec<NetId> {
+    fn operands(&self, id: NodeId) -> Vec<NodeId> {
         match self.quotients.get(&id) {
             Some(quotient) => vec![quotient.dividend, quotient.divisor],
             None => self.graph.node(id).cell.operands(),
@@ -61,7 +61,7 @@ impl View<'_> {
 ///
 /// # Errors
 /// There are too many.
-pub fn cases(view: View, results: &[NetId], known: &Known) -> Result<Vec<Case>, String> {
+pub fn cases(view: View, results: &[NodeId], known: &Known) -> Result<Vec<Case>, String> {
     let cone = view.cone(results);
     let graph = view.graph;
     let mut found = Vec::new();
@@ -98,7 +98,7 @@ pub fn cases(view: View, results: &[NetId], known: &Known) -> Result<Vec<Case>, 
 }
 
 /// The raw values of a node, given `known` of the operands; none where a selection on the way to it is open.
-pub fn range(view: View, node: NetId, known: &Known) -> Option<Interval> {
+pub fn range(view: View, node: NodeId, known: &Known) -> Option<Interval> {
     let ranges = view.graph.nodes.iter().map(|node| node.range).collect();
     let mut case = Case { known: known.clone(), ranges, parabolas: BTreeMap::new() };
     match case.follow(view, &view.cone(&[node])) {
@@ -113,18 +113,18 @@ enum Way {
     /// No operands lead here.
     Never,
     /// This node decides, and has several values.
-    Splits(NetId, Interval),
+    Splits(NodeId, Interval),
 }
 
 impl Case {
     /// The raw values of the nodes of `cone`, as far as they are decided.
-    fn follow(&mut self, view: View, cone: &[NetId]) -> Way {
+    fn follow(&mut self, view: View, cone: &[NodeId]) -> Way {
         let graph = view.graph;
-        let mut polynomials: BTreeMap<NetId, Polynomial> = BTreeMap::new();
+        let mut polynomials: BTreeMap<NodeId, Polynomial> = BTreeMap::new();
         for &id in cone {
             let node = graph.node(id);
-            let of = |id: &NetId| self.ranges[id.index()];
-            let open = |id: &NetId| of(id).0 != of(id).1;
+            let of = |id: &NodeId| self.ranges[id.index()];
+            let open = |id: &NodeId| of(id).0 != of(id).1;
             let range = match &node.cell {
                 _ if view.quotients.contains_key(&id) => {
                     let Quotient { dividend, divisor, bits } = view.quotients[&id];
@@ -184,12 +184,12 @@ impl Case {
 /// What a node is as a polynomial in an operand, if no bits are dropped on the way.
 fn polynomial(
     graph: &Graph,
-    id: NetId,
-    known: &BTreeMap<NetId, Polynomial>,
-    of: &dyn Fn(&NetId) -> Interval,
+    id: NodeId,
+    known: &BTreeMap<NodeId, Polynomial>,
+    of: &dyn Fn(&NodeId) -> Interval,
 ) -> Option<Polynomial> {
     let node = graph.node(id);
-    let known = |id: &NetId| match of(id) {
+    let known = |id: &NodeId| match of(id) {
         (low, high) if low == high => Some(Polynomial::constant(low)),
         _ => known.get(id).copied(),
     };
@@ -230,7 +230,7 @@ fn polynomial(
 }
 
 /// What to decide first, so that this undecided selection becomes known: a condition of which it is made.
-fn decider(graph: &Graph, id: NetId, of: &dyn Fn(&NetId) -> Interval) -> NetId {
+fn decider(graph: &Graph, id: NodeId, of: &dyn Fn(&NodeId) -> Interval) -> NodeId {
     let operands = match &graph.node(id).cell {
         Cell::Op(op @ (Op::And(..) | Op::Or(..) | Op::Not(_) | Op::Relabel(_)))
             if graph.width(id) == 1 =>
@@ -249,19 +249,19 @@ pub fn learn(
     graph: &Graph,
     known: &mut Known,
     ranges: &[Interval],
-    id: NetId,
+    id: NodeId,
     range: Interval,
 ) -> bool {
     let node = graph.node(id);
     let before = known.get(&id).copied().unwrap_or(node.range);
-    let value = |known: &Known, id: NetId| {
+    let value = |known: &Known, id: NodeId| {
         let ((low, high), own) = (ranges[id.index()], known.get(&id));
         own.map_or((low, high), |own| (low.max(own.0), high.min(own.1)))
     };
     let Some(range) = common(range, before) else { return false };
     known.insert(id, range);
-    let unsigned = |id: NetId| !graph.node(id).format.signed;
-    let all = |id: NetId| graph.node(id).format.range();
+    let unsigned = |id: NodeId| !graph.node(id).format.signed;
+    let all = |id: NodeId| graph.node(id).format.range();
     let Cell::Op(op) = &node.cell else { return true };
     let is = (range.0 == range.1).then_some(range.0);
     match (op, is) {
@@ -333,7 +333,7 @@ pub fn learn(
 }
 
 /// Whether a value has no bits that count from this one up.
-fn reaches_top(graph: &Graph, id: NetId, from: u32) -> bool {
+fn reaches_top(graph: &Graph, id: NodeId, from: u32) -> bool {
     let node = graph.node(id);
     from == graph.width(id) || !node.format.signed && node.range.1 < 1 << from
 }

@@ -8,8 +8,8 @@ use super::quotient::{Quotient, widened};
 use super::terms::{Direction, Id, Term, Terms};
 use crate::base::fixed::exp2;
 use crate::base::interval::{Interval, wrap};
-use crate::hdl::netlist::{NetId, Op, RomId};
-use crate::hdl::pipeline::{Cell, Graph};
+use crate::hdl::netlist::RomId;
+use crate::hdl::pipeline::{Cell, Graph, NodeId, Op};
 
 /// A node's raw value.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,7 +32,7 @@ pub type Variables = Vec<(String, i32)>;
 #[derive(Clone)]
 pub struct Hardware<'a> {
     graph: &'a Graph,
-    quotients: &'a BTreeMap<NetId, Quotient>,
+    quotients: &'a BTreeMap<NodeId, Quotient>,
     case: &'a Case,
     /// Operands, and behind them what else has become a variable.
     pub variables: Variables,
@@ -40,7 +40,7 @@ pub struct Hardware<'a> {
     tables: &'a [String],
     /// What is known of terms that are no nodes.
     pub facts: BTreeMap<Id, (f64, f64)>,
-    known: HashMap<NetId, Value>,
+    known: HashMap<NodeId, Value>,
 }
 
 impl<'a> Hardware<'a> {
@@ -51,12 +51,12 @@ impl<'a> Hardware<'a> {
         Self { graph, quotients, case, variables, tables, facts, known }
     }
 
-    fn range(&self, id: NetId) -> Interval {
+    fn range(&self, id: NodeId) -> Interval {
         self.case.ranges[id.index()]
     }
 
     /// A new variable with the values that the node has.
-    fn variable(&mut self, terms: &mut Terms, node: NetId, variable: String, scale: i32) -> Value {
+    fn variable(&mut self, terms: &mut Terms, node: NodeId, variable: String, scale: i32) -> Value {
         let id = terms.insert(Term::Variable(variable.clone()), &variable);
         let (low, high) = self.range(node);
         let value = |raw: i128| raw as f64 * exp2(-scale);
@@ -68,7 +68,7 @@ impl<'a> Hardware<'a> {
     }
 
     /// The word of a table: the variable that a formula has for it too, where an operand numbers it.
-    fn read(&mut self, terms: &mut Terms, node: NetId, rom: RomId, address: NetId) -> Value {
+    fn read(&mut self, terms: &mut Terms, node: NodeId, rom: RomId, address: NodeId) -> Value {
         let table = &self.tables[rom.index()];
         let variable = match self.graph.node(address).cell {
             Cell::Operand(at) => word_variable(table, &self.variables[at].0),
@@ -82,7 +82,7 @@ impl<'a> Hardware<'a> {
     fn quotient(
         &mut self,
         terms: &mut Terms,
-        node: NetId,
+        node: NodeId,
         quotient: Quotient,
     ) -> Result<Value, String> {
         let (dividend, divisor) = self.fraction(terms, quotient)?;
@@ -102,7 +102,7 @@ impl<'a> Hardware<'a> {
     pub fn compared(
         &mut self,
         terms: &mut Terms,
-        (a, b): (NetId, NetId),
+        (a, b): (NodeId, NodeId),
         less: bool,
     ) -> Option<(Id, (f64, f64))> {
         let ((a_low, a_high), (b_low, b_high)) = (self.range(a), self.range(b));
@@ -134,7 +134,7 @@ impl<'a> Hardware<'a> {
     ///
     /// # Errors
     /// The operation that has no translation, with the name of its result.
-    pub fn value(&mut self, terms: &mut Terms, id: NetId) -> Result<Value, String> {
+    pub fn value(&mut self, terms: &mut Terms, id: NodeId) -> Result<Value, String> {
         if let Some(&value) = self.known.get(&id) {
             return Ok(value);
         }
@@ -146,7 +146,7 @@ impl<'a> Hardware<'a> {
 
     /// The node as a term even where it is one number in this case: that it is this number says something of its operands.
     /// None where it is made of constants, or is bits that are cut out.
-    pub fn expression(&mut self, terms: &mut Terms, id: NetId) -> Option<Value> {
+    pub fn expression(&mut self, terms: &mut Terms, id: NodeId) -> Option<Value> {
         let is_cut =
             matches!(self.graph.node(id).cell, Cell::Op(Op::Slice { .. }) | Cell::Operand(_));
         let (low, high) = self.range(id);
@@ -156,7 +156,7 @@ impl<'a> Hardware<'a> {
         (!is_cut).then(|| self.translated(terms, id).ok())?
     }
 
-    fn translated(&mut self, terms: &mut Terms, id: NetId) -> Result<Value, String> {
+    fn translated(&mut self, terms: &mut Terms, id: NodeId) -> Result<Value, String> {
         let graph = self.graph;
         let node = graph.node(id);
         let name = node.label.name.clone();
@@ -181,7 +181,7 @@ impl<'a> Hardware<'a> {
             })
         };
         let case = self.case;
-        let range = |id: &NetId| case.ranges[id.index()];
+        let range = |id: &NodeId| case.ranges[id.index()];
         match op {
             Op::Relabel(a) | Op::Extend(a) => {
                 let wrap = wrap_of(range(a))?;
@@ -264,7 +264,7 @@ impl<'a> Hardware<'a> {
                 Ok(add(terms, difference, Value::Constant(wrap), Term::Add, &name))
             }
             Op::Mul(a, b) => {
-                let frac = |id: &NetId| graph.node(*id).format.frac;
+                let frac = |id: &NodeId| graph.node(*id).format.frac;
                 let (of_a, of_b) = (self.value(terms, *a)?, self.value(terms, *b)?);
                 let (a, a_scale) = placed(terms, of_a, frac(a));
                 let (b, b_scale) = placed(terms, of_b, frac(b));
@@ -283,16 +283,16 @@ impl<'a> Hardware<'a> {
 
     /// The number of which `a` holds the bits from `low` up and `b` the one below: their sum is that number
     /// rounded to the nearest, halves up, for ⌊y⌋ + (⌊2y⌋ − 2⌊y⌋) = ⌊y + 1/2⌋. None where it may be negative.
-    fn rounded(&self, a: NetId, b: NetId) -> Option<(NetId, u32)> {
-        let inner = |id: NetId| match &self.graph.node(id).cell {
+    fn rounded(&self, a: NodeId, b: NodeId) -> Option<(NodeId, u32)> {
+        let inner = |id: NodeId| match &self.graph.node(id).cell {
             Cell::Op(Op::Extend(of) | Op::Relabel(of)) => *of,
             _ => id,
         };
-        let slice = |id: NetId| match &self.graph.node(inner(id)).cell {
+        let slice = |id: NodeId| match &self.graph.node(inner(id)).cell {
             Cell::Op(Op::Slice { of, low }) => Some((widened(self.graph, *of), *low)),
             _ => None,
         };
-        let one = |a: NetId, b: NetId| {
+        let one = |a: NodeId, b: NodeId| {
             let ((of, low), (below, bit)) = (slice(a)?, slice(b)?);
             let is = of == below
                 && bit + 1 == low

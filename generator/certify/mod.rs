@@ -29,8 +29,8 @@ use std::time::{Duration, Instant};
 
 use crate::base::fixed::exp2;
 use crate::golden::Contract;
-use crate::hdl::netlist::{Design, NetId, Op, RomId};
-use crate::hdl::pipeline::{Cell, Graph, Unrolled, unroll, unroll_line};
+use crate::hdl::netlist::{Design, RomId};
+use crate::hdl::pipeline::{Cell, Graph, NodeId, Op, Unrolled, unroll, unroll_line};
 use cases::{Case, Known, View};
 use exact::{Branch, Setting};
 pub use find::bound;
@@ -130,7 +130,7 @@ fn within(
     } else {
         (unroll(design).map_err(|error| error.to_string())?, None)
     };
-    let results: Vec<NetId> = unrolled.results.iter().map(|(_, node)| *node).collect();
+    let results: Vec<NodeId> = unrolled.results.iter().map(|(_, node)| *node).collect();
     let words = |rom: RomId, address: u64| {
         let rom = design.rom(rom);
         let word = rom.words.get(address as usize).copied().unwrap_or(0);
@@ -152,7 +152,7 @@ fn within(
         return segments::statements(&task, &walk);
     }
     let known = task.domain()?;
-    let results: Vec<NetId> = task.outputs()?.into_iter().map(|(_, node)| node).collect();
+    let results: Vec<NodeId> = task.outputs()?.into_iter().map(|(_, node)| node).collect();
     let mut statements = Statements::default();
     for known in task.split(&known) {
         for case in cases::cases(view, &results, &known)? {
@@ -199,18 +199,18 @@ impl Task<'_> {
     }
 
     /// As [`cases::learn`], of what is known before any way is followed.
-    fn learn(&self, known: &mut Known, node: NetId, range: (i128, i128)) -> bool {
+    fn learn(&self, known: &mut Known, node: NodeId, range: (i128, i128)) -> bool {
         let ranges: Vec<_> = self.graph().nodes.iter().map(|node| node.range).collect();
         cases::learn(self.graph(), known, &ranges, node, range)
     }
 
     /// The node of the operand, if anything depends on it, by its name.
-    fn operand(&self, name: &str) -> Option<NetId> {
+    fn operand(&self, name: &str) -> Option<NodeId> {
         let at =
             self.unrolled.operands.iter().position(|&port| self.design.net(port).name == name)?;
         let nodes = self.graph().nodes.iter();
         let found = nodes.enumerate().find(|(_, node)| node.cell == Cell::Operand(at));
-        found.map(|(id, _)| NetId(id as u32))
+        found.map(|(id, _)| NodeId(id as u32))
     }
 
     /// The values that operands have in the contract's domain.
@@ -228,7 +228,7 @@ impl Task<'_> {
     }
 
     /// What each output takes from the last clock.
-    fn outputs(&self) -> Result<Vec<(String, NetId)>, String> {
+    fn outputs(&self) -> Result<Vec<(String, NodeId)>, String> {
         let outputs = self.contract.outputs().iter().map(|output| {
             let mut results = self.unrolled.results.iter();
             let found = results.find(|(port, _)| self.design.net(*port).name == output.name);
@@ -282,7 +282,7 @@ impl Task<'_> {
     }
 
     /// The tables that this node numbers the words of.
-    fn tables_read_at(&self, node: NetId) -> Vec<RomId> {
+    fn tables_read_at(&self, node: NodeId) -> Vec<RomId> {
         let reads = self.graph().nodes.iter().filter_map(|it| match it.cell {
             Cell::Read { rom, address } if address == node => Some(rom),
             _ => None,
@@ -405,7 +405,7 @@ impl Task<'_> {
             if let Cell::Read { address, .. } = node.cell
                 && matches!(self.graph().node(address).cell, Cell::Operand(_))
             {
-                let _ = hardware.value(terms, NetId(at as u32));
+                let _ = hardware.value(terms, NodeId(at as u32));
             }
         }
         for (&node, &(low, high)) in &case.known {

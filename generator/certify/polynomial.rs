@@ -1,13 +1,13 @@
 //! Polynomials of the second degree in one operand: the values that they take, which intervals overestimate.
 
 use crate::base::interval::Interval;
-use crate::hdl::netlist::NetId;
+use crate::hdl::pipeline::NodeId;
 
 /// `factors[0] + factors[1]·x + factors[2]·x²`, in raw values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Polynomial {
     /// x, if it depends on one.
-    pub of: Option<NetId>,
+    pub of: Option<NodeId>,
     /// The factors.
     pub factors: [i128; 3],
 }
@@ -22,7 +22,7 @@ impl Polynomial {
     }
 
     /// x.
-    pub fn operand(id: NetId) -> Self {
+    pub fn operand(id: NodeId) -> Self {
         Self { of: Some(id), factors: [0, 1, 0] }
     }
 
@@ -75,7 +75,7 @@ mod tests {
 
     #[test]
     fn a_parabola_has_its_vertex() {
-        let x = Polynomial::operand(NetId(0));
+        let x = Polynomial::operand(NodeId(0));
         let square = x.times(x).unwrap();
         // x² − 16·x: −64 at 8.
         let parabola = square.plus(x, -16).unwrap();
@@ -89,7 +89,7 @@ mod tests {
 
     #[test]
     fn only_one_operand_and_two_degrees_are_followed() {
-        let (x, y) = (Polynomial::operand(NetId(0)), Polynomial::operand(NetId(1)));
+        let (x, y) = (Polynomial::operand(NodeId(0)), Polynomial::operand(NodeId(1)));
         assert_eq!(x.plus(y, 1), None);
         assert_eq!(x.times(x).unwrap().times(x), None);
         let line = x.times(Polynomial::constant(3)).unwrap();

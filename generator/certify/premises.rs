@@ -8,7 +8,7 @@ use super::quotient::Quotient;
 use super::script::Script;
 use super::terms::{Id, Term, Terms, number};
 use crate::base::fixed::exp2;
-use crate::hdl::netlist::NetId;
+use crate::hdl::pipeline::NodeId;
 
 /// A statement about a value on the way.
 pub struct Premise {
@@ -29,7 +29,7 @@ pub fn of(
     operands: &[(String, (f64, f64))],
 ) -> Result<Vec<Premise>, String> {
     let mut premises = Vec::new();
-    let name = |node: NetId| view.graph.node(node).label.name.clone();
+    let name = |node: NodeId| view.graph.node(node).label.name.clone();
     for (&node, polynomial) in &case.parabolas {
         let mut task = Task { hardware: hardware.clone(), terms: Terms::default(), operands };
         let script = task.parabola(node, *polynomial, case.ranges[node.index()])?;
@@ -59,7 +59,7 @@ impl Task<'_> {
     /// That a node has these values alone, by completing the square. Nothing where it is no square.
     fn parabola(
         &mut self,
-        node: NetId,
+        node: NodeId,
         polynomial: Polynomial,
         (low, high): (i128, i128),
     ) -> Result<Option<String>, String> {

@@ -7,22 +7,21 @@
 
 use std::collections::BTreeMap;
 
-use crate::hdl::netlist::{NetId, Op};
-use crate::hdl::pipeline::{Cell, Graph};
+use crate::hdl::pipeline::{Cell, Graph, NodeId, Op};
 
 /// A quotient that is found bit by bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Quotient {
     /// The first remainder.
-    pub dividend: NetId,
+    pub dividend: NodeId,
     /// What is taken away where it fits.
-    pub divisor: NetId,
+    pub divisor: NodeId,
     /// How many bits.
     pub bits: u32,
 }
 
 /// The quotients that results depend on, each by the node that joins its bits.
-pub fn quotients(graph: &Graph, results: &[NetId]) -> BTreeMap<NetId, Quotient> {
+pub fn quotients(graph: &Graph, results: &[NodeId]) -> BTreeMap<NodeId, Quotient> {
     let mut found = BTreeMap::new();
     let mut pending = results.to_vec();
     let mut seen = vec![false; graph.nodes.len()];
@@ -42,7 +41,7 @@ pub fn quotients(graph: &Graph, results: &[NetId]) -> BTreeMap<NetId, Quotient> 
 }
 
 /// The quotient whose bits a node joins, the first on top.
-fn quotient(graph: &Graph, id: NetId) -> Option<Quotient> {
+fn quotient(graph: &Graph, id: NodeId) -> Option<Quotient> {
     let Cell::Op(Op::Concat(_)) = graph.node(id).cell else { return None };
     let mut bits = Vec::new();
     joined(graph, id, &mut bits);
@@ -56,7 +55,7 @@ fn quotient(graph: &Graph, id: NetId) -> Option<Quotient> {
 }
 
 /// The nodes of which a node is joined, the top one first.
-fn joined(graph: &Graph, id: NetId, parts: &mut Vec<NetId>) {
+fn joined(graph: &Graph, id: NodeId, parts: &mut Vec<NodeId>) {
     match &graph.node(id).cell {
         Cell::Op(Op::Concat(inner)) => inner.iter().for_each(|&part| joined(graph, part, parts)),
         _ => parts.push(id),
@@ -65,15 +64,15 @@ fn joined(graph: &Graph, id: NetId, parts: &mut Vec<NetId>) {
 
 /// A step: `doubled` is twice the remainder, `trial` what it exceeds the divisor by, `bit` whether it does.
 struct Step {
-    remainder: NetId,
-    divisor: NetId,
-    doubled: NetId,
-    trial: NetId,
-    bit: NetId,
+    remainder: NodeId,
+    divisor: NodeId,
+    doubled: NodeId,
+    trial: NodeId,
+    bit: NodeId,
 }
 
-fn step(graph: &Graph, bit: NetId) -> Option<Step> {
-    let op = |id: NetId| match &graph.node(id).cell {
+fn step(graph: &Graph, bit: NodeId) -> Option<Step> {
+    let op = |id: NodeId| match &graph.node(id).cell {
         Cell::Op(op) => Some(op),
         _ => None,
     };
@@ -99,14 +98,14 @@ fn step(graph: &Graph, bit: NetId) -> Option<Step> {
 }
 
 /// Whether a node is what a step leaves, with all bits that numbers up to the divisor have.
-fn is_left(graph: &Graph, id: NetId, step: &Step) -> bool {
+fn is_left(graph: &Graph, id: NodeId, step: &Step) -> bool {
     let Cell::Op(Op::Slice { of, low: 0 }) = graph.node(id).cell else { return false };
     let left = Op::Mux { select: step.bit, inputs: vec![step.doubled, step.trial] };
     graph.node(of).cell == Cell::Op(left) && graph.width(id) >= graph.width(step.divisor)
 }
 
 /// The node that is extended by zeros in this one.
-pub fn widened(graph: &Graph, id: NetId) -> NetId {
+pub fn widened(graph: &Graph, id: NodeId) -> NodeId {
     match &graph.node(id).cell {
         Cell::Op(Op::Extend(of)) if !graph.node(*of).format.signed => *of,
         _ => id,

@@ -23,8 +23,8 @@ use super::script::Script;
 use super::terms::{Id, Term, Terms, number};
 use super::{Statement, Statements, Task};
 use crate::base::fixed::exp2;
-use crate::hdl::netlist::{NetId, Op};
-use crate::hdl::pipeline::{Cell, Walked};
+use crate::hdl::netlist::NetId;
+use crate::hdl::pipeline::{Cell, NodeId, Op, Walked};
 
 /// Words in a script: what Gappa takes grows with the square.
 const WORDS: usize = 8;
@@ -103,7 +103,7 @@ impl Walk {
     fn new(task: &Task, walk: &[Walked]) -> Result<Self, String> {
         let graph = task.graph();
         let other = || "its points walk on by more than a sum".to_owned();
-        let operand = |id: NetId| match graph.node(id).cell {
+        let operand = |id: NodeId| match graph.node(id).cell {
             Cell::Operand(at) => Some(task.design.net(task.unrolled.operands[at]).name.clone()),
             _ => None,
         };
@@ -147,7 +147,7 @@ impl Walk {
 }
 
 /// The colour operand of each output, the one word that all are made of, and the outputs.
-type Shown = (Vec<String>, NetId, Vec<(String, NetId)>);
+type Shown = (Vec<String>, NodeId, Vec<(String, NodeId)>);
 
 fn table(task: &Task) -> Result<Shown, String> {
     let graph = task.graph();
@@ -162,13 +162,13 @@ fn table(task: &Task) -> Result<Shown, String> {
     };
     // Behind the word nothing is selected, and there is nothing but colours.
     let before = graph.cone([table]);
-    let mut pending: Vec<NetId> = outputs.iter().map(|(_, node)| *node).collect();
+    let mut pending: Vec<NodeId> = outputs.iter().map(|(_, node)| *node).collect();
     while let Some(id) = pending.pop() {
         if id == table {
             continue;
         }
         let node = graph.node(id);
-        let is_open = |id: &NetId| graph.node(*id).range.0 != graph.node(*id).range.1;
+        let is_open = |id: &NodeId| graph.node(*id).range.0 != graph.node(*id).range.1;
         let selects = match &node.cell {
             Cell::Op(Op::Mux { select, .. }) => is_open(select),
             Cell::Op(Op::Add { carry: Some(carry), .. }) => is_open(carry),
@@ -190,7 +190,7 @@ fn table(task: &Task) -> Result<Shown, String> {
 }
 
 /// The words of the table with the angles that read them, by address.
-fn words(task: &Task, table: NetId, walk: &Walk, angle: &Real) -> Result<Vec<Word>, String> {
+fn words(task: &Task, table: NodeId, walk: &Walk, angle: &Real) -> Result<Vec<Word>, String> {
     let graph = task.graph();
     let Cell::Read { rom, address } = graph.node(table).cell else {
         return Err("there is no table".to_owned());
@@ -314,7 +314,7 @@ fn cosine(name: &str, angle: f64, power: u32) -> String {
 /// That an output is within the bound of a colour times whatever the word is near to.
 fn about_output(
     task: &Task,
-    (out, table): (NetId, NetId),
+    (out, table): (NodeId, NodeId),
     colour: &str,
     (of_f, bound): (f64, f64),
 ) -> Result<String, String> {
@@ -326,7 +326,7 @@ fn about_output(
     let placed: Variables = task.unrolled.operands.iter().map(|&port| format(port)).collect();
     let mut hardware = Hardware::new(task.view, &case, placed, task.tables);
     let mut terms = Terms::default();
-    let mut real = |terms: &mut Terms, node: NetId| -> Result<Id, String> {
+    let mut real = |terms: &mut Terms, node: NodeId| -> Result<Id, String> {
         let value = hardware.value(terms, node)?;
         let (id, scale) = hardware::placed(terms, value, 0);
         Ok(hardware::scaled(terms, id, scale, "out"))

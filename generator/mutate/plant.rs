@@ -106,7 +106,7 @@ fn redirect(design: &mut Design, from: NetId, to: NetId, except: &[NetId]) {
         if let Driver::Op(op) = &mut net.driver
             && !except.contains(&NetId(at as u32))
         {
-            op.operands_mut().into_iter().for_each(redirect);
+            *op = op.map(|&net| if net == from { to } else { net });
         }
     }
     for register in &mut design.registers {

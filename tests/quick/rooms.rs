@@ -20,7 +20,7 @@ const ROOMS: [(&str, &str); 26] = [
     ("observation", "golden"),
     ("hdl/verilog", "base hdl/netlist observation"),
     ("devices", "base config hdl/netlist hdl/dsl hdl/blocks"),
-    ("package", "base config golden hdl/netlist hdl/verilog observation"),
+    ("package", "base config golden hdl/netlist hdl/pipeline hdl/verilog observation"),
     ("tools", "base package"),
     ("equality", "base hdl/netlist tools"),
     ("synth", "base hdl/netlist package tools"),

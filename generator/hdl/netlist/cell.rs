@@ -2,110 +2,97 @@
 
 use super::NetId;
 
-/// A combinational cell. Widths are those of the nets; "same width" includes the result.
+/// A combinational cell. Widths are those of the nets; "same width" includes the result. Operands are nets of a design, or what
+/// else stands for a value.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
-pub enum Op {
+pub enum Op<N = NetId> {
     /// The operand's bits under another name or format; same width.
-    Relabel(NetId),
+    Relabel(N),
     /// The operand with copies of its sign bit (signed operand) or zeros (unsigned) above it; the
     /// result is wider.
-    Extend(NetId),
+    Extend(N),
     /// The bits of the operand from `low` up, as many as the result is wide.
     Slice {
         /// The operand.
-        of: NetId,
+        of: N,
         /// The lowest bit taken.
         low: u32,
     },
     /// The operands side by side, the first in the top bits; the result is as wide as all together.
-    Concat(Vec<NetId>),
+    Concat(Vec<N>),
     /// Every bit inverted; same width.
-    Not(NetId),
+    Not(N),
     /// Bitwise and; same width.
-    And(NetId, NetId),
+    And(N, N),
     /// Bitwise or; same width.
-    Or(NetId, NetId),
+    Or(N, N),
     /// Bitwise exclusive or; same width.
-    Xor(NetId, NetId),
+    Xor(N, N),
     /// Sum modulo 2^width; operands and result of the same width, the carry one bit.
     Add {
         /// First operand.
-        a: NetId,
+        a: N,
         /// Second operand.
-        b: NetId,
+        b: N,
         /// Carry in.
-        carry: Option<NetId>,
+        carry: Option<N>,
     },
     /// Difference `a − b` modulo 2^width; same width.
-    Sub(NetId, NetId),
+    Sub(N, N),
     /// The whole product; operands both signed or both unsigned, the result as wide as both together.
-    Mul(NetId, NetId),
+    Mul(N, N),
     /// 1 when the operands, of one width, are equal; the result is one bit.
-    Equal(NetId, NetId),
+    Equal(N, N),
     /// 1 when `a < b`; operands of one width, both signed or both unsigned; the result is one bit.
-    Less(NetId, NetId),
+    Less(N, N),
     /// 1 when any bit of the operand is 1; the result is one bit.
-    Any(NetId),
+    Any(N),
     /// 1 when every bit of the operand is 1; the result is one bit.
-    All(NetId),
+    All(N),
     /// Input number `select`; inputs of the result's width. Beyond the last input: the last input.
     Mux {
         /// As wide as the number of inputs needs.
-        select: NetId,
+        select: N,
         /// Two or more.
-        inputs: Vec<NetId>,
+        inputs: Vec<N>,
     },
 }
 
-impl Op {
-    /// Every operand, in order of writing.
-    pub fn operands(&self) -> Vec<NetId> {
+impl<N> Op<N> {
+    /// The same cell of other operands, which are asked for in order of writing.
+    pub fn map<M>(&self, mut of: impl FnMut(&N) -> M) -> Op<M> {
         match self {
-            Self::Relabel(a) | Self::Extend(a) | Self::Not(a) | Self::Any(a) | Self::All(a) => {
-                vec![*a]
-            }
-            Self::Slice { of, .. } => vec![*of],
-            Self::Concat(parts) => parts.clone(),
-            Self::And(a, b)
-            | Self::Or(a, b)
-            | Self::Xor(a, b)
-            | Self::Sub(a, b)
-            | Self::Mul(a, b)
-            | Self::Equal(a, b)
-            | Self::Less(a, b) => vec![*a, *b],
+            Self::Relabel(a) => Op::Relabel(of(a)),
+            Self::Extend(a) => Op::Extend(of(a)),
+            Self::Slice { of: a, low } => Op::Slice { of: of(a), low: *low },
+            Self::Concat(parts) => Op::Concat(parts.iter().map(of).collect()),
+            Self::Not(a) => Op::Not(of(a)),
+            Self::And(a, b) => Op::And(of(a), of(b)),
+            Self::Or(a, b) => Op::Or(of(a), of(b)),
+            Self::Xor(a, b) => Op::Xor(of(a), of(b)),
             Self::Add { a, b, carry } => {
-                [Some(*a), Some(*b), *carry].into_iter().flatten().collect()
+                Op::Add { a: of(a), b: of(b), carry: carry.as_ref().map(of) }
             }
+            Self::Sub(a, b) => Op::Sub(of(a), of(b)),
+            Self::Mul(a, b) => Op::Mul(of(a), of(b)),
+            Self::Equal(a, b) => Op::Equal(of(a), of(b)),
+            Self::Less(a, b) => Op::Less(of(a), of(b)),
+            Self::Any(a) => Op::Any(of(a)),
+            Self::All(a) => Op::All(of(a)),
             Self::Mux { select, inputs } => {
-                [*select].into_iter().chain(inputs.iter().copied()).collect()
+                Op::Mux { select: of(select), inputs: inputs.iter().map(of).collect() }
             }
         }
     }
 
-    /// Every operand, in order of writing, to be replaced by others.
-    pub fn operands_mut(&mut self) -> Vec<&mut NetId> {
-        match self {
-            Self::Relabel(a)
-            | Self::Extend(a)
-            | Self::Not(a)
-            | Self::Any(a)
-            | Self::All(a)
-            | Self::Slice { of: a, .. } => vec![a],
-            Self::Concat(parts) => parts.iter_mut().collect(),
-            Self::And(a, b)
-            | Self::Or(a, b)
-            | Self::Xor(a, b)
-            | Self::Sub(a, b)
-            | Self::Mul(a, b)
-            | Self::Equal(a, b)
-            | Self::Less(a, b) => vec![a, b],
-            Self::Add { a, b, carry } => {
-                [Some(a), Some(b), carry.as_mut()].into_iter().flatten().collect()
-            }
-            Self::Mux { select, inputs } => {
-                std::iter::once(select).chain(inputs.iter_mut()).collect()
-            }
-        }
+    /// Every operand, in order of writing.
+    pub fn operands(&self) -> Vec<N>
+    where
+        N: Copy,
+    {
+        let mut operands = Vec::new();
+        self.map(|operand| operands.push(*operand));
+        operands
     }
 
     /// The name of the cell in dumps and diagrams.

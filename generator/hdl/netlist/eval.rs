@@ -22,15 +22,15 @@ fn signed(width: u32) -> impl Fn(u64) -> i64 {
 
 /// The result of a cell `width` bits wide as [`Op`] documents it, for `N` independent sets of operands. `format`
 /// gives the format of an operand, `of` its bit patterns.
-pub fn cell<'a, const N: usize>(
-    op: &Op,
+pub fn cell<'a, Operand: Copy, const N: usize>(
+    op: &Op<Operand>,
     width: u32,
-    format: &impl Fn(NetId) -> Format,
-    of: &impl Fn(NetId) -> &'a [u64; N],
+    format: &impl Fn(Operand) -> Format,
+    of: &impl Fn(Operand) -> &'a [u64; N],
 ) -> [u64; N] {
     let all = mask(width);
-    let is_signed = |net: NetId| format(net).signed;
-    let width_of = |net: NetId| format(net).width();
+    let is_signed = |operand: Operand| format(operand).signed;
+    let width_of = |operand: Operand| format(operand).width();
     match op {
         Op::Relabel(a) => *of(*a),
         Op::Extend(a) if is_signed(*a) => {

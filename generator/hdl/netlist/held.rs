@@ -31,7 +31,7 @@ pub fn register_held(design: &mut Design) {
                     let Driver::Op(op) = &mut design.nets[cell.index()].driver else {
                         unreachable!("only cells read nets")
                     };
-                    op.operands_mut().into_iter().filter(|it| **it == net).for_each(|it| *it = q);
+                    *op = op.map(|&operand| if operand == net { q } else { operand });
                 }
             }
         }

@@ -1,16 +1,16 @@
 //! The raw values that a cell can give, from those of its operands.
 
-use super::{NetId, Op};
+use super::Op;
 use crate::base::fixed::{Format, mask};
 use crate::base::interval::{Interval, hull, product, wrap};
 
 /// The interval of a cell in `format` as [`Op`] documents it; all that the format has where nothing closer is known.
 /// `of` gives the interval of an operand, `format_of` its format. Two operands that are one net are a square.
-pub fn of_cell(
-    op: &Op,
+pub fn of_cell<N: Copy + PartialEq>(
+    op: &Op<N>,
     format: Format,
-    format_of: &impl Fn(NetId) -> Format,
-    of: &impl Fn(NetId) -> Interval,
+    format_of: &impl Fn(N) -> Format,
+    of: &impl Fn(N) -> Interval,
 ) -> Interval {
     let all = format.range();
     let wrapped = |interval: Interval| match wrap(interval, format) {
@@ -67,7 +67,7 @@ pub fn of_cell(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::hdl::netlist::eval;
+    use crate::hdl::netlist::{NetId, eval};
 
     /// Of operands of three bits, every interval, and every value in it.
     #[test]

@@ -56,6 +56,7 @@ macro_rules! id {
         }
     };
 }
+pub(crate) use id;
 
 id!(
     /// A net of a [`Design`].

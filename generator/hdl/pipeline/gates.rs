@@ -4,11 +4,10 @@
 //! enable in a look-up table. The way through that to the set or reset is longer than any through a gate: too long for
 //! clocks for which products have registers of their own. It does so bit for bit, so that bits are told apart here.
 
-use super::graph::{Cell, Graph, Label};
+use super::graph::{Cell, Graph, Label, NodeId, Op};
 use super::rebuild::rebuilt;
 use super::unroll::Unrolled;
 use crate::base::fixed::Format;
-use crate::hdl::netlist::{NetId, Op};
 
 /// The same computation without muxes of two inputs one of which has bits that are constants.
 pub fn gated(unrolled: &Unrolled) -> Unrolled {
@@ -40,14 +39,14 @@ type Pair = (Option<bool>, Option<bool>);
 /// The bits from `low` on of a mux, of whose inputs the same is known in each.
 fn part(
     graph: &mut Graph,
-    select: NetId,
-    (zero, one): (NetId, NetId),
+    select: NodeId,
+    (zero, one): (NodeId, NodeId),
     pair: Pair,
     (low, width): (u32, u32),
     label: &Label,
-) -> NetId {
+) -> NodeId {
     let format = Format::unsigned(width as i32, 0);
-    let slice = |graph: &mut Graph, of: NetId| graph.op(Op::Slice { of, low }, format, label);
+    let slice = |graph: &mut Graph, of: NodeId| graph.op(Op::Slice { of, low }, format, label);
     // The select, or its inverse, on every bit.
     let spread = |graph: &mut Graph, inverted: bool| {
         let select = if inverted { graph.op(Op::Not(select), Format::BIT, label) } else { select };
@@ -78,7 +77,7 @@ fn part(
 }
 
 /// What wiring alone says of the bits of a node, from the lowest up.
-fn known(graph: &Graph, id: NetId) -> Vec<Option<bool>> {
+fn known(graph: &Graph, id: NodeId) -> Vec<Option<bool>> {
     let node = graph.node(id);
     let width = graph.width(id) as usize;
     match &node.cell {
@@ -106,10 +105,10 @@ mod tests {
     use std::panic::Location;
 
     use super::*;
-    use crate::hdl::netlist::eval;
+    use crate::hdl::netlist::{NetId, eval};
 
     /// What a node is while the operands are these.
-    fn value(graph: &Graph, id: NetId, operands: &[u64]) -> u64 {
+    fn value(graph: &Graph, id: NodeId, operands: &[u64]) -> u64 {
         let node = graph.node(id);
         match &node.cell {
             Cell::Operand(at) => operands[*at],
@@ -118,7 +117,7 @@ mod tests {
                 let inputs = op.operands().into_iter();
                 let inputs = inputs.map(|it| (it, [value(graph, it, operands)]));
                 let inputs: std::collections::HashMap<_, _> = inputs.collect();
-                let formats = |id: NetId| graph.node(id).format;
+                let formats = |id: NodeId| graph.node(id).format;
                 let [bits] = eval::cell(op, node.format.width(), &formats, &|id| &inputs[&id]);
                 bits
             }
@@ -146,7 +145,7 @@ mod tests {
         let constant = |graph: &mut Graph, bits: u64, width: i32| {
             graph.constant(bits, Format::unsigned(width, 0), &label)
         };
-        let word = |graph: &mut Graph, parts: Vec<NetId>| {
+        let word = |graph: &mut Graph, parts: Vec<NodeId>| {
             graph.op(Op::Concat(parts), Format::unsigned(7, 0), &label)
         };
         // Bits of every kind: both known, either, none.
@@ -160,7 +159,7 @@ mod tests {
             graph,
             steps: Vec::new(),
             operands: Vec::new(),
-            results: vec![(result, result)],
+            results: vec![(NetId(0), result)],
         };
         let after = gated(&before);
         let muxes = after.graph.cone([after.results[0].1]);

@@ -2,7 +2,6 @@
 //!
 //! A node is what one net carries in one clock of the computation. Equal nodes are one node, constants
 //! fold, and wiring that changes nothing disappears, so that what remains is what a point needs.
-//! Operands of an [`Op`] are nodes here, not nets of a design.
 
 use std::collections::HashMap;
 use std::panic::Location;
@@ -10,7 +9,15 @@ use std::panic::Location;
 use crate::base::cone;
 use crate::base::fixed::{Format, mask};
 use crate::base::interval::{self, Interval};
-use crate::hdl::netlist::{NetId, Op, RomId, eval, interval::of_cell};
+use crate::hdl::netlist::{self, RomId, eval, interval::of_cell};
+
+netlist::id!(
+    /// A node of a [`Graph`].
+    NodeId
+);
+
+/// A combinational cell of nodes.
+pub type Op = netlist::Op<NodeId>;
 
 /// Where a value comes from.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -26,7 +33,7 @@ pub enum Cell {
         /// Of the sequential design.
         rom: RomId,
         /// The node with the address.
-        address: NetId,
+        address: NodeId,
     },
     /// A combinational cell; its operands are nodes.
     Op(Op),
@@ -86,24 +93,24 @@ pub struct Node {
 pub struct Graph {
     /// The nodes, by number.
     pub nodes: Vec<Node>,
-    known: HashMap<(Cell, u32, bool), NetId>,
+    known: HashMap<(Cell, u32, bool), NodeId>,
     /// The microinstruction that new nodes belong to.
     pub step: usize,
 }
 
 impl Graph {
     /// The node of this number.
-    pub fn node(&self, id: NetId) -> &Node {
+    pub fn node(&self, id: NodeId) -> &Node {
         &self.nodes[id.index()]
     }
 
     /// Bits of a node.
-    pub fn width(&self, id: NetId) -> u32 {
+    pub fn width(&self, id: NodeId) -> u32 {
         self.node(id).format.width()
     }
 
     /// The bit pattern of a constant.
-    pub fn constant_of(&self, id: NetId) -> Option<u64> {
+    pub fn constant_of(&self, id: NodeId) -> Option<u64> {
         match self.node(id).cell {
             Cell::Constant(bits) => Some(bits),
             _ => None,
@@ -111,14 +118,14 @@ impl Graph {
     }
 
     /// Every node that these need, themselves too, in order.
-    pub fn cone(&self, roots: impl IntoIterator<Item = NetId>) -> Vec<NetId> {
-        let operands = |at: usize| self.nodes[at].cell.operands().into_iter().map(NetId::index);
-        let live = cone::needed(self.nodes.len(), roots.into_iter().map(NetId::index), operands);
-        (0..live.len()).filter(|&at| live[at]).map(|at| NetId(at as u32)).collect()
+    pub fn cone(&self, roots: impl IntoIterator<Item = NodeId>) -> Vec<NodeId> {
+        let operands = |at: usize| self.nodes[at].cell.operands().into_iter().map(NodeId::index);
+        let live = cone::needed(self.nodes.len(), roots.into_iter().map(NodeId::index), operands);
+        (0..live.len()).filter(|&at| live[at]).map(|at| NodeId(at as u32)).collect()
     }
 
     /// The node, which from now on has the values of `range` alone.
-    pub fn refine(&mut self, id: NetId, range: Interval) -> NetId {
+    pub fn refine(&mut self, id: NodeId, range: Interval) -> NodeId {
         let node = &mut self.nodes[id.index()];
         // Of a path that is never taken, the intersection can be empty.
         node.range = interval::common(node.range, range).unwrap_or(node.range);
@@ -126,7 +133,7 @@ impl Graph {
     }
 
     /// The value is what a register takes: it is known by the register's name from now on.
-    pub fn name_after(&mut self, id: NetId, register: &Label) {
+    pub fn name_after(&mut self, id: NodeId, register: &Label) {
         let node = &mut self.nodes[id.index()];
         if !matches!(node.cell, Cell::Constant(_)) && !node.held {
             node.label = register.clone();
@@ -135,7 +142,7 @@ impl Graph {
     }
 
     /// A constant.
-    pub fn constant(&mut self, bits: u64, format: Format, label: &Label) -> NetId {
+    pub fn constant(&mut self, bits: u64, format: Format, label: &Label) -> NodeId {
         let bits = bits & mask(format.width());
         let raw = format.raw(bits);
         self.insert(Cell::Constant(bits), format, (raw, raw), label)
@@ -145,11 +152,11 @@ impl Graph {
     pub fn read(
         &mut self,
         rom: RomId,
-        address: NetId,
+        address: NodeId,
         words: &[u64],
         format: Format,
         label: &Label,
-    ) -> NetId {
+    ) -> NodeId {
         if let Some(at) = self.constant_of(address) {
             let word = words.get(at as usize).copied().unwrap_or(0);
             return self.constant(word, format, label);
@@ -163,7 +170,7 @@ impl Graph {
     }
 
     /// The leaf for an operand or an unknown.
-    pub fn leaf(&mut self, cell: Cell, format: Format, range: Interval, label: &Label) -> NetId {
+    pub fn leaf(&mut self, cell: Cell, format: Format, range: Interval, label: &Label) -> NodeId {
         self.insert(cell, format, range, label)
     }
 
@@ -173,7 +180,7 @@ impl Graph {
         format: Format,
         range: Interval,
         label: &Label,
-    ) -> NetId {
+    ) -> NodeId {
         let key = (cell.clone(), format.width(), format.signed);
         if let Some(&id) = self.known.get(&key) {
             let node = &mut self.nodes[id.index()];
@@ -182,7 +189,7 @@ impl Graph {
             }
             return self.refine(id, range);
         }
-        let id = NetId(self.nodes.len() as u32);
+        let id = NodeId(self.nodes.len() as u32);
         let (label, step) = (label.clone(), self.step);
         self.nodes.push(Node { cell, format, range, label, step, held: false });
         self.known.insert(key, id);
@@ -190,7 +197,7 @@ impl Graph {
     }
 
     /// The bits of `id` from the lowest on as a number of this width and sign.
-    pub fn resize(&mut self, id: NetId, width: u32, signed: bool) -> NetId {
+    pub fn resize(&mut self, id: NodeId, width: u32, signed: bool) -> NodeId {
         let node = self.node(id);
         let (format, label) = (node.format, Label { named: false, ..node.label.clone() });
         let frac = format.frac;
@@ -203,7 +210,7 @@ impl Graph {
     }
 
     /// A cell, folded as far as it can be.
-    pub fn op(&mut self, op: Op, format: Format, label: &Label) -> NetId {
+    pub fn op(&mut self, op: Op, format: Format, label: &Label) -> NodeId {
         if let Some(id) = self.fold(&op, format, label) {
             let node = &mut self.nodes[id.index()];
             let plain = !matches!(node.cell, Cell::Constant(_) | Cell::Operand(_));
@@ -220,17 +227,17 @@ impl Graph {
     }
 
     /// A node that already is what the cell would give, or one that is less.
-    fn fold(&mut self, op: &Op, format: Format, label: &Label) -> Option<NetId> {
+    fn fold(&mut self, op: &Op, format: Format, label: &Label) -> Option<NodeId> {
         let known = op.operands().into_iter();
-        let known: Option<HashMap<NetId, [u64; 1]>> =
+        let known: Option<HashMap<NodeId, [u64; 1]>> =
             known.map(|id| Some((id, [self.constant_of(id)?]))).collect();
         if let Some(values) = known {
-            let formats = |id: NetId| self.node(id).format;
+            let formats = |id: NodeId| self.node(id).format;
             let [bits] = eval::cell(op, format.width(), &formats, &|id| &values[&id]);
             return Some(self.constant(bits, format, label));
         }
         let width = format.width();
-        let same = |graph: &Self, id: NetId| {
+        let same = |graph: &Self, id: NodeId| {
             let other = graph.node(id).format;
             other.width() == width && other.signed == format.signed
         };
@@ -318,12 +325,18 @@ impl Graph {
         }
     }
 
-    fn fold_slice(&mut self, of: NetId, low: u32, format: Format, label: &Label) -> Option<NetId> {
+    fn fold_slice(
+        &mut self,
+        of: NodeId,
+        low: u32,
+        format: Format,
+        label: &Label,
+    ) -> Option<NodeId> {
         let width = format.width();
         if low == 0 && width == self.width(of) {
             return Some(self.op(Op::Relabel(of), format, label));
         }
-        let again = |graph: &mut Self, of: NetId, low: u32| {
+        let again = |graph: &mut Self, of: NodeId, low: u32| {
             Some(graph.op(Op::Slice { of, low }, format, label))
         };
         match self.node(of).cell.clone() {
@@ -366,7 +379,13 @@ impl Graph {
     }
 
     /// The product of what the operands' values need, no wider, and unsigned where that serves.
-    fn fold_product(&mut self, a: NetId, b: NetId, format: Format, label: &Label) -> Option<NetId> {
+    fn fold_product(
+        &mut self,
+        a: NodeId,
+        b: NodeId,
+        format: Format,
+        label: &Label,
+    ) -> Option<NodeId> {
         let ranges = [self.node(a).range, self.node(b).range];
         let signed = ranges.iter().any(|range| range.0 < 0);
         let [wa, wb] = ranges.map(|range| bits_for(range, signed));
@@ -387,7 +406,7 @@ impl Graph {
 
 impl Cell {
     /// The nodes that it takes.
-    pub fn operands(&self) -> Vec<NetId> {
+    pub fn operands(&self) -> Vec<NodeId> {
         match self {
             Self::Op(op) => op.operands(),
             Self::Read { address, .. } => vec![*address],

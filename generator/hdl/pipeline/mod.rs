@@ -21,12 +21,14 @@ mod unroll;
 
 use crate::base::diagnostic::{Diagnostic, Diagnostics};
 use crate::config::Config;
-use crate::hdl::netlist::{Design, NetId};
+use crate::hdl::netlist::Design;
 
-pub use graph::{Cell, Graph, Node};
+pub use graph::{Cell, Graph, Node, NodeId, Op};
 use schedule::{Refusal, Unreachable};
 pub use target::{TARGETS, Target};
-pub use unroll::{Line, Unrolled, Walked, carried, unroll, unroll_line};
+pub use unroll::{
+    Cycle, Held, Line, Unrolled, Walked, any_cycle, carried, unroll, unroll_in_powers, unroll_line,
+};
 
 /// What is asked of the schedule.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -101,13 +103,13 @@ pub fn pipeline(sequential: &Design, options: &Options) -> Result<Design, Diagno
     };
     let unregistered = (!options.registered).then_some(&problems);
     let problems = problems(options.registered);
-    let wrong = |key: &'static str, message: String, remedy: String, at: Option<NetId>| {
+    let wrong = |key: &'static str, message: String, remedy: String, at: Option<NodeId>| {
         let place =
             at.map_or(sequential.nets[0].location, |at| unrolled.graph.node(at).label.location);
         Diagnostics(vec![Diagnostic::new(message, place).of_key(key, remedy)])
     };
     let (name, target) = (&sequential.name, options.target.name);
-    let unsolved = |why: String, at: Option<NetId>| {
+    let unsolved = |why: String, at: Option<NodeId>| {
         let message = format!("`{name}` has no schedule: {why}; this is a mistake of Glint's");
         let remedy = "ask for another pipeline.clock_mhz or pipeline.stages";
         wrong("pipeline.clock_mhz", message, remedy.to_owned(), at)

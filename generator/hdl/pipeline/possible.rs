@@ -2,9 +2,9 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::graph::{Cell, Graph};
+use super::graph::{Cell, Graph, NodeId};
 use crate::base::fixed::mask;
-use crate::hdl::netlist::{NetId, eval};
+use crate::hdl::netlist::eval;
 
 /// The most bits of which all combinations are tried.
 const MOST_BITS: u32 = 16;
@@ -14,7 +14,7 @@ const MOST_SELECTED: u32 = 6;
 
 /// Whether `condition`, one bit, is ever 1, whatever the nodes `free` and all leaves are; `None` if it
 /// depends on too many bits to try them all.
-pub fn ever(graph: &Graph, condition: NetId, free: &[NetId]) -> Option<bool> {
+pub fn ever(graph: &Graph, condition: NodeId, free: &[NodeId]) -> Option<bool> {
     let cone = Cone::of(graph, &[condition], free);
     if cone.bits > MOST_BITS {
         return None;
@@ -27,12 +27,12 @@ pub fn ever(graph: &Graph, condition: NetId, free: &[NetId]) -> Option<bool> {
 /// each of its bit patterns; none for one that it never has.
 pub fn count(
     graph: &Graph,
-    conditions: &[NetId],
-    free: &[NetId],
-) -> Option<(NetId, Vec<Option<usize>>)> {
+    conditions: &[NodeId],
+    free: &[NodeId],
+) -> Option<(NodeId, Vec<Option<usize>>)> {
     let cone = Cone::of(graph, conditions, free);
     let [leaf] = cone.leaves[..] else { return None };
-    let hold = |values: HashMap<NetId, [u64; 1]>| {
+    let hold = |values: HashMap<NodeId, [u64; 1]>| {
         conditions.iter().filter(|condition| values[condition] == [1]).count()
     };
     let of = |number: u64| cone.values(graph, number).map(hold);
@@ -41,17 +41,17 @@ pub fn count(
 
 /// What conditions are made of.
 struct Cone {
-    leaves: Vec<NetId>,
+    leaves: Vec<NodeId>,
     /// The bits of all leaves.
     bits: u32,
     /// In order.
-    inside: Vec<NetId>,
+    inside: Vec<NodeId>,
 }
 
 impl Cone {
     /// Down to leaves and the nodes `free`.
-    fn of(graph: &Graph, conditions: &[NetId], free: &[NetId]) -> Self {
-        let free: HashSet<NetId> = free.iter().copied().collect();
+    fn of(graph: &Graph, conditions: &[NodeId], free: &[NodeId]) -> Self {
+        let free: HashSet<NodeId> = free.iter().copied().collect();
         let (mut seen, mut pending) = (HashSet::new(), conditions.to_vec());
         let (mut leaves, mut inside) = (Vec::new(), Vec::new());
         while let Some(id) = pending.pop() {
@@ -73,8 +73,8 @@ impl Cone {
     }
 
     /// All nodes where the bits of the leaves are those of a number; none if a leaf never has such a value.
-    fn values(&self, graph: &Graph, number: u64) -> Option<HashMap<NetId, [u64; 1]>> {
-        let mut values: HashMap<NetId, [u64; 1]> = HashMap::new();
+    fn values(&self, graph: &Graph, number: u64) -> Option<HashMap<NodeId, [u64; 1]>> {
+        let mut values: HashMap<NodeId, [u64; 1]> = HashMap::new();
         let mut rest = number;
         for &leaf in &self.leaves {
             let (node, width) = (graph.node(leaf), graph.width(leaf));
@@ -89,7 +89,7 @@ impl Cone {
             let node = graph.node(id);
             let bits = match &node.cell {
                 Cell::Op(op) => {
-                    let format = |net: NetId| graph.node(net).format;
+                    let format = |net: NodeId| graph.node(net).format;
                     eval::cell(op, node.format.width(), &format, &|net| &values[&net])
                 }
                 Cell::Constant(bits) => [*bits],

@@ -1,27 +1,20 @@
 //! The same computation in a new graph, with other nodes in place of some.
 
-use super::graph::{Cell, Graph, Node};
+use super::graph::{Cell, Graph, Node, NodeId, Op};
 use super::unroll::Unrolled;
-use crate::hdl::netlist::{NetId, Op};
 
 /// A copy in which `replace` says what stands for a cell, whose operands are those of the new graph; the cell itself where
 /// it says nothing.
 pub fn rebuilt(
     unrolled: &Unrolled,
-    mut replace: impl FnMut(&mut Graph, &Op, &Node) -> Option<NetId>,
+    mut replace: impl FnMut(&mut Graph, &Op, &Node) -> Option<NodeId>,
 ) -> Unrolled {
     let mut graph = Graph::default();
-    let mut place: Vec<NetId> = Vec::with_capacity(unrolled.graph.nodes.len());
+    let mut place: Vec<NodeId> = Vec::with_capacity(unrolled.graph.nodes.len());
     for node in &unrolled.graph.nodes {
         graph.step = node.step;
         let cell = match &node.cell {
-            Cell::Op(op) => {
-                let mut op = op.clone();
-                for operand in op.operands_mut() {
-                    *operand = place[operand.index()];
-                }
-                Cell::Op(op)
-            }
+            Cell::Op(op) => Cell::Op(op.map(|operand| place[operand.index()])),
             Cell::Read { rom, address } => {
                 Cell::Read { rom: *rom, address: place[address.index()] }
             }

@@ -11,9 +11,8 @@ use std::collections::BTreeSet;
 
 use microlp::{ComparisonOp, OptimizationDirection, Problem, SolveOutcome};
 
-use super::graph::{Cell, Graph, Node};
+use super::graph::{Cell, Graph, Node, NodeId, Op};
 use super::target::{Registered, Target};
-use crate::hdl::netlist::{NetId, Op};
 
 /// When each value is computed.
 #[derive(Clone, Debug)]
@@ -34,14 +33,14 @@ pub enum Refusal {
     /// The clock cannot be met.
     Unreachable(Unreachable),
     /// The solver failed, or its solution breaks a constraint: what is wrong, and the node that stands wrong.
-    Unsolved(String, Option<NetId>),
+    Unsolved(String, Option<NodeId>),
 }
 
 /// What a clock cannot be met for.
 #[derive(Clone, Debug)]
 pub struct Unreachable {
     /// The node that takes the longest.
-    pub limiting: NetId,
+    pub limiting: NodeId,
     /// The shortest period that it allows.
     pub period: f64,
 }
@@ -51,15 +50,15 @@ pub struct Problems<'a> {
     graph: &'a Graph,
     target: &'a Target,
     /// What is scheduled, in order.
-    live: Vec<NetId>,
-    results: &'a [NetId],
+    live: Vec<NodeId>,
+    results: &'a [NodeId],
     /// For each node, the live ones that take it, without those that are constants.
-    users: Vec<Vec<NetId>>,
+    users: Vec<Vec<NodeId>>,
     delay: Vec<f64>,
     /// What a register behind the node takes beyond any other.
     setup: Vec<f64>,
     /// What chooses between a value and a constant, where a register behind it does so by its reset.
-    reset_by: Vec<Option<NetId>>,
+    reset_by: Vec<Option<NodeId>>,
     /// Of what the clock makes, a word of a block memory or a product in the register of a multiplier: what it takes
     /// from its operands to the clock, beyond the way to a register.
     clocked: Vec<Option<f64>>,
@@ -76,15 +75,15 @@ fn takes_no_logic(cell: &Cell) -> bool {
 }
 
 /// A node stands at least this number of stages after another.
-type Difference = (NetId, NetId, usize);
+type Difference = (NodeId, NodeId, usize);
 
 /// The inverters whose bits are, through wiring, factors of products.
-fn inverted_factors(graph: &Graph, live: &[NetId]) -> Vec<NetId> {
+fn inverted_factors(graph: &Graph, live: &[NodeId]) -> Vec<NodeId> {
     let products = live.iter().filter_map(|&id| match graph.node(id).cell {
         Cell::Op(Op::Mul(a, b)) => Some([a, b]),
         _ => None,
     });
-    let mut open: Vec<NetId> = products.flatten().collect();
+    let mut open: Vec<NodeId> = products.flatten().collect();
     let mut inverters = Vec::new();
     while let Some(id) = open.pop() {
         match &graph.node(id).cell {
@@ -98,12 +97,12 @@ fn inverted_factors(graph: &Graph, live: &[NetId]) -> Vec<NetId> {
 
 /// Whether a node is another with more bits of its sign, or under another name: made anew wherever it is
 /// used, so that registers hold what it is made of.
-pub fn is_extension(graph: &Graph, id: NetId) -> bool {
+pub fn is_extension(graph: &Graph, id: NodeId) -> bool {
     matches!(graph.node(id).cell, Cell::Op(Op::Extend(_) | Op::Relabel(_)))
 }
 
 /// The node that registers hold for the users of `id`.
-fn held(graph: &Graph, results: &[NetId], mut id: NetId) -> NetId {
+fn held(graph: &Graph, results: &[NodeId], mut id: NodeId) -> NodeId {
     while is_extension(graph, id) && !results.contains(&id) {
         id = graph.node(id).cell.operands()[0];
     }
@@ -116,22 +115,22 @@ impl<'a> Problems<'a> {
         graph: &'a Graph,
         target: &'a Target,
         registered: Option<Registered>,
-        results: &'a [NetId],
+        results: &'a [NodeId],
     ) -> Self {
-        let live: Vec<NetId> = graph
+        let live: Vec<NodeId> = graph
             .cone(results.iter().copied())
             .into_iter()
             .filter(|&id| graph.constant_of(id).is_none())
             .collect();
         let mut users = vec![Vec::new(); graph.nodes.len()];
-        let live: Vec<NetId> = live
+        let live: Vec<NodeId> = live
             .into_iter()
             .filter(|&id| results.contains(&id) || !is_extension(graph, id))
             .collect();
         for &id in &live {
             let operands = graph.node(id).cell.operands();
             let operands = operands.into_iter().map(|operand| held(graph, results, operand));
-            let mut operands: Vec<NetId> = operands.collect();
+            let mut operands: Vec<NodeId> = operands.collect();
             operands.sort_unstable();
             operands.dedup();
             for operand in operands {
@@ -140,9 +139,10 @@ impl<'a> Problems<'a> {
                 }
             }
         }
-        let nodes = || (0..graph.nodes.len()).map(|at| NetId(at as u32));
-        let product =
-            |id: NetId| registered.filter(|_| matches!(graph.node(id).cell, Cell::Op(Op::Mul(..))));
+        let nodes = || (0..graph.nodes.len()).map(|at| NodeId(at as u32));
+        let product = |id: NodeId| {
+            registered.filter(|_| matches!(graph.node(id).cell, Cell::Op(Op::Mul(..))))
+        };
         let delay = nodes().map(|id| match product(id) {
             Some(registered) => registered.output,
             None => target.delay(graph, id),
@@ -151,7 +151,7 @@ impl<'a> Problems<'a> {
         // Look-up tables and sums take an inverter with them, a multiplier does not. Where its clock is short one that others
         // take too counts as well: it is not worth a second one.
         for id in inverted_factors(graph, &live) {
-            let alone = |user: &NetId| {
+            let alone = |user: &NodeId| {
                 let cell = &graph.node(*user).cell;
                 cell.is_wiring() || matches!(cell, Cell::Op(Op::Mul(..)))
             };
@@ -173,12 +173,12 @@ impl<'a> Problems<'a> {
     /// The shortest period that one operation alone allows, and the operation. What the environment takes for an operand
     /// never makes a period unreachable.
     pub fn fastest(&self) -> Option<Unreachable> {
-        let delay = |id: &NetId| {
+        let delay = |id: &NodeId| {
             let at = id.index();
             (self.delay[at] + self.setup[at]).max(self.clocked[at].unwrap_or(0.0))
         };
         // Nor does a memory whose words are all the same: synthesis makes a constant of it.
-        let settled = |id: &&NetId| match self.graph.node(**id) {
+        let settled = |id: &&NodeId| match self.graph.node(**id) {
             Node { cell: Cell::Operand(_), .. } => true,
             Node { cell: Cell::Read { .. }, range, .. } => range.0 == range.1,
             _ => false,
@@ -239,13 +239,13 @@ impl<'a> Problems<'a> {
     }
 
     /// How many boundaries lie between the operands of `user` and `user`.
-    fn apart(&self, user: NetId) -> usize {
+    fn apart(&self, user: NodeId) -> usize {
         usize::from(self.is_clocked(user))
     }
 
     /// The registers between two nodes that are too long for one stage. Block memories and multipliers stand in columns of
     /// their own: where the way to a multiplier has no room, the value of a memory takes one near each.
-    fn registers_between(&self, from: NetId, user: NetId, most: f64) -> usize {
+    fn registers_between(&self, from: NodeId, user: NodeId, most: f64) -> usize {
         let product = matches!(self.graph.node(user).cell, Cell::Op(Op::Mul(..)));
         let far = product && self.target.is_block(self.graph, from);
         1 + usize::from(far && self.delay[user.index()] + self.target.logic > most)
@@ -253,7 +253,7 @@ impl<'a> Problems<'a> {
 
     /// Nanoseconds until a register behind `user` has the value, of which the operand `from` is there after so many. What is
     /// not the select of a reset goes past it.
-    fn until_register(&self, from: NetId, user: NetId, after: f64) -> f64 {
+    fn until_register(&self, from: NodeId, user: NodeId, after: f64) -> f64 {
         match self.reset_by[user.index()] {
             Some(select) if select != from => after,
             _ => after + self.delay[user.index()] + self.setup[user.index()],
@@ -264,7 +264,7 @@ impl<'a> Problems<'a> {
         let most = period - self.target.register + 1e-9;
         let mut differences = Vec::new();
         let mut longest = vec![0.0f64; self.graph.nodes.len()];
-        let mut reached = vec![NetId(u32::MAX); self.graph.nodes.len()];
+        let mut reached = vec![NodeId(u32::MAX); self.graph.nodes.len()];
         for &from in &self.live {
             for &user in &self.users[from.index()] {
                 differences.push((from, user, self.apart(user)));
@@ -336,7 +336,7 @@ impl<'a> Problems<'a> {
         stage: &[usize],
         latency: usize,
     ) -> Result<(), Refusal> {
-        let name = |id: NetId| &self.graph.node(id).label.name;
+        let name = |id: NodeId| &self.graph.node(id).label.name;
         for &id in &self.live {
             let (at, last) = (stage[id.index()], self.last_stage(id.index(), latency));
             if at > last {
@@ -419,7 +419,7 @@ impl<'a> Problems<'a> {
     }
 
     /// What takes a node, through wires.
-    fn beyond_wiring(&self, id: NetId) -> Vec<NetId> {
+    fn beyond_wiring(&self, id: NodeId) -> Vec<NodeId> {
         let (mut open, mut users) = (self.users[id.index()].clone(), Vec::new());
         while let Some(user) = open.pop() {
             if self.graph.node(user).cell.is_wiring() && !self.results.contains(&user) {
@@ -445,10 +445,10 @@ impl<'a> Problems<'a> {
                 .map(|operand| held(self.graph, self.results, operand))
                 .filter(|operand| !self.is_clocked(id) && stage[operand.index()] == at)
                 .filter(|operand| self.graph.constant_of(*operand).is_none());
-            let before: Vec<NetId> = before.collect();
+            let before: Vec<NodeId> = before.collect();
             let arrivals = before.iter().map(|operand| arrival[operand.index()]);
             arrival[id.index()] = arrivals.fold(0.0, f64::max) + self.delay[id.index()];
-            let later = |user: &NetId| stage[user.index()] - self.apart(*user) > at;
+            let later = |user: &NodeId| stage[user.index()] - self.apart(*user) > at;
             let is_held = self.users[id.index()].iter().any(later) || self.results.contains(&id);
             if is_held {
                 let first = self.delay[id.index()] + self.setup[id.index()];
@@ -470,7 +470,7 @@ impl<'a> Problems<'a> {
     }
 
     /// What is scheduled.
-    pub fn live(&self) -> &[NetId] {
+    pub fn live(&self) -> &[NodeId] {
         &self.live
     }
 
@@ -490,7 +490,7 @@ impl<'a> Problems<'a> {
     }
 
     /// Whether the clock makes a node: a word of a block memory, or a product in the register of a multiplier.
-    pub fn is_clocked(&self, id: NetId) -> bool {
+    pub fn is_clocked(&self, id: NodeId) -> bool {
         self.clocked[id.index()].is_some()
     }
 }
@@ -514,13 +514,13 @@ mod tests {
             vec![step("load", [y.load()])]
         });
         let unrolled = unroll::unroll(&design).unwrap_or_else(|wrong| panic!("{wrong}"));
-        let results: Vec<NetId> = unrolled.results.iter().map(|&(_, value)| value).collect();
+        let results: Vec<NodeId> = unrolled.results.iter().map(|&(_, value)| value).collect();
         let target = Target::named("ecp5").expect("a target");
         let problems = Problems::new(&unrolled.graph, target, None, &results);
         let period = problems.fastest().expect("an operation").period;
         let schedule = problems.for_period(period).expect("a schedule");
         let differences = problems.differences(period);
-        let refused = |node: NetId, at: usize| {
+        let refused = |node: NodeId, at: usize| {
             let mut stage = schedule.stage.clone();
             stage[node.index()] = at;
             match problems.verify(&differences, &stage, schedule.latency) {

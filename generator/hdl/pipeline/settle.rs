@@ -3,12 +3,11 @@
 //! `over₂ ? most : f(over₁ ? most : x)`, of which `over₂` asks for a bit of the inner choice, is one choice: `most` if
 //! either is over, and else `f(x)`.
 
-use super::graph::{Cell, Graph, Label};
+use super::graph::{Cell, Graph, Label, NodeId, Op};
 use crate::base::fixed::Format;
-use crate::hdl::netlist::{NetId, Op};
 
 /// The same value as one choice, where a choice between a constant and another such choice makes it.
-pub fn settled(graph: &mut Graph, id: NetId) -> NetId {
+pub fn settled(graph: &mut Graph, id: NodeId) -> NodeId {
     let node = graph.node(id).clone();
     let Some((over, rest, most)) = limit(graph, id) else { return id };
     let over = flag(graph, over);
@@ -17,7 +16,7 @@ pub fn settled(graph: &mut Graph, id: NetId) -> NetId {
 }
 
 /// Of `over ? most : rest` with a constant: `over`, `rest` and the constant.
-fn limit(graph: &Graph, id: NetId) -> Option<(NetId, NetId, NetId)> {
+fn limit(graph: &Graph, id: NodeId) -> Option<(NodeId, NodeId, NodeId)> {
     let Cell::Op(Op::Mux { select, inputs }) = &graph.node(id).cell else { return None };
     match inputs[..] {
         [rest, most] if graph.constant_of(most).is_some() => Some((*select, rest, most)),
@@ -26,7 +25,7 @@ fn limit(graph: &Graph, id: NetId) -> Option<(NetId, NetId, NetId)> {
 }
 
 /// A condition without the choice of which it asks for a bit.
-fn flag(graph: &mut Graph, id: NetId) -> NetId {
+fn flag(graph: &mut Graph, id: NodeId) -> NodeId {
     let node = graph.node(id).clone();
     let Cell::Op(Op::Slice { of, low }) = node.cell else { return id };
     let Some((over, rest, most)) = limit(graph, of) else { return id };
@@ -39,7 +38,7 @@ fn flag(graph: &mut Graph, id: NetId) -> NetId {
 }
 
 /// Whether one of two bits is 1; of bits side by side, whether any is.
-fn either(graph: &mut Graph, a: NetId, b: NetId, label: &Label) -> NetId {
+fn either(graph: &mut Graph, a: NodeId, b: NodeId, label: &Label) -> NodeId {
     if let (Some((of, low, width)), Some((other, below, 1))) = (run(graph, a), run(graph, b))
         && of == other
         && below + 1 == low
@@ -52,7 +51,7 @@ fn either(graph: &mut Graph, a: NetId, b: NetId, label: &Label) -> NetId {
 }
 
 /// The bits of which a condition asks whether any is 1, as a net, the lowest bit and their number.
-fn run(graph: &Graph, id: NetId) -> Option<(NetId, u32, u32)> {
+fn run(graph: &Graph, id: NodeId) -> Option<(NodeId, u32, u32)> {
     match graph.node(id).cell {
         Cell::Op(Op::Any(of)) => run(graph, of),
         Cell::Op(Op::Slice { of, low }) => Some((of, low, graph.width(id))),
@@ -61,16 +60,14 @@ fn run(graph: &Graph, id: NetId) -> Option<(NetId, u32, u32)> {
 }
 
 /// `id` where `over` is 0, through wiring: choices whose own condition is 0 then are what they are below the limit.
-fn below(graph: &mut Graph, id: NetId, over: NetId) -> NetId {
+fn below(graph: &mut Graph, id: NodeId, over: NodeId) -> NodeId {
     let node = graph.node(id).clone();
     if let Some((inner, rest, _)) = limit(graph, id) {
         return if follows(graph, over, inner) { below(graph, rest, over) } else { id };
     }
     match node.cell {
-        Cell::Op(mut op @ (Op::Slice { .. } | Op::Concat(_) | Op::Extend(_) | Op::Relabel(_))) => {
-            for operand in op.operands_mut() {
-                *operand = below(graph, *operand, over);
-            }
+        Cell::Op(op @ (Op::Slice { .. } | Op::Concat(_) | Op::Extend(_) | Op::Relabel(_))) => {
+            let op = op.map(|&operand| below(graph, operand, over));
             graph.op(op, node.format, &node.label)
         }
         _ => id,
@@ -78,7 +75,7 @@ fn below(graph: &mut Graph, id: NetId, over: NetId) -> NetId {
 }
 
 /// Whether `inner` is 0 wherever `over` is.
-fn follows(graph: &Graph, over: NetId, inner: NetId) -> bool {
+fn follows(graph: &Graph, over: NodeId, inner: NodeId) -> bool {
     match (run(graph, over), run(graph, inner)) {
         _ if over == inner => true,
         (Some((of, low, width)), Some((other, from, count))) => {

@@ -7,13 +7,12 @@
 //! Two kinds of factors take less. Of the square `(u·2^r + l)² = u²·4^r + l·(u·2^(r+1) + l)` the rest is one factor for both.
 //! Of a factor that reaches a power of two, as a cosine does with 1.0, the highest bit is set where all others are 0.
 
-use super::graph::{Graph, Label};
+use super::graph::{Graph, Label, NodeId, Op};
 use super::rebuild::rebuilt;
 use super::sums::shortened;
 use super::target::Target;
 use super::unroll::Unrolled;
 use crate::base::fixed::Format;
-use crate::hdl::netlist::{NetId, Op};
 
 /// The most bits of an operand that become rows in look-up tables.
 const MOST_ROWS: u32 = 4;
@@ -32,11 +31,11 @@ pub fn split(unrolled: &Unrolled, target: &Target) -> Unrolled {
 fn product(
     graph: &mut Graph,
     target: &Target,
-    a: NetId,
-    b: NetId,
+    a: NodeId,
+    b: NodeId,
     format: Format,
     label: &Label,
-) -> NetId {
+) -> NodeId {
     let parts = parts(graph, target, [a, b], format, label);
     match parts[..] {
         [Term { value, places: 0 }] => value,
@@ -48,7 +47,7 @@ fn product(
 fn parts(
     graph: &mut Graph,
     target: &Target,
-    [a, b]: [NetId; 2],
+    [a, b]: [NodeId; 2],
     format: Format,
     label: &Label,
 ) -> Vec<Term> {
@@ -69,7 +68,7 @@ fn parts(
 }
 
 /// Whether the greatest value of an unsigned factor is a power of two, with a bit that no other value has.
-fn reaches_a_power_of_two(graph: &Graph, factor: NetId) -> bool {
+fn reaches_a_power_of_two(graph: &Graph, factor: NodeId) -> bool {
     let (low, high) = graph.node(factor).range;
     low >= 0 && high == 1 << (graph.width(factor) - 1)
 }
@@ -79,10 +78,10 @@ fn reaches_a_power_of_two(graph: &Graph, factor: NetId) -> bool {
 fn below_the_highest(
     graph: &mut Graph,
     target: &Target,
-    [wide, narrow]: [NetId; 2],
+    [wide, narrow]: [NodeId; 2],
     format: Format,
     label: &Label,
-) -> NetId {
+) -> NodeId {
     let (places, width) = (graph.width(wide) - 1, graph.width(narrow));
     let highest = slice(graph, wide, places, Format::BIT, &label.part("highest"));
     let below = slice(graph, wide, 0, unsigned(places), &label.part("below"));
@@ -106,8 +105,8 @@ fn below_the_highest(
 }
 
 /// Of two signed factors the one that is never negative, and the other, which has bits below its sign.
-fn with_a_sign(graph: &Graph, [a, b]: [NetId; 2]) -> Option<[NetId; 2]> {
-    let positive = |id: NetId| graph.node(id).format.signed && graph.node(id).range.0 >= 0;
+fn with_a_sign(graph: &Graph, [a, b]: [NodeId; 2]) -> Option<[NodeId; 2]> {
+    let positive = |id: NodeId| graph.node(id).format.signed && graph.node(id).range.0 >= 0;
     let factors = if positive(a) { [a, b] } else { [b, a] };
     (positive(factors[0]) && graph.width(factors[1]) > 1).then_some(factors)
 }
@@ -117,11 +116,11 @@ fn with_a_sign(graph: &Graph, [a, b]: [NetId; 2]) -> Option<[NetId; 2]> {
 fn below_the_sign(
     graph: &mut Graph,
     target: &Target,
-    positive: NetId,
-    other: NetId,
+    positive: NodeId,
+    other: NodeId,
     format: Format,
     label: &Label,
-) -> NetId {
+) -> NodeId {
     let (width, places) = (graph.width(positive) - 1, graph.width(other) - 1);
     let positive = graph.resize(positive, width, false);
     let sign = slice(graph, other, places, Format::BIT, &label.part("sign"));
@@ -143,12 +142,12 @@ fn below_the_sign(
 /// A number in units of two to the power of `places`.
 #[derive(Clone, Copy)]
 struct Term {
-    value: NetId,
+    value: NodeId,
     places: u32,
 }
 
 /// The sum of the parts of a product.
-fn summed(graph: &mut Graph, mut parts: Vec<Term>, format: Format, label: &Label) -> NetId {
+fn summed(graph: &mut Graph, mut parts: Vec<Term>, format: Format, label: &Label) -> NodeId {
     let top = |graph: &Graph, term: &Term| term.places + graph.width(term.value);
     parts.sort_by_key(|term| std::cmp::Reverse(top(graph, term)));
     // The widest last: no other sum is as wide.
@@ -168,7 +167,7 @@ fn summed(graph: &mut Graph, mut parts: Vec<Term>, format: Format, label: &Label
 }
 
 /// A term as a number of this width and sign.
-fn in_ones(graph: &mut Graph, term: Term, width: u32, signed: bool, label: &Label) -> NetId {
+fn in_ones(graph: &mut Graph, term: Term, width: u32, signed: bool, label: &Label) -> NodeId {
     let Term { value, places } = term;
     let format = graph.node(value).format;
     let shifted = if places == 0 {
@@ -185,7 +184,7 @@ fn in_ones(graph: &mut Graph, term: Term, width: u32, signed: bool, label: &Labe
 fn cut(
     graph: &mut Graph,
     target: &Target,
-    [wide, narrow]: [NetId; 2],
+    [wide, narrow]: [NodeId; 2],
     limit: u32,
     signed: bool,
     label: &Label,
@@ -221,11 +220,11 @@ fn cut(
 }
 
 /// The product of the lowest `rest` bits of `wide` with `narrow`, a row for each.
-fn rows(graph: &mut Graph, wide: NetId, rest: u32, narrow: NetId, label: &Label) -> NetId {
+fn rows(graph: &mut Graph, wide: NodeId, rest: u32, narrow: NodeId, label: &Label) -> NodeId {
     let signed = graph.node(narrow).format.signed;
     let width = graph.width(narrow);
     let format = |width: u32| integer(signed, width);
-    let mut sum: Option<NetId> = None;
+    let mut sum: Option<NodeId> = None;
     for row in 0..rest {
         let bit = slice(graph, wide, row, Format::BIT, &label.part("row"));
         let unnamed = unnamed(&label.part("row"));
@@ -265,7 +264,7 @@ fn unnamed(label: &Label) -> Label {
     Label { doc: String::new(), named: false, ..label.clone() }
 }
 
-fn slice(graph: &mut Graph, of: NetId, low: u32, format: Format, label: &Label) -> NetId {
+fn slice(graph: &mut Graph, of: NodeId, low: u32, format: Format, label: &Label) -> NodeId {
     graph.op(Op::Slice { of, low }, format, &unnamed(label))
 }
 

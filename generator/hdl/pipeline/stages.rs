@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::graph::{Cell, Graph};
+use super::graph::{self, Cell, Graph, NodeId};
 use super::schedule::{Problems, Schedule, megahertz};
 use super::unroll::Unrolled;
 use super::{Delays, Goal, Options};
@@ -111,9 +111,9 @@ struct Builder<'a> {
     advance: Option<NetId>,
     taken: HashSet<String>,
     /// Of every node: the name of its value, without a stage.
-    names: HashMap<NetId, String>,
+    names: HashMap<NodeId, String>,
     /// The net with the value of a node in a stage.
-    values: HashMap<(NetId, usize), NetId>,
+    values: HashMap<(NodeId, usize), NetId>,
     /// The nets of the handshake.
     flow: Vec<NetId>,
     /// Whether a stage has a point, from stage 1 on.
@@ -140,7 +140,7 @@ impl Builder<'_> {
         id
     }
 
-    fn labelled(&mut self, id: NetId, node: NetId) -> NetId {
+    fn labelled(&mut self, id: NetId, node: NodeId) -> NetId {
         if let Some(name) = self.names.get(&node) {
             name.clone_into(&mut self.value_of[id.index()]);
         }
@@ -313,11 +313,8 @@ impl Builder<'_> {
     }
 
     /// What a cell computes in a stage.
-    fn cell(&mut self, id: NetId, op: &Op, stage: usize) -> NetId {
-        let mut op = op.clone();
-        for operand in op.operands_mut() {
-            *operand = self.value(*operand, stage);
-        }
+    fn cell(&mut self, id: NodeId, op: &graph::Op, stage: usize) -> NetId {
+        let op = op.map(|&operand| self.value(operand, stage));
         let label = &self.graph.node(id).label;
         let name = self.staged(&self.names[&id], stage);
         let net = self.net(name, stage, self.graph.node(id).format, Driver::Op(op));
@@ -327,7 +324,7 @@ impl Builder<'_> {
     }
 
     /// A register of a stage that takes what the stage before has of a node.
-    fn behind(&mut self, id: NetId, value: NetId, stage: usize) -> NetId {
+    fn behind(&mut self, id: NodeId, value: NetId, stage: usize) -> NetId {
         let name = self.staged(&self.names[&id], stage);
         let q = self.net(name, stage, self.graph.node(id).format, Driver::Undriven);
         self.labelled(q, id);
@@ -335,7 +332,7 @@ impl Builder<'_> {
         q
     }
 
-    fn value(&mut self, id: NetId, stage: usize) -> NetId {
+    fn value(&mut self, id: NodeId, stage: usize) -> NetId {
         let node = self.graph.node(id);
         let key = if let Cell::Constant(_) = node.cell { (id, 0) } else { (id, stage) };
         if let Some(&net) = self.values.get(&key) {
@@ -358,14 +355,12 @@ impl Builder<'_> {
     }
 
     /// What an extension is in a stage, of what registers hold.
-    fn extension(&mut self, id: NetId, stage: usize) -> NetId {
+    fn extension(&mut self, id: NodeId, stage: usize) -> NetId {
         let node = self.graph.node(id);
-        let Cell::Op(mut op) = node.cell.clone() else {
+        let Cell::Op(op) = &node.cell else {
             unreachable!("a schedule holds every value to its last use");
         };
-        for operand in op.operands_mut() {
-            *operand = self.value(*operand, stage);
-        }
+        let op = op.map(|&operand| self.value(operand, stage));
         let name = self.distinct(&node.label.name);
         let name = self.names.entry(id).or_insert(name).clone();
         let name = self.staged(&name, stage);
@@ -378,7 +373,7 @@ impl Builder<'_> {
     }
 
     /// A read port of a memory: of a block memory the word comes a stage after the address.
-    fn read(&mut self, id: NetId, rom: RomId, address: NetId, stage: usize) -> NetId {
+    fn read(&mut self, id: NodeId, rom: RomId, address: NodeId, stage: usize) -> NetId {
         let synchronous = self.problems.is_clocked(id);
         let address = self.value(address, stage - usize::from(synchronous));
         let node = self.graph.node(id);
@@ -461,14 +456,14 @@ impl Builder<'_> {
     }
 
     /// The stage whose logic makes a node: of a product in the register of a multiplier, that before its own.
-    fn computed_in(&self, id: NetId) -> usize {
+    fn computed_in(&self, id: NodeId) -> usize {
         let product = matches!(self.graph.node(id).cell, Cell::Op(_));
         self.schedule.stage[id.index()] - usize::from(product && self.problems.is_clocked(id))
     }
 
     /// Where values that architectural registers hold are to be seen.
     fn checkpoints(&self, unrolled: &Unrolled) -> Vec<Checkpoint> {
-        let mut before: HashMap<RegId, NetId> = HashMap::new();
+        let mut before: HashMap<RegId, NodeId> = HashMap::new();
         let mut checkpoints = Vec::new();
         for step in &unrolled.steps {
             for &(register, node) in &step.registers {

@@ -3,10 +3,9 @@
 //! Of a sum of which an operand has zeros in its lowest bits those of the other one pass it by. `a + ~b + 1` is `a - b`. What a
 //! constant less a limited value is, is chosen behind the difference, where the register takes it by its reset.
 
-use super::graph::{Cell, Graph, Label};
+use super::graph::{Cell, Graph, Label, NodeId, Op};
 use crate::base::fixed::Format;
 use crate::base::interval::Interval;
-use crate::hdl::netlist::{NetId, Op};
 
 /// A cell; of a sum or a difference the chain has no more bits than it needs.
 pub fn shortened(
@@ -15,7 +14,7 @@ pub fn shortened(
     format: Format,
     range: Interval,
     label: &Label,
-) -> NetId {
+) -> NodeId {
     let op = match op {
         Op::Add { a, b, carry: Some(one) } if graph.constant_of(one) == Some(1) => {
             match (&graph.node(a).cell, &graph.node(b).cell) {
@@ -61,7 +60,7 @@ fn chosen_behind(
     format: Format,
     range: Interval,
     label: &Label,
-) -> Option<NetId> {
+) -> Option<NodeId> {
     let Op::Sub(from, choice) = *op else { return None };
     graph.constant_of(from)?;
     let Cell::Op(Op::Mux { select, inputs }) = graph.node(choice).cell.clone() else { return None };
@@ -75,7 +74,7 @@ fn chosen_behind(
 }
 
 /// How many of the lowest bits are always 0.
-fn zeros(graph: &Graph, id: NetId) -> u32 {
+fn zeros(graph: &Graph, id: NodeId) -> u32 {
     let width = graph.width(id);
     match &graph.node(id).cell {
         Cell::Constant(bits) => bits.trailing_zeros().min(width),

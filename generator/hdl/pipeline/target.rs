@@ -22,8 +22,8 @@
 //! | into a registered multiplier 9 | 5.27 | out of a registered multiplier | 1.70 |
 //! | into a registered multiplier 18 | 5.37 | | |
 
-use super::graph::{Cell, Graph, Node};
-use crate::hdl::netlist::{DelayMemory, NetId, Op};
+use super::graph::{Cell, Graph, Node, NodeId, Op};
+use crate::hdl::netlist::DelayMemory;
 
 /// What a multiplier takes that has a register at its output alone, beyond what a register takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -150,7 +150,7 @@ impl Target {
     }
 
     /// Nanoseconds from the operands of a node to its value.
-    pub fn delay(&self, graph: &Graph, id: NetId) -> f64 {
+    pub fn delay(&self, graph: &Graph, id: NodeId) -> f64 {
         // Look-up tables have four inputs.
         let levels = |inputs: u32| {
             let bits = u32::BITS - (inputs.max(2) - 1).leading_zeros();
@@ -188,8 +188,8 @@ impl Target {
     ///
     /// Synthesis makes a mux with a constant the set or the reset of the register behind it. Its select goes through a
     /// look-up table with the clock enable first, and then a longer way.
-    pub fn setup(&self, graph: &Graph, id: NetId) -> f64 {
-        let constant = |input: &NetId| graph.constant_of(*input).is_some();
+    pub fn setup(&self, graph: &Graph, id: NodeId) -> f64 {
+        let constant = |input: &NodeId| graph.constant_of(*input).is_some();
         match &graph.node(id).cell {
             Cell::Op(Op::Mux { inputs, .. })
                 if graph.width(id) > 1 && inputs.iter().any(constant) =>
@@ -201,14 +201,14 @@ impl Target {
     }
 
     /// The select of a mux of a value and a constant, which takes no look-up tables before a register.
-    pub fn reset_by(&self, graph: &Graph, id: NetId) -> Option<NetId> {
+    pub fn reset_by(&self, graph: &Graph, id: NodeId) -> Option<NodeId> {
         let Cell::Op(Op::Mux { select, inputs }) = &graph.node(id).cell else { return None };
         let constants = inputs.iter().filter(|input| graph.constant_of(**input).is_some()).count();
         (graph.width(id) > 1 && inputs.len() == 2 && constants == 1).then_some(*select)
     }
 
     /// Whether a node is a read of a block memory, which takes a clock.
-    pub fn is_block(&self, graph: &Graph, id: NetId) -> bool {
+    pub fn is_block(&self, graph: &Graph, id: NodeId) -> bool {
         match graph.node(id).cell {
             Cell::Read { address, .. } => {
                 let words = graph.node(address).range.1 + 1;

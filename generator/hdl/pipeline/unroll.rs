@@ -10,20 +10,20 @@
 //! those before, and a jump ahead is executed with and without what it skips. Where the ways meet, each
 //! register is chosen by the condition.
 
+mod clock;
+mod cycle;
 mod line;
 
-use std::collections::HashMap;
-
+use clock::{Clock, State, label};
+pub use cycle::{Cycle, Held, any_cycle};
 pub use line::{Line, Walked, unroll_line};
 
-use super::graph::{Cell, Graph, Label};
+use super::graph::{Cell, Graph, Label, NodeId, Op};
 use super::possible;
 use super::settle::settled;
 use crate::base::diagnostic::{Diagnostic, Diagnostics};
 use crate::base::fixed::Format;
-use crate::hdl::netlist::{
-    Design, Driver, Net, NetId, Op, RegId, RegisterKind, Role, RomId, Sequence, Topic,
-};
+use crate::hdl::netlist::{Design, Net, NetId, RegId, RegisterKind, Role, Sequence};
 
 /// More clocks than any microprogram takes that is worth a pipeline.
 const MOST_CLOCKS: usize = 4096;
@@ -36,7 +36,7 @@ pub struct Unrolled {
     /// The operands, as ports of the design.
     pub operands: Vec<NetId>,
     /// Each result with its value, by its port in the design.
-    pub results: Vec<(NetId, NetId)>,
+    pub results: Vec<(NetId, NodeId)>,
     /// The microinstructions in the order of execution.
     pub steps: Vec<Step>,
 }
@@ -49,15 +49,7 @@ pub struct Step {
     /// How often it was executed before.
     pub visit: usize,
     /// What the architectural registers hold while it is executed, as far as that is determined.
-    pub registers: Vec<(RegId, NetId)>,
-}
-
-/// The state between two clocks.
-#[derive(Clone)]
-struct State {
-    registers: Vec<NetId>,
-    /// Words of synchronous ROMs; of others nothing that is used.
-    roms: Vec<NetId>,
+    pub registers: Vec<(RegId, NodeId)>,
 }
 
 /// Where an execution stands.
@@ -72,7 +64,7 @@ struct Executor<'a> {
     unrolled: Unrolled,
     visits: Vec<usize>,
     /// Set when the results are on the outputs.
-    shown: Option<Vec<(NetId, NetId)>>,
+    shown: Option<Vec<(NetId, NodeId)>>,
 }
 
 /// Executes the microprogram of a design, which the DSL has accepted.
@@ -119,7 +111,7 @@ fn run(design: &Design, iterations: Iterations) -> Result<Unrolled, Diagnostic> 
 fn executed(
     design: &Design,
     iterations: Iterations,
-) -> Result<(Executor<'_>, Vec<(NetId, NetId)>), Diagnostic> {
+) -> Result<(Executor<'_>, Vec<(NetId, NodeId)>), Diagnostic> {
     let mut executor = Executor::new(design, iterations);
     let state = executor.power_up();
     let state = executor.start(&state);
@@ -169,7 +161,7 @@ impl<'a> Executor<'a> {
 
     /// The clock that takes `start`, with all operands.
     fn start(&mut self, state: &State) -> State {
-        Clock::new(self, state, 0, true).edge()
+        Clock::new(self, state, Some(0), true).edge()
     }
 
     /// Executes from `at` on until the results are shown or `stop` is about to be executed; returns the
@@ -236,9 +228,9 @@ impl<'a> Executor<'a> {
     fn iterations(
         &mut self,
         mut state: State,
-        mut condition: NetId,
+        mut condition: NodeId,
         (to, last): (usize, usize),
-        free: &[NetId],
+        free: &[NodeId],
     ) -> Result<State, Diagnostic> {
         let (first, mut entry) = (state.clone(), state.clone());
         let (mut conditions, mut counters) = (Vec::new(), vec![false; state.registers.len()]);
@@ -288,10 +280,10 @@ impl<'a> Executor<'a> {
     fn in_powers(
         &mut self,
         first: &State,
-        conditions: &[NetId],
+        conditions: &[NodeId],
         counters: &[bool],
         (to, last): (usize, usize),
-        free: &[NetId],
+        free: &[NodeId],
     ) -> Option<State> {
         let (count, iterations) = possible::count(&self.unrolled.graph, conditions, free)?;
         // Three iterations are as many choices as two powers.
@@ -348,7 +340,7 @@ impl<'a> Executor<'a> {
     }
 
     /// One microinstruction: the state after it, and the condition of a loop.
-    fn execute(&mut self, at: &At) -> Result<(State, Option<NetId>), Diagnostic> {
+    fn execute(&mut self, at: &At) -> Result<(State, Option<NodeId>), Diagnostic> {
         let design = self.design;
         if self.unrolled.steps.len() == MOST_CLOCKS {
             return Err(
@@ -366,12 +358,25 @@ impl<'a> Executor<'a> {
         self.visits[at.address] += 1;
         self.unrolled.graph.step = self.unrolled.steps.len();
         self.unrolled.steps.push(Step { address: at.address, visit, registers });
-        let mut clock = Clock::new(self, &at.state, at.address, false);
-        if clock.shows()? {
-            let results = clock.results()?;
-            let state = at.state.clone();
-            self.shown = Some(results);
-            return Ok((state, None));
+        let mut clock = Clock::new(self, &at.state, Some(at.address), false);
+        let valid = design.port(|role| role == Role::Valid).map(|port| clock.value(port.net));
+        if let Some(valid) = valid {
+            match clock.graph().constant_of(valid) {
+                Some(0) => {}
+                Some(_) => {
+                    let is_result = |role| matches!(role, Role::Result | Role::Status);
+                    let ports = design.ports.iter().filter(|port| is_result(port.role));
+                    let results = ports.map(|port| (port.net, clock.value(port.net))).collect();
+                    self.shown = Some(results);
+                    return Ok((at.state.clone(), None));
+                }
+                None => {
+                    return Err(self.cannot(
+                        at.address,
+                        "has `valid` follow a signal: a computation with several results is not unrolled",
+                    ));
+                }
+            }
         }
         let condition = match design.control.microprogram[at.address].sequence {
             Sequence::LoopWhile { condition, .. } => Some(clock.value(condition)),
@@ -381,10 +386,10 @@ impl<'a> Executor<'a> {
     }
 
     /// Each register as it is in `yes` where the condition holds, and else as in `no`.
-    fn either(&mut self, condition: NetId, yes: &State, no: &State) -> State {
+    fn either(&mut self, condition: NodeId, yes: &State, no: &State) -> State {
         let design = self.design;
         let graph = &mut self.unrolled.graph;
-        let mut choose = |(&yes, &no): (&NetId, &NetId), net: &Net| {
+        let mut choose = |(&yes, &no): (&NodeId, &NodeId), net: &Net| {
             if yes == no {
                 return yes;
             }
@@ -417,7 +422,7 @@ impl<'a> Executor<'a> {
     }
 
     /// No result depends on what an earlier computation has left.
-    fn determined(&self, results: &[(NetId, NetId)], what: &str) -> Result<(), Diagnostic> {
+    fn determined(&self, results: &[(NetId, NodeId)], what: &str) -> Result<(), Diagnostic> {
         let graph = &self.unrolled.graph;
         for &(port, value) in results {
             for id in graph.cone([value]) {
@@ -435,172 +440,5 @@ impl<'a> Executor<'a> {
             }
         }
         Ok(())
-    }
-}
-
-/// The nets of one clock.
-struct Clock<'e, 'a> {
-    executor: &'e mut Executor<'a>,
-    state: &'e State,
-    address: usize,
-    /// The clock that takes `start`.
-    first: bool,
-    values: HashMap<NetId, NetId>,
-}
-
-impl<'e, 'a> Clock<'e, 'a> {
-    fn new(executor: &'e mut Executor<'a>, state: &'e State, address: usize, first: bool) -> Self {
-        Self { executor, state, address, first, values: HashMap::new() }
-    }
-
-    /// Whether `valid` is high.
-    fn shows(&mut self) -> Result<bool, Diagnostic> {
-        let Some(port) = self.executor.design.port(|role| role == Role::Valid) else {
-            return Ok(false);
-        };
-        let net = port.net;
-        let valid = self.value(net);
-        match self.executor.unrolled.graph.constant_of(valid) {
-            Some(bit) => Ok(bit == 1),
-            None => Err(self.executor.cannot(
-                self.address,
-                "has `valid` follow a signal: a computation with several results is not unrolled",
-            )),
-        }
-    }
-
-    fn results(&mut self) -> Result<Vec<(NetId, NetId)>, Diagnostic> {
-        let ports: Vec<NetId> = self
-            .executor
-            .design
-            .ports
-            .iter()
-            .filter(|port| matches!(port.role, Role::Result | Role::Status))
-            .map(|port| port.net)
-            .collect();
-        Ok(ports.into_iter().map(|port| (port, self.value(port))).collect())
-    }
-
-    /// The value of a net.
-    fn value(&mut self, id: NetId) -> NetId {
-        if let Some(&value) = self.values.get(&id) {
-            return value;
-        }
-        let design = self.executor.design;
-        let net = design.net(id);
-        let label = label(net);
-        let value = match &net.driver {
-            Driver::Constant(bits) => self.constant(*bits, net.format, &label),
-            Driver::Input => self.input(id, net, &label),
-            Driver::Field(field) => {
-                let bits = design.control.microprogram[self.address].values[field.index()];
-                self.constant(bits, net.format, &label)
-            }
-            Driver::Register(register) if *register == design.control.run => {
-                self.constant(u64::from(!self.first), net.format, &label)
-            }
-            Driver::Register(register) if *register == design.control.address => {
-                self.constant(self.address as u64, net.format, &label)
-            }
-            Driver::Register(register) => self.state.registers[register.index()],
-            Driver::Rom(rom) if design.rom(*rom).synchronous => self.state.roms[rom.index()],
-            Driver::Rom(rom) => self.read(*rom),
-            Driver::Op(op) => {
-                let mut op = op.clone();
-                // A mux under a field needs one of its inputs alone.
-                if let Op::Mux { select, inputs } = &op {
-                    let select = self.value(*select);
-                    if let Some(chosen) = self.executor.unrolled.graph.constant_of(select) {
-                        op = Op::Relabel(inputs[(chosen as usize).min(inputs.len() - 1)]);
-                    }
-                }
-                for operand in op.operands_mut() {
-                    *operand = self.value(*operand);
-                }
-                self.executor.unrolled.graph.op(op, net.format, &label)
-            }
-            Driver::Undriven => unreachable!("a checked design has no undriven net"),
-        };
-        self.values.insert(id, value);
-        value
-    }
-
-    fn constant(&mut self, bits: u64, format: Format, label: &Label) -> NetId {
-        self.executor.unrolled.graph.constant(bits, format, label)
-    }
-
-    fn input(&mut self, id: NetId, net: &Net, label: &Label) -> NetId {
-        let design = self.executor.design;
-        let role = design.ports.iter().find(|port| port.net == id).map(|port| port.role);
-        match role {
-            Some(Role::Start | Role::Strobe) => {
-                self.constant(u64::from(self.first), net.format, label)
-            }
-            Some(Role::Reset) => self.constant(1, net.format, label),
-            _ => {
-                let operands = &self.executor.unrolled.operands;
-                let at = operands.iter().position(|&operand| operand == id);
-                let cell = match at {
-                    Some(at) if self.first => Cell::Operand(at),
-                    _ => Cell::Unknown(net.name.clone()),
-                };
-                self.executor.unrolled.graph.leaf(cell, net.format, net.range, label)
-            }
-        }
-    }
-
-    fn read(&mut self, rom: RomId) -> NetId {
-        let design = self.executor.design;
-        let address = self.value(design.rom(rom).address);
-        let net = design.net(design.rom(rom).data);
-        let words = &design.rom(rom).words;
-        self.executor.unrolled.graph.read(rom, address, words, net.format, &label(net))
-    }
-
-    /// The rising edge: what registers and synchronous ROMs hold after it.
-    fn edge(&mut self) -> State {
-        let design = self.executor.design;
-        let mut after = self.state.clone();
-        for (number, register) in design.registers.iter().enumerate() {
-            if register.kind == RegisterKind::Sequencer {
-                continue;
-            }
-            let enable = register.enable.map(|enable| self.value(enable));
-            let fixed = enable.map_or(Some(1), |it| self.executor.unrolled.graph.constant_of(it));
-            if fixed == Some(0) {
-                continue;
-            }
-            let data = self.value(register.data.expect("a checked design has no register without"));
-            let net = design.net(register.q);
-            let graph = &mut self.executor.unrolled.graph;
-            let mut held = graph.op(Op::Relabel(data), net.format, &label(net));
-            if let (Some(select), None) = (enable, fixed) {
-                let inputs = vec![self.state.registers[number], held];
-                held = graph.op(Op::Mux { select, inputs }, net.format, &label(net));
-            }
-            after.registers[number] = if register.kind == RegisterKind::Internal {
-                held
-            } else {
-                graph.name_after(held, &label(net));
-                graph.refine(held, net.range)
-            };
-        }
-        for (number, rom) in design.roms.iter().enumerate() {
-            if rom.synchronous {
-                after.roms[number] = self.read(RomId(number as u32));
-            }
-        }
-        after
-    }
-}
-
-fn label(net: &Net) -> Label {
-    Label {
-        name: net.name.clone(),
-        doc: if net.doc_topic == Topic::Device { net.doc.clone() } else { String::new() },
-        block: net.block,
-        named: net.named,
-        part_of: None,
-        location: net.location,
     }
 }

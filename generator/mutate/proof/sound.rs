@@ -145,9 +145,7 @@ fn same(design: &Design, order: &[NetId]) -> Vec<NetId> {
             Driver::Op(op) => {
                 // Whether an operand is signed counts where it is extended, compared or multiplied.
                 signed = op.operands().iter().any(|net| design.net(*net).format.signed);
-                for operand in op.operands_mut() {
-                    *operand = same[operand.index()];
-                }
+                *op = op.map(|operand| same[operand.index()]);
             }
             Driver::Constant(_) => {}
             _ => continue,

@@ -3,13 +3,11 @@
 //! The model in C computes what the core computes, bit for bit. It is made of the netlist, by its microprogram, and
 //! knows nothing of the golden model, with which tests compare it.
 
-mod graph;
 mod litex;
 mod model;
 mod print;
 mod registers;
 mod setup;
-mod unroll;
 
 pub use litex::file as of_litex;
 pub use model::files;

@@ -5,11 +5,12 @@ use std::collections::BTreeMap;
 use anyhow::{Context, Result};
 use askama::Template;
 
-use super::graph::{Graph, Node, State};
-use super::print::{Line, Printer, comment, field, literal, pattern_type, read_name, taken};
-use super::unroll::{Stepped, stepped, straight};
+use super::print::{Line, Printer, comment, field, literal, pattern_type, taken};
 use crate::base::fixed::{Format, mask};
-use crate::hdl::netlist::{Design, NetId, Port, RegId, Role, RomId};
+use crate::hdl::netlist::{Design, Port, Role, RomId};
+use crate::hdl::pipeline::{
+    Cell, Cycle, Graph, Held, NodeId, Unrolled, any_cycle, unroll_in_powers,
+};
 use crate::hdl::verilog::text::{Names, ascii, constant_name, statement};
 use crate::package::{EmitInputs, Unfit, WorkedExample, render};
 
@@ -226,91 +227,84 @@ fn result_ports(design: &Design) -> impl Iterator<Item = &Port> {
 
 /// The body of the function of one point, and the ROMs that it reads.
 fn of_point(design: &Design, tables: &[String]) -> Result<(Vec<String>, Vec<RomId>)> {
-    let straight = straight(design)?;
-    let mut names = taken();
-    let (printer, lines) = Printer::new(
-        &straight.graph,
-        design,
-        tables,
-        BTreeMap::new(),
-        &mut names,
-        &straight.results,
-    );
-    let mut body = sections(1, &lines, &straight.sections);
+    let unrolled = unroll_in_powers(design)?;
+    let results: Vec<(&Port, NodeId)> = results_of(design, &unrolled).collect();
+    let wanted: Vec<NodeId> = results.iter().map(|(_, value)| *value).collect();
+    let mut printer = Printer::new(design, &unrolled, tables, BTreeMap::new());
+    let mut body = Vec::new();
+    let mut step = None;
+    for Line { step: of, text } in printer.lines(&mut taken(), &wanted) {
+        if step.replace(of) != Some(of) {
+            let step = &unrolled.steps[of];
+            let turn =
+                if step.visit == 0 { String::new() } else { format!(", turn {}", step.visit + 1) };
+            let name = &design.control.microprogram[step.address].name;
+            body.push(format!("    {}", comment(&format!("{}: {name}{turn}", step.address))));
+        }
+        body.extend(statement(4, &text));
+    }
     body.push(String::new());
-    for (port, value) in result_ports(design).zip(&straight.results) {
-        let text = assigned(design, port, &printer.text(*value));
+    for (port, value) in results {
+        let text = assigned(design, port, &printer.text(value));
         body.extend(statement(4, &format!("results.{text}")));
     }
-    let read = roms(&straight.graph, &straight.results);
-    Ok((body, read))
+    Ok((body, roms(&unrolled.graph, &wanted)))
+}
+
+fn results_of<'a>(
+    design: &'a Design,
+    of: &'a Unrolled,
+) -> impl Iterator<Item = (&'a Port, NodeId)> {
+    let value = |port: &Port| of.results.iter().find(|(net, _)| *net == port.net).map(|it| it.1);
+    result_ports(design).filter_map(move |port| Some((port, value(port)?)))
 }
 
 /// The body of the function of a line, and the ROMs that it reads.
 fn of_line(design: &Design, tables: &[String]) -> Result<(Vec<String>, Vec<RomId>)> {
-    let Stepped { first, initial, each, clock, next } = stepped(design)?;
+    let Cycle { unrolled, held } = any_cycle(design);
+    let graph = &unrolled.graph;
     let port = |role: Role| {
-        let port = design.port(|of| of == role).map(|port| clock[port.net.index()]);
-        port.with_context(|| format!("it has no output {role:?}"))
+        let port =
+            design.port(|of| of == role).with_context(|| format!("it has no output {role:?}"))?;
+        let value = unrolled.results.iter().find(|(net, _)| *net == port.net);
+        value.map(|it| it.1).context("an output has no value")
     };
     let (valid, done) = (port(Role::Valid)?, port(Role::Done)?);
-    let results: Vec<(&Port, NetId)> =
-        result_ports(design).map(|port| (port, clock[port.net.index()])).collect();
+    let results: Vec<(&Port, NodeId)> = results_of(design, &unrolled).collect();
 
-    // Registers and reads that the results of some clock depend on.
-    let mut wanted: Vec<NetId> = results.iter().map(|(_, value)| *value).collect();
-    wanted.extend([valid, done]);
-    let (mut registers, mut reads) = (Vec::new(), Vec::new());
+    // Registers and memories that the results of some clock depend on.
+    let outputs = results.iter().map(|(_, value)| *value).chain([valid, done]);
+    let mut wanted: Vec<NodeId> = outputs.collect();
+    let mut kept: Vec<Held> = Vec::new();
     loop {
-        let needed = each.needed(&wanted);
-        let before = registers.len() + reads.len();
-        for (value, _) in each.values.iter().zip(needed).filter(|(_, needed)| *needed) {
-            match value.node {
-                Node::State(id) if !registers.contains(&id) => {
-                    registers.push(id);
-                    wanted.push(next.registers[id.index()]);
-                }
-                Node::Read(id) if !reads.contains(&id) => {
-                    reads.push(id);
-                    wanted.push(next.reads[id.index()]);
-                }
-                _ => {}
-            }
-        }
-        if registers.len() + reads.len() == before {
+        let needed = graph.cone(wanted.iter().copied());
+        let more = held.iter().filter(|it| needed.binary_search(&it.before).is_ok());
+        let is_state = |it: &Held| matches!(graph.node(it.before).cell, Cell::Unknown(_));
+        let now: Vec<Held> = more.copied().filter(is_state).collect();
+        if now.len() == kept.len() {
             break;
         }
+        wanted.extend(now.iter().map(|it| it.after));
+        kept = now;
     }
-    registers.sort_unstable();
-    reads.sort_unstable();
 
     let mut names = taken();
-    let states: BTreeMap<RegId, String> = registers
-        .iter()
-        .map(|id| (*id, names.fresh(&design.net(design.register(*id).q).name)))
-        .collect();
-    for id in &reads {
-        names.fresh(&read_name(design, id.index()));
-    }
-    let starts: Vec<NetId> = registers.iter().map(|id| initial.registers[id.index()]).collect();
-    let (printer, lines) =
-        Printer::new(&first, design, tables, BTreeMap::new(), &mut names, &starts);
+    let named = kept.iter().map(|it| (it.before, names.fresh(&design.net(it.net).name)));
+    let states: BTreeMap<NodeId, String> = named.collect();
+    let starts: Vec<NodeId> = kept.iter().map(|it| it.first).collect();
+    let mut printer = Printer::new(design, &unrolled, tables, BTreeMap::new());
     let mut body = vec![format!("    {}", comment("the clock that takes start"))];
+    let lines = printer.lines(&mut names, &starts);
     body.extend(lines.iter().flat_map(|line| statement(4, &line.text)));
-    for (id, start) in registers.iter().zip(&starts) {
-        let kind = pattern_type(first.width(*start));
-        let text = format!("{kind} {} = {};", states[id], printer.text(*start));
+    for it in &kept {
+        let kind = pattern_type(graph.width(it.before));
+        let text = format!("{kind} {} = {};", states[&it.before], printer.text(it.first));
         body.extend(statement(4, &text));
-    }
-    for id in &reads {
-        let rom = design.rom(*id);
-        let width = design.width(rom.data);
-        let name = read_name(design, id.index());
-        body.push(format!("    {} {name} = {};", pattern_type(width), literal(0, width)));
     }
     body.push("    size_t count = 0;".to_owned());
     body.push("    for (;;) {".to_owned());
-    let (printer, lines) = Printer::new(&each, design, tables, states.clone(), &mut names, &wanted);
+    let mut printer = Printer::new(design, &unrolled, tables, states.clone());
+    let lines = printer.lines(&mut names, &wanted);
     body.extend(lines.iter().flat_map(|line| statement(8, &line.text)));
     body.push(format!("        if ({} != 0u) {{", printer.text(valid)));
     body.push("            if (count < capacity) {".to_owned());
@@ -324,42 +318,33 @@ fn of_line(design: &Design, tables: &[String]) -> Result<(Vec<String>, Vec<RomId
     body.push(format!("        if ({} != 0u) {{", printer.text(done)));
     body.push("            return count;".to_owned());
     body.push("        }".to_owned());
-    body.extend(clocked(design, &printer, &registers, &reads, &states, &next, &mut names));
+    body.extend(clocked(graph, &printer, &kept, &states, &mut names));
     body.push("    }".to_owned());
-    let mut read = roms(&each, &wanted);
-    read.extend(roms(&first, &starts));
+    let mut read = roms(graph, &wanted);
+    read.extend(roms(graph, &starts));
     Ok((body, read))
 }
 
 /// All registers take their new values at once.
 fn clocked(
-    design: &Design,
+    graph: &Graph,
     printer: &Printer,
-    registers: &[RegId],
-    reads: &[RomId],
-    states: &BTreeMap<RegId, String>,
-    next: &State,
+    kept: &[Held],
+    states: &BTreeMap<NodeId, String>,
     names: &mut Names,
 ) -> Vec<String> {
-    let registers = registers.iter().map(|id| {
-        let width = design.width(design.register(*id).q);
-        (states[id].clone(), next.registers[id.index()], width)
-    });
-    let reads = reads.iter().map(|id| {
-        let width = design.width(design.rom(*id).data);
-        (read_name(design, id.index()), next.reads[id.index()], width)
-    });
     let mut lines = vec![format!("        {}", comment("the rising edge"))];
     let mut moves = Vec::new();
-    for (name, value, width) in registers.chain(reads) {
-        let mut text = printer.text(value);
-        if text == name {
+    for it in kept {
+        let name = &states[&it.before];
+        let mut text = printer.text(it.after);
+        if text == *name {
             continue;
         }
         // What is computed from the state has to be computed before any of it changes.
-        if !printer.is_settled(value) {
+        if !printer.is_settled(it.after) {
             let next = names.fresh(&format!("next_{name}"));
-            let kind = pattern_type(width);
+            let kind = pattern_type(graph.width(it.before));
             lines.extend(statement(8, &format!("const {kind} {next} = {text};")));
             text = next;
         }
@@ -367,21 +352,6 @@ fn clocked(
     }
     lines.extend(moves);
     lines
-}
-
-/// Statements under the headings of their sections.
-fn sections(depth: usize, lines: &[Line], headings: &[String]) -> Vec<String> {
-    let indent = 4 * depth;
-    let mut body = Vec::new();
-    let mut section = None;
-    for line in lines {
-        if section != Some(line.section) {
-            section = Some(line.section);
-            body.push(format!("{}{}", " ".repeat(indent), comment(&headings[line.section])));
-        }
-        body.extend(statement(indent, &line.text));
-    }
-    body
 }
 
 /// `red_out = …;` from a bit pattern.
@@ -400,15 +370,13 @@ fn assigned(design: &Design, port: &Port, pattern: &str) -> String {
     format!("{} = {value};", field(&net.name))
 }
 
-fn roms(graph: &Graph, wanted: &[NetId]) -> Vec<RomId> {
-    let needed = graph.needed(wanted);
-    let values = graph.values.iter().zip(needed).filter(|(_, needed)| *needed);
-    values
-        .filter_map(|(value, _)| match value.node {
-            Node::Rom(rom, _) => Some(rom),
-            _ => None,
-        })
-        .collect()
+fn roms(graph: &Graph, wanted: &[NodeId]) -> Vec<RomId> {
+    let needed = graph.cone(wanted.iter().copied()).into_iter();
+    let rom = |id| match graph.node(id).cell {
+        Cell::Read { rom, .. } => Some(rom),
+        _ => None,
+    };
+    needed.filter_map(rom).collect()
 }
 
 /// The array of each ROM.

@@ -5,9 +5,9 @@
 
 use std::collections::BTreeMap;
 
-use super::graph::{Graph, Node};
 use crate::base::fixed::mask;
-use crate::hdl::netlist::{Design, NetId, Op, RegId};
+use crate::hdl::netlist::{Design, NetId};
+use crate::hdl::pipeline::{Cell, Graph, NodeId, Op, Unrolled};
 use crate::hdl::verilog::text::{Names, ascii};
 
 /// The words of C99 and the names that the model's own text uses.
@@ -58,87 +58,80 @@ impl Text {
 pub struct Printer<'a> {
     graph: &'a Graph,
     design: &'a Design,
+    /// The ports with the operands, in their order.
+    operands: &'a [NetId],
     /// The tables, by ROM.
     tables: &'a [String],
     /// Names of values that have a statement of their own.
-    locals: BTreeMap<NetId, String>,
-    /// Names of registers and of what was read, where they are not known otherwise.
-    states: BTreeMap<RegId, String>,
+    locals: BTreeMap<NodeId, String>,
+    /// Names of values that registers and memories hold before a clock.
+    states: BTreeMap<NodeId, String>,
 }
 
-/// A statement, and the section that it belongs to.
+/// A statement, and the microinstruction that it belongs to.
 pub struct Line {
-    /// The number of the section.
-    pub section: usize,
+    /// The number of the step.
+    pub step: usize,
     /// The text, without indentation.
     pub text: String,
 }
 
 impl<'a> Printer<'a> {
-    /// A printer and the statements that compute `wanted`. `states` names registers.
+    /// A printer of the values of a computation; `states` names those that registers and memories hold.
     pub fn new(
-        graph: &'a Graph,
         design: &'a Design,
+        of: &'a Unrolled,
         tables: &'a [String],
-        states: BTreeMap<RegId, String>,
-        names: &mut Names,
-        wanted: &[NetId],
-    ) -> (Self, Vec<Line>) {
-        let needed = graph.needed(wanted);
-        let mut uses = vec![0_u32; graph.values.len()];
-        let ids = (0..graph.values.len() as u32).map(NetId).filter(|id| needed[id.index()]);
-        let ids: Vec<NetId> = ids.collect();
-        for id in &ids {
-            for operand in graph.operands(*id) {
-                uses[operand.index()] += 1;
-            }
-        }
-        for id in wanted {
+        states: BTreeMap<NodeId, String>,
+    ) -> Self {
+        let (graph, operands) = (&of.graph, &of.operands);
+        Self { graph, design, operands, tables, locals: BTreeMap::new(), states }
+    }
+
+    /// The statements that compute `wanted`.
+    pub fn lines(&mut self, names: &mut Names, wanted: &[NodeId]) -> Vec<Line> {
+        let graph = self.graph;
+        let needed = graph.cone(wanted.iter().copied());
+        let mut uses = vec![0_u32; graph.nodes.len()];
+        let operands = needed.iter().flat_map(|id| graph.node(*id).cell.operands());
+        for id in operands.chain(wanted.iter().copied()) {
             uses[id.index()] += 1;
         }
-        let mut printer = Self { graph, design, tables, locals: BTreeMap::new(), states };
         let mut lines = Vec::new();
-        for id in ids {
-            let value = graph.value(id);
-            let local = match &value.node {
+        for id in needed {
+            let node = graph.node(id);
+            let local = match &node.cell {
                 // Another name for the same bits.
-                Node::Op(Op::Relabel(_)) => false,
-                Node::Op(Op::Extend(of)) if !graph.value(*of).format.signed => false,
-                Node::Op(_) | Node::Rom(..) => uses[id.index()] > 1 || !value.name.is_empty(),
-                Node::Input(_) => true,
-                Node::Constant(_) | Node::State(_) | Node::Read(_) => false,
+                Cell::Op(Op::Relabel(_)) => false,
+                Cell::Op(Op::Extend(of)) if !graph.node(*of).format.signed => false,
+                Cell::Op(_) | Cell::Read { .. } => uses[id.index()] > 1 || node.label.named,
+                Cell::Operand(_) => true,
+                Cell::Constant(_) | Cell::Unknown(_) => false,
             };
             if !local {
                 continue;
             }
-            let wish = match &value.node {
-                Node::Input(port) => design.net(*port).name.as_str(),
-                _ if value.name.is_empty() => "value",
-                _ => &value.name,
-            };
-            let text = printer.expression(id).0;
-            let name = names.fresh(wish);
+            let text = self.expression(id).0;
+            let name = names.fresh(&node.label.name);
             let kind = pattern_type(graph.width(id));
-            lines.push(Line {
-                section: value.section,
-                text: format!("const {kind} {name} = {text};"),
-            });
-            printer.locals.insert(id, name);
+            let text = format!("const {kind} {name} = {text};");
+            lines.push(Line { step: node.step, text });
+            self.locals.insert(id, name);
         }
-        (printer, lines)
+        lines
     }
 
     /// Whether a value stands for itself, whatever becomes of the state.
-    pub fn is_settled(&self, id: NetId) -> bool {
+    pub fn is_settled(&self, id: NodeId) -> bool {
         self.locals.contains_key(&id) || self.graph.constant_of(id).is_some()
     }
 
     /// A value that the statements have computed.
-    pub fn text(&self, id: NetId) -> String {
+    pub fn text(&self, id: NodeId) -> String {
         self.value(id).0
     }
 
-    fn value(&self, id: NetId) -> Text {
+    fn value(&self, id: NodeId) -> Text {
         match self.locals.get(&id) {
             Some(name) => Text(name.clone(), true),
             None => self.expression(id),
@@ -146,7 +139,7 @@ impl<'a> Printer<'a> {
     }
 
     /// In the type of `width` bits.
-    fn in_type(&self, id: NetId, width: u32) -> Text {
+    fn in_type(&self, id: NodeId, width: u32) -> Text {
         let (from, to) = (pattern_type(self.graph.width(id)), pattern_type(width));
         let text = self.value(id);
         if let Some(bits) = self.graph.constant_of(id) {
@@ -163,7 +156,7 @@ impl<'a> Printer<'a> {
     }
 
     /// With copies of the sign bit above it, in the type of `width` bits.
-    fn with_sign(&self, id: NetId, width: u32) -> String {
+    fn with_sign(&self, id: NodeId, width: u32) -> String {
         let own = self.graph.width(id);
         let text = self.in_type(id, width).inner();
         if (own == 32 && width == 32) || own == 64 {
@@ -175,9 +168,9 @@ impl<'a> Printer<'a> {
     }
 
     /// As a condition.
-    fn condition(&self, id: NetId) -> String {
-        match (&self.graph.value(id).node, self.locals.get(&id)) {
-            (Node::Op(op @ (Op::Equal(..) | Op::Less(..) | Op::Any(_) | Op::All(_))), None) => {
+    fn condition(&self, id: NodeId) -> String {
+        match (&self.graph.node(id).cell, self.locals.get(&id)) {
+            (Cell::Op(op @ (Op::Equal(..) | Op::Less(..) | Op::Any(_) | Op::All(_))), None) => {
                 self.comparison(op)
             }
             _ => format!("{} != 0u", self.value(id).inner()),
@@ -185,10 +178,10 @@ impl<'a> Printer<'a> {
     }
 
     fn comparison(&self, op: &Op) -> String {
-        let text = |id: NetId| self.value(id).inner();
+        let text = |id: NodeId| self.value(id).inner();
         match op {
             Op::Equal(a, b) => format!("{} == {}", text(*a), text(*b)),
-            Op::Less(a, b) if self.graph.value(*a).format.signed => {
+            Op::Less(a, b) if self.graph.node(*a).format.signed => {
                 let width = self.graph.width(*a);
                 let sign = literal(1 << (width - 1), width);
                 format!("({} ^ {sign}) < ({} ^ {sign})", text(*a), text(*b))
@@ -205,13 +198,13 @@ impl<'a> Printer<'a> {
         }
     }
 
-    fn expression(&self, id: NetId) -> Text {
-        let value = self.graph.value(id);
-        let width = value.format.width();
-        match &value.node {
-            Node::Constant(bits) => Text(literal(*bits, width), true),
-            Node::Input(port) => {
-                let net = self.design.net(*port);
+    fn expression(&self, id: NodeId) -> Text {
+        let node = self.graph.node(id);
+        let width = node.format.width();
+        match &node.cell {
+            Cell::Constant(bits) => Text(literal(*bits, width), true),
+            Cell::Operand(at) => {
+                let net = self.design.net(self.operands[*at]);
                 let field = field(&net.name);
                 let text = if net.format.signed {
                     format!("({})operands.{field}", pattern_type(width))
@@ -223,27 +216,26 @@ impl<'a> Printer<'a> {
                     _ => Text(format!("{text} & {}", literal(mask(width), width)), false),
                 }
             }
-            Node::State(register) => {
-                let name = self.states.get(register).cloned();
+            Cell::Unknown(_) => {
+                let name = self.states.get(&id).cloned();
                 Text(name.unwrap_or_else(|| literal(0, width)), true)
             }
-            Node::Read(rom) => Text(read_name(self.design, rom.index()), true),
-            Node::Rom(rom, address) => {
+            Cell::Read { rom, address } => {
                 let kind = pattern_type(width);
                 let table = &self.tables[rom.index()];
                 Text(format!("({kind}){table}[{}]", self.value(*address).0), true)
             }
-            Node::Op(op) => self.operation(op, width),
+            Cell::Op(op) => self.operation(op, width),
         }
     }
 
     fn operation(&self, op: &Op, width: u32) -> Text {
         let graph = self.graph;
-        let text = |id: NetId| self.value(id).inner();
-        let wide = |id: NetId| self.in_type(id, width).inner();
+        let text = |id: NodeId| self.value(id).inner();
+        let wide = |id: NodeId| self.in_type(id, width).inner();
         match op {
             Op::Relabel(of) => self.value(*of),
-            Op::Extend(of) if graph.value(*of).format.signed => {
+            Op::Extend(of) if graph.node(*of).format.signed => {
                 self.masked(self.with_sign(*of, width), width)
             }
             Op::Extend(of) => self.in_type(*of, width),
@@ -287,7 +279,7 @@ impl<'a> Printer<'a> {
                 self.masked(sum, width)
             }
             Op::Sub(a, b) => self.masked(format!("{} - {}", text(*a), text(*b)), width),
-            Op::Mul(a, b) if graph.value(*a).format.signed => {
+            Op::Mul(a, b) if graph.node(*a).format.signed => {
                 let (a, b) = (self.with_sign(*a, width), self.with_sign(*b, width));
                 self.masked(format!("{a} * {b}"), width)
             }
@@ -310,11 +302,6 @@ impl<'a> Printer<'a> {
             }
         }
     }
-}
-
-/// The variable with the word that a synchronous ROM read.
-pub fn read_name(design: &Design, rom: usize) -> String {
-    design.net(design.roms[rom].data).name.clone()
 }
 
 /// A comment of one line.

@@ -13,7 +13,7 @@ use super::{Clock, Executor, Iterations, State, Unrolled};
 use crate::base::cone::reached;
 use crate::base::diagnostic::{Diagnostic, Diagnostics};
 use crate::hdl::netlist::{Design, NetId, RegisterKind, Role, Sequence};
-use crate::hdl::pipeline::graph::Cell;
+use crate::hdl::pipeline::graph::{Cell, NodeId};
 
 /// The most clocks from a point to its results.
 const MOST_DELAY: usize = 12;
@@ -31,11 +31,11 @@ pub struct Line {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Walked {
     /// What the first point writes.
-    pub first: NetId,
+    pub first: NodeId,
     /// What it holds before another point is written.
-    pub before: NetId,
+    pub before: NodeId,
     /// What that point writes, made of what the walk holds before.
-    pub next: NetId,
+    pub next: NodeId,
 }
 
 /// Executes the points of a line.
@@ -75,7 +75,7 @@ impl Points<'_> {
         };
         self.in_order(*first, &writes)?;
         let (begun, gone) = (self.edge(&any, *first), self.edge(&any, *other));
-        let held = |state: &State| -> Vec<NetId> {
+        let held = |state: &State| -> Vec<NodeId> {
             walk.iter().map(|&number| state.registers[number]).collect()
         };
         for &at in more {
@@ -146,11 +146,11 @@ impl Points<'_> {
         state: &State,
         from: &[usize],
         clocks: usize,
-    ) -> Result<Vec<(NetId, NetId)>, Diagnostic> {
+    ) -> Result<Vec<(NetId, NodeId)>, Diagnostic> {
         let design = self.executor.design;
         let ports = design.ports.iter().filter(|port| port.role == Role::Result);
         let ports: Vec<NetId> = ports.map(|port| port.net).collect();
-        let mut all: Option<Vec<(NetId, NetId)>> = None;
+        let mut all: Option<Vec<(NetId, NodeId)>> = None;
         for path in paths(design, from, clocks) {
             let results = self.at_end(state, &path, |clock| {
                 ports.iter().map(|&port| (port, clock.value(port))).collect::<Vec<_>>()
@@ -164,7 +164,7 @@ impl Points<'_> {
     }
 
     /// The registers on which the results depend.
-    fn walk_of(&self, any: &State, shown: &[(NetId, NetId)]) -> Result<Vec<usize>, Diagnostic> {
+    fn walk_of(&self, any: &State, shown: &[(NetId, NodeId)]) -> Result<Vec<usize>, Diagnostic> {
         let mut walk = Vec::new();
         for id in shown.iter().flat_map(|&(_, node)| self.unknowns(node)) {
             let number = any.registers.iter().position(|&register| register == id);
@@ -192,7 +192,7 @@ impl Points<'_> {
     }
 
     fn edge(&mut self, state: &State, address: usize) -> State {
-        Clock::new(&mut self.executor, state, address, false).edge()
+        Clock::new(&mut self.executor, state, Some(address), false).edge()
     }
 
     /// What is asked in the clock of the last microinstruction, after those before it.
@@ -207,13 +207,13 @@ impl Points<'_> {
         for &address in before {
             state = self.edge(&state, address);
         }
-        ask(&mut Clock::new(&mut self.executor, &state, *last, false))
+        ask(&mut Clock::new(&mut self.executor, &state, Some(*last), false))
     }
 
     /// The values on which one depends and that nothing has determined.
-    fn unknowns(&self, id: NetId) -> Vec<NetId> {
+    fn unknowns(&self, id: NodeId) -> Vec<NodeId> {
         let graph = &self.executor.unrolled.graph;
-        let is_unknown = |id: &NetId| matches!(graph.node(*id).cell, Cell::Unknown(_));
+        let is_unknown = |id: &NodeId| matches!(graph.node(*id).cell, Cell::Unknown(_));
         graph.cone([id]).into_iter().filter(is_unknown).collect()
     }
 

@@ -1,0 +1,181 @@
+//! The nets of one clock, and the rising edge behind it.
+
+use std::collections::HashMap;
+
+use super::Executor;
+use crate::base::fixed::Format;
+use crate::hdl::netlist::{self, Driver, Net, NetId, RegId, RegisterKind, Role, RomId, Topic};
+use crate::hdl::pipeline::graph::{Cell, Graph, Label, NodeId, Op};
+
+/// The state between two clocks.
+#[derive(Clone)]
+pub(super) struct State {
+    pub(super) registers: Vec<NodeId>,
+    /// Words of synchronous ROMs; of others nothing that is used.
+    pub(super) roms: Vec<NodeId>,
+}
+
+/// The nets of one clock.
+pub(super) struct Clock<'e, 'a> {
+    executor: &'e mut Executor<'a>,
+    state: &'e State,
+    /// The microinstruction that is executed; none if the sequencer's registers say which.
+    address: Option<usize>,
+    /// The clock that takes `start`.
+    first: bool,
+    values: HashMap<NetId, NodeId>,
+}
+
+impl<'e, 'a> Clock<'e, 'a> {
+    pub(super) fn new(
+        executor: &'e mut Executor<'a>,
+        state: &'e State,
+        address: Option<usize>,
+        first: bool,
+    ) -> Self {
+        Self { executor, state, address, first, values: HashMap::new() }
+    }
+
+    /// The value of a net.
+    pub(super) fn value(&mut self, id: NetId) -> NodeId {
+        if let Some(&value) = self.values.get(&id) {
+            return value;
+        }
+        let design = self.executor.design;
+        let net = design.net(id);
+        let label = label(net);
+        let value = match &net.driver {
+            Driver::Constant(bits) => self.constant(*bits, net.format, &label),
+            Driver::Input => self.input(id, net, &label),
+            Driver::Field(field) => match self.address {
+                Some(address) => {
+                    let bits = design.control.microprogram[address].values[field.index()];
+                    self.constant(bits, net.format, &label)
+                }
+                None => {
+                    let of = self.value(design.rom(design.control.rom).data);
+                    let low = design.field_positions()[field.index()];
+                    self.graph().op(Op::Slice { of, low }, net.format, &label)
+                }
+            },
+            Driver::Register(register) => match self.of_sequencer(*register) {
+                Some(bits) => self.constant(bits, net.format, &label),
+                None => self.state.registers[register.index()],
+            },
+            Driver::Rom(rom) if design.rom(*rom).synchronous => self.state.roms[rom.index()],
+            Driver::Rom(rom) => self.read(*rom),
+            Driver::Op(op) => {
+                // A mux under a field needs one of its inputs alone.
+                let mut chosen = None;
+                if let netlist::Op::Mux { select, inputs } = op {
+                    let select = self.value(*select);
+                    let select = self.graph().constant_of(select);
+                    chosen = select.map(|it| inputs[(it as usize).min(inputs.len() - 1)]);
+                }
+                let op = match chosen {
+                    Some(input) => Op::Relabel(self.value(input)),
+                    None => op.map(|&operand| self.value(operand)),
+                };
+                self.graph().op(op, net.format, &label)
+            }
+            Driver::Undriven => unreachable!("a checked design has no undriven net"),
+        };
+        self.values.insert(id, value);
+        value
+    }
+
+    /// What address counter and run flag hold while a microinstruction is executed.
+    fn of_sequencer(&self, register: RegId) -> Option<u64> {
+        let (control, address) = (&self.executor.design.control, self.address?);
+        match register {
+            it if it == control.run => Some(u64::from(!self.first)),
+            it if it == control.address => Some(address as u64),
+            _ => None,
+        }
+    }
+
+    pub(super) fn graph(&mut self) -> &mut Graph {
+        &mut self.executor.unrolled.graph
+    }
+
+    fn constant(&mut self, bits: u64, format: Format, label: &Label) -> NodeId {
+        self.graph().constant(bits, format, label)
+    }
+
+    fn input(&mut self, id: NetId, net: &Net, label: &Label) -> NodeId {
+        let design = self.executor.design;
+        let role = design.ports.iter().find(|port| port.net == id).map(|port| port.role);
+        match role {
+            Some(Role::Start | Role::Strobe) => {
+                self.constant(u64::from(self.first), net.format, label)
+            }
+            Some(Role::Reset) => self.constant(1, net.format, label),
+            _ => {
+                let operands = &self.executor.unrolled.operands;
+                let at = operands.iter().position(|&operand| operand == id);
+                let cell = match at {
+                    Some(at) if self.first => Cell::Operand(at),
+                    _ => Cell::Unknown(net.name.clone()),
+                };
+                self.graph().leaf(cell, net.format, net.range, label)
+            }
+        }
+    }
+
+    fn read(&mut self, rom: RomId) -> NodeId {
+        let design = self.executor.design;
+        let address = self.value(design.rom(rom).address);
+        let net = design.net(design.rom(rom).data);
+        let words = &design.rom(rom).words;
+        self.graph().read(rom, address, words, net.format, &label(net))
+    }
+
+    /// The rising edge: what registers and synchronous ROMs hold after it.
+    pub(super) fn edge(&mut self) -> State {
+        let design = self.executor.design;
+        let mut after = self.state.clone();
+        for (number, register) in design.registers.iter().enumerate() {
+            // Where control goes from a known microinstruction is not asked of the registers.
+            if register.kind == RegisterKind::Sequencer && self.address.is_some() {
+                continue;
+            }
+            let enable = register.enable.map(|enable| self.value(enable));
+            let fixed = enable.map_or(Some(1), |it| self.graph().constant_of(it));
+            if fixed == Some(0) {
+                continue;
+            }
+            let data = self.value(register.data.expect("a checked design has no register without"));
+            let net = design.net(register.q);
+            let before = self.state.registers[number];
+            let graph = self.graph();
+            let mut held = graph.op(Op::Relabel(data), net.format, &label(net));
+            if let (Some(select), None) = (enable, fixed) {
+                let inputs = vec![before, held];
+                held = graph.op(Op::Mux { select, inputs }, net.format, &label(net));
+            }
+            after.registers[number] = if register.kind == RegisterKind::Internal {
+                held
+            } else {
+                graph.name_after(held, &label(net));
+                graph.refine(held, net.range)
+            };
+        }
+        for (number, rom) in design.roms.iter().enumerate() {
+            if rom.synchronous {
+                after.roms[number] = self.read(RomId(number as u32));
+            }
+        }
+        after
+    }
+}
+
+pub(super) fn label(net: &Net) -> Label {
+    Label {
+        name: net.name.clone(),
+        doc: if net.doc_topic == Topic::Device { net.doc.clone() } else { String::new() },
+        block: net.block,
+        named: net.named,
+        part_of: None,
+        location: net.location,
+    }
+}

@@ -1,0 +1,65 @@
+//! One clock of a computation, whatever the registers hold before it: what a computation with any number of results repeats.
+
+use super::clock::Clock;
+use super::{Executor, Iterations, Unrolled};
+use crate::base::fixed::Format;
+use crate::hdl::netlist::{Design, NetId};
+use crate::hdl::pipeline::graph::NodeId;
+
+/// A clock of a design that runs.
+#[derive(Debug)]
+pub struct Cycle {
+    /// The values, those of the clock that takes `start` among them; results are every output.
+    pub unrolled: Unrolled,
+    /// Registers and synchronous ROMs.
+    pub held: Vec<Held>,
+}
+
+/// What a register or a synchronous ROM holds, by values.
+#[derive(Clone, Copy, Debug)]
+pub struct Held {
+    /// The net that it drives.
+    pub net: NetId,
+    /// After the clock that takes `start` and all operands; of a ROM what it holds before any clock, which no result shows.
+    pub first: NodeId,
+    /// Before any clock.
+    pub before: NodeId,
+    /// After that clock, made of what is held before.
+    pub after: NodeId,
+}
+
+/// Executes a clock in which any microinstruction may be executed.
+pub fn any_cycle(design: &Design) -> Cycle {
+    let mut executor = Executor::new(design, Iterations::OneByOne);
+    let mut running = executor.power_up();
+    let mut reset = running.clone();
+    for (register, held) in design.registers.iter().zip(&mut reset.registers) {
+        if let Some(bits) = register.reset {
+            let net = design.net(register.q);
+            *held = executor.unrolled.graph.constant(bits, net.format, &super::label(net));
+        }
+    }
+    let first = Clock::new(&mut executor, &reset, None, true).edge();
+    let run = design.control.run;
+    let label = super::label(design.net(design.register(run).q));
+    running.registers[run.index()] = executor.unrolled.graph.constant(1, Format::BIT, &label);
+    let mut clock = Clock::new(&mut executor, &running, None, false);
+    let outputs = design.outputs().map(|port| (port.net, clock.value(port.net))).collect();
+    let after = clock.edge();
+    executor.unrolled.results = outputs;
+    let registers = design.registers.iter().enumerate().map(|(at, register)| Held {
+        net: register.q,
+        first: first.registers[at],
+        before: running.registers[at],
+        after: after.registers[at],
+    });
+    let roms = design.roms.iter().enumerate().filter(|(_, rom)| rom.synchronous);
+    let roms = roms.map(|(at, rom)| Held {
+        net: rom.data,
+        first: running.roms[at],
+        before: running.roms[at],
+        after: after.roms[at],
+    });
+    let held = registers.chain(roms).collect();
+    Cycle { unrolled: executor.unrolled, held }
+}
