@@ -3,8 +3,9 @@
 
 use anyhow::Result;
 
+use crate::base::cone;
 use crate::cosim::Lockstep;
-use crate::hdl::netlist::{Design, NetId, RegisterKind, RomId};
+use crate::hdl::netlist::{Design, Driver, NetId, Register, RegisterKind, Role, RomId};
 use crate::hdl::sim::Simulator;
 
 /// Places that are kept of each word.
@@ -114,16 +115,24 @@ impl Coverage {
         self.places(rom, word).iter().map(|place| {
             let operands = self.operands.iter().zip(&place.operands);
             let raw = operands.filter_map(|(&net, &bits)| {
-                let net = design.net(net);
-                let name = operand_of(&net.name)?;
-                Some((name.to_owned(), net.format.raw(bits) as i64))
+                let Driver::Register(register) = design.net(net).driver else { return None };
+                let name = operand_of(design, design.register(register))?;
+                Some((name.to_owned(), design.net(net).format.raw(bits) as i64))
             });
             raw.collect()
         })
     }
 }
 
-/// The operand that a register of that name holds.
-pub(super) fn operand_of(register: &str) -> Option<&str> {
-    register.strip_suffix("_reg")
+/// The operand that a register holds, which it takes from a port or from the buffer behind it.
+pub(super) fn operand_of<'d>(design: &'d Design, register: &Register) -> Option<&'d str> {
+    let before = |net: NetId| match &design.net(net).driver {
+        Driver::Op(op) => op.operands(),
+        Driver::Register(buffer) => design.register(*buffer).data.into_iter().collect(),
+        _ => Vec::new(),
+    };
+    let taken = cone::reached(register.data, before);
+    let mut operands = design.ports.iter().filter(|it| matches!(it.role, Role::Operand { .. }));
+    let port = operands.find(|port| taken.contains(&port.net))?;
+    Some(&design.net(port.net).name)
 }

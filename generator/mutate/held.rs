@@ -32,9 +32,8 @@ pub(super) fn addressing(core: &Core, rom: RomId, word: usize) -> Option<Operand
     let Driver::Register(id) = net.driver else {
         return None;
     };
-    let operand = operand_of(&net.name)?;
-    let is_operand = design.register(id).kind == RegisterKind::Operand;
-    is_operand.then(|| vec![(operand.to_owned(), word as i64)])
+    let register = Some(design.register(id)).filter(|it| it.kind == RegisterKind::Operand)?;
+    Some(vec![(operand_of(design, register)?.to_owned(), word as i64)])
 }
 
 /// The first difference while these operands are held and the others drawn.

@@ -3,7 +3,7 @@
 //! The intervals that the description states are not used but for registers: that of a view of a shared
 //! multiplier holds under some selections only.
 
-use super::known::{self, Known};
+use super::pairs::{self, Pairs};
 use crate::base::interval::{Interval, fits, hull, of_values};
 use crate::hdl::netlist::interval::of_cell;
 use crate::hdl::netlist::{Design, Driver, NetId, Op, Register, RegisterKind};
@@ -14,12 +14,12 @@ pub(super) fn trusted(design: &Design, register: &Register) -> bool {
     register.kind != RegisterKind::Internal && low <= 0 && high >= 0
 }
 
-/// Of one net, when `of` has those of its operands, and `known` what is known of them.
+/// Of one net, when `of` has those of its operands, and `known` their bits.
 pub(super) fn of(
     design: &Design,
     id: NetId,
     of: &impl Fn(NetId) -> Interval,
-    known: &impl Fn(NetId) -> Known,
+    known: &impl Fn(NetId) -> Pairs,
 ) -> Interval {
     let net = design.net(id);
     let all = net.format.range();
@@ -38,14 +38,14 @@ pub(super) fn of(
             of_values(raws.chain([0])).unwrap_or(all)
         }
         Driver::Op(Op::Mux { select, inputs }) => {
-            let reached = known::choices(known(*select), design.width(*select), inputs);
+            let reached = pairs::choices(known(*select), design.width(*select), inputs);
             let two = inputs.len() == 2 && inputs[0] != inputs[1];
             let sign = sign(design, *select).filter(|_| two);
             let signed = |net: NetId| design.net(net).format.signed;
             let taken = |input: NetId| match sign {
                 // Where its own sign chooses it, it has one sign.
                 Some((of_it, negative))
-                    if signed(input) && known::named(design, input) == of_it =>
+                    if signed(input) && pairs::named(design, input) == of_it =>
                 {
                     let (low, high) = of(input);
                     if negative == (input == inputs[1]) {
@@ -59,7 +59,7 @@ pub(super) fn of(
             hull(reached.map(taken)).map_or(all, within)
         }
         // The same net under another name too.
-        Driver::Op(Op::Mul(a, b)) if known::square(design, *a, *b) => cell(&Op::Mul(*a, *a)),
+        Driver::Op(Op::Mul(a, b)) if pairs::square(design, *a, *b) => cell(&Op::Mul(*a, *a)),
         Driver::Op(op) => cell(op),
         _ => all,
     }
@@ -67,11 +67,11 @@ pub(super) fn of(
 
 /// The net whose sign a bit is, and whether the bit is 1 where it is negative.
 fn sign(design: &Design, bit: NetId) -> Option<(NetId, bool)> {
-    match &design.net(known::named(design, bit)).driver {
+    match &design.net(pairs::named(design, bit)).driver {
         Driver::Op(Op::Not(a)) => sign(design, *a).map(|(of, negative)| (of, !negative)),
         Driver::Op(Op::Slice { of, low }) => {
             let is_sign = design.net(*of).format.signed && low + 1 == design.width(*of);
-            is_sign.then(|| (known::named(design, *of), true))
+            is_sign.then(|| (pairs::named(design, *of), true))
         }
         _ => None,
     }

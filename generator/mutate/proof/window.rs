@@ -10,7 +10,7 @@ use std::sync::OnceLock;
 
 use super::cut::smallest_cut;
 use super::interval;
-use super::known::Known;
+use super::pairs::Pairs;
 use crate::base::interval::Interval;
 use crate::hdl::netlist::{Design, Driver, NetId, Op, Pipeline, RomId, eval};
 use crate::mutate::fault::Site;
@@ -64,7 +64,8 @@ impl<'a> Windows<'a> {
         let mut intervals = vec![(0, 0); design.nets.len()];
         for &id in &order {
             let of = |net: NetId| intervals[net.index()];
-            intervals[id.index()] = interval::of(&design, id, &of, &|_| Known::NOTHING);
+            intervals[id.index()] =
+                interval::of(&design, id, &of, &|net| Pairs::same(design.width(net)));
         }
         let mut readers = vec![Vec::new(); design.nets.len()];
         let mut sinks = vec![false; design.nets.len()];
