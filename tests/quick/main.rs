@@ -1,6 +1,6 @@
 //! The quick tests: everything that needs no tool but Glint, under two minutes on two cores.
 //!
-//! What runs simulators, synthesis, provers or Python is in `tests/tools`.
+//! Tests with simulators, synthesis, provers or Python are in `tests/tools`.
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -27,7 +27,6 @@ mod output_registers;
 mod pages;
 mod pipelines;
 mod proofs;
-mod readme;
 mod registers;
 mod rooms;
 mod rough_microprogram;
@@ -35,6 +34,7 @@ mod shared_products;
 mod software;
 mod spread;
 mod streams;
+mod tables;
 mod tune;
 mod worst;
 

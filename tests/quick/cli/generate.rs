@@ -45,9 +45,10 @@ fn files_are_written_once_and_checked() {
 }
 
 #[test]
-fn whole_configurations_of_the_readme_give_no_warning() {
-    let readme = include_str!("../../../README.md");
-    let blocks = readme.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next());
+fn whole_configurations_of_the_pages_give_no_warning() {
+    let pages =
+        [include_str!("../../../README.md"), include_str!("../../../docs/pipelines.md")].concat();
+    let blocks = pages.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next());
     let whole: Vec<&str> = blocks.filter(|text| text.contains("device = ")).collect();
     assert_eq!(whole.len(), 2, "highlight.toml and my_pipeline.toml");
     for text in whole {
@@ -181,7 +182,7 @@ fn an_edited_file_is_not_overwritten() {
     }
 }
 
-/// What systems, editors and people put into a directory is no reason to refuse.
+/// Files that systems, editors and people put into a directory; they are no reason to refuse.
 const FOREIGN: [&str; 5] = [
     "rtl_out/core/.DS_Store",
     "rtl_out/core/.core.v.swp",
@@ -273,7 +274,7 @@ fn symbolic_links_are_followed_or_refused() {
     assert!(dir.at("core.md").is_symlink() && dir.read("page.md") != page);
 }
 
-/// The same bytes wherever the user stands, and no directory of theirs.
+/// Files have the same bytes wherever the user stands, and name no directory of theirs.
 #[test]
 fn files_name_the_configuration_without_its_path() {
     let dir = generated();
