@@ -174,7 +174,7 @@ impl Emitted {
         self.below("rtl_out/")
     }
 
-    /// The same for a family of FPGAs, with what it has of its own.
+    /// The files for a family of FPGAs, its own in place of portable ones.
     pub fn rtl_for(&self, family: &str) -> Files {
         let rtl = self.files.iter().filter(|file| file.path.starts_with("rtl_out/"));
         sources_for(rtl.cloned().collect(), family)

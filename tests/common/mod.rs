@@ -1,7 +1,8 @@
-//! What several tests share.
+//! The shared parts of the tests.
 
 pub mod bench;
 pub mod cores;
+pub mod host;
 pub mod netlist;
 pub mod said;
 pub mod sample;

@@ -5,7 +5,7 @@
 
 /// A file, and what is said of it.
 pub struct Case {
-    /// What stands above it and those before it.
+    /// The heading above it and those before it.
     pub heading: &'static str,
     /// The text of the file.
     pub file: String,

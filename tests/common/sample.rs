@@ -1,4 +1,4 @@
-//! What of a long test runs by default: a sample that the commit draws, so that over time all is covered.
+//! The sample of a long test that runs by default; the commit draws it, so that over time all is covered.
 
 // Each test crate uses a part of this.
 #![allow(dead_code)]
@@ -47,7 +47,7 @@ pub fn sampled_alone<T>(what: &str, items: impl IntoIterator<Item = T>, count: u
     }
 }
 
-/// What draws: `GLINT_SAMPLE`, or the commit, or in a tree without a history the version.
+/// Returns the seed: `GLINT_SAMPLE`, or the commit, or in a tree without a history the version.
 fn drawn_by() -> String {
     env::var("GLINT_SAMPLE")
         .ok()

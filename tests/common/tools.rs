@@ -1,4 +1,4 @@
-//! What tests need of outside tools.
+//! Outside tools in tests.
 //!
 //! A missing tool fails the test, with the remedy: a test that skips itself proves nothing.
 
@@ -12,7 +12,7 @@ use std::time::Duration;
 
 use glint::tools::{BenchOutcome, Simulator, Tool, lint, run_bench};
 
-/// What a run of any tool may take.
+/// The time limit of any tool.
 pub const LIMIT: Duration = Duration::from_secs(1200);
 
 /// The tool of that name: from the Python environment that `tools/install` makes, or from `PATH`.

@@ -19,7 +19,7 @@ const CONFIGURATIONS: u64 = 300;
 /// Points of each, and places.
 const POINTS: usize = 2000;
 
-/// What f64 itself may add to an error in units.
+/// The rounding of f64 itself, in units.
 const F64: f64 = 1e-6;
 
 /// The contract of a device with these settings, lines of TOML, and defaults elsewhere.
@@ -129,8 +129,8 @@ fn assert_places_within_bound(
     }
 }
 
-/// What the two configurations of `blinn` promise of f, by their bound or, for the small one, by this measure
-/// and the record of its proof: 1.0e-4 and 7e-4.
+/// The two configurations of `blinn` keep f within 1.0e-4 and 7e-4, by their bound or, for the small one, by this measure
+/// and the record of its proof.
 #[test]
 fn blinn_is_as_close_as_it_promises() {
     let read = |path: &str| {

@@ -2,9 +2,8 @@
 //! their operands: the simulated hardware against values worked out by hand.
 
 use crate::common::cores::configuration;
+use crate::common::host::Host;
 use glint::core::Core;
-use glint::hdl::netlist::Role;
-use glint::hdl::sim::Simulator;
 
 /// 1.0 as a cosine of the default configurations, and as a component of a vector.
 const COSINE_ONE: i64 = 1 << 20;
@@ -12,30 +11,10 @@ const COMPONENT_ONE: i64 = 1 << 16;
 
 /// The red output for the largest red, and the clocks from start to valid.
 fn red(core: &Core, operands: &[(&str, i64)]) -> (u64, u32) {
-    let design = &core.design;
-    let mut simulator: Simulator = Simulator::new(design).expect("a simulator");
-    let names: Vec<&str> = design.inputs().map(|port| design.net(port.net).name.as_str()).collect();
-    let input = |name: &str| names.iter().position(|other| *other == name).expect(name);
-    simulator.clock().expect("a reset");
-    simulator.set(input("rst_n"), 1);
-    for &(name, raw) in operands.iter().chain(&[("red", 255)]) {
-        let format = design.net(design.find(name).expect(name)).format;
-        simulator.set(input(name), format.bits(raw.into()));
-        simulator.set(input(&format!("{name}_write")), 1);
-    }
-    simulator.set(input("start"), 1);
-    simulator.clock().expect("a clock");
-    for at in 1..names.len() {
-        simulator.set(at, u64::from(at == input("rst_n")));
-    }
-    let valid = design.port(|role| role == Role::Valid).expect("valid").net;
-    let mut clocks = 1;
-    while simulator.value(valid) == 0 {
-        simulator.clock().expect("a clock");
-        clocks += 1;
-        assert!(clocks < 100, "never valid");
-    }
-    (simulator.value(design.find("red_out").expect("red")), clocks)
+    let mut host = Host::new(&core.design);
+    host.start(&[operands, &[("red", 255)]].concat());
+    let clocks = host.until_valid();
+    (host.value("red_out"), clocks)
 }
 
 fn of_cosine(core: &Core, cosine: i64, n: i64) -> u64 {

@@ -84,7 +84,7 @@ fn check(path: &str, design: &Design) {
     }
 }
 
-/// What the source does not document was no block: two subtractors, an adder and two muxes, so that the multiplier had four inputs.
+/// Arithmetic that the source does not document was no block: two subtractors, an adder and two muxes, so that the multiplier had four inputs.
 #[test]
 fn fresnel_has_its_arithmetic() {
     let config = Config::defaults(&(fresnel::FRESNEL.schema)(), "core");

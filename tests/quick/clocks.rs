@@ -89,7 +89,7 @@ fn a_domain_with_a_single_shift() {
     assert_stated_clocks_are_right(&core);
 }
 
-/// What was measured at the domain's corners and is right stays as it was.
+/// Clocks that were measured at the domain's corners and are right stay as they were.
 #[test]
 fn shipped_configurations_have_the_clocks_of_their_microprograms() {
     let expected = [

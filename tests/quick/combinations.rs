@@ -116,7 +116,7 @@ fn whole(job: &Job<'_>) -> State {
     part(job, Shard::WHOLE)
 }
 
-/// The same of a shard.
+/// Runs a shard without a break.
 fn part(job: &Job<'_>, shard: Shard) -> State {
     let mut state = State::new("digest", shard);
     let end = job.run(&mut state, &|_| (), &mut |_| ControlFlow::Continue(()));
@@ -159,7 +159,7 @@ fn every_combination_of_every_device() {
     assert_eq!(devices, all);
 }
 
-/// The same of the pipelines; the stages are those of the narrow configuration.
+/// Pipelines too; the stages are those of the narrow configuration.
 #[test]
 fn every_combination_of_every_pipeline() {
     let parts = parts("combinations of pipelines");
@@ -264,7 +264,7 @@ fn program(arguments: &str) {
     assert_ne!(format!("{code:?}"), format!("{:?}", std::process::ExitCode::SUCCESS));
 }
 
-/// What the wrong device's command line prints.
+/// Runs the wrong device's command line, and returns its output.
 fn wrong(directory: &Path, arguments: &str) -> String {
     let program = env::current_exe().expect("this program");
     let mut command = Command::new(program);

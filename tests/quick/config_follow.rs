@@ -8,7 +8,7 @@ use glint::registry::Registry;
 
 use crate::config_device::{lamp, schemas};
 
-/// What a file makes of a device of the catalogue.
+/// Reads a file of a device of the catalogue.
 fn of(text: &str) -> Result<Config, Problems> {
     parse("core.toml", text, &Registry::catalogue().schemas())
 }
@@ -116,7 +116,7 @@ fn a_problem_of_a_key_that_is_not_given_names_it() {
     assert!(text.contains("meter.toml"), "{text}");
 }
 
-/// What follows is written into the file that others read.
+/// Values that follow are written into the file that others read.
 #[test]
 fn shipped_configurations_follow_from_nothing() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs");

@@ -148,7 +148,7 @@ proptest! {
         ..ProptestConfig::default()
     })]
 
-    /// What the reader accepts, the description and the golden model accept too.
+    /// A configuration that the reader accepts is accepted by the description and the golden model too.
     #[test]
     fn what_is_accepted_is_a_device(text in settings()) {
         let registry = Registry::catalogue();

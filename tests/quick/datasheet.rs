@@ -352,7 +352,7 @@ fn has_every_word(path: &str, document: &Document, core: &Core) {
     assert_eq!(bits, expected, "{path}");
 }
 
-/// What `synthesis/cosine_power.json` says of ECP5, over eight clocks a point.
+/// The figures of `synthesis/cosine_power.json` for ECP5, over eight clocks a point.
 #[test]
 fn area_and_speed_are_those_of_the_record() {
     let path = "configs/cosine_power.toml";

@@ -6,7 +6,6 @@ use std::f64::consts::FRAC_PI_2;
 
 use glint::core::Core;
 use glint::golden::formulas;
-use glint::hdl::sim::Simulator;
 use glint::package::Computation;
 use glint::render::setup::{Arc, Line};
 use glint::render::{Feed, Vector};
@@ -14,6 +13,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 
 use crate::common::cores::{assert_agrees, computations, parsed};
+use crate::common::host::Host;
 
 /// A right angle of the default of `quad-cosine`, s1.26.
 const RIGHT: i64 = 1 << 26;
@@ -22,76 +22,39 @@ fn core(name: &str) -> Core {
     parsed("line.toml", &format!("device = \"{name}\"\n"))
 }
 
-/// The default of a device in the simulator.
-struct Bench {
-    core: Core,
-    simulator: Simulator,
+/// A core in the simulator.
+struct Bench<'a> {
+    core: &'a Core,
+    host: Host<'a>,
 }
 
-impl Bench {
-    /// After a reset.
-    fn new(name: &str) -> Self {
-        let core = core(name);
-        let simulator = Simulator::new(&core.design).expect("a simulator");
-        let mut bench = Self { core, simulator };
-        bench.clock();
-        bench.set("rst_n", 1);
-        bench
-    }
-
-    fn set(&mut self, name: &str, bits: u64) {
-        let design = &self.core.design;
-        let at = design.inputs().position(|port| design.net(port.net).name == name);
-        self.simulator.set(at.expect("an input"), bits);
-    }
-
-    fn clock(&mut self) {
-        self.simulator.clock().expect("a clock");
-    }
-
-    fn value(&self, name: &str) -> u64 {
-        let net = self.core.design.find(name).expect("a signal");
-        self.simulator.value(net)
-    }
-
-    /// Writes operands together with `start`, which the next clock takes.
-    fn start(&mut self, operands: &[(&str, i64)]) {
-        self.set("start", 1);
-        for &(name, raw) in operands {
-            let design = &self.core.design;
-            let format = design.net(design.find(name).expect("an operand")).format;
-            self.set(name, format.bits(i128::from(raw)));
-            self.set(&format!("{name}_write"), 1);
-        }
-        self.clock();
-        self.set("start", 0);
-        for (name, _) in operands {
-            self.set(&format!("{name}_write"), 0);
-        }
+impl<'a> Bench<'a> {
+    fn new(core: &'a Core) -> Self {
+        Self { core, host: Host::new(&core.design) }
     }
 
     /// The outputs of a line, which must come one a clock from the fourth clock on, the last with `done`.
     fn line(&mut self, operands: &[(&str, i64)]) -> Vec<i64> {
-        self.start(operands);
+        self.host.start(operands);
         let mut points = Vec::new();
         for clock in 1..5000 {
-            if self.value("valid") == 1 {
+            if self.host.value("valid") == 1 {
                 assert_eq!(clock, 4 + points.len(), "one point a clock");
-                points.push(self.value("intensity_out") as i64);
+                points.push(self.host.value("intensity_out") as i64);
             }
-            if self.value("busy") == 0 {
+            if self.host.value("busy") == 0 {
                 assert_eq!(clock, 4 + points.len(), "done with the last point");
                 return points;
             }
             let last = self.core.design.control.microprogram.len() as u64 - 1;
-            let in_last_word = self.value("word_address") == last;
-            assert_eq!(self.value("done"), u64::from(in_last_word));
-            self.clock();
+            let in_last_word = self.host.value("word_address") == last;
+            assert_eq!(self.host.value("done"), u64::from(in_last_word));
+            self.host.clock();
         }
         panic!("the line does not end");
     }
 
-    /// What the contract expects of a line of `quad-cosine`.
+    /// Returns the contract's results of a line of `quad-cosine`.
     fn quad_expected(&self, [delta, start, n, length, amplitude]: [i64; 5]) -> Vec<i64> {
         let highlight = self.core.contract.highlight().expect("a highlight");
         (0..=length as u64)
@@ -118,14 +81,15 @@ fn quad_operands([delta, start, n, length, amplitude]: [i64; 5]) -> [(&'static s
 #[test]
 fn the_order_of_events_for_three_intervals() {
     for device in ["quad-cosine", "cosine-squared"] {
-        let mut bench = Bench::new(device);
+        let core = core(device);
+        let mut host = Host::new(&core.design);
         let names = ["busy", "valid", "count", "accumulate", "write_angle", "intervals"];
         let operands = [("delta_zeta", 5), ("zeta_start", -7), ("length", 3)];
-        bench.start(&operands);
+        host.start(&operands);
         let mut seen = Vec::new();
         for _ in 0..8 {
-            seen.push(names.map(|name| bench.value(name)));
-            bench.clock();
+            seen.push(names.map(|name| host.value(name)));
+            host.clock();
         }
         let expected = [
             [1, 0, 0, 0, 0, 0],
@@ -143,7 +107,8 @@ fn the_order_of_events_for_three_intervals() {
 
 #[test]
 fn lines_of_one_point_and_of_4096() {
-    let mut bench = Bench::new("quad-cosine");
+    let quad = core("quad-cosine");
+    let mut bench = Bench::new(&quad);
     // One point; two; the longest, over the highlight from −90° to 90° and around the circle four times.
     for operands in [
         [12345, RIGHT / 8, 40, 0, 255],
@@ -163,7 +128,8 @@ fn lines_of_one_point_and_of_4096() {
 /// and √(6/4), cos¹⁶ of √(7/16), √(1000/16) and √(1023/16) times 30°.
 #[test]
 fn decoder_edges() {
-    let mut bench = Bench::new("quad-cosine");
+    let quad = core("quad-cosine");
+    let mut bench = Bench::new(&quad);
     let expected = [
         (0, 255.0),
         (1, 220.84),
@@ -195,22 +161,23 @@ fn decoder_edges() {
 
 #[test]
 fn a_reset_in_mid_line_drops_what_is_on_its_way() {
-    let mut bench = Bench::new("quad-cosine");
+    let quad = core("quad-cosine");
+    let mut bench = Bench::new(&quad);
     let operands = [RIGHT / 100, -RIGHT / 2, 20, 90, 255];
     // Before the first result, with results on their way, and in the last words.
     for clocks in [0, 1, 2, 3, 4, 50, 90, 91, 92, 93] {
-        bench.start(&quad_operands(operands));
+        bench.host.start(&quad_operands(operands));
         for _ in 0..clocks {
-            bench.clock();
+            bench.host.clock();
         }
-        assert_eq!(bench.value("busy"), 1);
-        bench.set("rst_n", 0);
-        bench.clock();
-        bench.set("rst_n", 1);
+        assert_eq!(bench.host.value("busy"), 1);
+        bench.host.set("rst_n", 0);
+        bench.host.clock();
+        bench.host.set("rst_n", 1);
         for _ in 0..4 {
-            let still = ["busy", "valid", "done", "write_angle"].map(|name| bench.value(name));
+            let still = ["busy", "valid", "done", "write_angle"].map(|name| bench.host.value(name));
             assert_eq!(still, [0; 4], "{clocks} clocks after the start");
-            bench.clock();
+            bench.host.clock();
         }
         let points = bench.line(&quad_operands(operands));
         assert_eq!(points, bench.quad_expected(operands));

@@ -1,16 +1,14 @@
 //! `operands.buffered`: writes at any time, and no clock between two computations.
 
-use glint::config;
 use glint::core::Core;
 use glint::cosim::trial;
 use glint::dsl::{Designer, end, step, valid, wait_for_start};
 use glint::fixed::Format;
-use glint::hdl::sim::Simulator;
 use glint::package::Computation;
-use glint::registry::{Device, Registry};
+use glint::registry::Registry;
 
 use crate::common::cores::{assert_agrees, computations, with_keys as core};
-use crate::output_registers::ByHand;
+use crate::common::host::Host;
 
 /// Results that golden model and simulation are compared on.
 const POINTS: u64 = 4000;
@@ -56,44 +54,26 @@ fn a_host_that_writes_ahead_loses_no_clock() {
         let wanted = computations(&core(device, "").expect("a design"));
         let buffered = core(device, BUFFERED).expect("a design");
         let (design, contract) = (&buffered.design, buffered.contract.as_ref());
-        let input = |name: &str| {
-            let at = design.inputs().position(|port| design.net(port.net).name == name);
-            at.expect("an input")
-        };
-        let mut simulator: Simulator = Simulator::new(design).expect("a simulator");
-        simulator.clock().expect("a reset");
-        simulator.set(input("rst_n"), 1);
-        let write = |simulator: &mut Simulator, of: &Computation, at: usize| {
-            let operand = &contract.operands()[at];
-            let bits = operand.format.bits(i128::from(of.operands[at]));
-            simulator.set(input(&operand.name), bits);
-            simulator.set(input(&format!("{}_write", operand.name)), 1);
-        };
-        let lower = |simulator: &mut Simulator| {
-            for operand in contract.operands() {
-                simulator.set(input(&format!("{}_write", operand.name)), 0);
-            }
+        let mut host = Host::new(design);
+        let write = |host: &mut Host, of: &Computation, at: usize| {
+            host.write(&contract.operands()[at].name, of.operands[at]);
         };
         let count = contract.operands().len();
-        (0..count).for_each(|at| write(&mut simulator, &wanted[0], at));
-        simulator.set(input("start"), 1);
-        simulator.clock().expect("a clock");
-        let handshake = design.handshake().expect("a handshake");
+        (0..count).for_each(|at| write(&mut host, &wanted[0], at));
+        host.set("start", 1);
+        host.clock();
         for (number, this) in wanted.iter().enumerate() {
             let next = wanted.get(number + 1);
             let mut shown = Vec::new();
             for clock in 1..=this.done {
-                lower(&mut simulator);
+                contract.operands().iter().for_each(|operand| host.release(&operand.name));
                 let at = clock as usize - 1;
                 let is_last = clock == this.done;
-                assert_eq!(simulator.value(handshake.busy), 1);
-                assert_eq!(simulator.value(handshake.done), u64::from(is_last), "{name}");
-                if simulator.value(handshake.valid) == 1 {
+                assert_eq!(host.value("busy"), 1);
+                assert_eq!(host.value("done"), u64::from(is_last), "{name}");
+                if host.value("valid") == 1 {
                     let outputs = contract.outputs().iter();
-                    shown.extend(outputs.map(|output| {
-                        let bits = simulator.value(design.find(&output.name).expect("an output"));
-                        output.format.raw(bits) as i64
-                    }));
+                    shown.extend(outputs.map(|output| host.raw(&output.name)));
                 }
                 if let Some(next) = next {
                     let now = if is_last {
@@ -101,40 +81,19 @@ fn a_host_that_writes_ahead_loses_no_clock() {
                     } else {
                         at.min(count)..(at + 1).min(count)
                     };
-                    now.for_each(|at| write(&mut simulator, next, at));
+                    now.for_each(|at| write(&mut host, next, at));
                 }
                 // Before the last clock it is not heard.
                 let ignored = clock % 2 == 0;
                 let start = if is_last { next.is_some() } else { ignored };
-                simulator.set(input("start"), u64::from(start));
-                simulator.clock().expect("a clock");
+                host.set("start", u64::from(start));
+                host.clock();
             }
             let results: Vec<i64> = this.results.iter().flat_map(|it| it.outputs.clone()).collect();
             assert_eq!(shown, results, "{name}, {:?}", this.operands);
         }
-        assert_eq!(simulator.value(handshake.busy), 0);
+        assert_eq!(host.value("busy"), 0);
     }
-}
-
-#[test]
-fn a_pipeline_has_none_to_ask_for() {
-    let text = format!("device = \"lyon\"\narchitecture = \"pipelined\"\n{BUFFERED}");
-    let problems = config::parse("both.toml", &text, &Registry::catalogue().schemas())
-        .expect_err("a key of sequential cores")
-        .to_string();
-    assert!(problems.contains("operands.buffered"), "{problems}");
-    assert!(problems.contains("architecture = \"sequential\""), "{problems}");
-}
-
-#[test]
-fn a_model_that_does_not_know_them_is_refused() {
-    let threshold = *Registry::catalogue().device("threshold").expect("threshold");
-    let device = Device { model: |_| Box::new(ByHand), ..threshold };
-    let error = core(device, BUFFERED).err().expect("no model").to_string();
-    assert!(
-        error.contains("`threshold`") && error.contains("leave operands.buffered out"),
-        "{error}"
-    );
 }
 
 /// Why a register's description with this second microinstruction is refused.

@@ -1,12 +1,10 @@
 //! `output.registered`: registers behind results that are logic, valid a clock later.
 
-use glint::config;
 use glint::core::Core;
 use glint::dsl::{Designer, Step, end, loop_while, step, valid};
 use glint::fixed::{Format, Overflow, Rounding};
-use glint::golden::Model;
 use glint::hdl::netlist::{Design, Driver, NetId, Op, Role};
-use glint::registry::{Device, Registry};
+use glint::registry::Registry;
 
 use crate::common::cores::{assert_agrees, computations, with_keys as core};
 
@@ -69,48 +67,6 @@ fn lines_with_stages_have_them_too() {
         assert!(results.all(|port| shows_register(&core.design, port.net)), "{name}");
         assert_agrees(&core, POINTS, name);
     }
-}
-
-#[test]
-fn a_pipeline_has_none_to_ask_for() {
-    let text = format!("device = \"lyon\"\narchitecture = \"pipelined\"\n{REGISTERED}");
-    let problems = config::parse("both.toml", &text, &Registry::catalogue().schemas())
-        .expect_err("a key of sequential cores")
-        .to_string();
-    assert!(problems.contains("output.registered"), "{problems}");
-    assert!(problems.contains("architecture = \"sequential\""), "{problems}");
-}
-
-/// A golden model that was written by hand, and does not say what registers do that a key asks for.
-#[derive(Clone)]
-pub struct ByHand;
-
-impl Model for ByHand {
-    fn inputs(&self) -> &[String] {
-        &[]
-    }
-
-    fn signals(&self) -> &[String] {
-        &[]
-    }
-
-    fn clock(&mut self, _: &[u64]) {}
-
-    fn values(&self) -> &[u64] {
-        &[]
-    }
-}
-
-#[test]
-fn a_model_that_does_not_know_them_is_refused() {
-    let threshold = *Registry::catalogue().device("threshold").expect("threshold");
-    let device = Device { model: |_| Box::new(ByHand), ..threshold };
-    assert!(core(device, "").is_ok());
-    let error = core(device, REGISTERED).err().expect("no model").to_string();
-    assert!(
-        error.contains("`threshold`") && error.contains("leave output.registered out"),
-        "{error}"
-    );
 }
 
 /// The squarer of the builder's documentation with this program's last microinstructions.

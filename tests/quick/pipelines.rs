@@ -68,7 +68,7 @@ fn values_of_a_stage_are_made_of_values_of_this_stage_and_all_registers_move_tog
     assert_eq!(seen, 9, "pipelines");
 }
 
-/// Of a narrow pipeline: what every point shows is caught, and of a sample of all faults most, the rest proved.
+/// In a narrow pipeline every fault that a point shows is caught, and of a sample of all faults most, the rest proved.
 #[test]
 fn faults_of_a_pipeline_are_noticed_or_proved() {
     let core =
@@ -91,7 +91,7 @@ fn faults_of_a_pipeline_are_noticed_or_proved() {
     assert!(caught * 2 > found.len(), "{caught} of {}", found.len());
 }
 
-/// What a memory takes the place of can be read by nothing but the register behind it, and moves when that does.
+/// Registers that a memory replaces can be read by nothing but the register behind them, and it moves when they do.
 #[test]
 fn delay_lines_are_registers_that_nothing_reads_on_their_way() {
     let mut lines = 0;

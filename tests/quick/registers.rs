@@ -1,11 +1,14 @@
-//! What registers around a device of one's own can be asked for.
+//! Registers around a device of one's own.
 
-use glint::config::Config;
+use glint::config::{self, Config};
 use glint::dsl::{Designer, end, step, valid};
 use glint::fixed::Format;
+use glint::golden::Model;
 use glint::hdl::netlist::Design;
 use glint::package::{EmitInputs, Surroundings, Unfit, emit};
-use glint::registry::Registry;
+use glint::registry::{Device, Registry};
+
+use crate::common::cores::with_keys;
 
 const BYTE: Format = Format::unsigned(0, 8);
 
@@ -22,7 +25,7 @@ fn device(operand: &str, result: &str) -> Design {
 
 fn on_wishbone(design: &Design) -> anyhow::Result<usize> {
     let text = "device = \"cosine-power\"\n[interface]\nregisters = \"wishbone\"\n";
-    let config: Config = glint::config::parse("x.toml", text, &Registry::catalogue().schemas())?;
+    let config: Config = config::parse("x.toml", text, &Registry::catalogue().schemas())?;
     let around = Surroundings::new(&config, None);
     Ok(emit(design, &EmitInputs { around, ..EmitInputs::default() })?.len())
 }
@@ -36,5 +39,55 @@ fn names_that_collide_in_the_map() {
         assert_eq!(unfit.key, "interface.registers");
         assert_eq!(unfit.message, format!("two registers of `device` are named `{name}`"));
         assert!(unfit.remedy.contains("another one in the description"), "{unfit}");
+    }
+}
+
+/// Keys of registers that sequential cores alone have, and TOML that asks for them.
+const KEYS: [(&str, &str); 2] = [
+    ("output.registered", "[output]\nregistered = true\n"),
+    ("operands.buffered", "[operands]\nbuffered = true\n"),
+];
+
+#[test]
+fn a_pipeline_refuses_registers_of_sequential_cores() {
+    for (key, toml) in KEYS {
+        let text = format!("device = \"lyon\"\narchitecture = \"pipelined\"\n{toml}");
+        let problems = config::parse("both.toml", &text, &Registry::catalogue().schemas())
+            .expect_err("a key of sequential cores")
+            .to_string();
+        assert!(problems.contains(key), "{problems}");
+        assert!(problems.contains("architecture = \"sequential\""), "{problems}");
+    }
+}
+
+/// A golden model that was written by hand, and does not say what registers do that a key asks for.
+#[derive(Clone)]
+struct ByHand;
+
+impl Model for ByHand {
+    fn inputs(&self) -> &[String] {
+        &[]
+    }
+
+    fn signals(&self) -> &[String] {
+        &[]
+    }
+
+    fn clock(&mut self, _: &[u64]) {}
+
+    fn values(&self) -> &[u64] {
+        &[]
+    }
+}
+
+#[test]
+fn a_model_that_does_not_know_the_registers_is_refused() {
+    let threshold = *Registry::catalogue().device("threshold").expect("threshold");
+    let device = Device { model: |_| Box::new(ByHand), ..threshold };
+    assert!(with_keys(device, "").is_ok());
+    for (key, toml) in KEYS {
+        let error = with_keys(device, toml).err().expect("no model").to_string();
+        let remedy = format!("leave {key} out");
+        assert!(error.contains("`threshold`") && error.contains(&remedy), "{error}");
     }
 }

@@ -128,8 +128,8 @@ fn random_configurations_have_the_words_of_the_patent() {
     }
 }
 
-/// What the microprogram has beyond the patent's stands between microinstructions 7 and 8, where it moves none of the
-/// patent's lines, and in fields of its own.
+/// Microinstructions beyond the patent's stand between its microinstructions 7 and 8, where they move none of the
+/// patent's lines, and in fields of their own.
 #[test]
 fn keys_that_add_microinstructions_leave_the_lines_of_the_patent() {
     for (more, added) in [("[colour]\nmultipliers = 1\n", 3), ("[output]\nregistered = true\n", 1)]

@@ -10,7 +10,7 @@ const POINTS: u64 = 30_000;
 /// Draws of a list of computations.
 const DRAWN: u64 = 4000;
 
-/// Of the results of co-simulation at least so many are neither 0 nor just below 1.
+/// The least share of co-simulated results that are neither 0 nor just below 1.
 const SHARE: f64 = 0.6;
 
 #[test]

@@ -6,7 +6,7 @@ use glint::base::input;
 use glint::config::{Config, Value};
 use glint::registry::{Device, Registry};
 use glint::synth::{self, Record, Target};
-use glint::tune::{Candidate, Cost, ErrorUnit, Objective, Wish, exhaustive, tune};
+use glint::tune::{Candidate, Cost, ErrorUnit, Goal, Objective, exhaustive, tune};
 
 use crate::common::cores::configuration;
 use crate::common::sample::sampled_alone;
@@ -56,8 +56,8 @@ fn spaces() -> Vec<(&'static str, f64, Vec<Values>)> {
     ]
 }
 
-fn wish(error: f64, target: Target) -> Wish {
-    Wish {
+fn goal(error: f64, target: Target) -> Goal {
+    Goal {
         error,
         unit: ErrorUnit::Output,
         target,
@@ -76,10 +76,10 @@ fn the_answer_is_within_a_tenth_of_the_best_there_is() {
         let fixed: Vec<&str> =
             base.values().map(|(key, _)| key).filter(|key| !inside.contains(key)).collect();
         for target in [Target::Ice40, Target::Ecp5] {
-            let wish = wish(error, target);
-            let best = exhaustive(&device, &base, &values, &wish).expect("designs");
+            let goal = goal(error, target);
+            let best = exhaustive(&device, &base, &values, &goal).expect("designs");
             let best = best.unwrap_or_else(|| panic!("{name}: nothing keeps {error}"));
-            let answer = tune(&device, &base, &fixed, &wish, &|_| ()).expect("an answer").best;
+            let answer = tune(&device, &base, &fixed, &goal, &|_| ()).expect("an answer").best;
             let area = |it: &Candidate| it.cost.area(target);
             assert!(area(&answer) <= 1.1 * area(&best), "{name}: {answer:?}, the best is {best:?}");
             assert!(answer.bound.units <= error, "{name}: {answer:?}");
@@ -98,8 +98,8 @@ fn half_the_error_takes_a_bit_more() {
     let device = device("cosine-power");
     let base = defaults(&device);
     let bits = |error: f64| {
-        let wish = Wish { unit: ErrorUnit::F, ..wish(error, Target::Ecp5) };
-        let answer = tune(&device, &base, &[], &wish, &|_| ()).expect("an answer");
+        let goal = Goal { unit: ErrorUnit::F, ..goal(error, Target::Ecp5) };
+        let answer = tune(&device, &base, &[], &goal, &|_| ()).expect("an answer");
         answer.best.config.integer("intensity.fraction")
     };
     // 31 · 2⁻¹⁶ = 0.000473.
@@ -112,7 +112,7 @@ fn half_the_error_takes_a_bit_more() {
 fn ports_and_formula_stay() {
     let device = device("lyon");
     let base = defaults(&device);
-    let answer = tune(&device, &base, &[], &wish(0.9, Target::Ecp5), &|_| ()).expect("an answer");
+    let answer = tune(&device, &base, &[], &goal(0.9, Target::Ecp5), &|_| ()).expect("an answer");
     for key in ["power", "scale", "vector.fraction", "colour.bits"] {
         assert!(!answer.free.contains(&key), "{key} is free");
         assert_eq!(answer.best.config.value(key), base.value(key), "{key}");
@@ -126,7 +126,7 @@ fn ports_and_formula_stay() {
 fn the_formula_is_compared_where_it_lives() {
     let device = device("quadratic");
     let base = defaults(&device);
-    let answer = tune(&device, &base, &[], &wish(0.85, Target::Ecp5), &|_| ()).expect("an answer");
+    let answer = tune(&device, &base, &[], &goal(0.85, Target::Ecp5), &|_| ()).expect("an answer");
     assert!(!answer.free.contains(&"coefficient.scheme"), "{:?}", answer.free);
     let reference = |config: &Config| {
         let contract = (device.contract)(config);
@@ -146,7 +146,7 @@ fn the_formula_is_compared_where_it_lives() {
 #[test]
 fn of_equal_cost_the_least_error_is_taken() {
     let device = device("cosine-squared");
-    let answer = tune(&device, &defaults(&device), &[], &wish(0.82, Target::Ecp5), &|_| ());
+    let answer = tune(&device, &defaults(&device), &[], &goal(0.82, Target::Ecp5), &|_| ());
     let best = answer.expect("an answer").best;
     assert!(best.bound.units < 0.711, "{best:?}");
 }
@@ -155,7 +155,7 @@ fn of_equal_cost_the_least_error_is_taken() {
 #[test]
 fn what_fits_the_chip_is_preferred() {
     let device = device("lyon");
-    let answer = tune(&device, &defaults(&device), &[], &wish(0.9, Target::Ice40), &|_| ());
+    let answer = tune(&device, &defaults(&device), &[], &goal(0.9, Target::Ice40), &|_| ());
     let best = answer.expect("an answer").best;
     assert!(best.cost.dsps <= 8 && best.cost.excess(Target::Ice40).is_empty(), "{best:?}");
     assert_eq!(best.config.choice("colour.multipliers"), "1");
@@ -165,7 +165,7 @@ fn what_fits_the_chip_is_preferred() {
 fn the_front_falls_and_has_the_answer() {
     let device = device("cosine-power");
     let base = defaults(&device);
-    let run = || tune(&device, &base, &[], &wish(0.75, Target::Ecp5), &|_| ()).expect("an answer");
+    let run = || tune(&device, &base, &[], &goal(0.75, Target::Ecp5), &|_| ()).expect("an answer");
     let (answer, again) = (run(), run());
     for pair in answer.front.windows(2) {
         assert!(pair[0].bound.units <= pair[1].bound.units, "{:?}", answer.front);
@@ -179,21 +179,21 @@ fn the_front_falls_and_has_the_answer() {
 }
 
 #[test]
-fn a_wish_out_of_reach_says_what_is_in_the_way() {
+fn a_goal_out_of_reach_says_what_is_in_the_way() {
     let device = device("cosine-power");
     // Rounding to eight bits costs half a unit, whatever f is.
-    let refused = tune(&device, &defaults(&device), &[], &wish(0.1, Target::Ecp5), &|_| ());
+    let refused = tune(&device, &defaults(&device), &[], &goal(0.1, Target::Ecp5), &|_| ());
     let refused = format!("{:#}", refused.expect_err("out of reach"));
     assert!(refused.contains("no configuration keeps 0.1 output units"), "{refused}");
     assert!(
         refused.contains("rounding of the colour outputs (`output.rounding`), 0.500000"),
         "{refused}"
     );
-    let fast = Wish { clock: Some(5000.0), ..wish(0.9, Target::Ecp5) };
+    let fast = Goal { clock: Some(5000.0), ..goal(0.9, Target::Ecp5) };
     let refused = tune(&device, &defaults(&device), &[], &fast, &|_| ());
     let refused = format!("{:#}", refused.expect_err("out of reach"));
     assert!(refused.contains("5000.0 MHz are wanted"), "{refused}");
-    let many = Wish { rate: Some(500.0), ..wish(0.9, Target::Ecp5) };
+    let many = Goal { rate: Some(500.0), ..goal(0.9, Target::Ecp5) };
     let refused = tune(&device, &defaults(&device), &[], &many, &|_| ());
     let refused = format!("{:#}", refused.expect_err("out of reach"));
     let wanted = "4000.0 MHz are wanted for 500 million points a second at 8 clocks a point";
@@ -204,12 +204,12 @@ fn a_wish_out_of_reach_says_what_is_in_the_way() {
 #[test]
 fn a_rate_asks_for_the_clock_that_the_clocks_of_a_point_need() {
     let device = device("cosine-power");
-    let slow = tune(&device, &defaults(&device), &[], &wish(0.9, Target::Ecp5), &|_| ());
+    let slow = tune(&device, &defaults(&device), &[], &goal(0.9, Target::Ecp5), &|_| ());
     let slow = slow.expect("an answer").best;
     assert_eq!(slow.clocks, Some(8.0));
     assert_eq!(slow.rate(), Some(slow.cost.mhz / 8.0));
     let wanted = slow.rate().expect("a rate") * 0.99;
-    let kept = Wish { rate: Some(wanted), ..wish(0.9, Target::Ecp5) };
+    let kept = Goal { rate: Some(wanted), ..goal(0.9, Target::Ecp5) };
     let kept = tune(&device, &defaults(&device), &[], &kept, &|_| ()).expect("an answer").best;
     assert!(kept.cost.mhz >= 8.0 * wanted, "{} MHz", kept.cost.mhz);
 }

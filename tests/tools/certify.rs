@@ -24,7 +24,7 @@ use crate::common::cores::{configuration, parsed};
 use crate::common::sample::sampled;
 use crate::example::fresnel;
 
-/// What Gappa proves it proves in a second.
+/// The time limit of a proof; Gappa takes a second where it finds one.
 const LIMIT: Duration = Duration::from_secs(20);
 
 /// Coq takes a hundred times as long.
@@ -153,7 +153,7 @@ fn the_bound_of_a_device_of_a_user_is_printed() {
     assert!(text.contains("a bound that is found, as the contract states none"), "{text}");
 }
 
-/// What is found for a device of the catalogue is no more than what its author has proved, and no less than an error that is
+/// A bound that is found for a device of the catalogue is no more than its author has proved, and no less than an error that is
 /// known.
 #[test]
 fn bounds_that_are_found_lie_between_errors_and_bounds_by_hand() {
@@ -168,7 +168,7 @@ fn bounds_that_are_found_lie_between_errors_and_bounds_by_hand() {
     assert!(bound <= contract.bound().units, "{bound}");
 }
 
-/// What is changed in a net: a constant gets a sixteenth smaller, an inverter a wire, operands and inputs change places.
+/// Changes a net: a constant gets a sixteenth smaller, an inverter a wire, operands and inputs change places.
 fn plant(design: &mut Design, name: &str) {
     let net = design.nets.iter_mut().find(|net| net.name == name);
     let net = net.unwrap_or_else(|| panic!("there is a net `{name}`"));
@@ -207,7 +207,7 @@ fn faulty_hardware_has_no_proof() {
 
 const TABLE: &str = "table.address = 5";
 
-/// What is wrong with the angles of words, with a word, or with how the points of a line follow.
+/// Faults in the angles of words, in a word, and in how the points of a line follow.
 #[test]
 fn faulty_lines_have_no_proof() {
     let is_open = |design: &Design, contract: &dyn Contract| {

@@ -115,7 +115,7 @@ fn memory_is_noticed(name: &str, rom: &str, wrong: impl Fn(&str) -> String) {
     assert_noticed(dir.path(), &core, "computations_are_exact", &file);
 }
 
-/// Those of wrappers, by the commands that their heads give.
+/// Benches of wrappers run by the commands that their heads give.
 #[test]
 fn benches_of_wrappers_pass() {
     let wrappers = [

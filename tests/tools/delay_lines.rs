@@ -34,7 +34,7 @@ fn slots(text: &str) -> Vec<usize> {
     digits.map(|it| it.parse().expect("a number")).collect()
 }
 
-/// The same with another number of words in memories of `words`, of as many bits.
+/// Returns the text with another number of words in memories of `words`, of as many bits.
 fn with_words(text: &str, words: usize, other: usize) -> String {
     let most = words.next_power_of_two();
     assert!(other <= most, "{other} words need more bits than {words}");

@@ -171,7 +171,7 @@ fn what_the_solver_leaves_open_is_unknown_or_a_limit() {
     assert_eq!(limited.expect("a verdict"), Verdict::Open(Open::Limit));
 }
 
-/// What is said of the text of a pipeline, which is changed.
+/// Returns the verdict on the text of a pipeline, which is changed.
 fn of_text(core: &Core, limit: u64, change: impl Fn(&str) -> String) -> TextVerdict {
     let [yosys, z3] = ["yosys", "z3"].map(|name| Tool::find(name).expect("a tool"));
     let limit = Duration::from_secs(limit);

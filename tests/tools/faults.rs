@@ -10,15 +10,15 @@ use crate::common::tools::LIMIT;
 /// A fault of `faults.txt`.
 #[derive(Clone)]
 pub struct Fault {
-    /// Of what it is; the heading says how.
+    /// Its subject; the heading says of which kind.
     pub of: String,
-    /// What stands there.
+    /// The text that stands there.
     pub right: String,
-    /// What takes its place.
+    /// The text that takes its place.
     pub wrong: String,
 }
 
-/// Those under a heading.
+/// Returns the faults under a heading.
 ///
 /// # Panics
 /// There are none.

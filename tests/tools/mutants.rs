@@ -22,7 +22,7 @@ const PIPELINE_FAULTS: usize = 200;
 /// Faults of the Verilog that are planted of each device.
 const TEXT_FAULTS: usize = 4;
 
-/// Of the faults that are proved equivalent, about so many a device are given another test.
+/// About the number of faults of a device that are proved equivalent and given another test.
 const PROVED: usize = 40;
 
 /// The seed of that test.
@@ -50,7 +50,7 @@ fn record(core: &Core) -> Value {
     serde_json::from_str(&text).unwrap_or_else(|error| panic!("{path}: {error}"))
 }
 
-/// What became of the fault of an id, by a record: those that the default test notices are not named.
+/// Returns a record's verdict on the fault of an id: faults that the default test notices are not named.
 fn recorded(netlist: &Value, id: &str) -> Said {
     let has = |list: &Value| list.as_array().is_some_and(|ids| ids.iter().any(|it| it == id));
     let proofs = netlist["equivalent"].as_object();
@@ -149,8 +149,8 @@ fn without_a_fault_nothing_is_noticed() {
     }
 }
 
-/// What a record does not name is noticed by lint or by a bench, by the shipped one if it says so; and what it says is
-/// proved equivalent is not. Of what it leaves undecided nothing is said here: a better bench may notice it.
+/// A fault that a record does not name is noticed by lint or by a bench, by the shipped one if it says so; one that it calls
+/// proved equivalent is not. Of undecided faults nothing is said here: a better bench may notice them.
 #[test]
 fn faults_of_the_verilog_are_noticed() {
     for (path, core) in defaults() {

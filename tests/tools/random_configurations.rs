@@ -15,7 +15,7 @@ use rayon::prelude::*;
 /// Configurations of each device that are simulated inside the program.
 const SIMULATED: std::ops::Range<u64> = 0..400;
 
-/// Of these, as many are drawn.
+/// The number of these that are drawn.
 const SIMULATED_DRAWN: usize = 120;
 
 /// Points of each.
@@ -24,7 +24,7 @@ const POINTS: u64 = 150;
 /// Seeds of the configurations of each device that outside tools see: others than those above.
 const EMITTED: std::ops::Range<u64> = 10_000..10_100;
 
-/// Of these, as many are drawn.
+/// The number of these that are drawn.
 const EMITTED_DRAWN: usize = 16;
 
 /// Points of the bench of each.

@@ -29,7 +29,7 @@ fn with_schema() -> tempfile::TempDir {
     dir
 }
 
-/// What each validator says of some files: whether they are valid.
+/// Returns each validator's verdict on some files: whether they are valid.
 fn verdicts(dir: &Path, files: &[PathBuf]) -> [(bool, String); 2] {
     let files = || files.iter().map(|file| file.display().to_string());
     let options = |all: &[&str]| all.iter().map(|&it| it.to_owned()).collect::<Vec<_>>();

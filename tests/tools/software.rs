@@ -28,7 +28,7 @@ const SAMPLE: usize = 2;
 
 const SOFTWARE: &str = "\n[package]\nsoftware = true\n";
 
-/// Those that are pipelines, too.
+/// The pipelines among them.
 const PIPELINES: &str = "blinn_pipelined cosine_power_pipelined gauss_pipelined lyon_pipelined \
     quadratic_pipelined rough_pipelined schlick_pipelined threshold_pipelined";
 
@@ -175,7 +175,7 @@ impl Model {
         }
     }
 
-    /// What the golden model says, result by result.
+    /// Returns the golden model's results.
     fn expected(&self, operands: &[Vec<i64>]) -> Vec<i64> {
         let contract = self.core.contract.as_ref();
         let of_point = |operands: &Vec<i64>| {
@@ -200,7 +200,7 @@ impl Model {
         assert_eq!(compiled, "", "{name}: words of the compiler");
     }
 
-    /// What the model in C says.
+    /// Runs the model in C, and returns its results.
     fn run(&self, operands: &[Vec<i64>]) -> Vec<i64> {
         let dir = self.dir.path();
         let bytes: Vec<u8> = operands.iter().flatten().flat_map(|raw| raw.to_le_bytes()).collect();

@@ -84,7 +84,7 @@ fn cells_are_counted_in_gates() {
     assert_eq!((names.first(), names.last()), (Some(&"x_reg"), Some(&"y")), "{figures:?}");
 }
 
-/// What a later change of description or emission costs is seen here: areas of more than 51/50 of the record are too
+/// The cost of a later change of description or emission is seen here: areas of more than 51/50 of the record are too
 /// large. `glint synth --out synthesis` makes the record anew.
 #[test]
 fn areas_are_those_of_the_record() {

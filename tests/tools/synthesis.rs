@@ -21,7 +21,7 @@ use rayon::prelude::*;
 /// Pairs of a configuration and a family that are synthesised.
 const PAIRS: usize = 15;
 
-/// What the names of the initial values of a family's block RAMs begin with, before so many hexadecimal
+/// The prefixes of the names of the initial values of a family's block RAMs, before so many hexadecimal
 /// digits.
 fn initial(family: &Family) -> (&'static [&'static str], usize) {
     match family.name {
@@ -101,7 +101,7 @@ fn every_flow_takes_the_delay_lines_of_pipelines() {
     });
 }
 
-/// What the command line says that a design takes is what its netlist has.
+/// The usage that the command line states is that of the netlist.
 #[test]
 fn usage_is_that_of_the_netlist() {
     let unit = configuration("configs/schlick.toml");

@@ -14,7 +14,7 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// What a script of the example prints.
+/// Runs a script of the example, and returns its output.
 fn script(name: &str, arguments: &[&OsStr]) -> String {
     let glint = format!("GLINT={}", env!("CARGO_BIN_EXE_glint"));
     let script = root().join("examples/video").join(name);

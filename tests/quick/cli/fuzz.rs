@@ -21,7 +21,7 @@ const NARROW: &str = include_str!("../../../configs/reduced/cosine_squared.toml"
 /// The commands, some of them.
 const COMMANDS: &str = "generate cosim merge eval setup list new describe compare render check";
 
-/// What else a command line is made of, and some that it is not.
+/// The other pieces of a command line, and some that are none.
 const PIECES: &str = "
     help --help -h --version --json -q --quiet --out --check --force --points --seed --simulator
     --exhaustive --resume --shard --vcd --time-limit --through --size --compare --mesh --exponent

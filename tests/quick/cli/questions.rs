@@ -76,7 +76,7 @@ fn a_point_is_evaluated_for_scripts() {
     }
 }
 
-/// What its registers hold has the formats of the sequential core, whose handshake it does not have.
+/// The registers have the formats of the sequential core's; the handshake is another.
 #[test]
 fn a_point_of_a_pipeline_is_evaluated() {
     let dir = Workspace::with("core.toml", "device = \"lyon\"\narchitecture = \"pipelined\"\n");

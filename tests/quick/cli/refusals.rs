@@ -96,7 +96,7 @@ fn nothing_panics() {
     }
 }
 
-/// What a core cannot have is refused where the file asks for it, with a remedy, and nothing is written.
+/// A core that cannot be is refused where the file asks for it, with a remedy, and nothing is written.
 #[test]
 fn files_that_are_refused() {
     for Case { heading: commands, file, said } in cases(include_str!("refused.txt")) {

@@ -58,7 +58,7 @@ fn number(told: &Value, key: &str) -> f64 {
     told[key].as_f64().unwrap_or_else(|| panic!("no number `{key}` in {told}"))
 }
 
-/// What a comparison tells of the formula's error is within the bound.
+/// The formula's error that a comparison tells is within the bound.
 #[track_caller]
 fn assert_within_bound(told: &Value) {
     let units = number(told, "largest_error_of_the_formula_in_units");
@@ -431,7 +431,7 @@ fn places_that_cannot_be_written() {
     dir.assert_no_staging();
 }
 
-/// What was there stays when something fails late.
+/// An old picture stays when something fails late.
 #[cfg(unix)]
 #[test]
 fn an_old_picture_stays() {

@@ -104,7 +104,7 @@ fn a_missing_tool_leaves_it_incomplete() {
     assert!(verdicts.contains(&("icarus", "not-run")), "{verdicts:?}");
 }
 
-/// Of a device at full width: its contract takes a thousand million evaluations.
+/// A device at full width: its contract takes a thousand million evaluations.
 fn wide() -> Workspace {
     Workspace::with("core.toml", COSINE_POWER)
 }

@@ -15,7 +15,7 @@ pub const COSINE_POWER: &str = "device = \"cosine-power\"\n";
 /// A temporary directory.
 pub struct Workspace(TempDir);
 
-/// What a run of the program came to.
+/// The result of a run of the program.
 #[derive(Debug)]
 pub struct Run {
     /// The exit code.

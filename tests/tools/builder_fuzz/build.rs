@@ -11,9 +11,9 @@ use proptest::prelude::*;
 #[derive(Clone, Debug)]
 pub struct Call {
     what: u8,
-    /// Which of the signals there are.
+    /// The places of its operands among the signals.
     of: [u16; 3],
-    /// What a width, a number of places or a name is made of.
+    /// The seed of a width, a number of places or a name.
     number: i32,
     /// Operands and formats as they come, fitting or not.
     wild: bool,
@@ -63,15 +63,15 @@ struct Builder<'d> {
     /// Wires that are not driven yet.
     wires: Vec<Signal<'d>>,
     settings: Vec<Setting>,
-    /// Of counters, which do not count where they load.
+    /// The settings of counters, which do not count where they load.
     counting: Vec<Setting>,
     count: usize,
 }
 
-/// What the builder makes of calls.
+/// Builds a design by calls of the builder.
 ///
 /// # Errors
-/// What it finds wrong.
+/// The calls make a wrong description.
 pub fn build(calls: &[Call]) -> Result<Design, Diagnostics> {
     let d = Designer::new("fuzz");
     let x = d.operand("x", Format::signed(2, 5)).q();
@@ -273,7 +273,7 @@ impl<'d> Builder<'d> {
         });
     }
 
-    /// What is still open is connected, and there is a program.
+    /// Connects the inputs that are still open, and adds a program.
     fn finish(mut self, wrong: bool) {
         let d = self.d;
         let last = Call { what: 0, of: [u16::MAX; 3], number: 0, wild: false };

@@ -1,4 +1,4 @@
-//! What is emitted for vendors' tools: Tcl against stand-ins for their commands, IP-XACT against its schema and the
+//! The files for vendors' tools: Tcl against stand-ins for their commands, IP-XACT against its schema and the
 //! Verilog, FuseSoC's targets, and ROM contents in the Verilog.
 
 use std::fs;
@@ -28,7 +28,7 @@ fn cosine_power() -> tempfile::TempDir {
     emitted(&configuration_between("configs/cosine_power.toml", ALL))
 }
 
-/// What a script calls, with the slack that Vivado's stand-in tells of, and whether it ends well. Paths are relative.
+/// Returns the calls of a script, with the slack that Vivado's stand-in tells of, and whether it ends well. Paths are relative.
 fn calls(dir: &Path, script: &str, arguments: &[&str], slack: &str) -> (bool, String) {
     let stubs = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/tools/vendor/stubs.tcl");
     let (stubs, slack) = (stubs.display().to_string(), format!("SLACK={slack}"));

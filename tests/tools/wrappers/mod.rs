@@ -14,7 +14,7 @@ use rayon::prelude::*;
 /// Bits of tuser in these tests.
 const STREAM: &str = "stream = true\nuser_bits = 9\n";
 
-/// The same of a core whose operands have buffers.
+/// A stream around a core whose operands have buffers.
 const BUFFERED: &str = "stream = true\nuser_bits = 9\n[operands]\nbuffered = true\n";
 
 /// Configurations of which the wrapper is proved: a core of each kind that a wrapper knows.
@@ -164,10 +164,10 @@ fn registers_start_cores_and_give_their_results() {
     });
 }
 
-/// What the header's conversions give, by hand: 1.0; a tie, upward; one below a tie; negative; too large.
+/// Checks of the header's conversions, by hand: 1.0; a tie, upward; one below a tie; negative; too large.
 const CONVERSIONS: &str = include_str!("conversions.c");
 
-/// The same in Rust.
+/// Checks of the Rust module's conversions.
 const RUST_CONVERSIONS: &str = r#"
 #![deny(warnings)]
 #[path = "cosine_power_registers.rs"]

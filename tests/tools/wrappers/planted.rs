@@ -14,7 +14,7 @@ use rayon::prelude::*;
 /// Faults of each configuration that are planted by default.
 const FAULTS: usize = 4;
 
-/// Those that change nothing, or nothing that is promised, each with the reason.
+/// Faults that change nothing, or nothing that is promised, each with the reason.
 const HARMLESS: &str = include_str!("harmless.txt");
 
 #[test]
