@@ -1,4 +1,4 @@
-//! What it takes to generate: from the text of a configuration to all files in memory, the vectors of
+//! The cost of generating: from the text of a configuration to all files in memory, the vectors of
 //! the bench and the proof of the error bound among them. On Linux the peak of memory is printed too.
 
 use std::fs;

@@ -145,7 +145,7 @@ fn children_time(since: Instant) -> f64 {
     }
 }
 
-/// What `work` takes of this thread's processor time, in seconds.
+/// Returns the result of `work`, and this thread's processor time in seconds.
 fn timed<T>(work: impl FnOnce() -> Result<T>) -> Result<(f64, T)> {
     let since = Instant::now();
     let begin = processor_time(since);
@@ -160,7 +160,7 @@ struct Streams {
     valid: NetId,
     /// One of the results.
     result: NetId,
-    /// Of the results of all streams.
+    /// The sum of the results of all streams.
     sum: u64,
 }
 

@@ -20,7 +20,7 @@ impl Limited {
     }
 }
 
-/// What each microinstruction does.
+/// The operations of each microinstruction.
 fn device(config: &Config) -> device::Device {
     let Cosine { fraction, kept, limited, .. } = Cosine::new(config);
     let (fraction, kept) = (fraction as i32, kept as i32);
@@ -47,7 +47,7 @@ pub fn model(config: &Config) -> Box<dyn Model> {
     device(config).model()
 }
 
-/// Which function the device computes, and how far off it may be.
+/// The function that the device computes, and its error bound.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     device(config).contract(Cosine::new(config))
 }

@@ -89,7 +89,7 @@ pub fn model(config: &Config) -> Box<dyn Model> {
     Box::new(products(&it, config).behind(frame, f, program))
 }
 
-/// Which function the device computes, and how far off it may be.
+/// The function that the device computes, and its error bound.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     let it = Fresnel::new(config);
     let [cosine, reflectance, _] = it.formats();

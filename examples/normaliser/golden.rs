@@ -96,7 +96,7 @@ impl Normaliser {
     }
 }
 
-/// What each microinstruction does.
+/// The operations of each microinstruction.
 fn device(config: &Config) -> device::Device {
     let it = Arc::new(Normaliser::new(config));
     let mut frame = Frame::default();
@@ -140,7 +140,7 @@ pub fn model(config: &Config) -> Box<dyn Model> {
     device(config).model()
 }
 
-/// Which function the device computes, and how far off it may be.
+/// The function that the device computes, and its error bound.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     device(config).contract(Normaliser::new(config))
 }

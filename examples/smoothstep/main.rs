@@ -9,7 +9,7 @@
 //! cargo run --release --example smoothstep -- certify s.toml
 //! ```
 //!
-//! What it prints is proved, and may be stated as a `Term` from then on. Until it is, the commands that weigh errors say that no bound is
+//! The bound that it prints is proved, and may be stated as a `Term` from then on. Until it is, the commands that weigh errors say that no bound is
 //! stated, and `strict = true` refuses the configuration.
 
 use std::process::ExitCode;

@@ -1,9 +1,9 @@
-//! What is reached in a graph.
+//! Reachability in a graph.
 
 use std::collections::HashSet;
 use std::hash::Hash;
 
-/// Of `count` things, each behind what it is made of, whether the roots need it, themselves too.
+/// Marks the nodes that a root depends on, roots included. Each of the `count` nodes stands behind its operands.
 pub fn needed<I: IntoIterator<Item = usize>>(
     count: usize,
     roots: impl IntoIterator<Item = usize>,

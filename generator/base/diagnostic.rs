@@ -9,7 +9,7 @@ pub type SourceLocation = &'static Location<'static>;
 /// A mistake in a description.
 #[derive(Clone, Debug)]
 pub struct Diagnostic {
-    /// What is wrong, with the names of the signals.
+    /// The message, with the names of the signals.
     pub message: String,
     /// Where in the Rust source.
     pub location: SourceLocation,
@@ -26,7 +26,7 @@ impl Diagnostic {
         Self { message, location, notes: Vec::new(), key: None, nearest: None }
     }
 
-    /// The same as a problem of a configuration's key, with a remedy.
+    /// Makes it a problem of a configuration's key, with a remedy.
     pub(crate) fn of_key(mut self, key: &'static str, remedy: String) -> Self {
         self.key = Some((key, remedy));
         self

@@ -153,7 +153,7 @@ impl FromStr for Format {
     }
 }
 
-/// What happens to fraction bits that are dropped.
+/// The treatment of fraction bits that are dropped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rounding {
     /// Drop them: toward minus infinity. Costs nothing.
@@ -174,7 +174,7 @@ impl Rounding {
     }
 }
 
-/// What happens to a value beyond the range of its format.
+/// The treatment of a value beyond the range of its format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Overflow {
     /// The upper bits are dropped: arithmetic modulo the width.

@@ -5,7 +5,7 @@ use crate::base::keywords::is_keyword;
 /// Whether `name` can name a net, a ROM or a module of the emitted Verilog.
 ///
 /// # Errors
-/// What is wrong with it.
+/// The name is refused; the text says why.
 pub fn check(name: &str) -> Result<(), &'static str> {
     let mut characters = name.chars();
     match characters.next() {

@@ -1,4 +1,4 @@
-//! What the user gives to be read: files, standard input, or records in a directory.
+//! The user's input: files, standard input, or records in a directory.
 
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read};
@@ -70,7 +70,7 @@ pub fn records<T: DeserializeOwned>(directory: &Path) -> Result<Vec<(PathBuf, T)
     Ok(records)
 }
 
-/// What is said of a record that cannot be understood.
+/// The message on a record that cannot be understood.
 pub fn damaged(path: &Path) -> String {
     format!(
         "the record `{}` is damaged: restore it, move it away, or make it again with the command that wrote it",

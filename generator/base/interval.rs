@@ -15,7 +15,7 @@ pub fn of_values(raws: impl IntoIterator<Item = i128>) -> Option<Interval> {
     hull(raws.into_iter().map(|raw| (raw, raw)))
 }
 
-/// What both have in common, if anything.
+/// Returns the intersection, if there is one.
 pub fn common(a: Interval, b: Interval) -> Option<Interval> {
     let both = (a.0.max(b.0), a.1.min(b.1));
     (both.0 <= both.1).then_some(both)

@@ -12,17 +12,17 @@ use crate::hdl::pipeline::{Cell, Graph, NodeId, Op};
 /// More ways than this are not looked at, those that turn out to be none too.
 const MOST: usize = 4096;
 
-/// What is known of values beside where they come from: intervals of raw values by node.
+/// Intervals of raw values by node, beyond those that follow from the operands.
 pub type Known = BTreeMap<NodeId, Interval>;
 
 /// One way.
 #[derive(Clone, Debug)]
 pub struct Case {
-    /// What this way presupposes. It is implied by the operands' values that lead here.
+    /// The hypotheses of this way, implied by the operands' values that lead here.
     pub known: Known,
     /// The raw values of every node.
     pub ranges: Vec<Interval>,
-    /// Of these nodes the values are those of a parabola, which are fewer than intervals tell.
+    /// The nodes whose values are those of a parabola, which are fewer than intervals tell.
     pub parabolas: BTreeMap<NodeId, Polynomial>,
 }
 
@@ -75,9 +75,9 @@ pub fn cases(view: View, results: &[NodeId], known: &Known) -> Result<Vec<Case>,
             parabolas: BTreeMap::new(),
         };
         match way.follow(view, &cone) {
-            Way::Whole => found.push(way),
-            Way::Never => {}
-            Way::Splits(node, (low, high)) => {
+            Decision::Whole => found.push(way),
+            Decision::Never => {}
+            Decision::Splits(node, (low, high)) => {
                 if high - low > 63 {
                     let name = &graph.node(node).label.name;
                     return Err(format!("`{name}` selects among too many values"));
@@ -102,12 +102,13 @@ pub fn range(view: View, node: NodeId, known: &Known) -> Option<Interval> {
     let ranges = view.graph.nodes.iter().map(|node| node.range).collect();
     let mut case = Case { known: known.clone(), ranges, parabolas: BTreeMap::new() };
     match case.follow(view, &view.cone(&[node])) {
-        Way::Whole => Some(case.ranges[node.index()]),
-        Way::Never | Way::Splits(..) => None,
+        Decision::Whole => Some(case.ranges[node.index()]),
+        Decision::Never | Decision::Splits(..) => None,
     }
 }
 
-enum Way {
+/// The extent to which the selections of a case are decided.
+enum Decision {
     /// Every selection is decided.
     Whole,
     /// No operands lead here.
@@ -118,7 +119,7 @@ enum Way {
 
 impl Case {
     /// The raw values of the nodes of `cone`, as far as they are decided.
-    fn follow(&mut self, view: View, cone: &[NodeId]) -> Way {
+    fn follow(&mut self, view: View, cone: &[NodeId]) -> Decision {
         let graph = view.graph;
         let mut polynomials: BTreeMap<NodeId, Polynomial> = BTreeMap::new();
         for &id in cone {
@@ -136,14 +137,14 @@ impl Case {
                 Cell::Op(Op::Mux { select, inputs }) => {
                     if open(select) {
                         let decider = decider(graph, *select, &of);
-                        return Way::Splits(decider, of(&decider));
+                        return Decision::Splits(decider, of(&decider));
                     }
                     of(&inputs[(of(select).0 as usize).min(inputs.len() - 1)])
                 }
                 // A condition that is counted with.
                 Cell::Op(Op::Add { carry: Some(carry), .. }) if open(carry) => {
                     let decider = decider(graph, *carry, &of);
-                    return Way::Splits(decider, of(&decider));
+                    return Decision::Splits(decider, of(&decider));
                 }
                 Cell::Op(Op::All(a)) => {
                     let format = graph.node(*a).format;
@@ -163,12 +164,12 @@ impl Case {
             };
             let other = self.known.get(&id).copied().unwrap_or(node.range);
             let possible = common(range, node.range).and_then(|range| common(range, other));
-            let Some(mut range) = possible else { return Way::Never };
+            let Some(mut range) = possible else { return Decision::Never };
             if let Some(polynomial) = polynomial(graph, id, &polynomials, &of) {
                 polynomials.insert(id, polynomial);
                 let values = polynomial.of.and_then(|x| polynomial.range(of(&x)));
                 if let Some(values) = values.filter(|it| it.0 > range.0 || it.1 < range.1) {
-                    let Some(both) = common(range, values) else { return Way::Never };
+                    let Some(both) = common(range, values) else { return Decision::Never };
                     range = both;
                     if polynomial.factors[2] != 0 {
                         self.parabolas.insert(id, polynomial);
@@ -177,11 +178,11 @@ impl Case {
             }
             self.ranges[id.index()] = range;
         }
-        Way::Whole
+        Decision::Whole
     }
 }
 
-/// What a node is as a polynomial in an operand, if no bits are dropped on the way.
+/// Returns a node as a polynomial in an operand, if no bits are dropped on the way.
 fn polynomial(
     graph: &Graph,
     id: NodeId,
@@ -229,7 +230,7 @@ fn polynomial(
     }
 }
 
-/// What to decide first, so that this undecided selection becomes known: a condition of which it is made.
+/// Returns the node to split first, so that this undecided selection becomes known: a condition of which it is made.
 fn decider(graph: &Graph, id: NodeId, of: &dyn Fn(&NodeId) -> Interval) -> NodeId {
     let operands = match &graph.node(id).cell {
         Cell::Op(op @ (Op::And(..) | Op::Or(..) | Op::Not(_) | Op::Relabel(_)))

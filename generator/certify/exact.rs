@@ -16,11 +16,11 @@ pub struct Branch {
     pub at_most: Vec<Id>,
     /// The formula.
     pub term: Id,
-    /// Which side every choice goes to, by what is compared with 0 and how.
+    /// The side of every choice, by the number that is compared with 0 and the comparison.
     chosen: BTreeMap<(Id, Choice), bool>,
 }
 
-/// What decides between two sides. Choices of one kind about one number go to the same side everywhere.
+/// A comparison that decides between two sides. Choices of one kind about one number go to the same side everywhere.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Choice {
     Larger,
@@ -69,7 +69,7 @@ impl Branch {
     }
 }
 
-/// What formulas are written of.
+/// The context in which formulas are written.
 pub struct Setting<'a> {
     /// Variable, and the power of two by which an operand is divided in it.
     pub variables: &'a HashMap<String, (String, i32)>,
@@ -115,7 +115,7 @@ fn power_of_two(value: f64) -> Option<i32> {
 /// Every way that a formula can go.
 ///
 /// # Errors
-/// What has no translation.
+/// The formula has a part without a translation.
 pub fn branches(real: &Real, setting: &Setting, terms: &mut Terms) -> Result<Vec<Branch>, String> {
     // Of two expressions every way that both can go together, each with its term.
     let pairs = |terms: &mut Terms, a: &Real, b: &Real| -> Result<Vec<(Branch, Id, Id)>, String> {

@@ -10,7 +10,7 @@ use super::{Outcome, Statement, prove};
 use crate::base::transient::Directory;
 use crate::tools::{LimitReached, Tool};
 
-/// What a script asks for.
+/// The goal of a script that asks for a bound.
 const ASKED: &str = "| in ? }";
 
 /// An answer has six digits behind the point.
@@ -20,7 +20,7 @@ const MILLIONTHS: f64 = 1e6;
 const STEP: f64 = 1.0 / 2048.0;
 const TRY: Duration = Duration::from_secs(2);
 
-/// What a script asks for where no bound is stated, or that it is within this one.
+/// Returns the goal of a script: a bound is asked for where none is stated, or the difference is within this one.
 pub fn goal(difference: &str, bound: Option<f64>) -> String {
     match bound {
         Some(bound) => format!("|{difference}| <= {}", super::terms::number(bound)),
@@ -76,7 +76,7 @@ pub fn bound(gappa: &Tool, asked: &[Statement], limit: Duration) -> Result<Resul
     Ok(Ok(bound))
 }
 
-/// What Gappa answers to a statement, of its scripts the least; nothing where it asks for nothing.
+/// Returns Gappa's answer to a statement, the least of those to its scripts; nothing where it asks for nothing.
 fn answer(
     gappa: &Tool,
     statement: &Statement,

@@ -22,7 +22,7 @@ pub enum Real {
     Mul(Box<Real>, Box<Real>),
     /// The quotient.
     Div(Box<Real>, Box<Real>),
-    /// What is left of the first when multiples of the second are taken away, between 0 and the second.
+    /// The remainder of the first modulo the second, between 0 and the second.
     Mod(Box<Real>, Box<Real>),
     /// The first to the power of the second.
     Power(Box<Real>, Box<Real>),
@@ -80,7 +80,7 @@ impl Real {
 /// The expression as a tree.
 ///
 /// # Errors
-/// What is no expression, or has a function that is none of `max`, `min`, `int`, `abs` and `cos`.
+/// The text is no expression, or has a function that is none of `max`, `min`, `int`, `abs` and `cos`.
 pub fn parse(text: &str) -> Result<Real> {
     let mut parser = Parser { tokens: tokens(text)?, at: 0 };
     let real = parser.choice()?;

@@ -1,4 +1,4 @@
-//! What the hardware computes on one way through it, as terms.
+//! Writes the hardware's computation on one way through it as terms.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -38,7 +38,7 @@ pub struct Hardware<'a> {
     pub variables: Variables,
     /// The names of the tables.
     tables: &'a [String],
-    /// What is known of terms that are no nodes.
+    /// The intervals of terms that are no nodes.
     pub facts: BTreeMap<Id, (f64, f64)>,
     known: HashMap<NodeId, Value>,
 }

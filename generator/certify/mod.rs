@@ -1,14 +1,8 @@
-//! The bound of a contract as statements that Gappa proves.
+//! Writes the bound of a contract as statements that Gappa proves.
 //!
-//! A computation is unrolled into its graph of values (the same that pipelines are made of), which goes different
-//! ways with saturations, clamps and tables ([`cases`]). On each way the hardware is a real expression with
-//! roundings ([`hardware`]), and the contract's formula ([`formula`]) one without ([`exact`]). What Gappa has to
-//! prove of each way and each output: the two differ by the contract's bound at most. The ways together cover the
-//! domain, so that the statements together are the contract. Of a device that shows words of a table of cosines, along a line,
-//! there are statements about the words and about the product (`segments`).
-//!
-//! A formula that reads a table reads the words that the hardware has: that they are the right ones is not part of
-//! the statement.
+//! The computation is unrolled into a graph of values and split into [`cases`] at saturations, clamps and tables, which together cover the
+//! domain. In each the [`hardware`] is an expression with roundings and the [`formula`] one without ([`exact`]), and a statement says that
+//! they differ by the bound at most; a formula that reads a table reads the words that the hardware has.
 
 pub mod cases;
 pub mod exact;
@@ -47,7 +41,7 @@ const SPLIT: i64 = 1024;
 /// A table of at most this number of different words, one after the other, is gone through word by word.
 const RUNS: usize = 16;
 
-/// What Gappa is to prove.
+/// A statement for Gappa to prove.
 #[derive(Clone, Debug)]
 pub struct Statement {
     /// The output that it speaks of, or the value on the way to the outputs.
@@ -103,7 +97,7 @@ pub fn statements(
     }
 }
 
-/// The same without a bound: each statement asks how far an output is from the formula, in its units. [`bound`] answers,
+/// Returns the statements without a bound: each asks how far an output is from the formula, in its units. [`bound`] answers,
 /// and [`Statement::within`] states the answer.
 ///
 /// # Errors
@@ -189,7 +183,7 @@ struct Task<'a> {
     unrolled: &'a Unrolled,
     view: View<'a>,
     tables: &'a [String],
-    /// Of a highlight what f may be, else what each output is.
+    /// The formulas of a highlight's f, or else of the outputs.
     formulas: &'a [Real],
 }
 
@@ -227,7 +221,7 @@ impl Task<'_> {
         Ok(known)
     }
 
-    /// What each output takes from the last clock.
+    /// Returns each output with the net that it takes from the last clock.
     fn outputs(&self) -> Result<Vec<(String, NodeId)>, String> {
         let outputs = self.contract.outputs().iter().map(|output| {
             let mut results = self.unrolled.results.iter();
@@ -391,7 +385,7 @@ impl Task<'_> {
         Ok(())
     }
 
-    /// What the case presupposes of values that have a translation; others are left out, which leaves more to prove.
+    /// Returns the case's hypotheses on values that have a translation; others are left out, which leaves more to prove.
     fn presupposed(
         &self,
         case: &Case,

@@ -1,4 +1,4 @@
-//! What the statements about outputs rest on, as statements of their own: that a parabola has no values beyond those that
+//! Writes the premises of statements about outputs as statements of their own: that a parabola has no values beyond those that
 //! are taken for it, and what a divider presupposes and keeps.
 
 use super::cases::{Case, View};
@@ -21,7 +21,7 @@ pub struct Premise {
 /// The premises of a case.
 ///
 /// # Errors
-/// What has no translation.
+/// A value has no translation.
 pub fn of(
     view: View,
     case: &Case,

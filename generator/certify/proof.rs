@@ -9,7 +9,7 @@ use super::{Statement, witness};
 use crate::base::transient::Directory;
 use crate::tools::{LimitReached, Tool};
 
-/// What a proved statement speaks of.
+/// The subject of a proved statement.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Subject {
     /// A point at which its hypotheses hold, and others.
@@ -20,11 +20,11 @@ pub enum Subject {
     Unknown,
 }
 
-/// What became of a statement.
+/// The outcome of a statement's proof.
 pub enum Outcome {
     /// The script that was accepted, and what it speaks of.
     Proved(usize, Subject),
-    /// What Gappa says of the last script.
+    /// No proof: Gappa's answer to the last script.
     Open(String),
 }
 
@@ -84,7 +84,7 @@ pub fn prove(
     Ok(Outcome::Open(why))
 }
 
-/// What an accepted script speaks of. Gappa is asked for a contradiction where no point is found.
+/// Returns the subject of an accepted script. Gappa is asked for a contradiction where no point is found.
 fn subject(gappa: &Tool, script: &str, limit: Duration) -> Result<Subject> {
     if let Some(point) = witness::witness(script) {
         return Ok(Subject::Point(point));

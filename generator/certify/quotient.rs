@@ -14,7 +14,7 @@ use crate::hdl::pipeline::{Cell, Graph, NodeId, Op};
 pub struct Quotient {
     /// The first remainder.
     pub dividend: NodeId,
-    /// What is taken away where it fits.
+    /// The divisor, which is subtracted where it fits.
     pub divisor: NodeId,
     /// How many bits.
     pub bits: u32,

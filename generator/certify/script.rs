@@ -16,7 +16,7 @@ use crate::base::fixed::exp2;
 const SAMPLES: usize = 24;
 const TRIES: usize = 2_000;
 
-/// What the statements of a case share.
+/// The common part of a case's statements.
 pub struct Script<'a> {
     /// Hardware and formula.
     pub terms: &'a Terms,
@@ -88,8 +88,8 @@ impl Script<'_> {
         text
     }
 
-    /// Which terms of the formula are sums of terms of the hardware, those with roundings taken without them, and which
-    /// terms of the hardware stand for which of the formula. Gappa proves what it uses of it.
+    /// Writes hints: which terms of the formula are sums of terms of the hardware, those with roundings taken without them, and
+    /// which terms of the hardware stand for which of the formula. Gappa proves each that it uses.
     fn hints(
         &self,
         terms: &mut Terms,
@@ -187,7 +187,7 @@ impl Script<'_> {
     }
 }
 
-/// Of a value between a and 1, a + (1 − a)·x, that it is 1 − (1 − a)·(1 − x), which shows it.
+/// Writes a value between a and 1, a + (1 − a)·x, as 1 − (1 − a)·(1 − x), which shows its range.
 fn blend(terms: &Terms, id: Id) -> Option<String> {
     let Term::Add(first, second) = *terms.get(id) else { return None };
     let (product, a) = match terms.get(first) {

@@ -9,7 +9,7 @@
 //! Gappa has no cosine. By Taylor cos y = 1 − y²/2! + y⁴/4! − … ± y²ᵐ/(2m)! + ρ·y²ᵐ⁺²/(2m+2)! with |ρ| ≤ 1, for every real y: the statement
 //! is proved for every ρ from −1 to 1, and for every number within 10⁻²⁰ of π/2 in its place.
 //!
-//! Which angles read which word is found by cutting the angle's range into halves until the values in the netlist are decided, as
+//! The angles of each word are found by cutting the angle's range into halves until the values in the netlist are decided, as
 //! [`super::cases`] has them. All points of a line are the first one at another angle: [`crate::hdl::pipeline::unroll_line`] has the induction,
 //! and what the formula says of the angle of a point is what the walk's register holds ([`Walk::angle`]).
 
@@ -42,7 +42,7 @@ const PLACES: i32 = 42;
 /// The angle of a point, in a formula: a name that no operand has, for the first point's angle is not that of the others.
 const POINT: &str = "angle of the point";
 
-/// What is known of a word: the segment of its angles, in right angles.
+/// The segment of a word's angles, in right angles.
 struct Word {
     value: f64,
     from: f64,
@@ -52,7 +52,7 @@ struct Word {
 /// The statements of a line.
 ///
 /// # Errors
-/// What is no word of a table of a power of a cosine, at an angle that is walked along.
+/// A formula or netlist that is no table of a power of a cosine, at an angle that is walked along.
 pub fn statements(task: &Task, walk: &[Walked]) -> Result<Vec<Statement>, String> {
     let bound = task.bound.ok_or("a table is stated by segment with a stated bound alone")?;
     if task.contract.highlight().is_none() {
@@ -80,7 +80,7 @@ pub fn statements(task: &Task, walk: &[Walked]) -> Result<Vec<Statement>, String
     Ok(statements.list)
 }
 
-/// Of cos(pi / 2 · x)ᵏ the x and k.
+/// Returns x and k of cos(pi / 2 · x)ᵏ.
 fn lobe(formula: &Real) -> Option<(&Real, u32)> {
     let Real::Power(base, exponent) = formula else { return None };
     let (Real::Cos(angle), Real::Number(power)) = (&**base, &**exponent) else { return None };
@@ -147,9 +147,9 @@ impl Walk {
 }
 
 /// The colour operand of each output, the one word that all are made of, and the outputs.
-type Shown = (Vec<String>, NodeId, Vec<(String, NodeId)>);
+type Products = (Vec<String>, NodeId, Vec<(String, NodeId)>);
 
-fn table(task: &Task) -> Result<Shown, String> {
+fn table(task: &Task) -> Result<Products, String> {
     let graph = task.graph();
     let outputs = task.outputs()?;
     let operands = task.contract.operands().iter();

@@ -34,7 +34,7 @@ pub enum Term {
     Div(Id, Id),
     /// The multiple of 2^-`fraction` next to the operand in a direction.
     Round {
-        /// What is rounded.
+        /// The term that is rounded.
         of: Id,
         /// Fraction bits that are kept; negative where integer bits are dropped.
         fraction: i32,
@@ -47,7 +47,7 @@ pub enum Term {
 #[derive(Clone, Debug, Default)]
 pub struct Terms {
     terms: Vec<(Term, String)>,
-    /// Of each the variables and the degree in them.
+    /// The variables of each term, and its degree in them.
     shapes: Vec<(Vec<Id>, u32)>,
     known: HashMap<String, Id>,
 }
@@ -55,7 +55,7 @@ pub struct Terms {
 impl Terms {
     /// The term; `name` is what its definition is called, if it gets one.
     ///
-    /// Of a sum and a product the operands come in one order, so that hardware and formula have them in the
+    /// Operands of a sum and a product are put in one order, so that hardware and formula have them in the
     /// same: Gappa compares a product with another factor by factor.
     pub fn insert(&mut self, term: Term, name: &str) -> Id {
         let term = match term {
@@ -119,7 +119,7 @@ impl Terms {
         &self.terms[id].0
     }
 
-    /// What the script calls it.
+    /// Returns the name in the script.
     pub fn name(&self, id: Id) -> String {
         match self.get(id) {
             Term::Number(value) if *value < 0.0 => format!("({})", number(*value)),
@@ -168,7 +168,7 @@ impl Terms {
         values
     }
 
-    /// Which terms `roots` are made of, and they themselves.
+    /// Marks the terms that a root depends on, roots included.
     pub fn needed(&self, roots: &[Id]) -> Vec<bool> {
         cone::needed(self.terms.len(), roots.iter().copied(), |id| self.operands(id))
     }

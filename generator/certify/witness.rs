@@ -21,10 +21,10 @@ const CONTINUOUS: i32 = 20;
 /// Where a variable without an interval is looked for, on both sides of 0.
 const FREE: f64 = 1024.0;
 
-/// What a goal that nothing satisfies is, by which Gappa is asked for a contradiction.
+/// A goal that nothing satisfies, by which Gappa is asked for a contradiction.
 const NEVER: &str = "1 in [2,3] }";
 
-/// What stands between hypotheses and goal.
+/// The text between hypotheses and goal.
 const IMPLIES: &str = "\n  -> ";
 
 /// The script with a goal that follows from a contradiction alone; nothing without hypotheses.
@@ -42,7 +42,7 @@ struct Variable {
     high: i64,
 }
 
-/// What a script presupposes.
+/// The hypotheses of a script.
 struct Hypotheses {
     terms: Terms,
     variables: Vec<Variable>,
@@ -51,7 +51,7 @@ struct Hypotheses {
 }
 
 impl Hypotheses {
-    /// Those of a script; `None` where its text has what is not understood.
+    /// Parses a script; `None` where its text has a part that is not understood.
     fn of(script: &str) -> Option<Self> {
         let (definitions, statement) = script.split_once("\n{ ")?;
         let mut terms = Terms::default();

@@ -1,4 +1,4 @@
-//! Which keys of a configuration would keep the accuracy contract, or bring its error bound down most.
+//! Finds the keys of a configuration that would keep the accuracy contract, or bring its error bound down most.
 
 use std::fmt;
 
@@ -10,7 +10,7 @@ use crate::registry::Device;
 /// Steps by which an integer is changed. A larger one is tried only where no smaller one helps.
 const STEPS: [i64; 4] = [1, 2, 4, 8];
 
-/// What counts as a gain, in output units.
+/// The least gain that counts, in output units.
 const GAIN: f64 = 1e-6;
 
 /// How many changes are tried one after the other to keep the contract.
@@ -41,8 +41,8 @@ struct Better {
 }
 
 impl Core {
-    /// What keeps the accuracy contract, where the configuration does not; else, and where nothing does, the change of one key
-    /// that would bring the error bound down most.
+    /// Returns the changes that keep the accuracy contract, where the configuration does not; else, and where none do, the change
+    /// of one key that would bring the error bound down most.
     pub fn advice(&self) -> Option<Advice> {
         let (device, bound) = (&self.device, self.contract.bound());
         let first = better(device, &self.config, &bound)?;
@@ -77,7 +77,7 @@ fn better(device: &Device, config: &Config, bound: &Bound) -> Option<Better> {
     })
 }
 
-/// The same without the changes that the contract is kept without.
+/// Leaves out the changes without which the contract is kept too.
 fn needed(device: &Device, config: &Config, kept: Better) -> Better {
     let schema = (device.schema)();
     let changed = changes(device, config, &kept.config);

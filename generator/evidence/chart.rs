@@ -15,11 +15,11 @@ pub enum Scale {
 /// An axis.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ChartAxis {
-    /// What it shows, with the unit.
+    /// The quantity, with the unit.
     pub label: String,
     /// How it is divided.
     pub scale: Scale,
-    /// What is shown of it. Values outside are cut off in the plot, not in the figures.
+    /// The range that is plotted. Values outside are cut off in the plot, not in the figures.
     pub range: (f64, f64),
 }
 
@@ -48,7 +48,7 @@ impl ChartAxis {
 /// One line of a chart.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Series {
-    /// What it is, for the legend and the table's head.
+    /// The name, for the legend and the table's head.
     pub name: String,
     /// One value for each place on the chart's axis; NaN (`null` in JSON) where there is none.
     pub values: Vec<f64>,
@@ -57,7 +57,7 @@ pub struct Series {
 /// A line across a chart, for reference.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Mark {
-    /// What it stands for.
+    /// The label.
     pub label: String,
     /// Where it crosses the vertical axis.
     pub at: f64,
@@ -70,7 +70,7 @@ pub struct Chart {
     pub id: String,
     /// The heading.
     pub title: String,
-    /// What is to be seen, in a sentence or two: also what a screen reader says.
+    /// The caption in a sentence or two, which a screen reader says too.
     pub caption: String,
     /// The horizontal axis.
     pub x: ChartAxis,

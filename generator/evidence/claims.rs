@@ -15,7 +15,7 @@ const EPICENTRE: Region = Region::Level(0.46);
 /// A figure this near to the seed's, relatively, is taken for the same.
 const SAME: f64 = 0.03;
 
-/// What became of a claim.
+/// The verdict on a claim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
@@ -79,13 +79,13 @@ pub struct Claim {
     pub id: &'static str,
     /// Where it stands.
     pub source: &'static str,
-    /// What is claimed, in English.
+    /// The claim, in English.
     pub claim: String,
     /// The seed's figure.
     pub seed: String,
     /// Ours.
     pub ours: Vec<Measured>,
-    /// What became of it.
+    /// The verdict.
     pub verdict: Verdict,
     /// The verdict in a sentence or two.
     pub words: String,
@@ -125,7 +125,7 @@ fn error(worst: Worst, key: String, definition: String) -> Measured {
     Measured { key, definition, value: worst.error, text: percent(worst.error), n: Some(worst.n) }
 }
 
-/// What becomes of "not more than `limit`": figures are compared to the limit's last digit, a tenth of a per cent.
+/// Judges "not more than `limit`": figures are compared to the limit's last digit, a tenth of a per cent.
 fn upper(ours: &[Measured], limit: f64) -> Verdict {
     let within = |measured: &&Measured| libm::round(measured.value * 1000.0) <= limit * 1000.0;
     match ours.iter().filter(within).count() {
@@ -215,7 +215,7 @@ fn to_inflection(
     largest(function, exponents, Region::Inflection, key, what)
 }
 
-/// Those of some figures that there are.
+/// Returns the figures that were found.
 fn found(figures: impl IntoIterator<Item = Option<Measured>>) -> Vec<Measured> {
     figures.into_iter().flatten().collect()
 }

@@ -52,7 +52,7 @@ pub struct Accuracy {
     pub fixed_point: Spread,
 }
 
-/// What the formula says at the quantised operands: where it jumps, the nearer to `f` of the values that are right.
+/// Returns the formula at the quantised operands: where it jumps, the right value that is nearer to `f`.
 pub fn formula(highlight: &Highlight, control: &[i64], f: f64) -> f64 {
     let [one, other] = highlight.references(control);
     if (f - other).abs() < (f - one).abs() { other } else { one }

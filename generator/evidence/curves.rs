@@ -14,7 +14,7 @@ use crate::registry::Device;
 pub const EXPONENTS: [u32; 20] =
     [1, 2, 3, 4, 6, 8, 11, 16, 23, 32, 45, 64, 91, 128, 181, 256, 362, 512, 724, 1000];
 
-/// Those with a curve over the angle.
+/// The exponents with a curve over the angle.
 const SHOWN: [u32; 5] = [2, 8, 35, 128, 1000];
 
 /// How far out the curves over the angle go, in `√n·γ`.
@@ -27,7 +27,7 @@ const ANGLES: u32 = 12;
 /// Smaller errors are shown at the bottom of a logarithmic axis.
 const FLOOR: f64 = 1e-6;
 
-/// What is known of a device.
+/// The curves of a device.
 #[derive(Clone, Debug, Serialize)]
 pub struct DeviceCurves {
     /// As the registry names it.

@@ -26,10 +26,10 @@ pub type Synthesis<'a> = (&'a Tool, Duration);
 /// The steps of work that [`synthesised`] reports as done.
 pub const STEPS: usize = RIVALS.len() * FAMILIES.len();
 
-/// What both devices take.
+/// The area of both devices.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Hardware {
-    /// What was asked to synthesise.
+    /// The tool that synthesised.
     pub tool: String,
     /// In the order W, Schlick.
     pub devices: Vec<Rival>,
@@ -52,7 +52,7 @@ pub struct Rival {
     pub usage: Vec<FamilyUsage>,
 }
 
-/// What a device takes of a family, before placement.
+/// The cells of a family that a device takes, before placement.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FamilyUsage {
     /// The family.
@@ -145,7 +145,7 @@ pub fn synthesised(
     Ok(Some(Hardware { tool: yosys.version()?, devices, simpler, words }))
 }
 
-/// What the design `top` takes of a family.
+/// Returns the cells of a family that the design `top` takes.
 fn take(
     yosys: &Tool,
     files: &[(String, String)],
@@ -163,7 +163,7 @@ fn take(
     })
 }
 
-/// What one configuration takes of every family; `done` is called after each.
+/// Returns the cells that one configuration takes of every family; `done` is called after each.
 ///
 /// # Errors
 /// Yosys fails, or takes longer than `limit`.

@@ -40,7 +40,7 @@ pub struct Evidence {
     pub hardware: Option<Hardware>,
     /// ROM 9's map.
     pub rom_9: Vec<Rom9Word>,
-    /// What could not be measured.
+    /// Measurements that failed.
     pub notes: Vec<String>,
 }
 

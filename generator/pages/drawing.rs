@@ -9,9 +9,9 @@ use askama::Template;
 pub struct Drawing {
     /// Unique on the page.
     pub id: String,
-    /// What it is.
+    /// The title.
     pub title: String,
-    /// What is to be seen: what a screen reader says.
+    /// The description, which a screen reader says.
     pub description: String,
     /// From left to right.
     pub width: i32,
@@ -28,7 +28,7 @@ pub enum Item {
     Path {
         /// Class.
         class: &'static str,
-        /// What `d` says.
+        /// The attribute `d`.
         d: String,
     },
     /// A rectangle with rounded corners.
@@ -43,7 +43,7 @@ pub enum Item {
         width: i32,
         /// From top to bottom.
         height: i32,
-        /// Of the corners.
+        /// The radius of the corners.
         radius: i32,
     },
     /// A line of text.
@@ -54,7 +54,7 @@ pub enum Item {
         x: i32,
         /// The base line.
         y: i32,
-        /// What it says.
+        /// The text.
         text: String,
     },
     /// The items up to [`Item::Close`] belong together, and this is their tooltip.

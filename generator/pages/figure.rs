@@ -11,7 +11,7 @@ const ROWS: usize = 11;
 
 /// A chart as a page shows it.
 pub struct Figure<'a> {
-    /// What is plotted.
+    /// The chart.
     pub chart: &'a Chart,
     /// Where the seed has it; empty for a figure of ours.
     pub source: &'a str,

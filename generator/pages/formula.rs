@@ -43,7 +43,7 @@ pub fn mathml(text: &str) -> Option<String> {
     }
 }
 
-/// The same, or the plain text as code.
+/// Typesets a formula, or returns the plain text as code.
 pub fn typeset(text: &str) -> String {
     match mathml(text) {
         Some(formula) => format!("<div class=\"formula\">{formula}</div>"),
@@ -296,7 +296,7 @@ mod tests {
     use super::*;
     use crate::registry::Registry;
 
-    /// What a formula says, without markup.
+    /// Returns a formula's text without markup.
     fn plain(text: &str) -> Option<String> {
         let mut plain = String::new();
         let mut markup = false;

@@ -15,7 +15,7 @@ use crate::evidence::seed_plots::{RequiredPowers, Rom9Word};
 /// The words of ROM 9 in a row of its table.
 const WORDS: usize = 10;
 
-/// What marks a page of ours: nothing else is overwritten.
+/// The mark of a page that Glint wrote: nothing else is overwritten.
 pub const MARKER: &str = "<meta name=\"generator\" content=\"glint report\">";
 
 #[derive(Template)]

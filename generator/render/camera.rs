@@ -15,12 +15,12 @@ pub struct Camera {
     half: (f64, f64),
 }
 
-/// What the user says of the camera; the rest follows from what there is to be seen.
+/// The user's settings of the camera; the rest follows from the extent of the scene.
 #[derive(Clone, Copy, Debug)]
 pub struct View {
     /// Where it stands.
     pub eye: Option<Vector>,
-    /// What it looks at: the middle of everything by default.
+    /// The point that it looks at: the middle of everything by default.
     pub target: Option<Vector>,
     /// The angle between the upper and the lower edge, in degrees.
     pub field: f64,

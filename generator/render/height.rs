@@ -6,7 +6,7 @@ use png::{BitDepth, ColorType, Decoder, Limits, Transformations};
 /// The most pixels along a side.
 const LARGEST_SIDE: u32 = 8192;
 
-/// Of a decoded map, in bytes, with what decoding takes.
+/// The largest memory for a map and its decoding, in bytes.
 const MEMORY: usize = 512 << 20;
 
 /// The slopes of a height map. It is repeated in all directions.

@@ -36,22 +36,22 @@ pub struct Mesh {
 /// A corner of a triangle: indices into the lists of a [`Mesh`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Corner {
-    /// Of a position.
+    /// The index of a position.
     pub position: u32,
-    /// Of a normal.
+    /// The index of a normal.
     pub normal: u32,
-    /// Of texture coordinates.
+    /// The index of texture coordinates.
     pub texture: Option<u32>,
 }
 
 /// A corner as it is given: without a normal, one is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RawCorner {
-    /// Of a position.
+    /// The index of a position.
     pub position: u32,
-    /// Of a normal.
+    /// The index of a normal.
     pub normal: Option<u32>,
-    /// Of texture coordinates.
+    /// The index of texture coordinates.
     pub texture: Option<u32>,
 }
 

@@ -1,13 +1,8 @@
 //! Pictures whose highlights a device computes, bit by bit.
 //!
-//! The host finds what is seen, its normals and half vectors, and the ambient and diffuse light, all in
-//! f64. The specular term of every sample and light comes from the device, through an [`Engine`]: which one
-//! makes no difference. A device that walks lines computes one along each run of samples on a triangle, for a
-//! colour at a time. The sum is in the device's output units, without gamma, so that a unit of the
-//! device is a level of the picture.
-//!
-//! The same picture has the same bytes on every machine: nothing depends on the number of threads, and
-//! transcendental functions are those of `libm`.
+//! The host computes visibility, normals, half vectors, and the ambient and diffuse light in f64; an [`Engine`] computes the specular
+//! term of every sample and light, along lines for devices that walk lines. The same picture has the same bytes on every machine: it
+//! depends neither on the engine nor on the number of threads, and transcendental functions are those of `libm`.
 
 mod camera;
 mod height;
@@ -59,7 +54,7 @@ const EXPONENT: i64 = 80;
 /// Points, about, that are handed to the device at once.
 const PORTION: usize = 1 << 18;
 
-/// What a picture is to be like.
+/// The settings of a picture.
 #[derive(Clone, Debug)]
 pub struct Settings {
     /// Width and height in pixels.
@@ -70,7 +65,7 @@ pub struct Settings {
     pub view: View,
     /// How things reflect.
     pub material: Material,
-    /// What is seen where nothing is, 0 … 1.
+    /// The colour where nothing is hit, 0 … 1.
     pub background: Vector,
     /// Whether the picture of Blinn's function in f64 is wanted too.
     pub compare: bool,
@@ -85,7 +80,7 @@ pub struct Rendered {
     pub picture: Picture,
     /// Computations of the device.
     pub points: u64,
-    /// Of these, the ones whose dγ was beyond the domain of the device, and was shortened to it.
+    /// The points among these whose dγ was beyond the domain of the device, and was shortened to it.
     pub beyond: u64,
     /// Beside Blinn's function, if that was wanted.
     pub comparison: Option<Comparison>,
@@ -132,7 +127,7 @@ pub fn draws(core: &Core) -> bool {
 /// Checks what is to be rendered.
 ///
 /// # Errors
-/// What a user may have got wrong, in a sentence.
+/// A setting is wrong; the sentence says which.
 pub fn check(settings: &Settings, scene: &Scene) -> Result<()> {
     let (width, height) = settings.size;
     let sides = 1..=LARGEST_SIDE;
@@ -169,7 +164,7 @@ pub fn check(settings: &Settings, scene: &Scene) -> Result<()> {
 /// Renders a scene; `progress` is called with the number of rows so far.
 ///
 /// # Errors
-/// Those of [`check`]; a camera that sees nowhere; operands that a picture cannot supply; and those of the
+/// As of [`check`]; a camera that sees nowhere; operands that a picture cannot supply; and those of the
 /// engine.
 pub fn render(
     core: &Core,
@@ -233,7 +228,7 @@ pub fn render(
     Ok(result.finish(settings.compare))
 }
 
-/// What has been rendered so far, and what computes the rest.
+/// A picture in progress, with the engine that computes the rest.
 struct Portions<'a> {
     core: &'a Core,
     feed: &'a Feed,
@@ -284,7 +279,7 @@ impl Portions<'_> {
         Ok(())
     }
 
-    /// What was computed for each sample and each of its lights.
+    /// Returns the colour of each sample, summed over its lights.
     fn specular(&self, rows: &[Shaded], outputs: &[i64]) -> Vec<Vector> {
         let width = self.core.contract.outputs().len();
         let result = |at: usize| &outputs[at * width..(at + 1) * width];

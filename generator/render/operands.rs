@@ -11,7 +11,7 @@ use super::vector::Vector;
 use crate::base::fixed::{Format, Overflow, Rounding, exp2};
 use crate::golden::{Contract, Operand};
 
-/// What is known of a point that a light shines on.
+/// A point that a light shines on.
 #[derive(Clone, Copy, Debug)]
 pub struct Point {
     /// N·H of the smooth surface.
@@ -42,7 +42,7 @@ enum Quantity {
     DeltaZeta,
     Length,
     Amplitude,
-    /// The same at every point.
+    /// A constant for every point.
     Given(f64),
 }
 
@@ -112,7 +112,7 @@ impl Feed {
     /// For a device of that name, some of whose operands are `given` and the same at every point.
     ///
     /// # Errors
-    /// Those of [`Feed::new`]; an operand that the device does not have, or a value beyond its domain.
+    /// As of [`Feed::new`]; an operand that the device does not have, or a value beyond its domain.
     pub fn with(device: &str, contract: &dyn Contract, given: &[(String, f64)]) -> Result<Self> {
         let names: &[(&str, Quantity)] = if walks_lines(contract) { &OF_LINES } else { &OF_POINTS };
         let mut unknown = Vec::new();

@@ -1,4 +1,4 @@
-//! What a picture shows.
+//! The scene of a picture.
 
 use anyhow::Result;
 
@@ -14,7 +14,7 @@ pub struct Scene {
     pub objects: Vec<Object>,
     /// They shine from everywhere.
     pub lights: Vec<Light>,
-    /// What changes the normals of everything.
+    /// The relief that changes the normals of everything.
     pub relief: Option<Relief>,
 }
 

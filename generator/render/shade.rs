@@ -18,9 +18,9 @@ use crate::render::setup::Arc;
 /// How surfaces reflect; everything is a share of the light.
 #[derive(Clone, Copy, Debug)]
 pub struct Material {
-    /// Of the ambient light, which is white and has the strength of one light.
+    /// The share of the ambient light, which is white and has the strength of one light.
     pub ambient: f64,
-    /// Of each light, times the cosine of its angle.
+    /// The share of each light, times the cosine of its angle.
     pub diffuse: f64,
     /// k_s: of each light, times the reflectance f that the device computes.
     pub specular: f64,
@@ -35,15 +35,15 @@ impl Material {
     }
 }
 
-/// What is needed to shade.
+/// The inputs of shading.
 pub struct Shader<'a> {
     /// Things and lights.
     pub scene: &'a Scene,
     /// From where it is seen.
     pub camera: &'a Camera,
-    /// Of all things.
+    /// The material of all things.
     pub material: Material,
-    /// What is seen where nothing is, 0 … 255.
+    /// The colour where nothing is hit, 0 … 255.
     pub background: Vector,
     /// The device's operands.
     pub feed: &'a Feed,
@@ -56,7 +56,7 @@ pub struct Shaded {
     /// Ambient and diffuse light or the background, 0 … 255, of each sample, and the number of lights for
     /// which the device computes a result.
     pub samples: Vec<(Vector, u32)>,
-    /// What it computes.
+    /// The points that it computes.
     pub points: Points,
     /// For each sample and each of its lights the numbers of the results with its red, green and blue.
     /// `None` where every computation has one result, with all three, and they come in this order.
@@ -90,7 +90,7 @@ impl Surface {
 }
 
 impl Shader<'_> {
-    /// What a device is to compute for a row of samples; `ray` gives the ray of each.
+    /// Returns the points that a device computes for a row of samples; `ray` gives the ray of each.
     ///
     /// # Errors
     /// A line that the device cannot take.
@@ -243,7 +243,7 @@ impl Shader<'_> {
     }
 }
 
-/// What a device may want to know of a point.
+/// Returns the values of a point from which operands are made.
 ///
 /// As the patent has it, roughness changes the angle γ between normal and half vector by dγ. With N′ the
 /// perturbed normal and γ′ its angle with H, dγ = γ′ − γ: cos dγ = cos γ·cos γ′ + sin γ·sin γ′, and dγ is

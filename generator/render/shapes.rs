@@ -11,7 +11,7 @@ use super::vector::Vector;
 /// so many steps.
 ///
 /// # Errors
-/// Those of [`Mesh::new`].
+/// As of [`Mesh::new`].
 pub fn torus(major: f64, minor: f64, steps: [u32; 2]) -> Result<Mesh> {
     grid(steps, [true, true], |u, v| {
         let (around, across) = (u * TAU, v * TAU);
@@ -27,7 +27,7 @@ pub fn torus(major: f64, minor: f64, steps: [u32; 2]) -> Result<Mesh> {
 /// A ball, with this number of steps around and from pole to pole.
 ///
 /// # Errors
-/// Those of [`Mesh::new`].
+/// As of [`Mesh::new`].
 pub fn ball(middle: Vector, radius: f64, steps: [u32; 2]) -> Result<Mesh> {
     grid(steps, [true, false], |u, v| {
         let (around, down) = (u * TAU, v * PI);
@@ -45,7 +45,7 @@ pub fn ball(middle: Vector, radius: f64, steps: [u32; 2]) -> Result<Mesh> {
 /// A vase of height 2 around the y axis, open at the top: belly, neck and lip.
 ///
 /// # Errors
-/// Those of [`Mesh::new`].
+/// As of [`Mesh::new`].
 pub fn vase(steps: [u32; 2]) -> Result<Mesh> {
     grid(steps, [true, false], |u, v| {
         // Outside from the foot to the lip, then down the inside.

@@ -1,9 +1,8 @@
-//! What is seen at each sample of the picture: a z-buffer, row bands in parallel.
+//! Finds the surface at each sample of the picture: a z-buffer, row bands in parallel.
 //!
-//! A triangle is a homogeneous one: with its corners in the camera's coordinates, the barycentric
-//! coordinates of the ray through a sample are its products with the normals of the three planes through
-//! the eye and an edge. There is no clipping, and triangles that share an edge leave no gap, since both
-//! compute the same number for it, with opposite signs. Where two are at the same depth, the first wins.
+//! Barycentric coordinates of the ray through a sample are its products with the normals of the planes through the eye and the
+//! edges. There is no clipping, and triangles that share an edge leave no gap, since both compute the same number for it, with
+//! opposite signs; where two are at the same depth, the first wins.
 
 use rayon::prelude::*;
 
@@ -14,14 +13,14 @@ use super::vector::Vector;
 /// Rows of samples that are worked on together.
 const BAND: usize = 16;
 
-/// What a ray meets first.
+/// The first surface that a ray meets.
 #[derive(Clone, Copy, Debug)]
 pub struct Hit {
     /// How far along the ray, whose third component is −1: the distance from the eye's plane.
     pub depth: f64,
-    /// Of the scene.
+    /// The place of the object in the scene.
     pub object: u32,
-    /// Of the object's mesh; 0 for a ball.
+    /// The place of the triangle in the object's mesh; 0 for a ball.
     pub triangle: u32,
     /// The weights of the second and the third corner.
     pub weights: [f64; 2],
@@ -76,12 +75,12 @@ impl Raster {
 pub struct Visibility<'a> {
     scene: &'a Scene,
     raster: Raster,
-    /// Of each mesh, by object.
+    /// The corners of each mesh, by object.
     corners: Vec<Vec<Vector>>,
     balls: Vec<(u32, Vector, f64)>,
     /// For each band of rows what may be seen there: object, triangle, columns.
     bands: Vec<Vec<Candidate>>,
-    /// What is nearer than this is not seen.
+    /// The least distance at which a surface is seen.
     near: f64,
 }
 
@@ -182,7 +181,7 @@ impl<'a> Visibility<'a> {
         })
     }
 
-    /// What is seen in some rows, row by row.
+    /// Returns the surfaces of some rows, row by row.
     pub fn rows(&self, first: usize, end: usize) -> Vec<Hit> {
         let width = self.raster.columns;
         let mut hits = vec![NOTHING; width * (end - first)];

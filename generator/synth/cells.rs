@@ -1,9 +1,7 @@
 //! Standard cells of 0.18 µm, before layout: Yosys with a liberty file, and OpenSTA for the delay.
 //!
 //! Nets of a large fan-out are buffered, and cells sized: without, the clock enable of a pipeline takes longer than everything that
-//! it enables.
-//!
-//! The library is that of Oklahoma State University for 0.18 µm, in the typical corner, as Debian's `qflow-tech-osu018` has it. A gate is
+//! it enables. The library is that of Oklahoma State University, in the typical corner, as Debian's `qflow-tech-osu018` has it; a gate is
 //! the area of its NAND2X1.
 
 use std::fs;

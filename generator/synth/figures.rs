@@ -1,4 +1,4 @@
-//! What was measured.
+//! The figures of a measurement: area and frequency.
 
 use anyhow::{Context, Result};
 use rayon::prelude::*;
@@ -7,14 +7,14 @@ use serde::{Deserialize, Serialize};
 use super::{Subject, Target};
 use crate::tools::synthesis::Usage;
 
-/// What a core takes of a target, and how fast it is there.
+/// The area and the frequency of a core on a target.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Figures {
     /// The target.
     pub target: Target,
     /// The chip or the library, for people.
     pub device: String,
-    /// What the core takes, without the registers around it.
+    /// The area of the core, without the registers around it.
     pub area: Area,
     /// How fast it is, with the registers around it; not of every target.
     #[serde(skip_serializing_if = "Option::is_none", default)]
@@ -29,7 +29,7 @@ pub struct Figures {
     pub tools: Vec<String>,
 }
 
-/// What a core takes. What does not exist in a target is `None`.
+/// The area of a core. A resource that a target does not have is `None`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Area {
@@ -55,11 +55,11 @@ pub struct Area {
 /// Frequencies in MHz.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Frequency {
-    /// Of the slowest run.
+    /// The frequency of the slowest run.
     pub lowest: f64,
-    /// Of the run in the middle; of an even number of runs the slower of two.
+    /// The frequency of the run in the middle; of an even number of runs the slower of two.
     pub median: f64,
-    /// Of the fastest run.
+    /// The frequency of the fastest run.
     pub highest: f64,
     /// The number of runs.
     pub runs: u32,
@@ -129,7 +129,7 @@ impl Figures {
 }
 
 impl Area {
-    /// What an FPGA has for it; none of cells.
+    /// Returns the FPGA's resources; none of cells.
     pub fn usage(&self) -> Option<Usage> {
         let flip_flops = self.flip_flops;
         let (luts, dsps, block_rams) = (self.luts?, self.dsps?, self.block_rams?);

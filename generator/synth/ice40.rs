@@ -40,7 +40,7 @@ pub fn measure(
         .routed(subject, done, |seed| route(nextpnr, icetime, subject, &workspace, &netlist, seed))
 }
 
-/// What the chip has too little of.
+/// Returns the resources of which the chip has too little.
 fn lack(usage: Usage) -> Option<String> {
     let wanted = [usage.luts, usage.dsps, usage.block_rams];
     let pairs = CAPACITY.iter().zip(wanted);

@@ -1,4 +1,4 @@
-//! What a core costs and how fast it is: synthesis, placement, routing and timing analysis by outside tools.
+//! Measures area and frequency of a core: synthesis, placement, routing and timing analysis by outside tools.
 //!
 //! A core is measured with a register on each side of every port (`harness`), so that pins do not count. The
 //! delay of a DSP block is never left out: on iCE40 the blocks are pure multipliers, and `icetime` times what
@@ -30,7 +30,7 @@ pub use figures::{Area, Figures, Frequency, Step};
 pub use record::{DIRECTORY, Rate, Record, tools};
 use workspace::Workspace;
 
-/// What a core is measured for.
+/// A family or library for which a core is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Target {
@@ -85,7 +85,7 @@ pub struct Flow {
     versions: Vec<String>,
 }
 
-/// What is measured, and how.
+/// The subject and the method of a measurement.
 pub struct Subject<'a> {
     /// The core.
     pub design: &'a Design,
@@ -124,7 +124,7 @@ impl Flow {
         Ok(Self { target, yosys, others, liberty: liberty.to_owned(), versions })
     }
 
-    /// What it measures for.
+    /// Returns the target.
     pub fn target(&self) -> Target {
         self.target
     }
@@ -173,7 +173,7 @@ impl Flow {
     }
 }
 
-/// What a tool says of its version, without what it says of itself.
+/// Returns the version that a tool states, without the rest of its banner.
 fn version(tool: &Tool) -> Result<String> {
     let said = tool.version()?;
     Ok(match said.split_once("(Version ") {

@@ -81,7 +81,7 @@ impl Netlist {
         self.registers.get(cell).map(String::as_str)
     }
 
-    /// What a net's bit is called in the description.
+    /// Returns the description's name of a net's bit.
     pub fn name(&self, net: &str) -> Option<&str> {
         self.names.get(net).map(String::as_str)
     }

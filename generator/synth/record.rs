@@ -1,4 +1,4 @@
-//! The record of a measurement: what `glint synth --out` writes, and what datasheets, `glint compare` and README show.
+//! The record of a measurement: written by `glint synth --out`, shown by datasheets, `glint compare` and docs/measurements.md.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -27,7 +27,7 @@ pub struct Record<F = Figures> {
     pub core: String,
     /// From one `start` to the next; 1 of a pipeline.
     pub clocks_per_point: f64,
-    /// What was measured, for each target.
+    /// The measurements, one for each target.
     pub targets: Vec<F>,
 }
 
@@ -43,7 +43,7 @@ impl Record {
         Ok(records.find(|record| record.core == core))
     }
 
-    /// What was measured for a target.
+    /// Returns the measurement for a target.
     pub fn of(&self, target: Target) -> Option<&Figures> {
         self.targets.iter().find(|figures| figures.target == target)
     }
@@ -65,10 +65,10 @@ pub struct Rate {
     /// Millions a second, at the median frequency.
     #[serde(rename = "million_points_per_second")]
     pub points: f64,
-    /// The same for each look-up table.
+    /// Millions a second for each look-up table.
     #[serde(rename = "million_points_per_second_per_lut")]
     pub per_lut: Option<f64>,
-    /// The same for each DSP block.
+    /// Millions a second for each DSP block.
     #[serde(rename = "million_points_per_second_per_dsp")]
     pub per_dsp: Option<f64>,
 }

@@ -71,10 +71,10 @@ impl<'a> Workspace<'a> {
         Ok(())
     }
 
-    /// What the core alone takes.
+    /// Synthesises the core alone, and returns its area.
     ///
     /// # Errors
-    /// Those of [`Workspace::yosys`].
+    /// As of [`Workspace::yosys`].
     pub fn area(&self, yosys: &Tool, family: &Family) -> Result<Usage> {
         let top = &self.subject.design.name;
         let (read, script) = (self.read_core(), family.script(top));
@@ -82,11 +82,11 @@ impl<'a> Workspace<'a> {
         synthesis::usage(&self.path().join(STATISTICS), top, family)
     }
 
-    /// What the core alone takes, and the netlist of the core with the registers around it, which is left in the
-    /// file [`NETLIST`].
+    /// Synthesises the core alone and with the registers around it; returns the area of the first, and the netlist of the second,
+    /// which is left in the file [`NETLIST`].
     ///
     /// # Errors
-    /// Those of [`Workspace::yosys`].
+    /// As of [`Workspace::yosys`].
     pub fn synthesise(&self, yosys: &Tool, family: &Family) -> Result<(Usage, Netlist)> {
         let top = &self.subject.design.name;
         let commands = [

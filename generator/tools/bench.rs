@@ -30,15 +30,15 @@ pub enum Waveform {
     Written,
 }
 
-/// What came of a bench.
+/// The outcome of a bench.
 #[derive(Clone, Debug)]
 pub struct BenchOutcome {
     /// The bench printed a PASS line, no FAIL line, and ended without an error.
     pub passed: bool,
-    /// What the compiler said. Empty when it had nothing to warn of (Icarus), or the protocol of
+    /// The compiler's output. Empty when it had nothing to warn of (Icarus), or the protocol of
     /// the build (Verilator, which takes a warning for an error).
     pub build: String,
-    /// What the bench printed.
+    /// The bench's output.
     pub transcript: String,
 }
 
@@ -90,7 +90,7 @@ pub struct BuiltBench {
     top: String,
     /// The program to run and its arguments.
     program: (Tool, &'static [&'static str]),
-    /// What the compiler said.
+    /// The compiler's output.
     build: String,
 }
 

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::io::Read;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Of a long output, this many bytes of the beginning are kept ...
+/// The bytes that are kept of the beginning of a long output ...
 const KEEP_FIRST: usize = 64 << 10;
 /// ... and this many of the end, where verdicts and errors stand.
 const KEEP_LAST: usize = 1 << 20;
@@ -34,7 +34,7 @@ impl Capture {
         }
     }
 
-    /// What has been kept; bytes that are not UTF-8 are replaced.
+    /// Returns the text that was kept; bytes that are not UTF-8 are replaced.
     pub(super) fn text(&self) -> String {
         let kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let mut bytes = kept.first.clone();

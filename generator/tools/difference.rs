@@ -1,4 +1,4 @@
-//! What a bench that fails says of the first difference, and the waveform of the clocks before it.
+//! The first difference that a failing bench reports, and the waveform of the clocks before it.
 
 use std::fs;
 use std::time::Duration;
@@ -14,13 +14,13 @@ use crate::package::{WINDOW_FILE, window};
 pub struct BenchDifference {
     /// The clock of the bench, from 0.
     pub clock: u64,
-    /// What is executed in it, ``microinstruction `result` ``; empty for a pipeline.
+    /// The microinstruction that is executed in it, ``microinstruction `result` ``; empty for a pipeline.
     pub during: String,
     /// The output.
     pub signal: String,
     /// Its value, in hexadecimal; x and z are possible.
     pub simulated: String,
-    /// What the vectors say, in hexadecimal.
+    /// The value in the vectors, in hexadecimal.
     pub expected: String,
 }
 
@@ -54,7 +54,7 @@ impl BenchDifference {
 /// clocks `from` to `to`.
 ///
 /// # Errors
-/// Those of [`super::run_bench`]; there is no waveform.
+/// As of [`super::run_bench`]; there is no waveform.
 pub fn bench_waveform(
     simulator: Simulator,
     files: &[(String, String)],

@@ -7,7 +7,7 @@ use anyhow::{Result, bail};
 
 use super::Tool;
 
-/// What `iverilog` or `verilator` has to say, at its strictest, about the Verilog files `sources` of a
+/// Returns the complaints of `iverilog` or `verilator`, at its strictest, about the Verilog files `sources` of a
 /// directory: nothing, if they are clean.
 ///
 /// # Errors

@@ -1,11 +1,8 @@
-//! External simulators and synthesis tools, run as child processes.
+//! Outside tools as child processes: simulators, synthesis, provers.
 //!
-//! A [`Tool`] is a program found on a search path. Every run has a time limit, after which it
-//! is killed with all that it has started. Output is drained to the end but kept only in part, so a tool
-//! that prints without end costs neither memory nor a deadlock. Errors name the tool and quote the
-//! last lines that it wrote.
-//!
-//! [`run_bench`] builds and runs a self-checking Verilog bench; a [`BuiltBench`] can be run repeatedly.
+//! A [`Tool`] is a program found on a search path; every run has a time limit, after which it is killed with all that it has started.
+//! Output is drained to the end but kept only in part, and errors quote its last lines. [`run_bench`] builds and runs a self-checking
+//! Verilog bench; a [`BuiltBench`] can be run repeatedly.
 
 use std::env;
 use std::ffi::OsStr;
@@ -37,7 +34,7 @@ pub use elaborate::elaborate;
 pub use lint::lint;
 pub use proof::{PROOF_LIMITS, prove};
 
-/// What asking for a version may take: the first run of a WebAssembly tool compiles it.
+/// The time limit for asking a tool's version: the first run of a WebAssembly tool compiles it.
 const VERSION_LIMIT: Duration = Duration::from_secs(600);
 /// How long the output of killed processes may take to close.
 const CLOSING_LIMIT: Duration = Duration::from_secs(1);
@@ -59,7 +56,7 @@ pub struct Run {
     pub output: String,
 }
 
-/// What a run may take.
+/// The limits of a run.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
     /// After which it is killed.
@@ -197,7 +194,7 @@ impl Tool {
     /// Like [`Tool::run`], for a tool that is expected to succeed; returns its output.
     ///
     /// # Errors
-    /// Those of [`Tool::run`], and any exit status but 0.
+    /// As of [`Tool::run`], and any exit status but 0.
     pub fn run_to_success<A: AsRef<OsStr>>(
         &self,
         arguments: impl IntoIterator<Item = A>,

@@ -8,7 +8,7 @@ use anyhow::{Context, Result, bail, ensure};
 
 use super::{LimitReached, Limits, Tool, capture};
 
-/// What each command of a proof may take, unless less is asked for.
+/// The limits of each command of a proof, unless less is asked for.
 pub const PROOF_LIMITS: Limits = Limits { time: Duration::from_secs(300), memory: Some(4 << 30) };
 
 /// Runs the commands that the head of the wrapper `<name>_formal.sv` gives, in the directory that has it and

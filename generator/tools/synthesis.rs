@@ -22,7 +22,7 @@ pub struct Family {
     pub title: &'static str,
     /// The command of Yosys that reads the cells which a core may instantiate, or nothing.
     pub library: &'static str,
-    /// What Yosys does before `command`.
+    /// The Yosys commands before `command`.
     prepare: &'static str,
     /// The command of Yosys, without the top module.
     pub command: &'static str,
@@ -103,7 +103,7 @@ pub const FAMILIES: [Family; 3] = [
     },
 ];
 
-/// What a design takes, before placement.
+/// The resources that a design takes, before placement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Usage {
     /// Look-up tables.

@@ -1,4 +1,4 @@
-//! What shows that a tool works: of something wrong it says so.
+//! Shows that a tool works: given something wrong, it must say so.
 //!
 //! A proof and a lint rest on what a tool does not say, or on its exit status alone. One that is silent and exits with 0,
 //! whatever it is given, is found here.

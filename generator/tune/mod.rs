@@ -1,12 +1,8 @@
-//! The smallest configuration of a device for an error.
+//! Finds the smallest configuration of a device for an error.
 //!
-//! The bound of the accuracy contract decides, which is proved and known before anything is simulated: what
-//! [`tune`] answers keeps the error that was asked for, for every operand of the domain. What a configuration costs is
-//! estimated from its netlist ([`model`]); synthesis confirms the answer.
-//!
-//! Free are the keys that change neither a port nor the formula (`space`); all others are the wish itself. Keys that add
-//! microinstructions, as those by which products share a multiplier, are free where the wish says how many points a second are
-//! enough or that DSP blocks are dear, and where nothing else fits the chip.
+//! The proved bound of the accuracy contract decides, so that the answer of [`tune`] keeps the error for every operand of the domain; the
+//! cost is estimated from the netlist ([`model`]). Free are the keys that change neither a port nor the formula (`space`), with those that
+//! add microinstructions where a rate is stated as enough, DSP blocks are dear, or nothing else fits the chip.
 
 pub mod model;
 mod search;
@@ -26,12 +22,12 @@ use space::Space;
 
 use crate::synth::Target;
 
-/// What the error is measured in.
+/// The unit of an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ErrorUnit {
-    /// Of the reflectance f, from 0 to 1.
+    /// The reflectance f, from 0 to 1.
     F,
-    /// Of an output: its least significant bit.
+    /// An output's least significant bit.
     Output,
 }
 
@@ -54,7 +50,7 @@ impl fmt::Display for ErrorUnit {
     }
 }
 
-/// What is to be as small as possible.
+/// The cost that is minimised.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Objective {
     /// Look-up tables, with DSP blocks and block RAMs counted as the look-up tables that the target has for each.
@@ -67,16 +63,16 @@ pub enum Objective {
     Memory,
 }
 
-/// What is asked for.
+/// The goal of a search.
 #[derive(Clone, Debug)]
-pub struct Wish {
+pub struct Goal {
     /// The largest error.
     pub error: f64,
-    /// What it is measured in.
+    /// The unit of the error.
     pub unit: ErrorUnit,
-    /// What the core is for.
+    /// The target of the core.
     pub target: Target,
-    /// What is to be small.
+    /// The cost that is minimised.
     pub objective: Objective,
     /// The slowest clock in MHz, by the estimate.
     pub clock: Option<f64>,
@@ -84,26 +80,26 @@ pub struct Wish {
     pub rate: Option<f64>,
 }
 
-/// Searches for the smallest configuration. `base` has the keys that are part of the wish; the free ones are changed, but for those
+/// Searches for the smallest configuration. `base` has the keys that are part of the goal; the free ones are changed, but for those
 /// in `fixed`. `progress` is called with the number of configurations that were looked at.
 ///
 /// # Errors
-/// No configuration keeps the wish; the message says which term of the bound, or the clock, is in the way.
+/// No configuration keeps the goal; the message says which term of the bound, or the clock, is in the way.
 pub fn tune(
     device: &Device,
     base: &Config,
     fixed: &[&str],
-    wish: &Wish,
+    goal: &Goal,
     progress: &(dyn Fn(usize) + Sync),
 ) -> Result<Answer> {
-    let slower = wish.rate.is_some() || wish.objective == Objective::Dsps;
+    let slower = goal.rate.is_some() || goal.objective == Objective::Dsps;
     let run = |slower| -> Result<Answer> {
         let space = Space::new(device, base, fixed, slower)?;
-        Search::new(device, &space, wish, progress).run(base)
+        Search::new(device, &space, goal, progress).run(base)
     };
     let of_device = || format!("`{}` cannot be tuned", device.name);
     let answer = run(slower).with_context(of_device)?;
-    let fits = |answer: &Answer| answer.best.cost.excess(wish.target).is_empty();
+    let fits = |answer: &Answer| answer.best.cost.excess(goal.target).is_empty();
     if slower || fits(&answer) {
         return Ok(answer);
     }
@@ -120,8 +116,8 @@ pub fn exhaustive(
     device: &Device,
     base: &Config,
     values: &[(&str, Vec<crate::config::Value>)],
-    wish: &Wish,
+    goal: &Goal,
 ) -> Result<Option<Candidate>> {
     let space = Space::new(device, base, &[], true)?;
-    Search::new(device, &space, wish, &|_| ()).exhaustive(base, values)
+    Search::new(device, &space, goal, &|_| ()).exhaustive(base, values)
 }

@@ -1,8 +1,7 @@
-//! What a configuration costs, estimated from its netlist.
+//! Estimates the cost of a configuration from its netlist.
 //!
-//! DSP blocks and block RAMs follow from the widths. Look-up tables are a weighted sum of what the netlist is made of; the weights are
-//! fitted by `benches/tune/fit` to the records in `synthesis/`. The clock is the longest path by the delays of
-//! the pipelines' targets, which were measured.
+//! DSP blocks and block RAMs follow from the widths; look-up tables are a weighted sum of [`Features`], whose weights
+//! `benches/tune/fit` fits to the records in `synthesis/`. The clock is the longest path by the measured delays of the pipelines' targets.
 
 use std::collections::BTreeSet;
 
@@ -12,7 +11,7 @@ use crate::hdl::netlist::{Design, Driver, NetId, Op, RegId};
 use crate::hdl::pipeline::{self, TARGETS};
 use crate::synth::Target;
 
-/// What a netlist is made of, as far as look-up tables are concerned.
+/// The composition of a netlist, as far as look-up tables are concerned.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Features {
     /// Bits of sums, differences and comparisons.
@@ -27,7 +26,7 @@ pub struct Features {
     pub product: f64,
 }
 
-/// What a configuration costs on a target.
+/// The cost of a configuration on a target.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Cost {
     /// Look-up tables.
@@ -49,7 +48,7 @@ struct Chip {
     weights: [f64; 6],
     /// The target of pipelines with its delays.
     delays: &'static str,
-    /// What was measured over what the delays say.
+    /// The ratio of the measured clock to that of the delays.
     scale: f64,
     /// The widest unsigned operands of a DSP block, the wider one first, and by how many bits signed ones may be wider.
     multiplier: (u32, u32),
@@ -151,7 +150,7 @@ impl Cost {
         self.luts + dsp * self.dsps as f64 + block * self.block_rams as f64
     }
 
-    /// What a usual chip of the target has too little of, in words; empty where the core fits.
+    /// Returns the resources that a usual chip of the target lacks, in words; empty where the core fits.
     pub fn excess(&self, target: Target) -> String {
         let chip = chip(target);
         let wanted = [self.luts.ceil() as u64, self.dsps, self.block_rams];
@@ -167,7 +166,7 @@ impl Cost {
 }
 
 impl Features {
-    /// Those of a design on a target.
+    /// Counts the features of a design on a target.
     pub fn new(design: &Design, target: Target) -> Self {
         let chip = chip(target);
         let mut sum = Self::default();

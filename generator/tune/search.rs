@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::model::Cost;
 use super::space::Space;
-use super::{Objective, Wish};
+use super::{Goal, Objective};
 use crate::config::{Config, Value};
 use crate::evidence::comparison::clocks_per_point;
 use crate::golden::Bound;
@@ -38,7 +38,7 @@ impl Candidate {
     }
 }
 
-/// What came of a search.
+/// The result of a search.
 #[derive(Clone, Debug)]
 pub struct Answer {
     /// The smallest configuration that was found.
@@ -55,7 +55,7 @@ pub struct Answer {
 pub struct Search<'a> {
     device: &'a Device,
     space: &'a Space,
-    wish: &'a Wish,
+    goal: &'a Goal,
     progress: &'a (dyn Fn(usize) + Sync),
     seen: Mutex<BTreeMap<String, Option<Candidate>>>,
 }
@@ -64,13 +64,13 @@ impl<'a> Search<'a> {
     pub fn new(
         device: &'a Device,
         space: &'a Space,
-        wish: &'a Wish,
+        goal: &'a Goal,
         progress: &'a (dyn Fn(usize) + Sync),
     ) -> Self {
-        Self { device, space, wish, progress, seen: Mutex::default() }
+        Self { device, space, goal, progress, seen: Mutex::default() }
     }
 
-    /// From `base` up to the wish, then down.
+    /// From `base` up to the goal, then down.
     pub fn run(&self, base: &Config) -> Result<Answer> {
         let base = self.look(base).context("the configuration to start from makes no design")?;
         let mut best = self.reach(base)?;
@@ -84,7 +84,7 @@ impl<'a> Search<'a> {
         Ok(Answer { front: self.front(all), best, free, looked_at })
     }
 
-    /// Goes through all combinations of values; the smallest that keeps the wish.
+    /// Goes through all combinations of values; the smallest that keeps the goal.
     pub fn exhaustive(
         &self,
         base: &Config,
@@ -123,7 +123,7 @@ impl<'a> Search<'a> {
         let found = design.map(|design| Candidate {
             config: config.clone(),
             bound: contract.bound(),
-            cost: Cost::new(&design, self.wish.target),
+            cost: Cost::new(&design, self.goal.target),
             clocks: clocks_per_point(&design, contract.as_ref(), EXPONENT).ok(),
         });
         let mut seen = lock();
@@ -133,30 +133,30 @@ impl<'a> Search<'a> {
     }
 
     fn error(&self, candidate: &Candidate) -> f64 {
-        self.wish.unit.of(&candidate.bound)
+        self.goal.unit.of(&candidate.bound)
     }
 
     fn keeps(&self, candidate: &Candidate) -> bool {
-        self.error(candidate) <= self.wish.error && self.is_fast(candidate)
+        self.error(candidate) <= self.goal.error && self.is_fast(candidate)
     }
 
     fn is_fast(&self, candidate: &Candidate) -> bool {
         candidate.cost.mhz >= self.wanted_mhz(candidate)
     }
 
-    /// The clock that a candidate needs for the wish, in MHz: infinite where it shows no point.
+    /// The clock that a candidate needs for the goal, in MHz: infinite where it shows no point.
     fn wanted_mhz(&self, candidate: &Candidate) -> f64 {
-        let of_rate = self.wish.rate.map(|rate| match candidate.clocks {
+        let of_rate = self.goal.rate.map(|rate| match candidate.clocks {
             Some(clocks) => rate * clocks,
             None => f64::INFINITY,
         });
-        self.wish.clock.unwrap_or_default().max(of_rate.unwrap_or_default())
+        self.goal.clock.unwrap_or_default().max(of_rate.unwrap_or_default())
     }
 
-    /// What is to be small, the most important first: that it fits the chip, the objective, the error, and bits of ROM. Two
-    /// candidates that are alike in it differ in their text.
+    /// Returns the costs, the most important first: fit to the chip, objective, error, and bits of ROM. Candidates of equal costs
+    /// differ in their text.
     fn order(&self, candidate: &Candidate) -> ([f64; 5], String) {
-        let (cost, target) = (&candidate.cost, self.wish.target);
+        let (cost, target) = (&candidate.cost, self.goal.target);
         let excess = if cost.excess(target).is_empty() { 0.0 } else { 1.0 };
         let (first, second) = (self.objective(candidate), cost.area(target));
         let small = [excess, first, second, self.error(candidate), cost.rom_bits as f64];
@@ -165,8 +165,8 @@ impl<'a> Search<'a> {
 
     fn objective(&self, candidate: &Candidate) -> f64 {
         let cost = &candidate.cost;
-        match self.wish.objective {
-            Objective::Area => cost.area(self.wish.target),
+        match self.goal.objective {
+            Objective::Area => cost.area(self.goal.target),
             Objective::Luts => cost.luts,
             Objective::Dsps => cost.dsps as f64,
             Objective::Memory => cost.rom_bits as f64,
@@ -199,15 +199,15 @@ impl<'a> Search<'a> {
         all.filter_map(|values| self.look(&self.space.with(&candidate.config, values)?)).collect()
     }
 
-    /// Goes on to the neighbour with the smallest error until the wish is kept.
+    /// Goes on to the neighbour with the smallest error until the goal is kept.
     fn reach(&self, base: Candidate) -> Result<Candidate> {
         let mut here = base;
         while !self.keeps(&here) {
-            let wanted = self.error(&here) > self.wish.error;
+            let wanted = self.error(&here) > self.goal.error;
             let measure = |candidate: &Candidate| match wanted {
                 true => self.error(candidate),
                 // The error is kept, and the clock is not.
-                false if self.error(candidate) > self.wish.error => f64::INFINITY,
+                false if self.error(candidate) > self.goal.error => f64::INFINITY,
                 false => -candidate.cost.mhz / self.wanted_mhz(candidate),
             };
             let next = self.around(&here, 1).into_iter();
@@ -223,7 +223,7 @@ impl<'a> Search<'a> {
 
     /// The clock that cannot be kept.
     fn too_slow(&self, fastest: &Candidate) -> Result<Candidate> {
-        let wanted = match (self.wish.rate, fastest.clocks) {
+        let wanted = match (self.goal.rate, fastest.clocks) {
             (Some(rate), Some(clocks)) => {
                 format!("for {rate} million points a second at {clocks} clocks a point")
             }
@@ -239,7 +239,7 @@ impl<'a> Search<'a> {
 
     /// The error that cannot be kept, and what is in the way.
     fn out_of_reach(&self, nearest: &Candidate) -> Result<Candidate> {
-        let unit = self.wish.unit;
+        let unit = self.goal.unit;
         let terms = nearest.bound.terms.iter();
         let largest = terms.max_by(|one, other| one.units.total_cmp(&other.units));
         let way = largest.map_or_else(String::new, |term| {
@@ -250,12 +250,12 @@ impl<'a> Search<'a> {
         });
         bail!(
             "no configuration keeps {} {unit}; the smallest bound that was found is {} {unit}{way}",
-            self.wish.error,
-            above(self.error(nearest), self.wish.error)
+            self.goal.error,
+            above(self.error(nearest), self.goal.error)
         )
     }
 
-    /// A smaller neighbour that keeps the wish.
+    /// A smaller neighbour that keeps the goal.
     fn descend(&self, here: &Candidate, changes: usize) -> Option<Candidate> {
         let smallest = self.smallest(self.around(here, changes))?;
         (self.order(&smallest).0 < self.order(here).0).then_some(smallest)

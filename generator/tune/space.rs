@@ -1,4 +1,4 @@
-//! Which keys are free, and what lies next to a configuration.
+//! The free keys, and the neighbours of a configuration.
 
 use anyhow::{Context, Result};
 
@@ -120,7 +120,7 @@ fn with(schema: &Schema, config: &Config, values: &[(&'static str, Value)]) -> O
     values.iter().all(|(key, value)| config.value(key) == value).then_some(config)
 }
 
-/// What somebody outside the core sees: its ports, its microinstructions, each at least a clock of a point, and its
+/// The interface of a core: its ports, its microinstructions, each at least a clock of a point, and its
 /// formula at some points.
 struct Outside {
     ports: Vec<String>,

@@ -1,10 +1,7 @@
-//! Everything that shows that a configuration does what it says, check by check, and a page about it.
+//! Runs every check of a configuration, and writes a record and a page about it.
 //!
-//! A [`Check`] asks one question, with the tools that it names, and gives a [`Finding`]: the answer, over
-//! which domain it holds, and what it leaves open. The checks are independent of each other: none knows what
-//! another found. Those that read text read the files that `generate` writes, of which the record has the digests; what a
-//! check reads else it says. What they found is the same whenever it is found with the same tools; how long it
-//! took stands apart, in [`CheckTime`].
+//! A [`Check`] asks one question, with the tools that it names, and gives a [`Finding`]: the answer, its domain, and what it leaves
+//! open. No check knows the finding of another, and the same tools give the same findings; durations stand apart, in [`CheckTime`].
 
 mod inside;
 mod outside;
@@ -28,7 +25,7 @@ use crate::tools::Tool;
 
 /// A configuration to be verified.
 pub struct Subject<'a> {
-    /// What the command line calls it.
+    /// The path on the command line.
     pub path: &'a str,
     /// The configuration and its design.
     pub core: &'a Core,
@@ -40,7 +37,7 @@ pub struct Subject<'a> {
 }
 
 impl<'a> Subject<'a> {
-    /// What has not been looked at yet.
+    /// Prepares the checks of a core, none of which has run yet.
     pub fn new(path: &'a str, core: &'a Core, effort: Effort, proofs: &'a Path) -> Self {
         Self { path, core, effort, proofs, files: OnceLock::new() }
     }
@@ -54,7 +51,7 @@ impl<'a> Subject<'a> {
         Ok(self.files.get_or_init(|| files))
     }
 
-    /// Those of the core that tools read for a target, pairs of a plain name and contents.
+    /// Returns the core's files that tools read for a target, pairs of a plain name and contents.
     fn sources(&self, target: &str) -> Result<Vec<(String, String)>> {
         let own = self.core.verilog()?;
         let is_own = |file: &&OutputFile| {
@@ -84,7 +81,7 @@ pub struct Effort {
     pub time_limit: Duration,
 }
 
-/// What a check says.
+/// The verdict of a check.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
@@ -125,7 +122,7 @@ impl Verdict {
         }
     }
 
-    /// What it makes of the answers of all checks.
+    /// Returns the conclusion of all checks if this verdict decides.
     fn conclusion(self) -> Conclusion {
         match self {
             Self::Failed => Conclusion::Failed,
@@ -138,16 +135,16 @@ impl Verdict {
     }
 }
 
-/// What a check found.
+/// The finding of a check.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Finding {
-    /// What it says.
+    /// The verdict.
     pub verdict: Verdict,
     /// For what: operands, clocks, faults.
     pub domain: String,
     /// The outcome in a sentence or two.
     pub words: String,
-    /// What the check leaves undecided; may be empty.
+    /// The part that the check leaves undecided; may be empty.
     pub open: String,
     /// The record that stands for a part of the work, by its file.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -155,7 +152,7 @@ pub struct Finding {
     /// The command that completes what was not run.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub complete_with: Option<String>,
-    /// What does not hold, each with its reproducer.
+    /// The failures, each with its reproducer.
     #[serde(rename = "faults")]
     pub failures: Vec<String>,
 }
@@ -166,7 +163,7 @@ impl Finding {
         Self { domain: domain.into(), ..Self::without(verdict, words) }
     }
 
-    /// Of a check that says nothing here.
+    /// The finding of a check that has nothing to say here.
     fn without(verdict: Verdict, why: impl Into<String>) -> Self {
         Self { verdict, words: why.into(), ..Self::default() }
     }
@@ -182,7 +179,7 @@ impl Finding {
     }
 }
 
-/// What a check does, with its tools; it tells the steps that are done.
+/// The function that runs a check, with its tools; it tells the steps that are done.
 type Run = fn(&Subject<'_>, &[Tool], &(dyn Fn(u64) + Sync)) -> Result<Finding>;
 
 /// One question about a configuration.
@@ -191,9 +188,9 @@ pub struct Check {
     pub id: &'static str,
     /// For people.
     pub title: &'static str,
-    /// What it compares with what.
+    /// The two sides that it compares.
     pub question: &'static str,
-    /// What it reads.
+    /// The files or structures that it reads.
     pub reads: &'static str,
     /// The tools outside Glint that it runs.
     tools: &'static [&'static str],
@@ -239,7 +236,7 @@ impl Check {
         self.answer(tools, finding, begin.elapsed())
     }
 
-    /// What is said of it where it is not run on purpose.
+    /// Returns the answer of a check that is not run on purpose.
     pub fn left_out(&self, why: &str) -> Answer {
         let finding = Finding::without(Verdict::LeftOut, why);
         self.answer(Vec::new(), finding, Duration::ZERO)
@@ -294,7 +291,7 @@ pub struct Answer {
     pub reads: &'static str,
     /// Versions of the tools outside Glint.
     pub tools: Vec<String>,
-    /// What was found.
+    /// The finding.
     #[serde(flatten)]
     pub finding: Finding,
     /// How long it took: not among what is the same every time.
@@ -311,7 +308,7 @@ pub struct CheckTime {
     pub seconds: f64,
 }
 
-/// What all checks say together; the worst of their verdicts decides.
+/// The conclusion of all checks; the worst of their verdicts decides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Conclusion {
@@ -326,7 +323,7 @@ pub enum Conclusion {
 }
 
 impl Conclusion {
-    /// Of some answers.
+    /// Returns the conclusion from some answers.
     pub fn of(answers: &[Answer]) -> Self {
         let verdicts = answers.iter().map(|answer| answer.finding.verdict.conclusion());
         verdicts.max().unwrap_or(Self::Incomplete)
@@ -343,12 +340,12 @@ impl Conclusion {
     }
 }
 
-/// What was found of one configuration; `<name>.json` is this.
+/// The record of one configuration, written to `<name>.json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Record {
     /// The version of Glint.
     pub glint: &'static str,
-    /// What the command line calls the configuration.
+    /// The path of the configuration on the command line.
     pub config: String,
     /// The top module.
     pub name: String,
@@ -360,7 +357,7 @@ pub struct Record {
     pub files: Vec<FileDigest>,
     /// Whether everything was done, however long it takes.
     pub full: bool,
-    /// What all checks say together.
+    /// The conclusion of all checks.
     pub conclusion: Conclusion,
     /// How many checks say what.
     pub counts: BTreeMap<Verdict, usize>,
@@ -369,7 +366,7 @@ pub struct Record {
 }
 
 impl Record {
-    /// Of the answers of all checks.
+    /// Makes the record of the answers of all checks.
     pub fn new(subject: &Subject<'_>, checks: Vec<Answer>) -> Self {
         let mut counts = BTreeMap::new();
         let of_text = |file: &&OutputFile| [".v", ".mem"].iter().any(|it| file.path.ends_with(it));

@@ -35,7 +35,7 @@ const EQUAL: Duration = Duration::from_secs(300);
 /// The version of cocotb that the benches in Python are written for.
 const COCOTB_VERSION: &str = "2.1.0";
 
-/// What follows the name of the core in those of the modules that a system can instantiate.
+/// The suffixes of the modules that a system can instantiate.
 const TOPS: [&str; 4] = ["", "_axis", "_axil", "_wb"];
 
 /// Results of a bench around a netlist.
@@ -181,7 +181,7 @@ pub const TEXT: Check = Check {
     },
 };
 
-/// What is said where the solver proves nothing and no point is found that differs.
+/// Returns the finding where the solver proves nothing and no point is found that differs.
 fn undecided(subject: &Subject<'_>, open: equality::Open, limit: Duration) -> Finding {
     let limit = limit.as_secs();
     match open {
@@ -287,7 +287,7 @@ fn bench(subject: &Subject<'_>, simulator: Simulator) -> Result<Finding> {
     .open("Operands that were not drawn."))
 }
 
-/// What the device takes of FPGAs.
+/// Synthesis for FPGAs.
 pub const SYNTHESIS: Check = Check {
     id: "synthesis",
     title: "Synthesis",

@@ -5,7 +5,7 @@ use askama::Template;
 
 use super::{Answer, CheckTime, Conclusion, Record, Verdict};
 
-/// What marks a page that Glint wrote: nothing else is overwritten.
+/// The mark of a page that Glint wrote: nothing else is overwritten.
 pub const MARKER: &str = "<meta name=\"generator\" content=\"glint verify\">";
 
 #[derive(Template)]

@@ -17,7 +17,7 @@ fn core() -> Core {
     Core::new(device, config).expect("a design")
 }
 
-/// What the checks that need nothing but Glint say.
+/// Runs the checks that need nothing but Glint.
 fn verified(core: &Core) -> Record {
     let effort = Effort { full: false, without_tools: true, time_limit: Duration::from_secs(1) };
     let subject = Subject::new("core.toml", core, effort, Path::new("proofs"));

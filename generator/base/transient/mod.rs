@@ -1,9 +1,8 @@
-//! What exists only while Glint runs: child processes, and temporary files and directories.
+//! Child processes, and temporary files and directories: things that exist only while Glint runs.
 //!
-//! Each stands on a list until it is gone. [`clear`] ends and deletes all of them, for a process that is
-//! interrupted. A child is started, and a temporary path made, under the list's lock: nothing can appear
-//! between the end of the listing and the end of the process. Of a process that is killed, a guard ends the children, and
-//! the next one deletes the temporary paths, which are locked while they are in use.
+//! Each stands on a list, under whose lock it is made, until it is gone; [`clear`] ends and deletes all of them, for a process that is
+//! interrupted. Of a process that is killed, a guard ends the children, and the next process deletes the temporary paths, which are locked
+//! while they are in use.
 
 mod child;
 #[cfg(unix)]

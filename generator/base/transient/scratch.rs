@@ -11,13 +11,13 @@ use tempfile::{NamedTempFile, TempDir};
 
 use super::list;
 
-/// What the names of temporary directories for tools begin with.
+/// The prefix of the names of temporary directories for tools.
 const PREFIX: &str = "glint-";
 
 /// The file in such a directory that says whose it is, and is locked while the directory is in use.
 const LOCK: &str = "glint.lock";
 
-/// What the names of temporary files begin with; [`RANDOM`] characters follow.
+/// The prefix of the names of temporary files; [`RANDOM`] characters follow.
 const FILE_PREFIX: &str = ".glint-unfinished-";
 const RANDOM: usize = 12;
 
@@ -197,7 +197,7 @@ fn is_unlocked(path: &Path) -> bool {
     fs::File::open(path).is_ok_and(|file| file.try_lock().is_ok())
 }
 
-/// What the file in a directory of this name says.
+/// Returns the contents of the file in a directory of this name.
 fn statement(name: Option<&OsStr>) -> String {
     let name = name.unwrap_or_default().to_string_lossy();
     format!("Glint works in {name}. The next run deletes what a killed one has left.\n")

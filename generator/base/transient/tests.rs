@@ -62,7 +62,7 @@ fn what_is_dropped_is_gone_and_off_the_list() {
     assert!(kept.is_dir() && !list().paths.contains(&kept));
 }
 
-/// What is in use, what is somebody's, and what is so young that its lock may be still to come, stays.
+/// Paths in use, paths of others, and paths so young that their lock may be still to come, stay.
 #[test]
 fn what_killed_processes_have_left_is_deleted() {
     let place = tempfile::tempdir().unwrap();

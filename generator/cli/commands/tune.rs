@@ -16,7 +16,7 @@ use crate::cli::{Output, failure, number, progress, say, wrong_usage};
 use crate::config::{self, Config, Value};
 use crate::registry::{Device, Registry};
 use crate::synth::Target;
-use crate::tune::{self, Answer, Candidate, ErrorUnit, Objective, Wish};
+use crate::tune::{self, Answer, Candidate, ErrorUnit, Goal, Objective};
 
 /// Find the smallest configuration of a device for an error
 ///
@@ -128,7 +128,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     let (device, base, fixed) = base(registry, arguments)?;
     let file = arguments.out.as_deref().map(fresh).transpose()?;
     let drawing = arguments.plot.as_deref().map(fresh).transpose()?;
-    let wish = Wish {
+    let goal = Goal {
         error: arguments.error,
         unit: arguments.unit,
         target: arguments.target,
@@ -138,7 +138,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     };
     let bar: ProgressBar = progress::bar(output, 0, "configurations");
     let fixed: Vec<&str> = fixed.iter().map(String::as_str).collect();
-    let answer = tune::tune(&device, &base, &fixed, &wish, &|looked_at| {
+    let answer = tune::tune(&device, &base, &fixed, &goal, &|looked_at| {
         bar.set_length(looked_at as u64);
         bar.set_position(looked_at as u64);
     });
@@ -176,7 +176,7 @@ fn fresh(path: &Path) -> Result<Destination> {
     Destination::open(path)
 }
 
-/// The device, the configuration to start from, and the keys that are part of the wish.
+/// The device, the configuration to start from, and the keys that are part of the goal.
 fn base(registry: &Registry, arguments: &Arguments) -> Result<(Device, Config, Vec<String>)> {
     let Some(device) = registry.device(&arguments.device) else {
         let names: Vec<&str> = registry.devices().iter().map(|device| device.name).collect();

@@ -1,4 +1,4 @@
-//! What seed 002, the paper on W, says.
+//! The claims of seed 002, the paper on W.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -19,7 +19,7 @@ const FROM_TWO: std::ops::RangeInclusive<u32> = 2..=250;
 /// The level at which the paper's errors "in the blooming zone" come out.
 const BLOOMING: Region = Region::Level(0.20);
 
-/// The same, for Schlick's function.
+/// The level at which the errors of Schlick's function come out.
 const SCHLICK_BLOOMING: Region = Region::Level(0.19);
 
 /// The claims, in the order of the paper.
@@ -61,7 +61,7 @@ pub fn claims() -> Vec<Claim> {
 /// The powers of the paper.
 const POWERS: [u32; 4] = [2, 4, 8, 16];
 
-/// Those of its three functions W1, W2 and W3.
+/// The powers of its three functions W1, W2 and W3.
 const THREE: [u32; 3] = [4, 8, 16];
 
 /// All exponents of the paper's study: "n \u{2208} [1, 1000]".

@@ -1,4 +1,4 @@
-//! What seed 000, the patent of `quad-cosine`, says.
+//! The claims of seed 000, the patent of `quad-cosine`.
 
 use super::{
     Claim, EPICENTRE, Verdict, exceeding, found, key, largest, quad, runs, stretched, to_inflection,

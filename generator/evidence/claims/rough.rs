@@ -1,4 +1,4 @@
-//! What seed 001, the patent of `rough`, says.
+//! The claims of seed 001, the patent of `rough`.
 
 use super::{Claim, Measured, Verdict, found, plain};
 use crate::config::Config;

@@ -1,4 +1,4 @@
-//! What is said of a configuration: tables and sentences, whichever kind of page they go to.
+//! Tables and sentences about a configuration, for pages of any format.
 //!
 //! A cell and a sentence are plain text in which names stand in backquotes.
 
@@ -19,7 +19,7 @@ pub use table::{Align, Column, Table, code};
 /// The heading of the column with the source's numbers.
 const NUMBER: &str = "no.";
 
-/// What the page says beyond the design.
+/// The facts of a page beyond the design.
 pub struct PageInputs<'a> {
     /// The configuration as the command line names it, `configs/<name>.toml`.
     pub path: &'a str,
@@ -29,7 +29,7 @@ pub struct PageInputs<'a> {
     pub schema: &'a Schema,
     /// The accuracy contract.
     pub contract: &'a dyn Contract,
-    /// What its bound rests on.
+    /// The evidence for its bound.
     pub backing: &'a Backing,
     /// The key that would bring the bound down most.
     pub advice: Option<Advice>,
@@ -45,7 +45,7 @@ pub struct PageInputs<'a> {
 pub const FORMATS: &str = "Formats: `uI.F` is unsigned, `sI.F` two's complement, with I integer bits (a sign bit apart) \
                            and F fraction bits; the value of a signal is its integer times 2⁻ᶠ.";
 
-/// Whose the numbers of the blocks are.
+/// Returns the source whose numbers the blocks carry.
 pub fn numbering(design: &Design) -> &'static str {
     if design.nets.iter().any(|net| net.block.is_some()) {
         "In order of their numbers in the source's figure; those without a number are ours."
@@ -96,7 +96,7 @@ pub fn accuracy(contract: &dyn Contract, backing: &Backing) -> String {
     )
 }
 
-/// What an exhaustive check goes through.
+/// Returns the sentence on the domain of an exhaustive check.
 pub fn proof(inputs: &PageInputs) -> String {
     let sweep = inputs.contract.sweep();
     let axes: Vec<String> = sweep
@@ -285,7 +285,7 @@ pub fn pipeline_clocks(pipeline: &Pipeline) -> Table {
     table
 }
 
-/// What the bound is made of.
+/// The terms of a bound.
 pub fn terms(bound: &Bound) -> Table {
     let mut table = Table::of("key | units: | what rounds or approximates");
     for term in &bound.terms {

@@ -12,7 +12,7 @@ pub enum Align {
 /// A column of a table.
 #[derive(Clone, Debug)]
 pub struct Column {
-    /// What stands in it.
+    /// The text of the column's head.
     pub heading: String,
     /// Where.
     pub align: Align,

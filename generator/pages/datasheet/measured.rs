@@ -4,7 +4,7 @@ use super::table::TableView;
 use crate::pages::account::Table;
 use crate::synth::{Figures, Frequency, Rate, Record};
 
-/// What stands where a target has no such thing, or nothing was measured.
+/// The cell of a target without such a thing, or without a measurement.
 const NONE: &str = "–";
 
 /// The record as the page prints it.

@@ -18,7 +18,7 @@ pub struct Microprogram {
 pub struct FieldView {
     /// Its name.
     pub name: String,
-    /// Of each of its lines, the number in the source's figure, or else the bit of the control word.
+    /// For each of its lines the number in the source's figure, or else the bit of the control word.
     pub lines: Vec<String>,
 }
 
@@ -26,16 +26,16 @@ pub struct FieldView {
 pub struct Row {
     /// Its number.
     pub address: usize,
-    /// What it does.
+    /// The name of the operation.
     pub name: String,
-    /// Of each line: whether a field begins here, whether it is 1, and what the field's value means.
+    /// For each line: whether a field begins here, whether it is 1, and the meaning of the field's value.
     pub bits: Vec<(bool, bool, String)>,
-    /// What follows, as HTML.
+    /// The successor, as HTML.
     pub then: String,
 }
 
 impl Microprogram {
-    /// Of a design.
+    /// Tabulates the microprogram of a design.
     pub fn new(design: &Design) -> Self {
         let control = &design.control;
         let numbered = control.fields.iter().any(|field| !field.lines.is_empty());

@@ -27,23 +27,23 @@ const SIDE: u32 = 260;
 /// Samples along each side of a pixel.
 const SAMPLES: u32 = 2;
 
-/// What a datasheet is about.
+/// The subject of a datasheet.
 pub struct Subject<'a> {
     /// The configuration.
     pub core: &'a Core,
     /// The configuration as the command line names it; the page has its label.
     pub path: &'a str,
-    /// What the bound of its contract rests on.
+    /// The evidence for its contract's bound.
     pub backing: Backing,
     /// The record of its exhaustive check, where there is one.
     pub proof: Option<Record>,
-    /// What `glint synth` has measured of it, where there is a record.
+    /// The measurements of `glint synth`, where there is a record.
     pub figures: Option<synth::Record>,
-    /// What is to synthesise it where there is none; without it the page says how to.
+    /// The tool that synthesises it where there is none; without it the page says how to.
     pub synthesis: Option<Synthesis<'a>>,
 }
 
-/// What was made of it.
+/// A datasheet that was written.
 pub struct Datasheet {
     /// The page, whose last line vouches for those above; see [`crate::package::is_sealed`].
     pub page: String,
@@ -51,7 +51,7 @@ pub struct Datasheet {
     pub wavedrom: String,
 }
 
-/// What a page shows that takes work.
+/// The results of a page that take work.
 struct Measured {
     timing: Timing,
     example: WorkedExample,
@@ -72,7 +72,7 @@ struct Highlight {
     exponent: u32,
     /// In dB; none for the same picture.
     psnr: Option<f64>,
-    /// Of 255.
+    /// The largest error, of 255.
     largest: u8,
     gain: u8,
 }

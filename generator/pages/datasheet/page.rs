@@ -60,7 +60,7 @@ struct Page<'a> {
     toml: String,
 }
 
-/// What brings the computation about.
+/// The control of a computation.
 enum Program {
     Microprogram {
         microprogram: Microprogram,
@@ -197,7 +197,7 @@ pub fn page(subject: &Subject, measured: &Measured) -> Result<String> {
     Ok(package::sealed(text, Seal::Markup))
 }
 
-/// What one wants to know first.
+/// Returns the figures at a glance.
 fn glance(subject: &Subject, measured: &Measured) -> Vec<(&'static str, String)> {
     let design = &subject.core.design;
     let contract = subject.core.contract.as_ref();
@@ -306,7 +306,7 @@ fn throughput(subject: &Subject, timing: &Timing) -> String {
     }
 }
 
-/// What the timing diagram shows, for those who do not see it.
+/// Describes the timing diagram in words, for those who do not see it.
 fn described(design: &Design, measured: &Measured) -> String {
     if design.pipeline.is_some() {
         return format!(

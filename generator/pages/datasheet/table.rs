@@ -8,7 +8,7 @@ const NARROW: usize = 36;
 
 /// A table as the page prints it.
 pub struct TableView {
-    /// What a screen reader says of it.
+    /// The text for a screen reader.
     pub label: &'static str,
     /// Whether a narrow page shows each row as lines of its own.
     pub stacks: bool,
@@ -24,7 +24,7 @@ pub struct CellView {
     pub class: &'static str,
     /// The heading of its column, as plain text, for a narrow page that has no room for columns.
     pub label: String,
-    /// What it says, as HTML.
+    /// The text, as HTML.
     pub text: String,
 }
 

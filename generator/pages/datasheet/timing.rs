@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::waves::{Lane, LaneStyle, MICROINSTRUCTION, Waves};
 use crate::pages::drawing::{Drawing, Item, text_width};
 
-/// Of the type.
+/// The size of the type.
 const SIZE: f64 = 11.0;
 
 /// From one lane to the next.

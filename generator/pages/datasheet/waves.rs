@@ -26,7 +26,7 @@ pub const MICROINSTRUCTION: &str = "microinstruction";
 pub struct Waves {
     /// The name of the module.
     pub name: String,
-    /// What is to be seen, in some words.
+    /// A caption in some words.
     pub what: &'static str,
     /// The clocks that are shown, from 0; a number that is not one more than that before follows a gap.
     pub clocks: Vec<usize>,
@@ -34,7 +34,7 @@ pub struct Waves {
     pub lanes: Vec<Lane>,
 }
 
-/// What one signal does.
+/// The waveform of one signal.
 pub struct Lane {
     /// The signal.
     pub name: String,
@@ -57,7 +57,7 @@ pub enum LaneStyle {
     Bus,
 }
 
-/// What is recorded for a lane.
+/// The source of a lane's waveform.
 struct Probe {
     net: NetId,
     kind: Meaning,

@@ -1,4 +1,4 @@
-//! What the block diagram connects: ports, blocks and the control unit.
+//! The nodes and wires of a block diagram: ports, blocks and the control unit.
 
 use std::collections::HashMap;
 
@@ -24,9 +24,9 @@ pub struct Node {
     pub number: Option<u16>,
     /// Its name.
     pub name: String,
-    /// What it is made of, and its format.
+    /// Its kind and format.
     pub caption: String,
-    /// What else its output is called.
+    /// The other names of its output.
     pub aliases: Vec<String>,
     /// The lines that control it, by number or name; may be empty.
     pub control: String,
@@ -228,7 +228,7 @@ impl<'a> Builder<'a> {
         at
     }
 
-    /// What the sequencer looks at.
+    /// Adds the conditions that the sequencer reads.
     fn conditions(&mut self, control: usize) {
         for microinstruction in &self.design.control.microprogram {
             if let Sequence::LoopWhile { condition, .. } = microinstruction.sequence {
@@ -288,7 +288,7 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// What a block is made of, and its format; that a register takes an operand is to be seen from the port above it.
+/// Returns a block's kind and format; the port above a register shows that it takes an operand.
 fn caption(block: &Block) -> String {
     match block.kind {
         BlockKind::Operand => format!("{} · {}", BlockKind::Register, block.format),

@@ -19,10 +19,10 @@ use graph::{BoxForm, Graph, Node};
 use place::Placement;
 use route::{Body, LANE, Net, Routes};
 
-/// Of the type.
+/// The size of the type.
 const SIZE: f64 = 11.0;
 
-/// Of a line of text in a box.
+/// The height of a line of text in a box.
 const LINE: i32 = 14;
 
 /// Above and below the text in a box.
@@ -46,7 +46,7 @@ const NECK: i32 = 8;
 /// Around the drawing.
 const BORDER: i32 = 12;
 
-/// What is said of a stage, beside it.
+/// The width of the notes beside a stage.
 const ASIDE: i32 = 140;
 
 /// From the boxes of a stage to the registers at its end.
@@ -122,7 +122,7 @@ pub fn svg(design: &Design) -> Result<String> {
     Ok(Standalone { drawing: &drawing.svg()?, width, height }.render()? + "\n")
 }
 
-/// What a box takes in the layout, which sees the page turned: its height there is the width on the page.
+/// The size of a box in the layout, which sees the page turned: its height there is the width on the page.
 struct Sizes {
     lanes: f64,
     stub: f64,
@@ -193,7 +193,7 @@ fn coordinate(value: f64) -> i32 {
     value.round() as i32 + BORDER
 }
 
-/// What is drawn, to the right of what is said of stages.
+/// The area of the drawing, to the right of the notes on stages.
 struct Page<'a> {
     left: i32,
     items: &'a mut Vec<Item>,

@@ -170,7 +170,7 @@ fn driven_by_control(graph: &Graph, output: usize) -> bool {
     drivers.any(|wire| graph.boxes[wire.from].form == BoxForm::Control)
 }
 
-/// Which wires lead back: of each loop the one into the mux that chooses among the most, where it has one.
+/// Marks the wires that lead back: of each loop the one into the mux that chooses among the most, where it has one.
 pub fn back(graph: &Graph) -> Vec<bool> {
     let weight = |at: usize| match graph.boxes[at].form {
         BoxForm::Block(BlockKind::Mux(inputs)) if !graph.boxes[at].control.is_empty() => 2 + inputs,

@@ -15,7 +15,7 @@ const MARGIN: f64 = 14.0;
 /// From the border of a box to its first pin.
 const EDGE: f64 = 8.0;
 
-/// Of the way around a box for each wire that leads back.
+/// The width of the way around a box for each wire that leads back.
 pub const LANE: f64 = 10.0;
 
 /// A box as the routes see it, from above.

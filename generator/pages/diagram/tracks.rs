@@ -15,7 +15,7 @@ pub enum Side {
     Right,
 }
 
-/// What one net does in a gap: a vertical line with taps to both sides.
+/// The course of one net through a gap: a vertical line with taps to both sides.
 #[derive(Clone, Debug)]
 pub struct Trunk {
     /// The box that drives it.

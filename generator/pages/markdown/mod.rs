@@ -36,7 +36,7 @@ struct Page<'a> {
     config: &'a str,
 }
 
-/// What brings the computation about, as tables.
+/// The control of a computation, as tables.
 enum Program {
     /// With what happens to writes while it is busy.
     Microprogram {

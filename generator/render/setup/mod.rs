@@ -1,4 +1,4 @@
-//! What a host computes before it starts a line of a device that walks lines (seed 000), in f64.
+//! The host's set-up of a line, in f64, for devices that walk lines (seed 000).
 //!
 //! Along a line the half vector goes from H₁ to H₂ on a great circle while the normal goes from N₁ to N₂. The
 //! seed turns the second end so that the normals coincide: H₂′ is H₂ turned as N₂ is turned into N₁. What is

@@ -16,10 +16,10 @@ pub const LIBERTY: &str = "/usr/share/qflow/tech/osu018/osu018_stdcells.lib";
 pub const MAPPING: &str =
     "dfflibmap -liberty cells.lib; abc -liberty cells.lib -constr cells.constr; opt_clean -purge";
 
-/// What a port drives, in pF. That there are constraints makes Yosys buffer nets and size cells.
+/// The load of a port, in pF. That there are constraints makes Yosys buffer nets and size cells.
 pub const LOAD: &str = "set_load 0.1 [all_outputs]\n";
 
-/// What registers of cells hold before the first clock, of which nothing may depend.
+/// The contents of registers of cells before the first clock, on which nothing may depend.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Start {
     /// An unknown value.

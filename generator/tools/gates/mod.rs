@@ -22,7 +22,7 @@ pub fn is_simulated(family: &Family) -> bool {
 /// The flat netlist of the module `top`, as Verilog, with the contents of the ROMs.
 ///
 /// # Errors
-/// Those of [`synthesis::synthesise`].
+/// As of [`synthesis::synthesise`].
 pub fn netlist(
     yosys: &Tool,
     files: &[(String, String)],
@@ -51,7 +51,7 @@ pub fn bench(
     Ok(around(sources, rtl, netlist, models(yosys, family)?))
 }
 
-/// The same with the models of any cells.
+/// Returns the bench's files around a netlist, with the models of its cells.
 pub fn around(
     sources: Vec<(String, String)>,
     rtl: &[String],

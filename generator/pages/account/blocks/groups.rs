@@ -1,4 +1,4 @@
-//! Which nets make a block together: what one statement of the description makes.
+//! Groups nets into blocks: one block for each statement of the description.
 //!
 //! A net is *made from* sources: blocks, ports and tables that reach it through wires and gates. Where several meet, and an operator
 //! takes the result, is a *joint*, a block of gates or wiring.
@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use super::kind::{MULTIPLIER, MUX, operator};
 use crate::hdl::netlist::{Design, Driver, NetId, Partition, Role, RomId};
 
-/// Which nets of a design belong together, and what they are made from.
+/// The groups of a design's nets, and the sources of each.
 pub struct Groups<'a> {
     /// The design.
     pub design: &'a Design,

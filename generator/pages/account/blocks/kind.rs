@@ -1,10 +1,10 @@
-//! What blocks are made of.
+//! The kinds of blocks.
 
 use std::fmt;
 
 use crate::hdl::netlist::{Driver, Op};
 
-/// What a block is made of.
+/// The kind of a block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BlockKind {
     /// A register that a port writes.
@@ -43,7 +43,7 @@ pub enum BlockKind {
     Other,
 }
 
-/// What operators are called, one and several.
+/// The names of operators, singular and plural.
 pub const OPERATORS: [[&str; 2]; 5] = [
     ["multiplier", "multipliers"],
     ["adder", "adders"],

@@ -1,8 +1,7 @@
-//! The blocks of the datapath: every register, table and operator of the netlist is in one of them.
+//! The blocks of a datapath: every register, table and operator of the netlist is in one of them.
 //!
-//! Wires, and gates that a single signal goes through, are part of the way from block to block. What one statement of the
-//! description makes is one block: a rounding with its limits, a tree of muxes, a product in parts. In a pipeline a
-//! register belongs to the block whose value it holds.
+//! A statement of the description makes one block: a rounding with its limits, a tree of muxes, a product in parts. Wires, and
+//! gates with one signal, are part of the way from block to block; in a pipeline a register belongs to the block whose value it holds.
 
 mod groups;
 mod kind;
@@ -48,16 +47,16 @@ pub struct Block {
     pub number: Option<u16>,
     /// Its name.
     pub name: String,
-    /// What it is made of.
+    /// The kind of the block.
     pub kind: BlockKind,
     /// The format of its output.
     pub format: String,
     /// The net by which other blocks name it.
     pub output: NetId,
-    /// What it works on: blocks, ports, constants and ROMs, by the nets that they drive. An operator has one for each
+    /// The blocks, ports, constants and ROMs that it reads, by the nets that they drive. An operator has one for each
     /// operand.
     pub inputs: Vec<NetId>,
-    /// What selects among them: a field of the control word, or blocks.
+    /// The select inputs: a field of the control word, or blocks.
     pub selected_by: Vec<NetId>,
     /// One line; may be empty.
     pub doc: String,
@@ -213,7 +212,7 @@ impl<'a> Blocks<'a> {
         name.unwrap_or(value(head)).clone()
     }
 
-    /// What else the output of a block is called in a pipeline, on its way through wires and registers.
+    /// The other names of a block's output in a pipeline, on its way through wires and registers.
     fn aliases(&self, head: NetId, name: &str) -> Vec<String> {
         let design = self.design;
         let Some(pipeline) = &design.pipeline else { return Vec::new() };
