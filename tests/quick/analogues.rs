@@ -24,7 +24,7 @@ fn of_cosine(core: &Core, cosine: i64, n: i64) -> u64 {
 }
 
 #[test]
-fn threshold() {
+fn threshold_agrees_by_hand() {
     let core = configuration("configs/threshold.toml");
     let at = |cosine, n| of_cosine(&core, cosine, n);
     // The peak, and what lies above it at the port.
@@ -39,7 +39,7 @@ fn threshold() {
 
 /// At n = 16 the level is 8 units, 2056.03 words of f.
 #[test]
-fn threshold_at_its_level() {
+fn threshold_agrees_by_hand_at_its_level() {
     let core = configuration("configs/threshold_levels.toml");
     // Bases of 11611 and 11610 words, whose squares are 2057 and 2056 words.
     let at = |base: i64| of_cosine(&core, COSINE_ONE - 2 * (65536 - base), 16);
@@ -47,7 +47,7 @@ fn threshold_at_its_level() {
 }
 
 #[test]
-fn quadratic() {
+fn quadratic_agrees_by_hand() {
     let core = configuration("configs/quadratic.toml");
     let at = |cosine, n| of_cosine(&core, cosine, n);
     let half = COSINE_ONE / 2;
@@ -60,7 +60,7 @@ fn quadratic() {
 }
 
 #[test]
-fn lyon_with_the_shift_register() {
+fn lyon_agrees_by_hand_with_the_shift_register() {
     let core = configuration("configs/lyon.toml");
     let at = |[dx, dy, dz]: [i64; 3], shift| {
         let (red, clocks) = red(&core, &[("dx", dx), ("dy", dy), ("dz", dz), ("shift", shift)]);
@@ -78,7 +78,7 @@ fn lyon_with_the_shift_register() {
 }
 
 #[test]
-fn lyon_with_the_multiplier() {
+fn lyon_agrees_by_hand_with_the_multiplier() {
     let core = configuration("configs/studies/lyon_multiplier.toml");
     let at = |[dx, dy, dz]: [i64; 3], n| {
         let operands = [("dx", dx), ("dy", dy), ("dz", dz), ("exponent", n)];

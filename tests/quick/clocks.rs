@@ -65,7 +65,7 @@ fn assert_stated_clocks_are_right(core: &Core) {
 }
 
 #[test]
-fn random_configurations_of_lyon() {
+fn random_configurations_of_lyon_have_the_stated_clocks() {
     let device = lyon();
     let mut by_shift = 0;
     for seed in 0..CONFIGURATIONS {
@@ -79,7 +79,7 @@ fn random_configurations_of_lyon() {
 
 /// The domain holds one shift; the port takes every one.
 #[test]
-fn a_domain_with_a_single_shift() {
+fn a_domain_with_a_single_shift_has_clocks_for_every_shift() {
     let domain = "[domain]\nexponent_min = 100\nexponent_max = 150\n";
     let core =
         Core::new(lyon(), parsed(&format!("device = \"lyon\"\n{domain}"))).expect("a design");

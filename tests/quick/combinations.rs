@@ -133,7 +133,7 @@ fn parts(what: &str) -> Vec<Shard> {
 }
 
 #[test]
-fn every_combination_of_every_device() {
+fn every_combination_of_every_device_agrees() {
     let parts = parts("combinations");
     let mut devices = BTreeSet::new();
     for entry in fs::read_dir("configs/reduced").expect("configs/reduced/") {
@@ -161,7 +161,7 @@ fn every_combination_of_every_device() {
 
 /// Pipelines too; the stages are those of the narrow configuration.
 #[test]
-fn every_combination_of_every_pipeline() {
+fn every_combination_of_every_pipeline_agrees() {
     let parts = parts("combinations of pipelines");
     for entry in fs::read_dir("configs/reduced").expect("configs/reduced/") {
         let path = entry.expect("an entry").path().display().to_string();

@@ -150,7 +150,7 @@ proptest! {
 
     /// A configuration that the reader accepts is accepted by the description and the golden model too.
     #[test]
-    fn what_is_accepted_is_a_device(text in settings()) {
+    fn an_accepted_configuration_is_a_device(text in settings()) {
         let registry = Registry::catalogue();
         if let Some(config) = answer(&text, &registry.schemas())? {
             let device = *registry.device(&config.device).expect("a device");

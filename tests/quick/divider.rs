@@ -71,7 +71,7 @@ fn a_quotient_by_zero_is_the_largest_fraction() {
 
 /// a has two fraction bits and b none: a/4 over b. Where b has the fraction bits, a over b/4.
 #[test]
-fn points_are_aligned() {
+fn fraction_points_are_aligned() {
     for (a_frac, b_frac) in [(2, 0), (0, 2)] {
         let a_format = Format::unsigned(4 - a_frac, a_frac);
         let b_format = Format::unsigned(4 - b_frac, b_frac);
@@ -91,7 +91,7 @@ fn points_are_aligned() {
 
 /// Ends of both operands, and one step within them; cos γ is signed here.
 #[test]
-fn edges_of_schlick() {
+fn schlick_is_exact_at_its_edges() {
     let design = parsed("edges.toml", "device = \"schlick\"\ncosine.signed = true\n").design;
     let mut host = Host::new(&design);
     let one = 1 << 20;

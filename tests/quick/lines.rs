@@ -79,7 +79,7 @@ fn quad_operands([delta, start, n, length, amplitude]: [i64; 5]) -> [(&'static s
 /// Seed 000 for l = 3: 28 rises, pulse 1 on 37 with 36 low loads ζ(X_start), pulses 2 to 4 with 36 high add Δζ and
 /// count 3 → 2 → 1 → 0, each confirmed by 29, two clocks later here; 28 falls after the last.
 #[test]
-fn the_order_of_events_for_three_intervals() {
+fn three_intervals_have_the_events_of_the_seed_in_order() {
     for device in ["quad-cosine", "cosine-squared"] {
         let core = core(device);
         let mut host = Host::new(&core.design);
@@ -106,7 +106,7 @@ fn the_order_of_events_for_three_intervals() {
 }
 
 #[test]
-fn lines_of_one_point_and_of_4096() {
+fn lines_have_1_to_4096_points() {
     let quad = core("quad-cosine");
     let mut bench = Bench::new(&quad);
     // One point; two; the longest, over the highlight from −90° to 90° and around the circle four times.
@@ -127,7 +127,7 @@ fn lines_of_one_point_and_of_4096() {
 /// f at ζ = ±30° by the seed's formula, for every edge of decoder 10; by hand: cos¹⁶ 0, cos, cos², cos⁴ of √(3/4)
 /// and √(6/4), cos¹⁶ of √(7/16), √(1000/16) and √(1023/16) times 30°.
 #[test]
-fn decoder_edges() {
+fn decoder_edges_choose_the_power() {
     let quad = core("quad-cosine");
     let mut bench = Bench::new(&quad);
     let expected = [
@@ -187,7 +187,7 @@ fn a_reset_in_mid_line_drops_what_is_on_its_way() {
 /// Every word of ROM 9 and of ROM 12, which a run does not come to see: √(n/k) is rounded to nearest, and the
 /// middle of each step of a power is within half an ulp of its word.
 #[test]
-fn every_word_of_the_tables() {
+fn every_word_of_the_tables_is_rounded_right() {
     let powers = |n: u64| match n {
         1 => 1,
         2 => 2,

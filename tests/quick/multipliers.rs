@@ -26,7 +26,7 @@ fn assert_one_for_three(device: &Device, table: &str, clocks: u32) {
 }
 
 #[test]
-fn for_the_colours_of_every_device_that_has_three() {
+fn one_multiplier_serves_three_colours() {
     let mut seen = 0;
     for device in Registry::catalogue().devices() {
         if (device.schema)().key("colour.multipliers").is_some() {
@@ -38,7 +38,7 @@ fn for_the_colours_of_every_device_that_has_three() {
 }
 
 #[test]
-fn for_the_components_of_lyon() {
+fn one_multiplier_serves_the_components_of_lyon() {
     let registry = Registry::catalogue();
     let lyon = registry.device("lyon").expect("lyon");
     assert_one_for_three(lyon, "distance", 2);

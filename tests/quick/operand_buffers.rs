@@ -120,7 +120,7 @@ fn refused(buffer_first: bool, wait: bool) -> String {
 }
 
 #[test]
-fn what_cannot_have_them_is_refused_with_its_place() {
+fn buffers_that_cannot_be_are_refused_with_their_place() {
     assert_eq!(refused(true, false), "");
     let late = refused(false, false);
     assert!(late.contains("declared before its buffer"), "{late}");

@@ -31,7 +31,7 @@ fn on_wishbone(design: &Design) -> anyhow::Result<usize> {
 }
 
 #[test]
-fn names_that_collide_in_the_map() {
+fn colliding_names_in_the_map_are_refused() {
     assert!(on_wishbone(&device("x", "y_out")).expect("registers") > 0);
     for name in ["status", "id", "interrupt_enable"] {
         let error = on_wishbone(&device(name, "y_out")).expect_err("two of that name");

@@ -153,7 +153,7 @@ fn of_equal_cost_the_least_error_is_taken() {
 
 /// An iCE40 UP5K has 8 DSP blocks: `lyon` takes 13 with a multiplier for each product, and fits with shared ones.
 #[test]
-fn what_fits_the_chip_is_preferred() {
+fn configurations_that_fit_the_chip_are_preferred() {
     let device = device("lyon");
     let answer = tune(&device, &defaults(&device), &[], &goal(0.9, Target::Ice40), &|_| ());
     let best = answer.expect("an answer").best;

@@ -54,7 +54,7 @@ fn records_are_of_todays_contracts() {
 
 /// A short climb comes beyond all that was drawn at random, and to the same place every time.
 #[test]
-fn what_is_climbed_to_is_beyond_what_is_drawn() {
+fn search_beats_random_points() {
     let unit = configuration("configs/rough.toml");
     let contract = unit.contract.as_ref();
     let found = search::worst(contract, 16, 1, &|| ()).expect("starts");

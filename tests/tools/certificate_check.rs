@@ -17,7 +17,7 @@ fn found(core: &Core) -> Finding {
 }
 
 #[test]
-fn what_gappa_proves_is_proved() {
+fn statements_that_gappa_proves_are_proved() {
     let finding = found(&configuration("configs/cosine_power.toml"));
     assert_eq!(finding.verdict, Verdict::Proved, "{}", finding.words);
 }

@@ -47,7 +47,7 @@ fn assert_spread(told: &Value, (largest, mean): (f64, f64)) {
 }
 
 #[test]
-fn the_formula_of_cosine_power_at_35() {
+fn the_formula_of_cosine_power_agrees_at_35() {
     let value = compared(&["--exponent", "35"]);
     assert_eq!(value["angles"]["count"], 9001);
     let errors = &entry(&value, "cosine-power")["errors"];
@@ -63,7 +63,7 @@ fn the_formula_of_cosine_power_at_35() {
 }
 
 #[test]
-fn all_of_schlick_at_20() {
+fn errors_of_schlick_at_20_agree_with_integers() {
     let value = compared(&["-n", "20"]);
     let schlick = entry(&value, "schlick");
     // In integers: ten bits of c / (20·(1 − c) + c).
@@ -185,7 +185,7 @@ fn figures_of_a_record_stand_beside_its_device() {
 }
 
 #[test]
-fn comma_separated() {
+fn csv_has_a_row_for_each_core() {
     let dir = Workspace::with("a, \"b\".toml", format!("{COSINE_POWER}name = \"mine\"\n"));
     let run = dir.glint(["compare", "--no-synthesis", "--csv", "a, \"b\".toml"]).quiet();
     let lines: Vec<&str> = run.out.lines().collect();
@@ -203,7 +203,7 @@ fn comma_separated() {
 }
 
 #[test]
-fn wrong_usage() {
+fn wrong_usage_is_refused() {
     for (arguments, message) in [
         (&["--exponent", "many"][..], "invalid digit"),
         (&["--exponent", "-1"], "unexpected argument '-1'"),
@@ -239,7 +239,7 @@ printf '{"modules": {"\\\\%s": {"num_cells_by_type": {%s}}}}' "${s%%;*}" "$cells
 
 #[cfg(unix)]
 #[test]
-fn what_a_device_takes() {
+fn figures_of_yosys_stand_in_every_form_of_output() {
     let run = with_yosys(Some(COUNTS), &["--json"]).quiet();
     let value = run.json();
     let told = &entry(&value, "schlick")["synthesis"];

@@ -12,7 +12,7 @@ use crate::workspace::{COSINE_POWER, Run, Workspace};
 const ROUGH: &str = "device = \"rough\"\n";
 
 #[test]
-fn built_in() {
+fn the_built_in_simulator_holds_and_the_seed_decides() {
     let dir = Workspace::with("core.toml", ROUGH);
     let text = dir.done(["cosim", "core.toml", "--points", "50"]);
     assert!(text.starts_with("core.toml: 50 points, ") && text.contains(": holds\n"), "{text}");
@@ -34,7 +34,7 @@ fn built_in() {
 
 #[cfg(feature = "outside-tools")]
 #[test]
-fn emitted_verilog() {
+fn emitted_verilog_holds_in_both_simulators() {
     let dir = Workspace::with("core.toml", COSINE_POWER);
     for simulator in ["icarus", "verilator"] {
         let text = dir.done(["cosim", "core.toml", "--points", "3", "--simulator", simulator]);
@@ -60,7 +60,7 @@ fn variables(items: &[ScopeItem], path: &str, found: &mut Vec<(String, Var)>) {
 }
 
 #[test]
-fn waveform() {
+fn a_waveform_has_ports_and_microinstructions() {
     let dir = Workspace::with("core.toml", ROUGH);
     dir.done(["generate", "core.toml"]);
     let manifest = dir.json("rtl_out/core/core.json");
@@ -100,7 +100,7 @@ fn waveform() {
 }
 
 #[test]
-fn waveforms_that_are_wrong_usage() {
+fn wrong_options_of_waveforms_are_refused() {
     let dir = Workspace::with("a.toml", COSINE_POWER);
     dir.write("b.toml", COSINE_POWER);
     let two = dir.glint(["cosim", "a.toml", "b.toml", "--vcd", "wave.vcd"]);
@@ -128,7 +128,7 @@ fn with_tools(simulator: &str, programs: &[(&str, &str)], more: &[&str]) -> Run 
 
 #[cfg(unix)]
 #[test]
-fn a_simulator_that_is_missing() {
+fn a_simulator_that_is_missing_is_named() {
     for (simulator, program) in [("icarus", "iverilog"), ("verilator", "verilator")] {
         let message = format!("`{program}` is not on PATH; install it");
         with_tools(simulator, &[], &[]).refused(1, &[&message, "`core.toml`"]);
@@ -141,7 +141,7 @@ fn a_simulator_that_is_missing() {
 
 #[cfg(unix)]
 #[test]
-fn a_simulator_that_fails() {
+fn a_simulator_that_fails_is_quoted() {
     let fails = ("iverilog", "echo 'core.v:1: out of luck' >&2; exit 3");
     let run = with_tools("icarus", &[fails, ("vvp", "exit 0")], &[]);
     run.refused(1, &["`iverilog` failed (exit status: 3)", "out of luck"]);
@@ -158,7 +158,7 @@ fn a_simulator_that_fails() {
 /// Verilog in which red is multiplied as green should be, as far as the simulator knows.
 #[cfg(all(unix, feature = "outside-tools"))]
 #[test]
-fn what_differs_in_verilog_is_told_with_its_place() {
+fn a_difference_in_verilog_is_told_with_its_place() {
     let dir = Workspace::with("core.toml", COSINE_POWER);
     let spoil = "/bin/sed -i 's/accumulator . red_reg;/accumulator * green_reg;/' core_datapath.v";
     dir.script(
@@ -190,7 +190,7 @@ fn what_differs_in_verilog_is_told_with_its_place() {
 
 #[cfg(unix)]
 #[test]
-fn a_simulator_that_hangs() {
+fn a_simulator_that_hangs_is_killed() {
     let hangs = "exec /bin/sleep 100";
     let build =
         with_tools("icarus", &[("iverilog", hangs), ("vvp", "exit 0")], &["--time-limit", "1"]);
@@ -201,7 +201,7 @@ fn a_simulator_that_hangs() {
 }
 
 #[test]
-fn exhaustive() {
+fn an_exhaustive_check_proves_the_contract() {
     let text = "device = \"cosine-power\"\npower = 2\ncosine.fraction = 8\nexponent.bits = 3\n\
                 colour.bits = 2\nintensity.fraction = 8\ndomain.exponent_max = 7\n";
     let dir = Workspace::with("core.toml", text);
@@ -244,7 +244,7 @@ fn exhaustive() {
 
 /// A sweep of other values than the contract's: what it says, in one piece and in parts.
 #[test]
-fn exhaustive_with_other_values() {
+fn an_exhaustive_check_takes_other_values() {
     let dir = Workspace::with("core.toml", COSINE_POWER);
     let check = ["cosim", "core.toml", "--exhaustive", "--values", "exponent=7,1..9/4"];
     let value = dir.glint(check.iter().chain(&["--json"])).json();
@@ -273,7 +273,7 @@ fn exhaustive_with_other_values() {
 }
 
 #[test]
-fn a_division_into_more_shards_than_there_can_be() {
+fn too_many_shards_are_refused() {
     let dir = Workspace::with("core.toml", COSINE_POWER);
     for of in ["18446744073709551615", "1000000000000", "1000001"] {
         let shard = format!("1/{of}");
@@ -286,7 +286,7 @@ fn a_division_into_more_shards_than_there_can_be() {
 
 /// A job that is killed, resumed, and divided reports what an uninterrupted one does.
 #[test]
-fn exhaustive_in_parts() {
+fn an_exhaustive_check_in_parts_gives_the_whole() {
     // The operands of the one are too many for all combinations, those of the other few.
     let wide = "device = \"cosine-power\"\npower = 2\ndomain.exponent_max = 100\n";
     for text in [wide, include_str!("../../../configs/reduced/cosine_power.toml")] {

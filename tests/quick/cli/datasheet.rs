@@ -58,7 +58,7 @@ fn waves_have_one_length() {
 }
 
 #[test]
-fn what_was_edited_stays() {
+fn edited_files_stay() {
     let dir = dir();
     let arguments = ["--out", "core.html", "--wavedrom"];
     datasheet(&dir, &arguments);

@@ -57,7 +57,7 @@ fn whole_configurations_of_the_pages_give_no_warning() {
 }
 
 #[test]
-fn another_directory_and_json() {
+fn json_lists_the_files_in_another_directory() {
     let dir = Workspace::with("core.toml", COSINE_POWER);
     let run = dir.glint(["generate", "core.toml", "--out", "a/b", "--json"]).good();
     let value = run.json();
@@ -314,7 +314,7 @@ fn a_directory_in_the_way_is_named() {
 }
 
 #[test]
-fn a_directory_that_glint_never_wrote() {
+fn a_directory_that_glint_never_wrote_is_not_overwritten() {
     let dir = Workspace::with("core.toml", COSINE_POWER);
     dir.write("rtl_out/core/core.v", "module core; endmodule\n");
     dir.write("rtl_out/other/other.v", "module other; endmodule\n");

@@ -218,7 +218,7 @@ fn what_faults_of_the_verilog_are_shown_to_ends() {
 }
 
 #[test]
-fn what_needs_no_tool_ends_too() {
+fn checks_without_tools_end_too() {
     let worst = ["worst", "core.toml", "--starts", "1e9", "--out", "records"];
     let commands = [&["mutate", "core.toml"][..], &["cosim", "core.toml", "--exhaustive"], &worst];
     for arguments in commands {

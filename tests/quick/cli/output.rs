@@ -32,7 +32,7 @@ fn a_file_where_the_directory_should_be() {
 }
 
 #[test]
-fn what_was_moved_is_moved_back() {
+fn moved_files_are_moved_back() {
     // The second of the two directories cannot be made, when the first is in its place already.
     let dir = stale();
     fs::remove_dir_all(dir.at("testbench")).unwrap();

@@ -36,7 +36,7 @@ pub fn unprivileged(dir: &Workspace, arguments: &[&str]) -> crate::workspace::Ru
 }
 
 #[test]
-fn wrong_usage() {
+fn wrong_usage_is_refused() {
     let dir = Workspace::with("core.toml", COSINE_POWER);
     for (arguments, message) in [
         (&["generat"][..], "similar subcommands exist: 'render', 'generate'"),
@@ -98,7 +98,7 @@ fn nothing_panics() {
 
 /// A core that cannot be is refused where the file asks for it, with a remedy, and nothing is written.
 #[test]
-fn files_that_are_refused() {
+fn refused_files_write_nothing() {
     for Case { heading: commands, file, said } in cases(include_str!("refused.txt")) {
         let dir = Workspace::with("core.toml", &file);
         for command in commands.split(' ') {

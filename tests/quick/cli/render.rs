@@ -72,7 +72,7 @@ fn bumps() -> Vec<u8> {
 }
 
 #[test]
-fn the_same_pixels_whichever_computes_them() {
+fn every_engine_draws_the_same_pixels() {
     let dir = Workspace::with("power.toml", COSINE_POWER);
     dir.write("rough.toml", "device = \"rough\"\n");
     dir.write("bumps.png", bumps());
@@ -138,7 +138,7 @@ fn every_configuration_draws() {
 }
 
 #[test]
-fn the_same_bytes_with_any_number_of_threads() {
+fn threads_do_not_change_the_bytes() {
     let dir = Workspace::with("power.toml", COSINE_POWER);
     let mut pictures = Vec::new();
     for threads in ["1", "2", "5"] {
@@ -155,7 +155,7 @@ fn the_same_bytes_with_any_number_of_threads() {
 
 /// The pictures of the documentation are what the commands beside them give.
 #[test]
-fn the_pictures_of_the_documentation() {
+fn the_pictures_of_the_documentation_are_todays() {
     let text = fs::read_to_string(PICTURES).expect("a list of pictures");
     let commands: Vec<&str> =
         text.lines().filter_map(|line| line.strip_prefix("    glint ")).collect();
@@ -204,7 +204,7 @@ fn a_highlight_is_where_it_should_be() {
 
 /// Lines of points along the spans of triangles, set up by the host.
 #[test]
-fn lines_along_triangles() {
+fn lines_run_along_triangles() {
     let dir = Workspace::with("quad.toml", "device = \"quad-cosine\"\n");
     dir.write("squared.toml", "device = \"cosine-squared\"\nlength.bits = 4\n");
     dir.write("bumps.png", bumps());
@@ -228,7 +228,7 @@ fn lines_along_triangles() {
 }
 
 #[test]
-fn comparison_in_numbers() {
+fn comparison_measures_the_picture() {
     let dir = Workspace::with("power.toml", COSINE_POWER);
     let run = dir.glint(render(&["power.toml", "--compare", "--json"])).good();
     let told = run.json();
@@ -274,7 +274,7 @@ fn a_mesh_is_seen_from_both_sides() {
 
 /// A wavy sheet of a million triangles.
 #[test]
-fn a_million_triangles() {
+fn a_million_triangles_are_read() {
     use std::fmt::Write;
     let (columns, rows) = (1001, 501);
     let mut text = String::new();
@@ -296,7 +296,7 @@ fn a_million_triangles() {
 }
 
 #[test]
-fn meshes_that_cannot_be_used() {
+fn unusable_meshes_are_refused() {
     let dir = Workspace::with("binary.obj", [0x76, 0x20, 0xff, 0xfe]);
     dir.write("empty.obj", "");
     dir.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
@@ -327,7 +327,7 @@ fn meshes_that_cannot_be_used() {
 }
 
 #[test]
-fn height_maps_that_cannot_be_used() {
+fn unusable_height_maps_are_refused() {
     let dir = Workspace::with("text.png", "P2 1 1 255 0");
     let colour = png(ColorType::Rgb, BitDepth::Eight, 2, &[9; 12]);
     dir.write("rgb.png", &colour);
@@ -362,7 +362,7 @@ fn height_maps_that_cannot_be_used() {
 }
 
 #[test]
-fn wrong_settings() {
+fn wrong_settings_are_refused() {
     let dir = Workspace::with("narrow.toml", "device = \"rough\"\ndomain.exponent_max = 128\n");
     let before = dir.files();
     for (arguments, message) in [
@@ -415,7 +415,7 @@ fn wrong_settings() {
 }
 
 #[test]
-fn places_that_cannot_be_written() {
+fn unwritable_places_are_named() {
     let dir = Workspace::with("core.toml", COSINE_POWER);
     fs::create_dir(dir.at("here.png")).expect("a directory");
     let before = dir.files();

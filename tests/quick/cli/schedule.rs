@@ -31,7 +31,7 @@ fn a_clock_that_is_left_out_follows_the_target() {
 
 /// At 80 columns what a stage computes stays, and what can be spared goes.
 #[test]
-fn what_stages_compute_is_shown_in_a_narrow_terminal() {
+fn stages_fit_a_narrow_terminal() {
     let text =
         "device = \"cosine-power\"\narchitecture = \"pipelined\"\npipeline.target = \"ice40\"\n";
     let dir = Workspace::with("core.toml", text);

@@ -54,7 +54,7 @@ fn a_record_of_a_larger_error_stays() {
 }
 
 #[test]
-fn what_is_no_record_is_refused() {
+fn files_that_are_no_records_are_refused() {
     let dir = dir();
     dir.write("r/core.json", "mine");
     let run = dir.glint(["worst", "core.toml", "--starts", "1", "--out", "r"]);

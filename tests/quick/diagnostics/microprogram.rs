@@ -6,7 +6,7 @@ use glint::fixed::{Format, Overflow, Rounding};
 use super::{BYTE, Found, finish, mistakes, program};
 
 #[test]
-fn clashing_fields() {
+fn fields_must_not_clash() {
     program(|d, load| {
         let a = d.operand("a", BYTE);
         let b = d.operand("b", BYTE);
@@ -24,7 +24,7 @@ fn clashing_fields() {
 }
 
 #[test]
-fn picks_of_what_a_mux_does_not_pass_on() {
+fn a_mux_picks_one_of_its_inputs() {
     program(|d, load| {
         let a = d.operand("a", BYTE);
         let b = d.operand("b", BYTE);
@@ -35,7 +35,7 @@ fn picks_of_what_a_mux_does_not_pass_on() {
 }
 
 #[test]
-fn microinstructions_out_of_order() {
+fn microinstructions_stand_in_order() {
     program(|_, load| {
         vec![step("idle", []), step("end", [load.clone(), end()]), step("after", [load])]
     })
@@ -74,7 +74,7 @@ fn microinstructions_out_of_order() {
 }
 
 #[test]
-fn no_or_two_microprograms() {
+fn a_design_has_one_microprogram() {
     let d = Designer::new("device");
     finish(d).are(["the design has no microprogram"]);
     let d = Designer::new("device");
@@ -85,7 +85,7 @@ fn no_or_two_microprograms() {
 }
 
 #[test]
-fn products_taken_under_another_selection() {
+fn products_are_taken_under_their_selection() {
     let d = Designer::new("device");
     let a = d.operand("a", BYTE);
     let b = d.operand("b", Format::unsigned(2, 6));
@@ -106,7 +106,7 @@ fn products_taken_under_another_selection() {
 }
 
 #[test]
-fn products_held_from_another_selection() {
+fn held_products_settle_under_their_selection() {
     let found = |settled: bool| {
         let d = Designer::new("device");
         let a = d.operand("a", BYTE);
@@ -136,7 +136,7 @@ fn products_held_from_another_selection() {
 }
 
 #[test]
-fn valid_that_follows_a_signal() {
+fn valid_may_follow_one_bit() {
     let follows = |clocks: u32, last: fn() -> Vec<Setting>| {
         program(|d, load| {
             let x = d.operand("a", Format::BIT);
@@ -162,7 +162,7 @@ fn valid_that_follows_a_signal() {
 }
 
 #[test]
-fn a_jump_around_microinstructions() {
+fn a_jump_goes_to_a_microinstruction() {
     let jumps = |to: &'static str| {
         program(|d, load| {
             let x = d.operand("a", Format::BIT);
@@ -180,7 +180,7 @@ fn a_jump_around_microinstructions() {
 }
 
 #[test]
-fn valid_in_the_microinstruction_that_loads_the_result() {
+fn valid_follows_the_load_of_the_result() {
     program(|_, load| vec![step("idle", []), step("load", [load, valid()]), step("end", [end()])])
         .are(["microinstruction `load` raises valid and loads `y`, which `y_out` shows from the \
              next microinstruction on: valid belongs there"]);
@@ -197,7 +197,7 @@ fn valid_in_the_microinstruction_that_loads_the_result() {
 }
 
 #[test]
-fn results_without_valid_and_muxes_without_a_choice() {
+fn results_need_valid_and_muxes_need_a_choice() {
     program(|_, load| vec![step("idle", []), step("load", [load]), step("end", [end()])]).are([
         "no microinstruction raises valid, so that nobody knows when `y_out` is there: put \
              `valid()` into the one in which it is",
@@ -225,7 +225,7 @@ fn looped(condition: impl for<'d> FnOnce(&'d Designer) -> glint::dsl::Signal<'d>
 }
 
 #[test]
-fn a_loop_that_nothing_ends() {
+fn a_loop_must_end() {
     looped(|d| {
         let n = d.operand("n", Format::unsigned(4, 0));
         d.any("more", n.q())
@@ -264,7 +264,7 @@ fn a_loop_that_nothing_ends() {
 }
 
 #[test]
-fn an_operand_that_nothing_uses() {
+fn every_operand_must_be_used() {
     mistakes(|d| {
         let _ = d.operand("spare", BYTE);
     })

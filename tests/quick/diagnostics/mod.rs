@@ -61,7 +61,7 @@ fn a_right_description_has_no_mistakes() {
 }
 
 #[test]
-fn two_drivers() {
+fn two_drivers_are_reported() {
     mistakes(|d| {
         let w = d.wire("w", BYTE);
         let a = d.operand("a", BYTE);
@@ -89,7 +89,7 @@ fn the_line_of_a_mistake_is_that_of_the_description() {
 }
 
 #[test]
-fn missing_drivers() {
+fn missing_drivers_are_reported() {
     mistakes(|d| {
         d.wire("floating", BYTE);
         let r = d.register("idle_register", BYTE);
@@ -102,7 +102,7 @@ fn missing_drivers() {
 }
 
 #[test]
-fn combinational_loops() {
+fn combinational_loops_are_reported() {
     let Found(found) = mistakes(|d| {
         let a = d.operand("a", BYTE);
         let w = d.wire("w", BYTE);
@@ -118,7 +118,7 @@ fn combinational_loops() {
 }
 
 #[test]
-fn formats_that_do_not_match() {
+fn formats_must_match() {
     let found = mistakes(|d| {
         let a = d.operand("a", Format::unsigned(2, 3));
         let b = d.operand("b", Format::unsigned(1, 7));
@@ -146,7 +146,7 @@ fn formats_that_do_not_match() {
 }
 
 #[test]
-fn products_that_are_never_formed() {
+fn products_must_be_formed() {
     mistakes(|d| {
         let a = d.operand("a", BYTE);
         let b = d.operand("b", Format::unsigned(2, 6));
@@ -165,7 +165,7 @@ fn products_that_are_never_formed() {
 }
 
 #[test]
-fn nets_that_are_too_wide() {
+fn nets_have_at_most_64_bits() {
     mistakes(|d| {
         let a = d.operand("a", Format::unsigned(0, 40));
         d.mul("square", a.q(), a.q());
@@ -174,7 +174,7 @@ fn nets_that_are_too_wide() {
 }
 
 #[test]
-fn roms_that_do_not_fit() {
+fn roms_fit_their_address_and_format() {
     mistakes(|d| {
         let a = d.operand("a", Format::unsigned(3, 0));
         d.rom("short", a.q(), BYTE, &[1, 2, 3], false);
@@ -187,7 +187,7 @@ fn roms_that_do_not_fit() {
 }
 
 #[test]
-fn constants_that_are_not_representable() {
+fn constants_must_be_representable() {
     mistakes(|d| {
         d.constant("third", 1.0 / 3.0, BYTE);
         d.raw_constant("many", 256, BYTE);
@@ -199,7 +199,7 @@ fn constants_that_are_not_representable() {
 }
 
 #[test]
-fn names_that_verilog_does_not_take() {
+fn names_must_be_verilog_names() {
     let Found(found) = mistakes(|d| {
         d.operand("a", BYTE);
         d.operand("a", BYTE);
@@ -219,7 +219,7 @@ fn names_that_verilog_does_not_take() {
 }
 
 #[test]
-fn a_name_of_the_sequencer() {
+fn names_of_the_sequencer_are_reserved() {
     // The second of the two is where the program is, which is what makes it.
     mistakes(|d| {
         d.operand("word_address", BYTE);
@@ -228,7 +228,7 @@ fn a_name_of_the_sequencer() {
 }
 
 #[test]
-fn formats_that_no_net_can_have() {
+fn formats_have_limits() {
     let Found(found) = mistakes(|d| {
         d.constant("nothing", 0.0, Format::unsigned(-3, 1));
         d.raw_constant("huge", 0, Format::unsigned(i32::MAX, 1));
@@ -268,7 +268,7 @@ fn warnings(more: impl FnOnce(&Designer) -> Vec<Setting>) -> Found {
 }
 
 #[test]
-fn what_no_output_depends_on() {
+fn unused_logic_has_a_warning() {
     warnings(|_| Vec::new()).are([]);
     // Of the logic before a register, or before a sum, that is not used there is no word.
     warnings(|d| {
@@ -289,7 +289,7 @@ fn what_no_output_depends_on() {
 }
 
 #[test]
-fn muxes_that_choose_nothing() {
+fn constant_muxes_have_a_warning() {
     warnings(|d| {
         let a = d.operand("a", BYTE).q();
         let b = d.operand("b", BYTE).q();
@@ -317,7 +317,7 @@ fn the_catalogue_has_no_warnings() {
 }
 
 #[test]
-fn operands_with_a_sign() {
+fn signs_are_refused_where_magnitudes_are_wanted() {
     mistakes(|d| {
         let a = d.operand("a", Format::signed(2, 0)).q();
         let b = d.operand("b", Format::unsigned(2, 0)).q();
@@ -334,7 +334,7 @@ fn operands_with_a_sign() {
 }
 
 #[test]
-fn signals_of_another_designer() {
+fn signals_belong_to_their_designer() {
     let other = Designer::new("other");
     let theirs = other.operand("theirs", BYTE);
     let select = other.select("way", &["one", "other"]);

@@ -65,7 +65,7 @@ proptest! {
     }
 
     #[test]
-    fn what_is_right_is_accepted(calls in calls(false)) {
+    fn right_files_are_accepted(calls in calls(false)) {
         match build(&calls) {
             Ok(design) => {
                 answer(&design)?;
