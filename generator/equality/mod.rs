@@ -407,7 +407,7 @@ impl<'p> Comparison<'p> {
                 registers.iter().position(|it| core.design.net(it.q).name == checkpoint.register);
             let Some(register) = register else { continue };
             let held = way.state.registers[register];
-            let staged = stages[pipeline.stage_of[checkpoint.net.index()]][checkpoint.net.index()];
+            let staged = stages[pipeline.clock_of(checkpoint.net)][checkpoint.net.index()];
             let staged = self.terms.resized(staged, self.terms.width(held));
             match self.equal(&way.conditions, held, staged)? {
                 Answer::Equal => {
@@ -444,7 +444,7 @@ impl<'p> Comparison<'p> {
     /// Notes how the pipeline divides products: as sums of their parts, or where it has the whole in turn, as that.
     fn divide(&mut self, stages: &[Vec<Id>]) -> Result<()> {
         let checkpoints = self.pair.pipeline.pipeline.iter().flat_map(|it| {
-            it.checkpoints.iter().map(|at| stages[it.stage_of[at.net.index()]][at.net.index()])
+            it.checkpoints.iter().map(|at| stages[it.clock_of(at.net)][at.net.index()])
         });
         let results = self.results_of(stages);
         let nets = self.terms.cone(checkpoints.chain(results));

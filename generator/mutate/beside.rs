@@ -70,10 +70,10 @@ impl Beside {
         });
         let mut stages = vec![Stage::default(); pipeline.stages.len() + 1];
         for register in sound.registers.iter().filter(|it| !pipeline.handshake.contains(&it.q)) {
-            stages[pipeline.stage_of[register.q.index()]].registers.push(register.q);
+            stages[pipeline.clock_of(register.q)].registers.push(register.q);
         }
         for checkpoint in &pipeline.checkpoints {
-            stages[pipeline.stage_of[checkpoint.net.index()]].predicted.push(checkpoint.net);
+            stages[pipeline.clock_of(checkpoint.net)].predicted.push(checkpoint.net);
         }
         let results = sound.outputs().filter(|port| port.role == Role::Result);
         stages[pipeline.stages.len()].predicted.extend(results.map(|port| port.net));

@@ -23,7 +23,7 @@ fn values_of_a_stage_are_made_of_values_of_this_stage_and_all_registers_move_tog
         };
         let advance = design.register(first).enable;
         assert_eq!(advance.is_some(), pipeline.stall, "{path}");
-        let stage = |net: NetId| pipeline.stage_of[net.index()];
+        let stage = |net: NetId| pipeline.clock_of(net);
         let constant = |net: &NetId| matches!(design.net(*net).driver, Driver::Constant(_));
         for (id, net) in design.iter() {
             let what = || format!("{path}: `{}`", net.name);
@@ -107,7 +107,7 @@ fn delay_lines_are_registers_that_nothing_reads_on_their_way() {
                     let register = design.register(register);
                     assert_eq!(register.data, Some(from), "{path}");
                     assert_eq!((register.enable, register.reset), (line.enable, None), "{path}");
-                    let stage = pipeline.stage_of[register.q.index()];
+                    let stage = pipeline.clock_of(register.q);
                     assert_eq!(stage, line.from + 1 + at, "{path}");
                     from = register.q;
                 }

@@ -72,12 +72,10 @@ fn a_fault_in_a_pipeline_is_refuted() {
     // A register takes what the next of its stage and width should.
     let swapped = faulty(&core.design, |design, id| {
         let Driver::Register(register) = design.net(id).driver else { return None };
-        let stage = stages.stage_of[id.index()];
+        let stage = stages.clock_of(id);
         let width = design.width(id);
         let other = design.registers.iter().skip(register.index() + 1).position(|it| {
-            stages.stage_of[it.q.index()] == stage
-                && design.width(it.q) == width
-                && it.reset.is_none()
+            stages.clock_of(it.q) == stage && design.width(it.q) == width && it.reset.is_none()
         })?;
         let (one, other) = (register.index(), register.index() + 1 + other);
         let data = design.registers[one].data;

@@ -4,7 +4,10 @@
 //! ones in the same clocks, whatever the operands: by induction over the clocks, since until then the control
 //! microinstruction is the same. It is assumed that a register which decides is loaded in each computation before it does.
 
+use std::collections::HashSet;
+
 use super::{Design, Driver, NetId, Role, Sequence};
+use crate::base::cone;
 
 /// The microinstructions whose successor depends on an operand, by number.
 pub fn decided_by_data(design: &Design) -> Vec<usize> {
@@ -28,34 +31,29 @@ pub fn delay_of_valid(design: &Design) -> Option<u32> {
 /// The registers between the control word and a net on the shortest way, or all that there are if the control word
 /// has no influence; `None` if an operand has.
 fn registers_from_control(design: &Design, net: NetId) -> Option<u32> {
-    let mut seen = vec![net];
-    let mut front = vec![net];
-    let mut delay = 0;
-    let mut shortest = None;
+    let is_control = |net: NetId| match design.net(net).driver {
+        Driver::Field(_) => true,
+        Driver::Rom(rom) => rom == design.control.rom,
+        _ => false,
+    };
+    let inputs = |net| if is_control(net) { Vec::new() } else { design.combinational_inputs(net) };
+    let (mut seen, mut front) = (HashSet::new(), vec![net]);
+    let (mut delay, mut shortest) = (0, None);
     while !front.is_empty() {
         // Nets behind one more register.
         let mut behind = Vec::new();
-        while let Some(net) = front.pop() {
-            let mut through = Vec::new();
+        for net in cone::reached(front, inputs) {
+            seen.insert(net);
             match &design.net(net).driver {
-                Driver::Constant(_) => {}
-                Driver::Field(_) => {
+                _ if is_control(net) => {
                     shortest.get_or_insert(delay);
                 }
-                Driver::Op(op) => through = op.operands(),
                 Driver::Register(register) => {
                     let register = design.register(*register);
                     behind.extend(register.data.into_iter().chain(register.enable));
                 }
-                Driver::Rom(rom) if *rom == design.control.rom => {
-                    shortest.get_or_insert(delay);
-                }
-                Driver::Rom(rom) => {
-                    if design.rom(*rom).synchronous {
-                        behind.push(design.rom(*rom).address)
-                    } else {
-                        through.push(design.rom(*rom).address)
-                    }
+                Driver::Rom(rom) if design.rom(*rom).synchronous => {
+                    behind.push(design.rom(*rom).address);
                 }
                 Driver::Input => {
                     let role = design.ports.iter().find(|port| port.net == net);
@@ -64,16 +62,10 @@ fn registers_from_control(design: &Design, net: NetId) -> Option<u32> {
                     }
                 }
                 Driver::Undriven => return None,
-            }
-            for net in through {
-                if !seen.contains(&net) {
-                    seen.push(net);
-                    front.push(net);
-                }
+                Driver::Constant(_) | Driver::Op(_) | Driver::Rom(_) | Driver::Field(_) => {}
             }
         }
         behind.retain(|net| !seen.contains(net));
-        seen.extend(&behind);
         front = behind;
         delay += 1;
     }

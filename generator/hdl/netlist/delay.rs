@@ -102,7 +102,7 @@ impl Design {
             let chain = std::iter::successors(Some(first), |&at| next[at]);
             let registers: Vec<RegId> = chain.map(|at| RegId(at as u32)).collect();
             let last = self.register(registers[registers.len() - 1]).q;
-            let to = pipeline.stage_of[last.index()];
+            let to = pipeline.clock_of(last);
             let (from, enable) = (to - registers.len(), register.enable);
             let line = lines.entry((from, to)).or_insert_with(|| DelayLine {
                 from,

@@ -65,6 +65,11 @@ pub struct Checkpoint {
 }
 
 impl Pipeline {
+    /// The clock in which a net has the value of a point, counted from that in which the point is taken: its stage.
+    pub fn clock_of(&self, net: NetId) -> usize {
+        self.stage_of[net.index()]
+    }
+
     /// The named nets whose logic is in a stage, each with the name of its value, in the order of the design's nets; the
     /// handshake is none of them.
     pub fn computed<'a>(

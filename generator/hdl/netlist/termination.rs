@@ -3,6 +3,7 @@
 //! A loop of one microinstruction ends because a counter counts down: its condition depends on nothing else. That the
 //! counter does count in every iteration is not assumed anywhere; the formal proof has to show it.
 
+use crate::base::cone;
 use crate::hdl::netlist::{Design, Driver, NetId, RegId, Sequence};
 
 /// The most clocks from a microinstruction to the one with `done`.
@@ -58,22 +59,12 @@ fn largest(design: &Design, register: RegId) -> u64 {
 
 /// The one register on which a net depends, without its own clock.
 fn decides(design: &Design, net: NetId) -> Option<RegId> {
-    let mut pending = vec![net];
-    let mut seen = Vec::new();
     let mut found = None;
-    while let Some(net) = pending.pop() {
-        if seen.contains(&net) {
-            continue;
-        }
-        seen.push(net);
-        match &design.net(net).driver {
-            Driver::Constant(_) => {}
-            Driver::Op(op) => pending.extend(op.operands()),
-            Driver::Register(register) => match found {
-                None => found = Some(*register),
-                Some(_) => return None,
-            },
-            Driver::Undriven | Driver::Input | Driver::Rom(_) | Driver::Field(_) => return None,
+    for net in cone::reached([net], |net| design.combinational_inputs(net)) {
+        match design.net(net).driver {
+            Driver::Constant(_) | Driver::Op(_) => {}
+            Driver::Register(register) if found.is_none() => found = Some(register),
+            _ => return None,
         }
     }
     found

@@ -28,7 +28,7 @@ pub fn module(
     };
     let is_word = |net: NetId| matches!(design.net(net).driver, Driver::Rom(_));
     // What the clock changes stands in the stage that makes it.
-    let section = |net: NetId| pipeline.stage_of[net.index()] - usize::from(clocked(net));
+    let section = |net: NetId| pipeline.clock_of(net) - usize::from(clocked(net));
     let enable = enable(design, pipeline);
     let here =
         |net: NetId, number: usize| !pipeline.handshake.contains(&net) && section(net) == number;

@@ -357,7 +357,7 @@ impl<'a> Plan<'a> {
                 && !self.is_port(*id)
         };
         let mut nets: Vec<NetId> = self.live.iter().copied().filter(written).collect();
-        nets.sort_by_key(|id| pipeline.stage_of[id.index()]);
+        nets.sort_by_key(|id| pipeline.clock_of(*id));
         let ports = self.design.ports.iter().map(|port| port.net);
         let mut seen: HashSet<&str> =
             ports.map(|id| pipeline.value_of[id.index()].as_str()).collect();

@@ -27,7 +27,7 @@ impl<'a> Order<'a> {
         let mut order = design.levelise().ok()?;
         if let Some(pipeline) = &design.pipeline {
             // Registers behind the logic of the stage before.
-            order.sort_by_key(|net| pipeline.stage_of[net.index()]);
+            order.sort_by_key(|net| pipeline.clock_of(*net));
         }
         Some(Self { design, same: same(design, &order), order })
     }

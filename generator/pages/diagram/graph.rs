@@ -170,7 +170,7 @@ impl<'a> Builder<'a> {
     fn held(&self, caption: String, net: NetId, stage: usize) -> String {
         let Some(pipeline) = &self.design.pipeline else { return caption };
         let held = self.blocks.held(net);
-        let last = held.into_iter().map(|it| pipeline.stage_of[it.index()]).max();
+        let last = held.into_iter().map(|it| pipeline.clock_of(it)).max();
         match last.unwrap_or(0).saturating_sub(stage) {
             0 | 1 => caption,
             clocks => format!("{caption} · held {clocks} clocks"),

@@ -342,7 +342,7 @@ impl<'a> Blocks<'a> {
         let design = self.design;
         let Some(pipeline) = &design.pipeline else { return (0, 0) };
         let stage = |id: &NetId| {
-            let at = pipeline.stage_of[id.index()];
+            let at = pipeline.clock_of(*id);
             match design.net(*id).driver {
                 // The word of a block memory is there a stage after its address.
                 Driver::Rom(rom) => at - usize::from(design.rom(rom).synchronous),
