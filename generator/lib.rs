@@ -47,6 +47,7 @@ pub mod equality;
 pub mod evidence;
 pub mod golden;
 pub mod hdl;
+pub mod keys;
 #[cfg(feature = "cli")]
 #[doc(hidden)]
 pub mod mutate;

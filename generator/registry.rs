@@ -9,6 +9,7 @@ use crate::golden::{self, Contract, Model};
 use crate::hdl::dsl::Designer;
 use crate::hdl::netlist::Design;
 use crate::hdl::pipeline;
+use crate::keys;
 
 /// The key that asks for registers behind the results.
 const OUTPUT_REGISTERED: &str = "output.registered";
@@ -152,7 +153,7 @@ macro_rules! of_catalogue {
         vec![$(Device {
             name: $name,
             summary: $summary,
-            schema: devices::$module::schema,
+            schema: keys::$module::schema,
             describe: devices::$module::describe,
             model: golden::$module::model,
             contract: golden::$module::contract,

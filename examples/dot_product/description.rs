@@ -1,5 +1,6 @@
 //! The description: a multiplier, an adder, and what comes between 0 and 1.
 
+use super::Keys;
 use glint::config::Config;
 use glint::dsl::{About, Designer, end, step, valid};
 use glint::fixed::{Format, Overflow, Rounding};
@@ -15,12 +16,8 @@ pub fn describe(d: &Designer, config: &Config) {
             "Components beyond -1 and 1 are taken for these.".into(),
         ],
     });
-    let (fraction, kept) =
-        (config.integer("vector.fraction") as i32, config.integer("output.fraction") as i32);
-    let rounding = match config.choice("output.rounding") {
-        "nearest" => Rounding::Nearest,
-        _ => Rounding::Truncate,
-    };
+    let Keys { fraction, kept, rounding } = Keys::of(config);
+    let (fraction, kept) = (fraction as i32, kept as i32);
     let component = |name: &str, vector: &str| {
         let axis = &name[1..];
         d.operand_clamped(name, Format::signed(1, fraction), -1.0, 1.0)

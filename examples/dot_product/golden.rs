@@ -1,11 +1,12 @@
 //! The golden model and the contract, from the formula.
 
+use super::Keys;
 use glint::config::Config;
 use glint::fixed::{Format, Rounding, exp2};
 use glint::golden::device::{self, Formula};
 use glint::golden::frame::{Frame, idle, step};
 use glint::golden::narrow::{Narrow, rounding_error};
-use glint::golden::{Axis, Contract, Model, Sweep, Term, Values, keys};
+use glint::golden::{Axis, Contract, Model, Sweep, Term, Values};
 
 /// A sum of products to a cosine of 0 ... 1.
 #[derive(Clone, Copy)]
@@ -22,8 +23,8 @@ impl Limited {
 
 /// The operations of each microinstruction.
 fn device(config: &Config) -> device::Device {
-    let Cosine { fraction, kept, limited, .. } = Cosine::new(config);
-    let (fraction, kept) = (fraction as i32, kept as i32);
+    let Cosine { keys, limited } = Cosine::new(config);
+    let (fraction, kept) = (keys.fraction as i32, keys.kept as i32);
     let one = 1 << fraction;
     let mut frame = Frame::default();
     let mut component = |name| frame.clamped(name, Format::signed(1, fraction), -one, one);
@@ -54,20 +55,16 @@ pub fn contract(config: &Config) -> Box<dyn Contract> {
 
 /// The formula: max(0, N.H), and at most 1.
 struct Cosine {
-    fraction: u32,
-    kept: u32,
-    rounding: Rounding,
+    keys: Keys,
     limited: Limited,
 }
 
 impl Cosine {
     fn new(config: &Config) -> Self {
-        let fraction = keys::bits(config, "vector.fraction");
-        let kept = keys::bits(config, "output.fraction");
-        let rounding = keys::rounding(config, "output.rounding");
-        let wide = Format::unsigned(2, kept as i32);
-        let rounded = Narrow::new(2 * fraction, wide, rounding);
-        Self { fraction, kept, rounding, limited: Limited { rounded, one: 1 << kept } }
+        let keys = Keys::of(config);
+        let wide = Format::unsigned(2, keys.kept as i32);
+        let rounded = Narrow::new(2 * keys.fraction, wide, keys.rounding);
+        Self { limited: Limited { rounded, one: 1 << keys.kept }, keys }
     }
 }
 
@@ -93,13 +90,14 @@ impl Formula for Cosine {
     /// The products and their sum are exact, and rounded once. To clamp to 0 … 1 brings two values no further
     /// apart, and both ends are values of the output, so that the rest of the way changes nothing.
     fn terms(&self) -> Vec<Term> {
-        let error = rounding_error(2 * self.fraction, self.kept, self.rounding);
-        let units = match self.rounding {
+        let error = rounding_error(2 * self.keys.fraction, self.keys.kept, self.keys.rounding);
+        let units = match self.keys.rounding {
             // What is cut has at least the last place of a product, which it keeps below a whole unit.
             Rounding::Truncate => {
-                error * exp2(self.kept as i32) - exp2(self.kept as i32 - 2 * self.fraction as i32)
+                error * exp2(self.keys.kept as i32)
+                    - exp2(self.keys.kept as i32 - 2 * self.keys.fraction as i32)
             }
-            Rounding::Nearest => error * exp2(self.kept as i32),
+            Rounding::Nearest => error * exp2(self.keys.kept as i32),
         };
         let what = "rounding of the cosine";
         vec![Term { key: "output.rounding", what, units: units.max(0.0) }]
@@ -114,7 +112,7 @@ impl Formula for Cosine {
         let along: f64 = (0..3).map(|axis| normal[axis] * off[axis]).sum();
         let across = unit_vector([0, 1, 2].map(|axis| off[axis] - along * normal[axis]));
         // The smaller of the two angles between them and what they are close to, by octaves.
-        let (near, small) = (unit() < 0.5, exp2(-(unit() * f64::from(self.fraction)) as i32));
+        let (near, small) = (unit() < 0.5, exp2(-(unit() * f64::from(self.keys.fraction)) as i32));
         let half = [0, 1, 2].map(|axis| {
             if near {
                 normal[axis] + small * across[axis]
@@ -122,22 +120,22 @@ impl Formula for Cosine {
                 across[axis] + small * off[axis]
             }
         });
-        let one = exp2(self.fraction as i32);
+        let one = exp2(self.keys.fraction as i32);
         let raw = [normal, unit_vector(half)].concat().into_iter();
         Some(raw.map(|component| (component * one).round() as i64).collect())
     }
 
     /// The sum determines the result.
     fn sweep(&self) -> Option<Sweep> {
-        let most = 3 << (2 * self.fraction);
+        let most = 3 << (2 * self.keys.fraction);
         let name = "sum of the products".to_owned();
         let axes = vec![Axis { name, values: Values::Range(-most, most) }];
         Some(Sweep { axes, omits: String::new() })
     }
 
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
-        let exact = place[0] as f64 * exp2(self.kept as i32 - 2 * self.fraction as i32);
-        let one = exp2(self.kept as i32);
+        let exact = place[0] as f64 * exp2(self.keys.kept as i32 - 2 * self.keys.fraction as i32);
+        let one = exp2(self.keys.kept as i32);
         Some((self.limited.apply(place[0]) as f64 - exact.clamp(0.0, one)).abs())
     }
 }

@@ -15,26 +15,29 @@ mod golden;
 use std::process::ExitCode;
 
 use glint::config::{Config, Key, Problems, Schema};
+use glint::fixed::Rounding;
 use glint::registry::{Device, Registry};
 
-fn schema() -> Schema {
-    let bits = |name, doc| Key::integer(name, 14, 2..=20, doc);
-    let rounding = "How the cosine is rounded.";
-    Schema {
-        device: "dot-product",
-        keys: vec![
-            bits("vector.fraction", "Fraction bits of a component, s1.F."),
-            bits("output.fraction", "Fraction bits of the cosine, u1.C."),
-            Key::choice("output.rounding", "nearest", &["truncate", "nearest"], rounding),
-        ],
-        check,
+glint::keys! {
+    struct Keys {
+        fraction: u32 = Key::integer("vector.fraction", 14, 2..=20,
+            "Fraction bits of a component, s1.F."),
+        kept: u32 = Key::integer("output.fraction", 14, 2..=20,
+            "Fraction bits of the cosine, u1.C."),
+        rounding: Rounding = Key::rounding("output.rounding", "nearest",
+            "How the cosine is rounded."),
     }
+}
+
+fn schema() -> Schema {
+    Schema { device: "dot-product", keys: Keys::keys(), check }
 }
 
 /// The sum of products has twice the fraction bits of a component, and the cosine is rounded from it.
 fn check(config: &Config, problems: &mut Problems) {
-    let most = 2 * config.integer("vector.fraction");
-    if config.integer("output.fraction") > most {
+    let keys = Keys::of(config);
+    let most = 2 * keys.fraction;
+    if keys.kept > most {
         problems.push(
             "output.fraction",
             format!("more fraction bits than the {most} of a product of components"),

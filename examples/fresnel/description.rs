@@ -1,18 +1,15 @@
 //! The description: blocks, wires and the microprogram. Every signal knows its format and its range, so that
 //! widths follow by themselves; only `narrow` gives bits up, and says how.
 
+use super::Keys;
 use glint::config::Config;
 use glint::dsl::{About, Designer, end, step, valid};
-use glint::fixed::{Format, Overflow, Rounding};
+use glint::fixed::{Format, Overflow};
 use glint::hdl::blocks::colour::Colours;
 
 pub fn describe(d: &Designer, config: &Config) {
-    let bits = |key| config.integer(key) as i32;
-    let rounding = |key| match config.choice(key) {
-        "nearest" => Rounding::Nearest,
-        _ => Rounding::Truncate,
-    };
-    let powers = Format::unsigned(0, bits("power.fraction"));
+    let keys = Keys::of(config);
+    let powers = Format::unsigned(0, keys.power as i32);
 
     d.about(About {
         device: "fresnel".into(),
@@ -25,12 +22,12 @@ pub fn describe(d: &Designer, config: &Config) {
     // An operand is a port, a write strobe and a register. u1.F could hold almost 2; a cosine beyond 1
     // is taken for 1, so that 1 − c below cannot be negative. The DSL knows that from here on.
     let c = d
-        .operand_clamped("cos_half", Format::unsigned(1, bits("cosine.fraction")), 0.0, 1.0)
+        .operand_clamped("cos_half", Format::unsigned(1, keys.cosine as i32), 0.0, 1.0)
         .doc("cosine between the light and the half vector");
     let f0 = d
-        .operand("f0", Format::unsigned(0, bits("reflectance.fraction")))
+        .operand("f0", Format::unsigned(0, keys.reflectance as i32))
         .doc("reflectance at normal incidence");
-    let colours = Colours::new(d, bits("colour.bits"), None);
+    let colours = Colours::new(d, keys.colour_bits as i32, None);
 
     let power = d.register("power", powers).doc("(1 - c)^2, then ^4, then ^5");
     let f = d.register("f", powers).doc("the Fresnel factor");
@@ -51,11 +48,10 @@ pub fn describe(d: &Designer, config: &Config) {
 
     // 1.0 is no value of u0.F: it becomes the largest, one last place below. Elsewhere the ranges leave
     // saturation something to do, but the values do not; the proof is at the bound.
-    let nearest = rounding("power.rounding");
-    let narrow = |name, x| d.narrow(name, x, powers, nearest, Overflow::Saturate);
+    let narrow = |name, x| d.narrow(name, x, powers, keys.rounding, Overflow::Saturate);
     power.takes(narrow("power_rounded", product));
     f.takes(narrow("f_rounded", d.add("blend", product, f0.q())));
-    colours.outputs(f.q(), rounding("output.rounding"));
+    colours.outputs(f.q(), keys.output_rounding);
 
     // A word is a clock. What a register loads in a word is there in the next.
     d.microprogram([

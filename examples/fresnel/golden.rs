@@ -3,45 +3,36 @@
 
 use std::sync::Arc;
 
+use super::Keys;
 use glint::config::Config;
-use glint::fixed::{Format, Rounding, exp2};
+use glint::fixed::{Format, exp2};
 use glint::golden::contract::{ErrorShare, control};
 use glint::golden::frame::{Frame, idle, step_by};
 use glint::golden::highlight::{Highlight, Products, Reflectance};
 use glint::golden::narrow::{Narrow, rounding_error};
-use glint::golden::{Contract, Model, keys};
+use glint::golden::{Contract, Model};
 
 /// The arithmetic, one operation a method.
 struct Fresnel {
-    /// Fraction bits of c, of f0 and of the powers.
-    cosine: u32,
-    reflectance: u32,
-    power: u32,
-    rounding: Rounding,
+    keys: Keys,
     /// From the fraction bits of a product to those of the powers.
     rounded: Narrow,
 }
 
 impl Fresnel {
     fn new(config: &Config) -> Self {
-        let (power, rounding) =
-            (keys::bits(config, "power.fraction"), keys::rounding(config, "power.rounding"));
-        Self {
-            cosine: keys::bits(config, "cosine.fraction"),
-            reflectance: keys::bits(config, "reflectance.fraction"),
-            power,
-            rounding,
-            rounded: Narrow::new(2 * power, Format::unsigned(0, power as i32), rounding),
-        }
+        let keys = Keys::of(config);
+        let powers = Format::unsigned(0, keys.power as i32);
+        Self { rounded: Narrow::new(2 * keys.power, powers, keys.rounding), keys }
     }
 
     /// 1 − x, from so many fraction bits to those of the powers.
     fn complement(&self, x: i64, fraction: u32) -> i64 {
-        ((1 << fraction) - x) << (self.power - fraction)
+        ((1 << fraction) - x) << (self.keys.power - fraction)
     }
 
     fn square(&self, c: i64) -> i64 {
-        let t = self.complement(c, self.cosine);
+        let t = self.complement(c, self.keys.cosine);
         self.rounded.apply(t * t)
     }
 
@@ -50,25 +41,24 @@ impl Fresnel {
     }
 
     fn fifth(&self, fourth: i64, c: i64) -> i64 {
-        self.rounded.apply(fourth * self.complement(c, self.cosine))
+        self.rounded.apply(fourth * self.complement(c, self.keys.cosine))
     }
 
     fn blend(&self, fifth: i64, f0: i64) -> i64 {
-        let exact = f0 << (2 * self.power - self.reflectance);
-        self.rounded.apply(exact + fifth * self.complement(f0, self.reflectance))
+        let exact = f0 << (2 * self.keys.power - self.keys.reflectance);
+        self.rounded.apply(exact + fifth * self.complement(f0, self.keys.reflectance))
     }
 
     /// The formats of c, f0 and f.
     fn formats(&self) -> [Format; 3] {
-        [(1, self.cosine), (0, self.reflectance), (0, self.power)]
+        [(1, self.keys.cosine), (0, self.keys.reflectance), (0, self.keys.power)]
             .map(|(int, fraction)| Format::unsigned(int, fraction as i32))
     }
 }
 
 /// The colours, which f multiplies.
-fn products(it: &Fresnel, config: &Config) -> Products {
-    let rounding = keys::rounding(config, "output.rounding");
-    Products::colours(it.formats()[2], keys::bits(config, "colour.bits"), rounding)
+fn products(it: &Fresnel) -> Products {
+    Products::colours(it.formats()[2], it.keys.colour_bits, it.keys.output_rounding)
 }
 
 /// The golden model: operands and registers, and what each microinstruction does to them.
@@ -76,7 +66,7 @@ pub fn model(config: &Config) -> Box<dyn Model> {
     let it = Arc::new(Fresnel::new(config));
     let [cosine, reflectance, powers] = it.formats();
     let mut frame = Frame::default();
-    let c = frame.clamped("cos_half", cosine, 0, 1 << it.cosine);
+    let c = frame.clamped("cos_half", cosine, 0, 1 << it.keys.cosine);
     let f0 = frame.operand("f0", reflectance);
     let (power, f) = (frame.register("power", powers), frame.register("f", powers));
     let program = vec![
@@ -86,7 +76,7 @@ pub fn model(config: &Config) -> Box<dyn Model> {
         step_by(&it, move |it, s| s[power] = it.fifth(s[power], s[c])),
         step_by(&it, move |it, s| s[f] = it.blend(s[power], s[f0])),
     ];
-    Box::new(products(&it, config).behind(frame, f, program))
+    Box::new(products(&it).behind(frame, f, program))
 }
 
 /// The function that the device computes, and its error bound.
@@ -95,10 +85,10 @@ pub fn contract(config: &Config) -> Box<dyn Contract> {
     let [cosine, reflectance, _] = it.formats();
     let most = reflectance.max_raw() as i64;
     let operands = vec![
-        control("cos_half", cosine, (0, 1 << it.cosine), "cosine to the half vector"),
+        control("cos_half", cosine, (0, 1 << it.keys.cosine), "cosine to the half vector"),
         control("f0", reflectance, (0, most), "reflectance head-on"),
     ];
-    let products = products(&it, config);
+    let products = products(&it);
     Box::new(Highlight::new(it, operands, products))
 }
 
@@ -109,7 +99,7 @@ impl Reflectance for Fresnel {
     }
 
     fn reference(&self, control: &[i64]) -> f64 {
-        let [c, f0] = [(control[0], self.cosine), (control[1], self.reflectance)]
+        let [c, f0] = [(control[0], self.keys.cosine), (control[1], self.keys.reflectance)]
             .map(|(raw, fraction)| raw as f64 * exp2(-(fraction as i32)));
         let t = 1.0 - c;
         f0 + (1.0 - f0) * (t * t * t * t * t)
@@ -130,8 +120,8 @@ impl Reflectance for Fresnel {
     /// - f is off by at most 2u + 2r + u: 1 − f0 ≤ 1 adds nothing to the error of the fifth power, and
     ///   the sum is at most 1, so that rounding and saturation together move it by u at most.
     fn shares(&self) -> Vec<ErrorShare> {
-        let u = exp2(-(self.power as i32));
-        let r = rounding_error(2 * self.power, self.power, self.rounding);
+        let u = exp2(-(self.keys.power as i32));
+        let r = rounding_error(2 * self.keys.power, self.keys.power, self.keys.rounding);
         vec![
             ("power.fraction", "(1 - c)^2 below 1", 2.0 * u),
             ("power.rounding", "rounding of the higher powers", 2.0 * r),

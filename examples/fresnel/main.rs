@@ -23,7 +23,7 @@
 //!
 //! A device is five things: configuration keys, a description, a golden model, a contract, and the line that
 //! ties them together. Keys and line are here; the description is in `description.rs`, model and contract are
-//! in `golden.rs`, and these two share nothing but the names of the keys.
+//! in `golden.rs`, and these two share nothing but the keys.
 
 mod description;
 mod golden;
@@ -31,36 +31,38 @@ mod golden;
 use std::process::ExitCode;
 
 use glint::config::{Config, Key, Problems, Schema};
+use glint::fixed::Rounding;
 use glint::registry::{Device, Registry};
 
 // The keys: what the user of the device may choose. `new` writes them into a commented file, with
 //    these sentences; a file with a wrong value is refused with its line and a remedy.
 
-const ROUNDINGS: &[&str] = &["truncate", "nearest"];
+glint::keys! {
+    struct Keys {
+        cosine: u32 = Key::integer("cosine.fraction", 10, 4..=16,
+            "Fraction bits of cos_half, u1.F."),
+        reflectance: u32 = Key::integer("reflectance.fraction", 8, 4..=16,
+            "Fraction bits of f0, u0.F."),
+        power: u32 = Key::integer("power.fraction", 12, 4..=24,
+            "Fraction bits of the powers of 1 - c and of f, u0.F: the width of the multiplier."),
+        rounding: Rounding = Key::rounding("power.rounding", "nearest",
+            "How the powers and f are rounded."),
+        colour_bits: u32 = Key::integer("colour.bits", 8, 4..=16,
+            "Bits of colour operands and outputs."),
+        output_rounding: Rounding = Key::rounding("output.rounding", "nearest",
+            "How the outputs are rounded."),
+    }
+}
 
 fn schema() -> Schema {
-    let bits = |name, default, doc| Key::integer(name, default, 4..=16, doc);
-    let rounding = |name, doc| Key::choice(name, "nearest", ROUNDINGS, doc);
-    let power = "Fraction bits of the powers of 1 - c and of f, u0.F: the width of the multiplier.";
-    Schema {
-        device: "fresnel",
-        keys: vec![
-            bits("cosine.fraction", 10, "Fraction bits of cos_half, u1.F."),
-            bits("reflectance.fraction", 8, "Fraction bits of f0, u0.F."),
-            Key::integer("power.fraction", 12, 4..=24, power),
-            rounding("power.rounding", "How the powers and f are rounded."),
-            bits("colour.bits", 8, "Bits of colour operands and outputs."),
-            rounding("output.rounding", "How the outputs are rounded."),
-        ],
-        check,
-    }
+    Schema { device: "fresnel", keys: Keys::keys(), check }
 }
 
 /// The multiplier takes 1 − c and 1 − f0 whole, so they have no more fraction bits than the powers.
 fn check(config: &Config, problems: &mut Problems) {
-    let power = config.integer("power.fraction");
-    for key in ["cosine.fraction", "reflectance.fraction"] {
-        if config.integer(key) > power {
+    let Keys { power, cosine, reflectance, .. } = Keys::of(config);
+    for (key, bits) in [("cosine.fraction", cosine), ("reflectance.fraction", reflectance)] {
+        if bits > power {
             problems.push(
                 key,
                 format!("more fraction bits than the {power} of power.fraction"),

@@ -1,5 +1,6 @@
 //! The description: a squarer, a shifter, a table, and a multiplier.
 
+use super::Keys;
 use glint::config::Config;
 use glint::dsl::{About, Designer, Signal, end, step, valid};
 use glint::fixed::{Format, Overflow, Rounding};
@@ -18,14 +19,9 @@ pub fn describe(d: &Designer, config: &Config) {
             .into(),
         notes: vec!["Of the zero vector it makes zeros.".into()],
     });
-    let bits = |key| config.integer(key) as i32;
-    let (fraction, address, inverse) =
-        (bits("vector.fraction"), bits("table.address"), bits("inverse.fraction"));
-    let kept = Format::signed(1, bits("output.fraction"));
-    let rounding = match config.choice("output.rounding") {
-        "nearest" => Rounding::Nearest,
-        _ => Rounding::Truncate,
-    };
+    let Keys { fraction, address, inverse, kept, rounding } = Keys::of(config);
+    let [fraction, address, inverse] = [fraction, address, inverse].map(|bits| bits as i32);
+    let kept = Format::signed(1, kept as i32);
 
     let operands = ["x", "y", "z"]
         .map(|name| d.operand(name, Format::signed(1, fraction)).doc("component of the vector"));

@@ -2,22 +2,19 @@
 
 use std::sync::Arc;
 
+use super::Keys;
 use glint::config::Config;
-use glint::fixed::{Format, Rounding, exp2, mask};
+use glint::fixed::{Format, exp2, mask};
 use glint::golden::device::{self, Formula};
 use glint::golden::frame::{Frame, Slot, idle, step, step_by};
 use glint::golden::narrow::{Narrow, rounding_error};
-use glint::golden::{Axis, Contract, Model, Sweep, Term, Values, keys};
+use glint::golden::{Axis, Contract, Model, Sweep, Term, Values};
 
 /// The most that the sum of squares can be: each component is at least −2.0.
 const FARTHEST: i64 = 12;
 
 struct Normaliser {
-    fraction: u32,
-    address: u32,
-    inverse: u32,
-    kept: u32,
-    rounding: Rounding,
+    keys: Keys,
     /// 1/√m at the ends of the segments, from m = 1.0 on, raw.
     ends: Vec<i64>,
     /// To a result, from a shifted component times an inverse root.
@@ -26,10 +23,8 @@ struct Normaliser {
 
 impl Normaliser {
     fn new(config: &Config) -> Self {
-        let bits = |key| keys::bits(config, key);
-        let (fraction, inverse) = (bits("vector.fraction"), bits("inverse.fraction"));
-        let (address, kept) = (bits("table.address"), bits("output.fraction"));
-        let rounding = keys::rounding(config, "output.rounding");
+        let keys = Keys::of(config);
+        let Keys { fraction, address, inverse, kept, rounding } = keys;
         let segments = 1i64 << address;
         let scale = exp2(inverse as i32);
         // m goes from 1.0 to 4.0 in steps of 4.0/segments.
@@ -38,25 +33,21 @@ impl Normaliser {
         Self {
             ends: (segments / 4..=segments).map(end).collect(),
             rounded: Narrow::new(fraction + 1 + inverse, Format::signed(1, kept as i32), rounding),
-            fraction,
-            address,
-            inverse,
-            kept,
-            rounding,
+            keys,
         }
     }
 
     fn vector(&self) -> Format {
-        Format::signed(1, self.fraction as i32)
+        Format::signed(1, self.keys.fraction as i32)
     }
 
     fn result(&self) -> Format {
-        Format::signed(1, self.kept as i32)
+        Format::signed(1, self.keys.kept as i32)
     }
 
     /// Bits of the sum of squares.
     fn width(&self) -> u32 {
-        2 * self.fraction + 4
+        2 * self.keys.fraction + 4
     }
 
     /// Pairs of leading zeros, as many as the shifter counts.
@@ -82,9 +73,9 @@ impl Normaliser {
         if mantissa == 0 {
             return 0;
         }
-        let below = self.width() - self.address;
-        let at = ((mantissa >> below) - (1 << (self.address - 2))) as usize;
-        let along = below.min(self.inverse - self.address + 2);
+        let below = self.width() - self.keys.address;
+        let at = ((mantissa >> below) - (1 << (self.keys.address - 2))) as usize;
+        let along = below.min(self.keys.inverse - self.keys.address + 2);
         let rest = (mantissa >> (below - along)) & mask(along) as i64;
         self.ends[at] - (((self.ends[at] - self.ends[at + 1]) * rest) >> along)
     }
@@ -101,10 +92,10 @@ fn device(config: &Config) -> device::Device {
     let it = Arc::new(Normaliser::new(config));
     let mut frame = Frame::default();
     let components = ["x", "y", "z"].map(|name| frame.operand(name, it.vector()));
-    let sum = frame.register("sum", Format::unsigned(4, 2 * it.fraction as i32));
+    let sum = frame.register("sum", Format::unsigned(4, 2 * it.keys.fraction as i32));
     let mantissa = frame.register("mantissa", Format::unsigned(it.width() as i32, 0));
     let shift = frame.register("shift", Format::unsigned(it.pair_bits() as i32, 0));
-    let inverse = frame.register("inverse", Format::unsigned(1, it.inverse as i32));
+    let inverse = frame.register("inverse", Format::unsigned(1, it.keys.inverse as i32));
     let units = ["unit_x", "unit_y", "unit_z"].map(|name| {
         let unit = frame.register(name, it.result());
         frame.shows(&format!("{name}_out"), unit);
@@ -163,40 +154,45 @@ impl Formula for Normaliser {
     ///
     /// The zero vector has zeros, as the formula has it here.
     fn terms(&self) -> Vec<Term> {
-        let segments = exp2(self.address as i32);
+        let segments = exp2(self.keys.address as i32);
         let h = 4.0 / segments;
-        let chord = (1 << (self.address - 2)..1u32 << self.address)
+        let chord = (1 << (self.keys.address - 2)..1u32 << self.keys.address)
             .map(|at| {
                 let a = f64::from(at) * h;
                 h * h / 8.0 * 0.75 * libm::pow(a, -2.5) * (a + h).sqrt()
             })
             .fold(0.0, f64::max);
-        let units = exp2(self.kept as i32);
+        let units = exp2(self.keys.kept as i32);
         let term = |key, what, error| Term { key, what, units: error * units };
         vec![
             term("table.address", "straight segments for the inverse root", chord),
             term(
                 "inverse.fraction",
                 "rounding of the inverse root",
-                4.0 * exp2(-(self.inverse as i32)),
+                4.0 * exp2(-(self.keys.inverse as i32)),
             ),
             term(
                 "output.rounding",
                 "rounding of the results",
-                rounding_error(self.fraction + 1 + self.inverse, self.kept, self.rounding),
+                rounding_error(
+                    self.keys.fraction + 1 + self.keys.inverse,
+                    self.keys.kept,
+                    self.keys.rounding,
+                ),
             ),
         ]
     }
 
     /// Vectors of any length, each octave as often as any other: the shift goes by the length.
     fn hint(&self, unit: &mut dyn FnMut() -> f64) -> Option<Vec<i64>> {
-        let most = exp2(1 + self.fraction as i32) * libm::exp2(-unit() * f64::from(self.fraction));
+        let most = exp2(1 + self.keys.fraction as i32)
+            * libm::exp2(-unit() * f64::from(self.keys.fraction));
         Some((0..3).map(|_| ((2.0 * unit() - 1.0) * most).round() as i64).collect())
     }
 
     /// The sum of squares determines the inverse root, and the largest error of any component with it.
     fn sweep(&self) -> Option<Sweep> {
-        let most = FARTHEST << (2 * self.fraction);
+        let most = FARTHEST << (2 * self.keys.fraction);
         let name = "sum of squares".to_owned();
         let axes = vec![Axis { name, values: Values::Range(1, most) }];
         Some(Sweep { axes, omits: String::new() })
@@ -205,9 +201,13 @@ impl Formula for Normaliser {
     /// Of a component as long as the vector, before it is rounded, and the rounding.
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let mantissa = self.mantissa(place[0], self.pairs(place[0]));
-        let root = (mantissa as f64 * exp2(-2 * self.fraction as i32 - 2)).sqrt();
-        let inverse = self.inverse_root(mantissa) as f64 * exp2(-(self.inverse as i32));
-        let rounding = rounding_error(self.fraction + 1 + self.inverse, self.kept, self.rounding);
-        Some(((inverse * root - 1.0).abs() + rounding) * exp2(self.kept as i32))
+        let root = (mantissa as f64 * exp2(-2 * self.keys.fraction as i32 - 2)).sqrt();
+        let inverse = self.inverse_root(mantissa) as f64 * exp2(-(self.keys.inverse as i32));
+        let rounding = rounding_error(
+            self.keys.fraction + 1 + self.keys.inverse,
+            self.keys.kept,
+            self.keys.rounding,
+        );
+        Some(((inverse * root - 1.0).abs() + rounding) * exp2(self.keys.kept as i32))
     }
 }

@@ -20,36 +20,30 @@ mod golden;
 use std::process::ExitCode;
 
 use glint::config::{Config, Key, Problems, Schema};
+use glint::fixed::Rounding;
 use glint::registry::{Device, Registry};
 
-fn schema() -> Schema {
-    let rounding = "How the components of the unit vector are rounded.";
-    Schema {
-        device: "normaliser",
-        keys: vec![
-            Key::integer("vector.fraction", 14, 2..=14, "Fraction bits of a component, s1.F."),
-            Key::integer(
-                "table.address",
-                9,
-                3..=12,
-                "Leading bits of the sum that choose a segment.",
-            ),
-            Key::integer(
-                "inverse.fraction",
-                20,
-                6..=24,
-                "Fraction bits of the inverse root, u1.R.",
-            ),
-            Key::integer("output.fraction", 14, 2..=20, "Fraction bits of a result, s1.C."),
-            Key::choice("output.rounding", "nearest", &["truncate", "nearest"], rounding),
-        ],
-        check,
+glint::keys! {
+    struct Keys {
+        fraction: u32 = Key::integer("vector.fraction", 14, 2..=14,
+            "Fraction bits of a component, s1.F."),
+        address: u32 = Key::integer("table.address", 9, 3..=12,
+            "Leading bits of the sum that choose a segment."),
+        inverse: u32 = Key::integer("inverse.fraction", 20, 6..=24,
+            "Fraction bits of the inverse root, u1.R."),
+        kept: u32 = Key::integer("output.fraction", 14, 2..=20, "Fraction bits of a result, s1.C."),
+        rounding: Rounding = Key::rounding("output.rounding", "nearest",
+            "How the components of the unit vector are rounded."),
     }
 }
 
+fn schema() -> Schema {
+    Schema { device: "normaliser", keys: Keys::keys(), check }
+}
+
 fn check(config: &Config, problems: &mut Problems) {
-    let address = config.integer("table.address");
-    let sum = 2 * config.integer("vector.fraction") + 4;
+    let Keys { fraction, address, inverse, kept, .. } = Keys::of(config);
+    let sum = 2 * fraction + 4;
     if address >= sum {
         problems.push(
             "table.address",
@@ -57,7 +51,6 @@ fn check(config: &Config, problems: &mut Problems) {
             format!("at most {}, or a larger vector.fraction", sum - 1),
         );
     }
-    let inverse = config.integer("inverse.fraction");
     if inverse < address {
         problems.push(
             "inverse.fraction",
@@ -65,7 +58,7 @@ fn check(config: &Config, problems: &mut Problems) {
             format!("at least {address}"),
         );
     }
-    if config.integer("output.fraction") > inverse {
+    if kept > inverse {
         problems.push(
             "output.fraction",
             format!("more fraction bits than the {inverse} of the inverse root"),

@@ -14,29 +14,30 @@
 
 use std::process::ExitCode;
 
-use glint::config::{Config, Key, Problems, Schema};
+use glint::config::{Config, Key, Schema};
 use glint::dsl::{About, Designer, end, step, valid};
 use glint::fixed::{Format, Overflow, Rounding};
 use glint::golden::device::{self, Formula};
 use glint::golden::frame::{Frame, idle, step as execute};
 use glint::golden::narrow::Narrow;
-use glint::golden::{Contract, Model, keys};
+use glint::golden::{Contract, Model};
 use glint::registry::{Device, Registry};
 
-fn schema() -> Schema {
-    let bits = |name, default, doc| Key::integer(name, default, 4..=20, doc);
-    Schema {
-        device: "smoothstep",
-        keys: vec![
-            bits("x.fraction", 12, "Fraction bits of x, u1.F."),
-            bits("output.fraction", 12, "Fraction bits of the output, u1.C; x^2 has four more."),
-        ],
-        check: |_: &Config, _: &mut Problems| {},
+glint::keys! {
+    struct Keys {
+        fraction: u32 = Key::integer("x.fraction", 12, 4..=20, "Fraction bits of x, u1.F."),
+        kept: u32 = Key::integer("output.fraction", 12, 4..=20,
+            "Fraction bits of the output, u1.C; x^2 has four more."),
     }
 }
 
+fn schema() -> Schema {
+    Schema { device: "smoothstep", keys: Keys::keys(), check: |_, _| {} }
+}
+
 fn bits(config: &Config) -> (i32, i32) {
-    (keys::bits(config, "x.fraction") as i32, keys::bits(config, "output.fraction") as i32)
+    let keys = Keys::of(config);
+    (keys.fraction as i32, keys.kept as i32)
 }
 
 /// Fraction bits that the square has beyond those of the output.

@@ -8,6 +8,7 @@
 mod audit;
 mod follow;
 mod json_schema;
+mod keys;
 mod module_name;
 mod nearest;
 mod parse;
@@ -22,6 +23,7 @@ mod values;
 mod write;
 
 pub use json_schema::json_schema;
+pub use keys::Setting;
 pub use nearest::nearest;
 pub use parse::parse;
 pub use problems::{Problem, Problems};

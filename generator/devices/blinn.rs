@@ -4,37 +4,21 @@
 //! make: cⁿ = 2^(−n·decay) with the decay −log₂ c, an octave number before what the table holds.
 
 use crate::base::fixed::{Format, exp2};
-use crate::config::{Config, Problems, Schema};
+use crate::config::Config;
 use crate::hdl::blocks::shift;
 use crate::hdl::dsl::Designer;
 use crate::hdl::netlist::About;
+use crate::keys::blinn::Keys;
 
 use super::common;
-use super::decay::{self, Curve, Defaults};
-
-/// The keys of the device.
-pub fn schema() -> Schema {
-    Schema {
-        device: "blinn",
-        keys: decay::keys(&Defaults {
-            coarse_fraction: 19,
-            segments: &[6, 5, 4, 3, 2],
-            offset_address: &[6, 5, 3],
-        }),
-        check,
-    }
-}
-
-fn check(config: &Config, problems: &mut Problems) {
-    // Normalised, the top bit of the cosine is known.
-    decay::check(config, config.integer("cosine.fraction") - 1, problems);
-}
+use super::decay::{self, Curve};
 
 /// The device.
 pub fn describe(d: &Designer, config: &Config) {
-    d.about(about(config));
-    let cos_gamma = common::cosine(d, config).q();
-    let bits = config.integer("cosine.fraction") as u32;
+    let keys = Keys::of(config);
+    d.about(about(&keys));
+    let cos_gamma = common::cosine(d, &keys.operands.cosine).q();
+    let bits = keys.operands.cosine.fraction;
     let fraction = cos_gamma.bits(0, Format::unsigned(0, bits as i32));
     let normalised = shift::normalise(d, "octave", fraction);
     let octave = normalised.zeros.named("octave").doc("leading zeros of cos gamma");
@@ -45,7 +29,7 @@ pub fn describe(d: &Designer, config: &Config) {
     let table = move |u: f64| -libm::log2(1.0 - (u + 1.0) * exp2(-(bits as i32)));
     decay::describe(
         d,
-        config,
+        &keys,
         cos_gamma,
         &Curve {
             u,
@@ -58,14 +42,14 @@ pub fn describe(d: &Designer, config: &Config) {
     );
 }
 
-fn about(config: &Config) -> About {
+fn about(keys: &Keys) -> About {
     let mut notes = vec![
         "The seeds hold every device against this function and give no circuit for it; structure and formats \
          are Glint's own."
             .into(),
         "Phong's function is this device with cos psi = V.R at the input in place of N.H.".into(),
     ];
-    notes.extend(decay::notes(config));
+    notes.extend(decay::notes(keys));
     About {
         device: "blinn".to_owned(),
         title: "Specular intensity by Blinn's function itself".to_owned(),

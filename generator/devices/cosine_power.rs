@@ -6,34 +6,25 @@
 //! first product.
 
 use crate::base::fixed::{Format, Overflow};
-use crate::config::{Config, Schema};
+use crate::config::Config;
 use crate::hdl::blocks::colour::Colours;
 use crate::hdl::blocks::squaring::Squarings;
 use crate::hdl::dsl::{Designer, Signal, step};
 use crate::hdl::netlist::{About, Topic};
+use crate::keys::cosine_power::Keys;
 
-use super::{common, rounding};
-
-/// The keys of the device.
-pub fn schema() -> Schema {
-    Schema {
-        device: "cosine-power",
-        keys: [vec![common::power()], common::operands(), common::reflectance(), common::domain()]
-            .concat(),
-        check: common::check_exponents,
-    }
-}
+use super::common;
 
 /// The device.
 pub fn describe(d: &Designer, config: &Config) {
-    let integer = |key: &str| config.integer(key) as i32;
-    let count = common::squarings(config);
-    let f = Format::unsigned(0, integer("intensity.fraction"));
-    d.about(about(config));
+    let keys = Keys::of(config);
+    let count = keys.power.ilog2();
+    let f = keys.f.format();
+    d.about(about(&keys));
 
-    let cos_gamma = common::cosine(d, config).q();
-    let exponent = common::exponent(d, config).q();
-    let colours = Colours::new(d, integer("colour.bits"), None);
+    let cos_gamma = common::cosine(d, &keys.operands.cosine).q();
+    let exponent = common::exponent(d, keys.operands.exponent_bits).q();
+    let colours = Colours::new(d, keys.operands.colours.bits as i32, None);
 
     // With power = 2 there is no power to square again.
     let operand_select = d.select("operand_select", &["distance", "base", "power"]).partly_used();
@@ -41,7 +32,7 @@ pub fn describe(d: &Designer, config: &Config) {
         d.register("accumulator", f).doc("n/m*(1 - cos gamma), then the powers of W's base");
     let squarings = Squarings::new(d, count);
 
-    let one = d.constant("one", 1.0, Format::unsigned(1, integer("cosine.fraction")));
+    let one = d.constant("one", 1.0, Format::unsigned(1, keys.operands.cosine.fraction as i32));
     let complement = d.sub("complement", one, cos_gamma).doc("1.0 - cos gamma");
     let zeta = exponent.shift_right(count as i32).named("zeta").doc("n/m, by wiring");
     let base = base(d, cos_gamma, accumulator.q());
@@ -55,14 +46,19 @@ pub fn describe(d: &Designer, config: &Config) {
     let product = d
         .shared_mul("product", &first, &second)
         .doc_on(Topic::Microprogram, "the shared product; its point depends on the operands");
-    let rounding_f = rounding(config, "intensity.rounding");
+    let rounding_f = keys.f.rounding;
     let distance =
         d.narrow("distance", product.of(complement, zeta), f, rounding_f, Overflow::Saturate);
     let square = product.of_any(&[(base, base), (accumulator.q(), accumulator.q())]);
     let square = d.narrow("square", square, f, rounding_f, Overflow::Saturate);
     let next = d.mux_on("accumulator_next", operand_select, [distance, square, square]);
     accumulator.takes(next.out());
-    let outputs = common::colour_outputs(config, &colours, accumulator.q());
+    let outputs = common::colour_outputs(
+        &keys.operands.colours,
+        keys.f.output_rounding,
+        &colours,
+        accumulator.q(),
+    );
 
     let mut steps = vec![
         step("operands 1 - cos gamma, n/m", []),
@@ -88,8 +84,8 @@ fn base<'d>(d: &'d Designer, cos_gamma: Signal<'d>, accumulator: Signal<'d>) -> 
     d.choose("base", facing, [zero, inverse]).doc("base of the power")
 }
 
-fn about(config: &Config) -> About {
-    let m = config.choice("power");
+fn about(keys: &Keys) -> About {
+    let m = keys.power;
     About {
         device: "cosine-power".to_owned(),
         title: format!("Specular intensity by the cosine-power function, m = {m}"),
@@ -107,7 +103,7 @@ fn about(config: &Config) -> About {
             "Cosines are limited to 0 ... 1.0 as they are written; cos gamma <= 0 gives 0, and so does everything \
              beyond the zero of W at cos gamma = (n - m)/n."
                 .into(),
-            common::outputs_note(config, "the accumulator", "begins"),
+            common::outputs_note(&keys.operands.colours, "the accumulator", "begins"),
         ],
     }
 }

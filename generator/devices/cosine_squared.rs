@@ -3,70 +3,28 @@
 //! The accumulator of `quad-cosine`; the host multiplies its angles by `a = √(n/2)`, so that nothing stands
 //! between register 8 and a single table.
 
-use crate::base::fixed::Format;
-use crate::config::{Config, Key, Problems, Schema};
+use crate::config::Config;
 use crate::hdl::blocks::angle;
 use crate::hdl::blocks::colour::Colours;
 use crate::hdl::blocks::line::Line;
 use crate::hdl::dsl::Designer;
 use crate::hdl::netlist::{About, Topic};
+use crate::keys::cosine_squared::Keys;
 
-use super::{common, quad_cosine, rounding};
-
-/// The keys of the device.
-pub fn schema() -> Schema {
-    Schema {
-        device: "cosine-squared",
-        keys: vec![
-            Key::integer(
-                "angle.integer",
-                7,
-                1..=8,
-                "Integer bits of the stretched angles, which are in right angles and signed.",
-            ),
-            common::angle_fraction(22),
-            common::table_address(10),
-            common::length_bits(),
-            common::line_stages(&["2", "5"]),
-            common::colour_bits(),
-            common::intensity_fraction(10),
-            common::output_rounding(),
-        ],
-        check,
-    }
-}
-
-fn check(config: &Config, problems: &mut Problems) {
-    let integer = |key: &str| config.integer(key);
-    let fraction = integer("angle.fraction");
-    if integer("table.address") > fraction {
-        problems.push(
-            "table.address",
-            format!("the angle has {fraction} fraction bits"),
-            format!("at most {fraction}, or a larger angle.fraction"),
-        );
-    }
-    let size = (integer("table.address"), integer("intensity.fraction"));
-    let remedy = "fewer address bits or narrower entries";
-    common::check_rom_size("table.address", "ROM 12", size, remedy, problems);
-}
+use super::{common, quad_cosine};
 
 /// The device.
 pub fn describe(d: &Designer, config: &Config) {
-    let integer = |key: &str| config.integer(key) as i32;
-    let table = integer("table.address");
-    let f = Format::unsigned(0, integer("intensity.fraction"));
+    let keys = Keys::of(config);
+    let table = keys.table_address as i32;
+    let f = keys.f_format();
     // Registers behind the address and the word of ROM 12, and behind multiplier 13.
-    let staged = integer("line.stages") == 5;
-    d.about(about(integer("line.stages")));
+    let staged = keys.stages == 5;
+    d.about(about(keys.stages));
 
-    let colours = Colours::amplitude(d, integer("colour.bits"), Some(quad_cosine::AMPLITUDE));
-    let line = Line::new(
-        d,
-        Format::signed(integer("angle.integer"), integer("angle.fraction")),
-        integer("length.bits"),
-        Some(common::LINE_BLOCKS),
-    );
+    let colours = Colours::amplitude(d, keys.colour_bits as i32, Some(quad_cosine::AMPLITUDE));
+    let line =
+        Line::new(d, keys.angle_format(), keys.length_bits as i32, Some(common::LINE_BLOCKS));
     let folded = angle::fold(d, line.angle(), table);
     let mut address = angle::address(d, "table_address", folded.magnitude, folded.within, table);
     if staged {
@@ -77,17 +35,17 @@ pub fn describe(d: &Designer, config: &Config) {
         .block(12)
         .doc(&format!("cos^2 in 2^{table} steps of a right angle"))
         .comments(angle::step_comments(2, table));
-    let rounding = rounding(config, "output.rounding");
+    let rounding = keys.output_rounding;
     if staged {
         colours.outputs_staged(d.pipeline("cosine_held", cosine.out()), rounding);
     } else {
         colours.outputs(cosine.out(), rounding);
     }
     // Register 8, ROM 12, and what is between.
-    line.microprogram(integer("line.stages") as u32);
+    line.microprogram(keys.stages);
 }
 
-fn about(stages: i32) -> About {
+fn about(stages: u32) -> About {
     About {
         device: "cosine-squared".to_owned(),
         title: "Specular intensity along a scan line by a stretched cosine squared".to_owned(),

@@ -4,14 +4,14 @@
 //! in the same multiplier), and 2^−y of their product is one look at tables and a shift.
 
 use crate::base::fixed::{Format, Overflow, Rounding, exp2};
-use crate::config::{Config, Key, Problems, Value};
 use crate::hdl::blocks::colour::Colours;
 use crate::hdl::blocks::exponential::{self, ExponentialFormats};
 use crate::hdl::blocks::multipartite::{Cut, Offset};
 use crate::hdl::blocks::segmented::{self, Entry, Segment, Segmentation, SegmentedFormats};
 use crate::hdl::dsl::{Designer, Note, Signal, Topic, step};
+use crate::keys::decay::Keys;
 
-use super::{common, rounding};
+use super::common;
 
 /// Where the two devices differ.
 pub struct Curve<'d> {
@@ -29,180 +29,28 @@ pub struct Curve<'d> {
     pub doc: &'static str,
 }
 
-/// What the two devices have for defaults.
-pub struct Defaults {
-    /// `decay.coarse_fraction`.
-    pub coarse_fraction: i64,
-    /// `decay.segments`.
-    pub segments: &'static [i64],
-    /// `exponential.offset_address`.
-    pub offset_address: &'static [i64],
-}
-
-/// The keys.
-pub fn keys(defaults: &Defaults) -> Vec<Key> {
-    let mut intensity_rounding = common::intensity_rounding();
-    intensity_rounding.default = Value::Text("nearest".to_owned());
-    let own = vec![
-        Key::integer(
-            "decay.fraction",
-            26,
-            12..=28,
-            "Fraction bits of the decay: f = 2^(-n*decay).",
-        ),
-        Key::integers(
-            "decay.segments",
-            defaults.segments,
-            2..=10,
-            1..=11,
-            "log2 of the straight segments for each factor of four of 1 - cos, from the top.",
-        ),
-        Key::integer(
-            "decay.tail",
-            1,
-            0..=6,
-            "log2 of the segments into which what lies below the last of these is cut.",
-        ),
-        Key::integer(
-            "decay.slope_fraction",
-            24,
-            8..=28,
-            "Fraction bits of the rise over a segment.",
-        ),
-        Key::integer(
-            "decay.coarse_fraction",
-            defaults.coarse_fraction,
-            8..=28,
-            "Fraction bits with which a decay that is not small is multiplied by n; a small one keeps all.",
-        ),
-        Key::integer(
-            "exponential.address",
-            7,
-            3..=10,
-            "Leading bits of the fraction of n*decay that address the table of 2^-x.",
-        ),
-        Key::integers(
-            "exponential.offset_bits",
-            &[2, 3, 4],
-            2..=5,
-            1..=3,
-            "Bits of the fields below them, each with a table of offsets.",
-        ),
-        Key::integers(
-            "exponential.offset_address",
-            defaults.offset_address,
-            0..=10,
-            1..=3,
-            "Leading bits that choose the slope of each of these tables.",
-        ),
-        Key::integer("exponential.fraction", 19, 8..=24, "Fraction bits of the tables of 2^-x."),
-        Key::flag(
-            "tables.synchronous",
-            true,
-            "The tables read on the clock edge (block RAM) instead of at once (logic).",
-        ),
-        common::intensity_fraction(16),
-        intensity_rounding,
-        common::output_rounding(),
-    ];
-    [common::operands(), own, common::domain()].concat()
-}
-
-/// The most bits of a fraction of n·decay.
-const MOST_EXPONENT_BITS: i64 = 20;
-
-/// The conditions between keys; `operand_bits` is how many the table's operand has.
-pub fn check(config: &Config, operand_bits: i64, problems: &mut Problems) {
-    common::check_exponents(config, problems);
-    check_decay(config, operand_bits, problems);
-    let integer = |key: &str| config.integer(key);
-    let (address, bits) =
-        (integer("exponential.address"), config.integers("exponential.offset_bits"));
-    let addresses = config.integers("exponential.offset_address");
-    if addresses.len() != bits.len() {
-        problems.push(
-            "exponential.offset_address",
-            format!(
-                "{} entries for the {} fields of exponential.offset_bits",
-                addresses.len(),
-                bits.len()
-            ),
-            "one entry for each field".to_owned(),
-        );
-    }
-    if let Some(most) = addresses.iter().find(|&&most| most > address) {
-        problems.push(
-            "exponential.offset_address",
-            format!(
-                "a slope cannot be chosen by {most} of the {address} bits of exponential.address"
-            ),
-            format!("at most {address}, or a larger exponential.address"),
-        );
-    }
-    let total = address + bits.iter().sum::<i64>();
-    if total > MOST_EXPONENT_BITS {
-        problems.push(
-            "exponential.offset_bits",
-            format!("with exponential.address the fraction of n*decay would have {total} bits"),
-            format!("fewer or smaller fields, for at most {MOST_EXPONENT_BITS} bits in all"),
-        );
-    }
-}
-
-fn check_decay(config: &Config, operand_bits: i64, problems: &mut Problems) {
-    let segments = config.integers("decay.segments");
-    // A factor of four takes two bits; below the last bit there are none.
-    let rest = (operand_bits - 2 * segments.len() as i64).max(0);
-    if rest < config.integer("decay.tail") {
-        problems.push(
-            "decay.segments",
-            format!(
-                "{rest} of the {operand_bits} bits of 1 - cos would remain for the tail below the last range"
-            ),
-            "fewer ranges, a smaller decay.tail, or a larger cosine.fraction".to_owned(),
-        );
-    }
-    common::check_segments(config, "decay.segments", operand_bits, problems);
-    let fraction = config.integer("decay.fraction");
-    for (key, what) in [
-        ("decay.slope_fraction", "the rise over a segment"),
-        ("decay.coarse_fraction", "the decay for the product by n"),
-    ] {
-        let bits = config.integer(key);
-        if bits > fraction {
-            problems.push(
-                key,
-                format!("{bits} fraction bits of {what} do not go with {fraction} of the decay"),
-                format!("at most {fraction}, or a larger decay.fraction"),
-            );
-        }
-    }
-}
-
 /// Everything behind the operand `cos_gamma`: operands, the two products, 2^−y, outputs, microprogram.
-pub fn describe<'d>(d: &'d Designer, config: &Config, cos_gamma: Signal<'d>, curve: &Curve<'d>) {
-    let integer = |key: &str| config.integer(key) as i32;
-    let synchronous = config.flag("tables.synchronous");
-    let exponent = common::exponent(d, config).q();
-    let colours = Colours::new(d, integer("colour.bits"), None);
-    let f = Format::unsigned(0, integer("intensity.fraction"));
+pub fn describe<'d>(d: &'d Designer, keys: &Keys, cos_gamma: Signal<'d>, curve: &Curve<'d>) {
+    let exponent = common::exponent(d, keys.operands.exponent_bits).q();
+    let colours = Colours::new(d, keys.operands.colours.bits as i32, None);
+    let f = keys.f.format();
     let exponential = ExponentialFormats {
-        cut: cut(config),
-        fraction: integer("exponential.fraction"),
-        synchronous,
+        cut: cut(keys),
+        fraction: keys.fraction as i32,
+        synchronous: keys.synchronous,
     };
     // An integer part that shifts every bit of f out, and no larger.
     let most = f.frac as u32 + 2;
     let halvings_format = Format::unsigned(most.ilog2() as i32 + 1, exponential.cut.bits() as i32);
 
     let operand_select = d.select("operand_select", &["segment", "power"]);
-    let decay = d.register("decay", Format::unsigned(0, integer("decay.fraction"))).doc(curve.doc);
+    let decay = d.register("decay", Format::unsigned(0, keys.decay_fraction as i32)).doc(curve.doc);
     let halvings =
         d.register("halvings", halvings_format).doc("n*decay: how often f is half of 1.0");
     let reflectance = d.register("reflectance", f).doc("f");
 
-    let line = look_up(d, config, curve, decay.format());
-    let (factor, small) = factor(d, config, curve, decay.q());
+    let line = look_up(d, keys, curve, decay.format());
+    let (factor, small) = factor(d, keys, curve, decay.q());
     let first =
         d.bus("first", operand_select, [line.slope, factor]).doc("first operand of the multiplier");
     let second = d
@@ -223,21 +71,20 @@ pub fn describe<'d>(d: &'d Designer, config: &Config, cos_gamma: Signal<'d>, cur
             Overflow::Saturate,
         )
     };
-    let coarse = scaled("halvings_coarse", integer("decay.coarse_fraction"));
+    let coarse = scaled("halvings_coarse", keys.coarse_fraction as i32);
     let fine = scaled("halvings_fine", decay.format().frac);
     halvings.takes(d.choose("halvings_next", small, [coarse, fine]));
 
-    let rounded = exponential::halvings(
-        d,
-        "exp2",
-        halvings.q(),
-        &exponential,
-        f.frac,
-        rounding(config, "intensity.rounding"),
-    );
+    let rounded =
+        exponential::halvings(d, "exp2", halvings.q(), &exponential, f.frac, keys.f.rounding);
     reflectance.takes(ends(d, cos_gamma, halvings.q(), rounded));
     let _ = d.output("f_out", reflectance.q()).doc("the reflectance, for a user's own multipliers");
-    let outputs = common::colour_outputs(config, &colours, reflectance.q());
+    let outputs = common::colour_outputs(
+        &keys.operands.colours,
+        keys.f.output_rounding,
+        &colours,
+        reflectance.q(),
+    );
 
     let steps = vec![
         step("segment of the decay addressed by cos gamma", []),
@@ -250,35 +97,27 @@ pub fn describe<'d>(d: &'d Designer, config: &Config, cos_gamma: Signal<'d>, cur
 }
 
 /// How the fraction of n·decay is cut.
-fn cut(config: &Config) -> Cut {
-    let bits = config.integers("exponential.offset_bits");
-    let addresses = config.integers("exponential.offset_address");
-    Cut {
-        address: config.integer("exponential.address") as u32,
-        offsets: bits
-            .iter()
-            .zip(addresses)
-            .map(|(&bits, &address)| Offset { bits: bits as u32, address: address as u32 })
-            .collect(),
-    }
+fn cut(keys: &Keys) -> Cut {
+    let offsets = keys.offsets().map(|(bits, address)| Offset { bits, address });
+    Cut { address: keys.address, offsets: offsets.collect() }
 }
 
 fn look_up<'d>(
     d: &'d Designer,
-    config: &Config,
+    keys: &Keys,
     curve: &Curve<'d>,
     value: Format,
 ) -> segmented::Line<'d> {
     let cut = Segmentation {
         operand_bits: curve.operand_bits,
-        segments: config.integers("decay.segments").iter().map(|&k| k as u32).collect(),
-        tail: Some(config.integer("decay.tail") as u32),
+        segments: keys.segments.clone(),
+        tail: Some(keys.tail),
         packed: true,
     };
     let shape = SegmentedFormats {
         fraction: value.frac,
-        slope_fraction: config.integer("decay.slope_fraction") as i32,
-        synchronous: config.flag("tables.synchronous"),
+        slope_fraction: keys.slope_fraction as i32,
+        synchronous: keys.synchronous,
     };
     let entry = |segment: Segment| chord(segment, curve.table, shape);
     segmented::look_up(d, "curve", curve.u, &cut, shape, entry, None)
@@ -324,13 +163,13 @@ fn chord(segment: Segment, function: &dyn Fn(f64) -> f64, shape: SegmentedFormat
 /// width, and which it was decides only where the point of the product is.
 fn factor<'d>(
     d: &'d Designer,
-    config: &Config,
+    keys: &Keys,
     curve: &Curve<'d>,
     decay: Signal<'d>,
 ) -> (Signal<'d>, Signal<'d>) {
     let integer = |bits: u32| Format::unsigned(bits as i32, 0);
     let width = decay.format().width();
-    let coarse_bits = config.integer("decay.coarse_fraction") as u32;
+    let coarse_bits = keys.coarse_fraction;
     let mut coarse = decay.bits(width - coarse_bits, integer(coarse_bits));
     let mut large = d.any("decay_large", decay.bits(width - 2, integer(2)));
     if let Some(octave) = curve.octave {
@@ -371,7 +210,7 @@ fn ends<'d>(
 }
 
 /// What [`About::notes`](crate::hdl::dsl::About::notes) says of both devices.
-pub fn notes(config: &Config) -> Vec<Note> {
+pub fn notes(keys: &Keys) -> Vec<Note> {
     vec![
         Topic::Microprogram.note(
             "Two products a point, in one shared multiplier (a second one would save a clock of six and cost one to \
@@ -387,6 +226,6 @@ pub fn notes(config: &Config) -> Vec<Note> {
         "Cosines are limited to 0 ... 1.0 as they are written; cos gamma <= 0 gives 0, for n = 0 too. Else n = 0 \
          gives what cos gamma = 1.0 gives: all ones, an ulp below 1.0."
             .into(),
-        common::outputs_note(config, "the register of f", "reaches microinstruction 4"),
+        common::outputs_note(&keys.operands.colours, "the register of f", "reaches microinstruction 4"),
     ]
 }

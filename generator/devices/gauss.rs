@@ -6,35 +6,20 @@
 use std::f64::consts::LN_2;
 
 use crate::base::fixed::{Format, exp2};
-use crate::config::{Config, Problems, Schema};
+use crate::config::Config;
 use crate::hdl::dsl::Designer;
 use crate::hdl::netlist::About;
+use crate::keys::gauss::Keys;
 
 use super::common;
-use super::decay::{self, Curve, Defaults};
-
-/// The keys of the device.
-pub fn schema() -> Schema {
-    Schema {
-        device: "gauss",
-        keys: decay::keys(&Defaults {
-            coarse_fraction: 24,
-            segments: &[6, 5, 4, 3, 2],
-            offset_address: &[6, 5, 3],
-        }),
-        check,
-    }
-}
-
-fn check(config: &Config, problems: &mut Problems) {
-    decay::check(config, config.integer("cosine.fraction"), problems);
-}
+use super::decay::{self, Curve};
 
 /// The device.
 pub fn describe(d: &Designer, config: &Config) {
-    d.about(about(config));
-    let cos_gamma = common::cosine(d, config).q();
-    let bits = config.integer("cosine.fraction") as u32;
+    let keys = Keys::of(config);
+    d.about(about(&keys));
+    let cos_gamma = common::cosine(d, &keys.operands.cosine).q();
+    let bits = keys.operands.cosine.fraction;
     let fraction = cos_gamma.bits(0, Format::unsigned(bits as i32, 0));
     let u = d.not("distance", fraction).doc("1.0 - cos gamma, less an ulp");
     let table = move |u: f64| {
@@ -43,7 +28,7 @@ pub fn describe(d: &Designer, config: &Config) {
     };
     decay::describe(
         d,
-        config,
+        &keys,
         cos_gamma,
         &Curve {
             u,
@@ -57,13 +42,13 @@ pub fn describe(d: &Designer, config: &Config) {
     );
 }
 
-fn about(config: &Config) -> About {
+fn about(keys: &Keys) -> About {
     let mut notes = vec![
         "The seed gives no circuit. It prints gamma as the angle between H and L; the angle between N and H, \
          which is what makes the function comparable with cos^n, is taken here."
             .into(),
     ];
-    notes.extend(decay::notes(config));
+    notes.extend(decay::notes(keys));
     About {
         device: "gauss".to_owned(),
         title: "Specular intensity by a Gaussian of the angle".to_owned(),

@@ -5,69 +5,14 @@
 //! mux. The wiring is our reading. Numbers count each kind of block.
 
 use crate::base::fixed::{Format, Overflow, Rounding};
-use crate::config::{Config, Key, Problems, Schema};
+use crate::config::Config;
 use crate::hdl::blocks::colour::Colours;
 use crate::hdl::blocks::squaring::Squarings;
 use crate::hdl::dsl::{Designer, Setting, Signal, Step, loop_while, step};
 use crate::hdl::netlist::{About, Note, Topic};
+use crate::keys::lyon::{Keys, Scale};
 
-use super::{common, rounding};
-
-/// The keys of the device.
-pub fn schema() -> Schema {
-    let own = vec![
-        common::power(),
-        Key::choice(
-            "scale",
-            "shift",
-            &["shift", "multiplier"],
-            "shift: as in the patent, beta is a power of two, and the operand is shift = log2 n, rounded. multiplier: beta = n/(2*power) for every n, by a fifth multiplier.",
-        ),
-        Key::integer(
-            "vector.fraction",
-            16,
-            4..=20,
-            "Fraction bits of the components of D = N - H, which run from -2.0 up to 2.0.",
-        ),
-        Key::integer(
-            "distance.fraction",
-            20,
-            8..=28,
-            "Fraction bits of D^2, which n multiplies.",
-        ),
-        Key::choice(
-            "distance.rounding",
-            "truncate",
-            &common::ROUNDINGS,
-            "Rounding into the register that holds D^2.",
-        ),
-        Key::choice(
-            "distance.multipliers",
-            "3",
-            &["1", "3"],
-            "Multipliers that square the components of D: one for each, or one for all, which takes two clocks a point more and saves DSP blocks. A pipeline has one for each.",
-        )
-        .only_when("architecture", "sequential")
-        .joined_later(),
-        common::exponent_bits(),
-        common::colour_bits(),
-        common::colour_multipliers(),
-    ];
-    Schema { device: "lyon", keys: [own, common::reflectance(), common::domain()].concat(), check }
-}
-
-fn check(config: &Config, problems: &mut Problems) {
-    common::check_exponents(config, problems);
-    let (distance, vector) =
-        (config.integer("distance.fraction"), config.integer("vector.fraction"));
-    if distance > 2 * vector {
-        problems.push(
-            "distance.fraction",
-            format!("{distance} fraction bits are more than the squares of the components have"),
-            format!("at most {}, or a larger vector.fraction", 2 * vector),
-        );
-    }
-}
+use super::common;
 
 /// How D² is formed, to the fraction bits of the register that takes it.
 struct Distance<'d> {
@@ -88,25 +33,26 @@ struct Scaled<'d> {
 
 /// The device.
 pub fn describe(d: &Designer, config: &Config) {
-    let f = Format::unsigned(0, config.integer("intensity.fraction") as i32);
-    let rounding_f = rounding(config, "intensity.rounding");
-    d.about(about(config));
+    let keys = Keys::of(config);
+    let f = keys.f.format();
+    let rounding_f = keys.f.rounding;
+    d.about(about(&keys, config));
 
-    let vector = Format::signed(1, config.integer("vector.fraction") as i32);
+    let vector = Format::signed(1, keys.vector_fraction as i32);
     let component = |name: &str, of: &str| {
         d.operand(name, vector).doc(&format!("{of} of N - H, normal less half vector")).q()
     };
     let components = [component("dx", "x"), component("dy", "y"), component("dz", "z")];
-    let distance = if config.choice("distance.multipliers") == "1" {
-        distance_in_turn(d, config, components)
+    let distance = if keys.squares_in_turn() {
+        distance_in_turn(d, &keys, components)
     } else {
-        distance(d, config, components)
+        distance(d, &keys, components)
     };
-    let scaled = match config.choice("scale") {
-        "shift" => by_shift(d, config, distance),
-        _ => by_multiplier(d, config, distance),
+    let scaled = match keys.scale {
+        Scale::Shift => by_shift(d, &keys, distance),
+        Scale::Multiplier => by_multiplier(d, &keys, distance),
     };
-    let colours = Colours::new(d, config.integer("colour.bits") as i32, None);
+    let colours = Colours::new(d, keys.colours.bits as i32, None);
     let accumulator = d.register("accumulator", f).doc("the powers of the base, in the end f");
 
     let value = d.narrow(
@@ -121,7 +67,8 @@ pub fn describe(d: &Designer, config: &Config) {
         d.mux("multiplier4_operand", [base, accumulator.q()]).doc("what multiplier 4 squares");
     let multiplier4 = d.mul("multiplier4", operand.out(), operand.out()).block(4);
     accumulator.takes(d.narrow("square", multiplier4, f, rounding_f, Overflow::Saturate));
-    let outputs = common::colour_outputs(config, &colours, accumulator.q());
+    let outputs =
+        common::colour_outputs(&keys.colours, keys.f.output_rounding, &colours, accumulator.q());
 
     let mut steps = scaled.steps;
     let first = [operand.pick(base)].into_iter().chain(scaled.squarings.load());
@@ -131,7 +78,7 @@ pub fn describe(d: &Designer, config: &Config) {
 }
 
 /// D² = dx² + dy² + dz², 0 … 12.0.
-fn distance<'d>(d: &'d Designer, config: &Config, components: [Signal<'d>; 3]) -> Distance<'d> {
+fn distance<'d>(d: &'d Designer, keys: &Keys, components: [Signal<'d>; 3]) -> Distance<'d> {
     let mut number = 0;
     let squares = components.map(|component| {
         number += 1;
@@ -139,15 +86,11 @@ fn distance<'d>(d: &'d Designer, config: &Config, components: [Signal<'d>; 3]) -
     });
     let adder1 = d.add("adder1", squares[0], squares[1]).block(1);
     let adder2 = d.add("adder2", adder1, squares[2]).block(2).doc("D^2");
-    Distance { value: rounded_distance(d, config, adder2), steps: Vec::new(), settings: Vec::new() }
+    Distance { value: rounded_distance(d, keys, adder2), steps: Vec::new(), settings: Vec::new() }
 }
 
 /// The same by one multiplier and one adder: two squares to a register, before the third comes to them.
-fn distance_in_turn<'d>(
-    d: &'d Designer,
-    config: &Config,
-    components: [Signal<'d>; 3],
-) -> Distance<'d> {
+fn distance_in_turn<'d>(d: &'d Designer, keys: &Keys, components: [Signal<'d>; 3]) -> Distance<'d> {
     let sum = d
         .register("distance_sum", Format::unsigned(4, 2 * components[0].format().frac))
         .doc("dx^2, then dx^2 + dy^2");
@@ -161,7 +104,7 @@ fn distance_in_turn<'d>(
     sum.takes(d.narrow("sum_next", adder1, sum.format(), rounding, overflow));
     let [x, y, z] = components.map(|it| component.pick(it));
     Distance {
-        value: rounded_distance(d, config, adder1),
+        value: rounded_distance(d, keys, adder1),
         steps: vec![
             step("distance_sum <- dx^2", [x, addend.pick(zero), sum.load()]),
             step("distance_sum <- distance_sum + dy^2", [y, addend.pick(sum.q()), sum.load()]),
@@ -170,12 +113,12 @@ fn distance_in_turn<'d>(
     }
 }
 
-fn rounded_distance<'d>(d: &'d Designer, config: &Config, sum: Signal<'d>) -> Signal<'d> {
+fn rounded_distance<'d>(d: &'d Designer, keys: &Keys, sum: Signal<'d>) -> Signal<'d> {
     d.narrow(
         "distance_rounded",
         sum,
-        Format::unsigned(4, config.integer("distance.fraction") as i32),
-        rounding(config, "distance.rounding"),
+        Format::unsigned(4, keys.distance_fraction as i32),
+        keys.distance_rounding,
         // The interval of the sum knows nothing of squares; it is never negative, and 12.0 at most.
         Overflow::Wrap,
     )
@@ -185,13 +128,11 @@ fn rounded_distance<'d>(d: &'d Designer, config: &Config, sum: Signal<'d>) -> Si
 ///
 /// It starts from half of D²/2^(s+1), by wiring, so that it shifts once at least. What has left the
 /// range stays at the largest word, above 1.0.
-fn by_shift<'d>(d: &'d Designer, config: &Config, distance: Distance<'d>) -> Scaled<'d> {
-    let count = common::squarings(config);
+fn by_shift<'d>(d: &'d Designer, keys: &Keys, distance: Distance<'d>) -> Scaled<'d> {
+    let count = keys.squarings();
     let half_down = count as i32 + 2;
-    let shift = d
-        .operand("shift", shift_format(config))
-        .doc("log2 of the specular exponent n, rounded")
-        .q();
+    let shift =
+        d.operand("shift", shift_format(keys)).doc("log2 of the specular exponent n, rounded").q();
     let register = d
         .register("shift_register", Format::unsigned(1, distance.value.format().frac + half_down))
         .doc("beta*D^2, once it has shifted");
@@ -224,22 +165,20 @@ fn by_shift<'d>(d: &'d Designer, config: &Config, distance: Distance<'d>) -> Sca
 }
 
 /// The exact β: a multiplier of ours, and n/2^(s+1) by wiring.
-fn by_multiplier<'d>(d: &'d Designer, config: &Config, distance: Distance<'d>) -> Scaled<'d> {
-    let count = common::squarings(config);
-    let exponent = common::exponent(d, config).q();
+fn by_multiplier<'d>(d: &'d Designer, keys: &Keys, distance: Distance<'d>) -> Scaled<'d> {
+    let count = keys.squarings();
+    let exponent = common::exponent(d, keys.exponent_bits).q();
     let register = d.register("distance", distance.value.format()).doc("D^2");
     register.takes(distance.value);
     let squarings = Squarings::new(d, count);
     let beta = exponent.shift_right(count as i32 + 1).named("beta").doc("n/(2*power), by wiring");
     let multiplier5 = d.mul("multiplier5", register.q(), beta).block(5);
-    let scaled = d
-        .register("scaled", Format::unsigned(1, config.integer("intensity.fraction") as i32))
-        .doc("beta*D^2");
+    let scaled = d.register("scaled", Format::unsigned(1, keys.f.fraction as i32)).doc("beta*D^2");
     scaled.takes(d.narrow(
         "multiplier5_rounded",
         multiplier5,
         scaled.format(),
-        rounding(config, "intensity.rounding"),
+        keys.f.rounding,
         Overflow::Saturate,
     ));
     let load = [register.load()].into_iter().chain(distance.settings);
@@ -263,20 +202,19 @@ fn base<'d>(d: &'d Designer, value: Signal<'d>, f: Format) -> Signal<'d> {
 }
 
 /// Holds every log2 of an exponent, rounded: 0 … `exponent.bits`.
-fn shift_format(config: &Config) -> Format {
-    Format::holding(0, i128::from(config.integer("exponent.bits")), 0)
+fn shift_format(keys: &Keys) -> Format {
+    Format::holding(0, keys.exponent_bits.into(), 0)
 }
 
 /// From what the clocks of a point come.
-fn clocks_note(config: &Config) -> Note {
-    let shift = config.choice("scale") == "shift";
-    let [squares, colours] =
-        ["distance.multipliers", "colour.multipliers"].map(|key| config.choice(key) == "1");
+fn clocks_note(keys: &Keys, config: &Config) -> Note {
+    let shift = keys.scale == Scale::Shift;
+    let (squares, colours) = (keys.squares_in_turn(), keys.colours.in_turn());
     let output = config.flag("output.registered") && !colours;
     Topic::Latency.note(format!(
         "Valid is {}{} clocks after start: one each for {}D^2, scaling, base{} and result, and one for each squaring \
          after the first{}.",
-        common::squarings(config)
+        keys.squarings()
             + 4
             + 2 * u32::from(squares)
             + 3 * u32::from(colours)
@@ -292,9 +230,9 @@ fn clocks_note(config: &Config) -> Note {
     ))
 }
 
-fn about(config: &Config) -> About {
-    let m = config.choice("power");
-    let shift = config.choice("scale") == "shift";
+fn about(keys: &Keys, config: &Config) -> About {
+    let m = keys.power;
+    let shift = keys.scale == Scale::Shift;
     let (beta, scaling) = if shift {
         (
             "2^shift",
@@ -311,13 +249,13 @@ fn about(config: &Config) -> About {
          is the function of cosine-power, reached without a scalar product."
             .into(),
         scaling.into(),
-        clocks_note(config),
+        clocks_note(keys, config),
         "The formula knows no side that faces away: where cos gamma <= 0, that is D^2 >= 2, f is not 0 for small n. \
          A host that wants it to be 0 does not start the device there."
             .into(),
         "Components may have any value; D^2 is whole up to 12.0, which is the most that three of them give."
             .into(),
-        common::outputs_note(config, "the accumulator", "begins"),
+        common::outputs_note(&keys.colours, "the accumulator", "begins"),
     ];
     let shifting = "The shift register shifts one place a clock under the counter, shift + 1 times, which then counts the \
                     squarings.";

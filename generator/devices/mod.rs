@@ -1,4 +1,4 @@
-//! The devices of the seeds: one file each, with its keys and its description and nothing else.
+//! The devices of the seeds: one file each, with its description and nothing else.
 
 pub mod blinn;
 mod common;
@@ -12,14 +12,3 @@ pub mod quadratic;
 pub mod rough;
 pub mod schlick;
 pub mod threshold;
-
-use crate::base::fixed::Rounding;
-use crate::config::Config;
-
-/// The rounding that a key chooses.
-fn rounding(config: &Config, key: &str) -> Rounding {
-    match config.choice(key) {
-        "nearest" => Rounding::Nearest,
-        _ => Rounding::Truncate,
-    }
-}

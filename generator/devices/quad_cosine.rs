@@ -4,14 +4,15 @@
 //! of events; ROMs 9 and 12 are synchronous, and output 29 follows output 37 by two clocks.
 
 use crate::base::fixed::Format;
-use crate::config::{Config, Key, Problems, Schema};
+use crate::config::Config;
 use crate::hdl::blocks::angle;
 use crate::hdl::blocks::colour::{ChannelBlocks, Colours};
 use crate::hdl::blocks::line::Line;
 use crate::hdl::dsl::{Designer, Signal};
 use crate::hdl::netlist::{About, Topic};
+use crate::keys::quad_cosine::Keys;
 
-use super::{common, rounding};
+use super::common;
 
 /// The powers, in the order of ROM 12's tables and of the decoder's outputs 30 to 33.
 const POWERS: [u32; 4] = [1, 2, 4, 16];
@@ -20,89 +21,32 @@ const POWERS: [u32; 4] = [1, 2, 4, 16];
 pub(super) const AMPLITUDE: ChannelBlocks =
     ChannelBlocks { inputs: (15, 16), register: 1, multiplier: 13, output: 27 };
 
-/// The keys of the device.
-pub fn schema() -> Schema {
-    let own = vec![
-        common::angle_fraction(26),
-        Key::integer(
-            "angle.multiplied",
-            17,
-            4..=24,
-            "Fraction bits of the angle that multiplier 11 takes: the leading ones.",
-        ),
-        Key::integer("root.fraction", 14, 8..=20, "Fraction bits of sqrt(n/k) in ROM 9."),
-        common::table_address(11),
-        common::length_bits(),
-        common::line_stages(&["2", "7"]),
-        common::exponent_bits(),
-        common::colour_bits(),
-        common::intensity_fraction(10),
-        common::output_rounding(),
-    ];
-    Schema { device: "quad-cosine", keys: [own, common::domain()].concat(), check }
-}
-
-fn check(config: &Config, problems: &mut Problems) {
-    common::check_exponents(config, problems);
-    let integer = |key: &str| config.integer(key);
-    if integer("exponent.bits") < 3 {
-        problems.push(
-            "exponent.bits",
-            "decoder 10 tells n = 7 from smaller ones, which takes three bits".to_owned(),
-            "at least 3".to_owned(),
-        );
-    }
-    let fraction = integer("angle.fraction");
-    if integer("angle.multiplied") > fraction {
-        problems.push(
-            "angle.multiplied",
-            format!("the angle has {fraction} fraction bits"),
-            format!("at most {fraction}, or a larger angle.fraction"),
-        );
-    }
-    let product = integer("angle.multiplied") + integer("root.fraction");
-    if integer("table.address") > product {
-        problems.push(
-            "table.address",
-            format!("the angle times the root has {product} fraction bits"),
-            format!("at most {product}, or a larger angle.multiplied or root.fraction"),
-        );
-    }
-    let size = (integer("table.address") + 2, integer("intensity.fraction"));
-    let remedy = "fewer address bits or narrower entries";
-    common::check_rom_size("table.address", "ROM 12", size, remedy, problems);
-}
-
 /// The device.
 pub fn describe<'d>(d: &'d Designer, config: &Config) {
-    let integer = |key: &str| config.integer(key) as i32;
-    let table = integer("table.address");
-    let f = Format::unsigned(0, integer("intensity.fraction"));
+    let keys = Keys::of(config);
+    let table = keys.table_address as i32;
+    let f = keys.f_format();
     // Registers behind the magnitude and the root, multiplier 11, the address and the word of ROM 12, and multiplier 13.
-    let staged = integer("line.stages") == 7;
+    let staged = keys.stages == 7;
     let held =
         |name: &str, source: Signal<'d>| if staged { d.pipeline(name, source) } else { source };
-    d.about(about(integer("line.stages")));
+    d.about(about(keys.stages));
 
-    let colours = Colours::amplitude(d, integer("colour.bits"), Some(AMPLITUDE));
-    let line = Line::new(
-        d,
-        Format::signed(1, integer("angle.fraction")),
-        integer("length.bits"),
-        Some(common::LINE_BLOCKS),
-    );
-    let exponent = common::exponent(d, config).block(4).inputs(21, 22).q();
+    let colours = Colours::amplitude(d, keys.colour_bits as i32, Some(AMPLITUDE));
+    let line =
+        Line::new(d, keys.angle_format(), keys.length_bits as i32, Some(common::LINE_BLOCKS));
+    let exponent = common::exponent(d, keys.exponent_bits).block(4).inputs(21, 22).q();
 
     let root = d
-        .rom("root", exponent, root_format(config), &roots(config), true)
+        .rom("root", exponent, root_format(&keys), &roots(&keys), true)
         .block(9)
         .doc("sqrt(n/k), k as decoder 10 picks it for n; n is the address")
         .comments(
-            (0..1i64 << integer("exponent.bits"))
+            (0..1i64 << keys.exponent_bits)
                 .map(|n| format!("sqrt({n}/{})", POWERS[power_of(n)]))
                 .collect(),
         );
-    let folded = angle::fold(d, line.angle(), integer("angle.multiplied"));
+    let folded = angle::fold(d, line.angle(), keys.angle_multiplied as i32);
     let magnitude = held("angle_magnitude_held", folded.magnitude);
     let within = held("angle_within_held", folded.within);
     let scaled = d
@@ -124,14 +68,14 @@ pub fn describe<'d>(d: &'d Designer, config: &Config) {
             "cos^k for k = 1, 2, 4, 16, one table after another; 2^{table} steps of a right angle each"
         ))
         .comments(comments);
-    let rounding = rounding(config, "output.rounding");
+    let rounding = keys.output_rounding;
     if staged {
         colours.outputs_staged(d.pipeline("cosine_held", cosine.out()), rounding);
     } else {
         colours.outputs(cosine.out(), rounding);
     }
     // Register 8, ROM 12, and what is between.
-    line.microprogram(integer("line.stages") as u32);
+    line.microprogram(keys.stages);
 }
 
 /// Decoder 10: outputs 30 to 33, one of them 1, and the number of the one.
@@ -163,19 +107,19 @@ fn power_of(n: i64) -> usize {
     }
 }
 
-fn roots(config: &Config) -> Vec<i128> {
-    let format = Format::unsigned(8, config.integer("root.fraction") as i32);
-    (0..1i64 << config.integer("exponent.bits"))
+fn roots(keys: &Keys) -> Vec<i128> {
+    let format = Format::unsigned(8, keys.root_fraction as i32);
+    (0..1i64 << keys.exponent_bits)
         .map(|n| format.quantise((n as f64 / f64::from(POWERS[power_of(n)])).sqrt()))
         .collect()
 }
 
-fn root_format(config: &Config) -> Format {
-    let largest = roots(config).into_iter().max().unwrap_or(0);
-    Format::holding(0, largest, config.integer("root.fraction") as i32)
+fn root_format(keys: &Keys) -> Format {
+    let largest = roots(keys).into_iter().max().unwrap_or(0);
+    Format::holding(0, largest, keys.root_fraction as i32)
 }
 
-fn about(stages: i32) -> About {
+fn about(stages: u32) -> About {
     About {
         device: "quad-cosine".to_owned(),
         title: "Specular intensity along a scan line by powers of a stretched cosine".to_owned(),

@@ -7,59 +7,13 @@
 mod coefficient;
 
 use crate::base::fixed::{Format, Overflow};
-use crate::config::{Config, Key, Problems, Schema};
+use crate::config::Config;
 use crate::hdl::blocks::colour::{ChannelBlocks, Colours};
 use crate::hdl::dsl::{Designer, Rom, Signal, step};
 use crate::hdl::netlist::About;
+use crate::keys::quadratic::{Keys, Scheme};
 
-use super::{common, rounding};
-
-/// The keys of the device.
-pub fn schema() -> Schema {
-    let coefficient = vec![
-        Key::choice(
-            "coefficient.scheme",
-            "minimax",
-            &["taylor", "minimax"],
-            "ROM(n) holds a(n) = n - 1, which agrees with cos^n to the slope at its peak, or the a(n) whose largest error is least.",
-        ),
-        Key::integer("coefficient.fraction", 8, 0..=12, "Fraction bits of a(n).")
-            .only_when("coefficient.scheme", "minimax"),
-    ];
-    let difference = vec![
-        Key::integer(
-            "difference.fraction",
-            19,
-            8..=28,
-            "Fraction bits of c^2 - c, which a(n) multiplies.",
-        ),
-        Key::choice(
-            "difference.rounding",
-            "truncate",
-            &common::ROUNDINGS,
-            "Rounding into the register that holds c^2 - c.",
-        ),
-    ];
-    let (operands, results) = (common::operands(), common::reflectance());
-    Schema {
-        device: "quadratic",
-        keys: [coefficient, operands, difference, results, common::domain()].concat(),
-        check,
-    }
-}
-
-fn check(config: &Config, problems: &mut Problems) {
-    common::check_exponents(config, problems);
-    let (difference, cosine) =
-        (config.integer("difference.fraction"), config.integer("cosine.fraction"));
-    if difference > 2 * cosine {
-        problems.push(
-            "difference.fraction",
-            format!("{difference} fraction bits are more than the square of the cosine has"),
-            format!("at most {}, or a larger cosine.fraction", 2 * cosine),
-        );
-    }
-}
+use super::common;
 
 /// The seed's numbers of the colour channels.
 const CHANNELS: [ChannelBlocks; 3] = [channel(1), channel(2), channel(3)];
@@ -75,43 +29,46 @@ const fn channel(output: u16) -> ChannelBlocks {
 
 /// The device.
 pub fn describe(d: &Designer, config: &Config) {
-    let integer = |key: &str| config.integer(key) as i32;
-    d.about(about(config));
+    let keys = Keys::of(config);
+    d.about(about(&keys));
 
-    let exponent = common::exponent(d, config).block(1).inputs(1, 1).q();
-    let cos_gamma = common::cosine(d, config)
+    let exponent = common::exponent(d, keys.operands.exponent_bits).block(1).inputs(1, 1).q();
+    let cos_gamma = common::cosine(d, &keys.operands.cosine)
         .block(2)
         .inputs(2, 2)
         .doc("c, the cosine of the angle between normal and half vector")
         .q();
-    let colours = Colours::new(d, integer("colour.bits"), Some(CHANNELS));
+    let colours = Colours::new(d, keys.operands.colours.bits as i32, Some(CHANNELS));
 
     let difference = d
-        .register("difference", Format::signed(-2, integer("difference.fraction")))
+        .register("difference", Format::signed(-2, keys.difference_fraction as i32))
         .doc("c^2 - c, from -0.25 to 0");
-    let intensity = d
-        .register("intensity", Format::unsigned(0, integer("intensity.fraction")))
-        .doc("the reflectance f");
+    let intensity = d.register("intensity", keys.f.format()).doc("the reflectance f");
 
     difference.takes(d.narrow(
         "adder1_rounded",
         adder1(d, cos_gamma),
         difference.format(),
-        rounding(config, "difference.rounding"),
+        keys.difference_rounding,
         // The interval of the sum is wider than its values, which lie in -0.25 ... 0: nothing is lost.
         Overflow::Wrap,
     ));
-    let coefficient = coefficient_rom(d, config, exponent).out();
+    let coefficient = coefficient_rom(d, &keys, exponent).out();
     let multiplier1 = d.mul("multiplier1", difference.q(), coefficient).block(1);
     let adder2 = d.add("adder2", multiplier1, cos_gamma).block(2).doc("c + a(n)*(c^2 - c)");
     intensity.takes(d.narrow(
         "clamped",
         adder2,
         intensity.format(),
-        rounding(config, "intensity.rounding"),
+        keys.f.rounding,
         Overflow::Saturate,
     ));
-    let outputs = common::colour_outputs(config, &colours, intensity.q());
+    let outputs = common::colour_outputs(
+        &keys.operands.colours,
+        keys.f.output_rounding,
+        &colours,
+        intensity.q(),
+    );
 
     let steps = vec![
         step("operands; ROM(n) addressed", []),
@@ -130,34 +87,30 @@ fn adder1<'d>(d: &'d Designer, cos_gamma: Signal<'d>) -> Signal<'d> {
     d.add_carry("adder1", square, inverters, carry).block(1).doc("c^2 - c")
 }
 
-fn coefficient_rom<'d>(d: &'d Designer, config: &Config, exponent: Signal<'d>) -> Rom<'d> {
-    let minimax = config.choice("coefficient.scheme") == "minimax";
-    let frac = if minimax { config.integer("coefficient.fraction") as i32 } else { 0 };
-    let widest = Format::unsigned(config.integer("exponent.bits") as i32, frac);
-    let values: Vec<f64> =
-        (0..1u32 << config.integer("exponent.bits")).map(|n| value(config, n)).collect();
+fn coefficient_rom<'d>(d: &'d Designer, keys: &Keys, exponent: Signal<'d>) -> Rom<'d> {
+    let bits = keys.operands.exponent_bits;
+    let frac = keys.coefficient_fraction() as i32;
+    let widest = Format::unsigned(bits as i32, frac);
+    let values: Vec<f64> = (0..1 << bits).map(|n| value(keys.scheme, n)).collect();
     let words: Vec<i128> = values.iter().map(|&a| widest.quantise(a)).collect();
     let comments = values.iter().map(|a| format!("{a:.6}")).collect();
     let most = words.iter().copied().max().unwrap_or(0);
-    let kind = if minimax { "minimax" } else { "n - 1" };
+    let kind = if keys.scheme == Scheme::Minimax { "minimax" } else { "n - 1" };
     d.rom("coefficient", exponent, Format::holding(0, most, frac), &words, true)
         .doc(&format!("a(n), {kind}, for an exponent n (the address)"))
         .comments(comments)
 }
 
 /// a(n) before it is rounded.
-fn value(config: &Config, n: u32) -> f64 {
-    match config.choice("coefficient.scheme") {
-        "minimax" => coefficient::minimax(n),
-        _ => coefficient::taylor(n),
+fn value(scheme: Scheme, n: u32) -> f64 {
+    match scheme {
+        Scheme::Minimax => coefficient::minimax(n),
+        Scheme::Taylor => coefficient::taylor(n),
     }
 }
 
-fn about(config: &Config) -> About {
-    let (first, last) = (
-        config.integer("domain.exponent_min").max(1) as u32,
-        config.integer("domain.exponent_max") as u32,
-    );
+fn about(keys: &Keys) -> About {
+    let (first, last) = (keys.domain.least.max(1) as u32, keys.domain.most as u32);
     let worst = |a: fn(u32) -> f64| {
         (first..=last)
             .map(|n| (coefficient::error(a(n), n), n))
@@ -165,7 +118,7 @@ fn about(config: &Config) -> About {
             .unwrap_or((0.0, first))
     };
     let (taylor, minimax) = (worst(coefficient::taylor), worst(coefficient::minimax));
-    let scheme = config.choice("coefficient.scheme");
+    let scheme = if keys.scheme == Scheme::Minimax { "minimax" } else { "taylor" };
     About {
         device: "quadratic".to_owned(),
         title: format!("Specular intensity by a parabola in cos(gamma), {scheme} coefficients"),
@@ -183,7 +136,7 @@ fn about(config: &Config) -> About {
             ).into(),
             "n = 0 is taken as n = 1, where a(n) = 0 and f = c.".into(),
             "Cosines are limited to 0 ... 1.0 as they are written; cos gamma <= 0 gives 0.".into(),
-            common::outputs_note(config, "register intensity", "has its result"),
+            common::outputs_note(&keys.operands.colours, "register intensity", "has its result"),
         ],
     }
 }

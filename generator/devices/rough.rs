@@ -3,18 +3,16 @@
 //! Block numbers are the patent's. One multiplier (10) serves four products under the select lines
 //! V1 V2; the microprogram is the patent's table 1, word by word.
 
-mod keys;
 mod sine;
-
-pub use keys::schema;
 
 use crate::base::fixed::{Format, Overflow, Rounding};
 use crate::config::Config;
 use crate::hdl::blocks::colour::{ChannelBlocks, Colours};
 use crate::hdl::dsl::{Designer, Register, Signal, end, hold, step, valid};
 use crate::hdl::netlist::{About, Note, Topic};
+use crate::keys::rough::Keys;
 
-use super::{common, rounding};
+use super::common;
 use sine::sine_rom;
 
 /// The patent's numbers of the colour channels.
@@ -39,11 +37,9 @@ struct Formats {
 }
 
 impl Formats {
-    fn of(config: &Config) -> Self {
-        let integer = |key: &str| config.integer(key) as i32;
-        let cosine = integer("cosine.fraction");
-        if config.choice("arithmetic") == "patent" {
-            let word = Format::unsigned(0, cosine);
+    fn of(keys: &Keys) -> Self {
+        if keys.patent() {
+            let word = Format::unsigned(0, keys.operands.cosine.fraction as i32);
             return Self {
                 cosine: word,
                 sine: word,
@@ -56,18 +52,18 @@ impl Formats {
                 patent: true,
             };
         }
-        let f = integer("intensity.fraction");
+        let product = keys.product_fraction as i32;
         Self {
-            cosine: Format { signed: config.flag("cosine.signed"), int: 1, frac: cosine },
-            sine: Format::unsigned(0, integer("sine.fraction")),
-            cos_cos: Format::unsigned(1, integer("product.fraction")),
-            sin_sin: Format::unsigned(0, integer("product.fraction")),
+            cosine: keys.operands.cosine.format(),
+            sine: Format::unsigned(0, keys.sine_fraction as i32),
+            cos_cos: Format::unsigned(1, product),
+            sin_sin: Format::unsigned(0, product),
             // From -1.0, where the parabola has its zero and the clamp holds; without the clamp from
             // -2.0, which is as far as the square can rise again.
-            result: Format::signed(i32::from(!config.flag("clamp")), f),
-            f: Format::unsigned(0, f),
-            product_rounding: rounding(config, "product.rounding"),
-            result_rounding: rounding(config, "intensity.rounding"),
+            result: Format::signed(i32::from(!keys.clamp), keys.f.fraction as i32),
+            f: keys.f.format(),
+            product_rounding: keys.product_rounding,
+            result_rounding: keys.f.rounding,
             patent: false,
         }
     }
@@ -75,17 +71,18 @@ impl Formats {
 
 /// The device.
 pub fn describe(d: &Designer, config: &Config) {
-    let formats = Formats::of(config);
-    d.about(about(config));
+    let keys = Keys::of(config);
+    let formats = Formats::of(&keys);
+    d.about(about(&keys, config));
 
     let (cos_gamma, cos_dgamma) = operands(d, &formats);
-    let r3 = common::exponent(d, config).block(3).inputs(59, 60);
+    let r3 = common::exponent(d, keys.operands.exponent_bits).block(3).inputs(59, 60);
     let r4 = d
         .operand("dgamma_negative", Format::BIT)
         .block(4)
         .inputs(61, 62)
         .doc("sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)");
-    let colours = Colours::new(d, config.integer("colour.bits") as i32, Some(CHANNELS));
+    let colours = Colours::new(d, keys.operands.colours.bits as i32, Some(CHANNELS));
 
     // V1 V2, then V3, then the load lines V4 to V7: in the order of the patent's table.
     let operand_select =
@@ -114,13 +111,13 @@ pub fn describe(d: &Designer, config: &Config) {
 
     // A synchronous ROM is addressed with dgamma while register 19 still takes the sine of gamma, a
     // microinstruction before line 47 says so: the sine of dgamma is then there when mux 8 selects it.
-    let addressed = if config.flag("sine.synchronous") {
+    let addressed = if keys.synchronous {
         d.choose("sine_of", r19.loading(), [sine_of.out(), cos_dgamma])
             .doc("mux 17, ahead by a microinstruction")
     } else {
         sine_of.out()
     };
-    let sine = sine_rom(d, config, &formats, addressed);
+    let sine = sine_rom(d, &keys, &formats, addressed);
     r19.takes(sine);
     let (adder15, half_n, adder16) = if formats.patent {
         patent_sums(d, r4.q(), r3.q(), [r11, r12, r13])
@@ -173,7 +170,8 @@ pub fn describe(d: &Designer, config: &Config) {
         // Without the clamp the square can be 1.0 or more, where f saturates.
         d.narrow("f", r13.q(), formats.f, Rounding::Truncate, Overflow::Saturate).doc(doc)
     };
-    let outputs = common::colour_products(config, &colours, f);
+    let outputs =
+        common::colour_products(&keys.operands.colours, keys.f.output_rounding, &colours, f);
 
     d.sequencer_lines(43, 44);
     let mut steps = vec![
@@ -296,14 +294,14 @@ fn facing_only<'d>(d: &'d Designer, cos_gamma: Signal<'d>, result: Signal<'d>) -
     d.choose("facing_result", facing, [dark, result])
 }
 
-fn about(config: &Config) -> About {
-    let patent = config.choice("arithmetic") == "patent";
+fn about(keys: &Keys, config: &Config) -> About {
+    let patent = keys.patent();
     let mut notes = vec![
         "Registers, muxes, adders and multipliers carry the numbers of the patent's figure 1.".into(),
         Topic::Microprogram.note(format!(
             "The control ROM is the patent's table 1, {}.",
-            match (config.choice("colour.multipliers"), config.flag("output.registered")) {
-                ("1", _) => "with a microinstruction more for each colour",
+            match (keys.operands.colours.in_turn(), config.flag("output.registered")) {
+                (true, _) => "with a microinstruction more for each colour",
                 (_, true) => "with a microinstruction more for the output registers",
                 _ => "bit for bit",
             }
@@ -313,7 +311,7 @@ fn about(config: &Config) -> About {
              selected. The patent's settling microinstructions leave the time for that. A synchronous ROM 18 is \
              addressed with dgamma one microinstruction before line 47 says so.",
         ),
-        common::outputs_note(config, "register 13", "reaches microinstruction 5"),
+        common::outputs_note(&keys.operands.colours, "register 13", "reaches microinstruction 5"),
     ];
     notes.push(Note::from(if patent {
         "Numbers are fractions modulo 1.0, as in the patent: every '- 1' is a missing carry, n loses its low \

@@ -5,41 +5,32 @@
 //! clock. The divisor is formed as n·(1 − c) + c, in which every term is positive.
 
 use crate::base::fixed::{Format, Overflow, Rounding};
-use crate::config::{Config, Key, Schema};
+use crate::config::Config;
 use crate::hdl::blocks::colour::Colours;
 use crate::hdl::blocks::divider::Divider;
 use crate::hdl::dsl::{Designer, Signal, loop_while, step};
 use crate::hdl::netlist::{About, Topic};
+use crate::keys::schlick::Keys;
 
 use super::common;
 
-/// The keys of the device.
-pub fn schema() -> Schema {
-    let fraction = Key {
-        doc: "Fraction bits of the reflectance f, the quotient; each takes a clock. It is truncated: \
-              one bit more is as near as rounding.",
-        ..common::intensity_fraction(10)
-    };
-    let own = vec![fraction, common::output_rounding()];
-    Schema {
-        device: "schlick",
-        keys: [common::operands(), own, common::domain()].concat(),
-        check: common::check_exponents,
-    }
-}
-
 /// The device.
 pub fn describe(d: &Designer, config: &Config) {
-    let integer = |key: &str| config.integer(key) as i32;
-    d.about(about(config));
+    let keys = Keys::of(config);
+    d.about(about(&keys));
 
-    let cos_gamma = common::cosine(d, config).q();
-    let exponent = common::exponent(d, config).q();
-    let colours = Colours::new(d, integer("colour.bits"), None);
+    let cos_gamma = common::cosine(d, &keys.operands.cosine).q();
+    let exponent = common::exponent(d, keys.operands.exponent_bits).q();
+    let colours = Colours::new(d, keys.operands.colours.bits as i32, None);
 
     let divisor = divisor(d, cos_gamma, exponent);
-    let quotient = Divider::new(d, "quotient", cos_gamma, divisor, integer("intensity.fraction"));
-    let outputs = common::colour_outputs(config, &colours, quotient.quotient());
+    let quotient = Divider::new(d, "quotient", cos_gamma, divisor, keys.fraction as i32);
+    let outputs = common::colour_outputs(
+        &keys.operands.colours,
+        keys.output_rounding,
+        &colours,
+        quotient.quotient(),
+    );
 
     let steps = vec![
         step("operands cos gamma, n", []),
@@ -76,8 +67,8 @@ fn divisor<'d>(d: &'d Designer, cos_gamma: Signal<'d>, exponent: Signal<'d>) -> 
     divisor.doc("n - n*cos gamma + cos gamma, never 0")
 }
 
-fn about(config: &Config) -> About {
-    let bits = config.integer("intensity.fraction");
+fn about(keys: &Keys) -> About {
+    let bits = keys.fraction;
     About {
         device: "schlick".to_owned(),
         title: "Specular intensity by Schlick's function".to_owned(),
@@ -98,7 +89,7 @@ fn about(config: &Config) -> About {
             "The seed prints the fraction as cos/n - n*cos + cos, without the fraction bar; the denominator is \
              n - n*cos + cos."
                 .into(),
-            common::outputs_note(config, "the quotient", "begins"),
+            common::outputs_note(&keys.operands.colours, "the quotient", "begins"),
         ],
     }
 }

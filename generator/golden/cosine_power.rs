@@ -4,21 +4,18 @@ use std::sync::Arc;
 
 use super::contract::{self, ErrorShare};
 use super::frame::{Clocked, Frame, idle, step_by};
-use super::highlight::{Highlight, Keys, Reflectance};
+use super::highlight::{self, Highlight, Reflectance};
 use super::narrow::{Narrow, rounding_error};
-use super::{Contract, Model, keys};
+use super::{Contract, Model};
 use crate::base::fixed::{Format, Rounding, exp2};
 use crate::config::Config;
 use crate::golden::formulas;
+use crate::keys::cosine_power::Keys;
 
 /// The arithmetic of the device, one operation a method. f is the accumulator.
 struct Arithmetic {
     keys: Keys,
-    /// `power`: m, a power of two, 2 … 16.
-    power: u32,
     squarings: u32,
-    /// `intensity.rounding`: of everything that the accumulator takes.
-    rounding: Rounding,
     /// 1.0 − ulp of the accumulator.
     largest: i64,
     scaled: Narrow,
@@ -26,30 +23,23 @@ struct Arithmetic {
 }
 
 impl Arithmetic {
-    fn new(keys: Keys, power: u32, rounding: Rounding) -> Self {
-        let (f, squarings) = (keys.intensity_fraction, power.ilog2());
-        let narrow = |frac| Narrow::new(frac, keys.f_format(), rounding);
+    fn new(keys: Keys) -> Self {
+        let (f, squarings) = (keys.f.fraction, keys.power.ilog2());
+        let narrow = |frac| Narrow::new(frac, keys.f.format(), keys.f.rounding);
         Self {
             largest: (1 << f) - 1,
             // n/m has log₂ m fraction bits: the same integer n, read elsewhere.
-            scaled: narrow(keys.cosine_fraction + squarings),
+            scaled: narrow(keys.operands.cosine.fraction + squarings),
             square: narrow(2 * f),
             keys,
-            power,
             squarings,
-            rounding,
         }
-    }
-
-    fn of(config: &Config) -> Self {
-        let rounding = keys::rounding(config, "intensity.rounding");
-        Self::new(Keys::new(config), keys::bits(config, "power"), rounding)
     }
 
     /// `n/m·(1 − cos γ)`, saturated.
     #[inline]
     fn scaled(&self, cosine: i64, exponent: i64) -> i64 {
-        self.scaled.apply((self.keys.one() - cosine) * exponent)
+        self.scaled.apply((self.keys.operands.cosine.one() - cosine) * exponent)
     }
 
     /// The inverse of the accumulator, `1.0 − ulp − accumulator`; 0 for a surface that faces away.
@@ -66,15 +56,15 @@ impl Arithmetic {
 
 /// The golden model.
 pub fn model(config: &Config) -> Box<dyn Model> {
-    Box::new(clocked(Arithmetic::of(config)))
+    Box::new(clocked(Arithmetic::new(Keys::of(config))))
 }
 
 /// The device, clock by clock.
 fn clocked(it: Arithmetic) -> Clocked {
     let it = Arc::new(it);
     let mut frame = Frame::default();
-    let [cosine, exponent] = it.keys.slots(&mut frame);
-    let accumulator = frame.register("accumulator", it.keys.f_format());
+    let [cosine, exponent] = highlight::slots(&it.keys.operands, &mut frame);
+    let accumulator = frame.register("accumulator", it.keys.f.format());
     // A single squaring needs no count of the squarings that remain.
     let counted = it.squarings > 1;
     let count = Format::unsigned(2, 0);
@@ -96,31 +86,36 @@ fn clocked(it: Arithmetic) -> Clocked {
     .repeat_while(move |s| s[remaining] > 1);
     let mut program = vec![idle(), scale, base];
     program.extend(counted.then_some(square));
-    it.keys.products().behind(frame, accumulator, program)
+    highlight::products(&it.keys.operands.colours, &it.keys.f).behind(frame, accumulator, program)
 }
 
 /// The accuracy contract. Control operands: `cos_gamma`, `exponent`.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
-    let it = Arithmetic::of(config);
-    let keys = it.keys.clone();
-    Box::new(Highlight::of_cosine(it, &keys))
+    let it = Arithmetic::new(Keys::of(config));
+    let operands = highlight::operands(&it.keys.operands, &it.keys.domain);
+    let products = highlight::products(&it.keys.operands.colours, &it.keys.f);
+    Box::new(Highlight::new(it, operands, products))
 }
 
 impl Reflectance for Arithmetic {
     #[inline]
     fn f(&self, control: &[i64]) -> i64 {
-        let cosine = self.keys.clamped(control[0]);
+        let cosine = self.keys.operands.cosine.clamped(control[0]);
         let base = self.base(cosine, self.scaled(cosine, control[1]));
         (0..self.squarings).fold(base, |power, _| self.square(power))
     }
 
     #[inline]
     fn reference(&self, control: &[i64]) -> f64 {
-        formulas::cosine_power(self.keys.cosine(control[0]), control[1] as f64, self.power)
+        formulas::cosine_power(
+            self.keys.operands.cosine.value(control[0]),
+            control[1] as f64,
+            self.keys.power,
+        )
     }
 
     fn expressions(&self) -> Vec<String> {
-        let power = self.power;
+        let power = self.keys.power;
         let base = format!("exponent / {power} * (cos_gamma - 1) + 1");
         let base = contract::clamped_at_0(&base);
         vec![contract::where_it_faces(&format!("{base} ** {power}"))]
@@ -136,16 +131,16 @@ impl Reflectance for Arithmetic {
     /// - The result of squaring number i is rounded, and then raised to m/2^i: m − 1 in sum.
     /// - The output adds its own rounding; it cannot exceed the largest colour, for f < 1.
     fn shares(&self) -> Vec<ErrorShare> {
-        let (f, power) = (self.keys.intensity_fraction, f64::from(self.power));
+        let (f, power) = (self.keys.f.fraction, f64::from(self.keys.power));
         let ulp = exp2(-(f as i32));
-        let scaled_fraction = self.keys.cosine_fraction + self.squarings;
-        let scaled = rounding_error(scaled_fraction, f, self.rounding);
-        let base = match self.rounding {
+        let scaled_fraction = self.keys.operands.cosine.fraction + self.squarings;
+        let scaled = rounding_error(scaled_fraction, f, self.keys.f.rounding);
+        let base = match self.keys.f.rounding {
             // Truncation is upward in 1.0 − ulp − t, and so works against the missing ulp.
             Rounding::Truncate => ulp,
             Rounding::Nearest => ulp + scaled,
         };
-        let squares = rounding_error(2 * f, f, self.rounding);
+        let squares = rounding_error(2 * f, f, self.keys.f.rounding);
         vec![
             ("intensity.fraction", "the base, with the inverse for 1.0 − t", base * power),
             ("intensity.rounding", "rounding of the squares", squares * (power - 1.0)),
@@ -154,8 +149,8 @@ impl Reflectance for Arithmetic {
 
     /// Below n = m, W loses to a smaller m: its base no longer reaches 0 where cosⁿγ does.
     fn remarks(&self) -> Vec<String> {
-        let power = self.power;
-        let (first, last) = self.keys.exponents;
+        let power = self.keys.power;
+        let (first, last) = self.keys.domain.exponents();
         let worse: Vec<(i64, f64, u32, f64)> = (first.max(1)..=last.min(i64::from(power) - 1))
             .filter_map(|n| {
                 let own = formula_error(n, power);
@@ -198,10 +193,12 @@ fn formula_error(n: i64, power: u32) -> f64 {
 mod tests {
     use super::*;
     use crate::golden::watch;
+    use crate::keys::common::{Domain, Intensity, Operands};
 
     /// C = 4, F = 4, small enough to follow by hand.
     fn small(power: u32) -> Arithmetic {
-        Arithmetic::new(Keys::small(), power, Rounding::Truncate)
+        let (operands, f, domain) = (Operands::small(), Intensity::small(), Domain::small());
+        Arithmetic::new(Keys { power, operands, f, domain })
     }
 
     #[test]

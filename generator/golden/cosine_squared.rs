@@ -4,51 +4,30 @@ use std::f64::consts::FRAC_PI_2;
 
 use super::contract::ErrorShare;
 use super::frame::{Clocked, Frame};
-use super::highlight::{Highlight, Reflectance};
-use super::line::{self, CosineTable, LineKeys, magnitude};
-use super::{Axis, Contract, Model, Operand, Sweep, Values, keys};
-use crate::base::fixed::{Format, exp2};
+use super::highlight::{Highlight, Products, Reflectance};
+use super::line::{self, CosineTable, magnitude};
+use super::{Axis, Contract, Model, Operand, Sweep, Values};
+use crate::base::fixed::exp2;
 use crate::config::Config;
 use crate::golden::formulas;
-
-/// What a configuration of the device says.
-#[derive(Clone)]
-struct Params {
-    keys: LineKeys,
-    /// `angle.integer`: integer bits of a stretched angle in right angles.
-    angle_integer: u32,
-}
-
-impl Params {
-    fn of(config: &Config) -> Self {
-        Self { keys: LineKeys::new(config), angle_integer: keys::bits(config, "angle.integer") }
-    }
-
-    fn angle_format(&self) -> Format {
-        Format::signed(self.angle_integer as i32, self.keys.angle_fraction as i32)
-    }
-}
+use crate::keys::cosine_squared::Keys;
 
 /// The arithmetic of the device, one operation a method.
 struct Arithmetic {
-    params: Params,
+    keys: Keys,
     /// ROM 12.
     table: CosineTable,
 }
 
 impl Arithmetic {
-    fn new(params: Params) -> Self {
-        Self {
-            table: CosineTable::new(2, params.keys.table_address, params.keys.intensity_fraction),
-            params,
-        }
+    fn new(keys: Keys) -> Self {
+        Self { table: CosineTable::new(2, keys.table_address, keys.fraction), keys }
     }
 
     /// The address of ROM 12 for a stretched angle.
     #[inline]
     fn step_of(&self, angle: i64) -> i64 {
-        let params = &self.params;
-        magnitude(angle, params.keys.angle_fraction, params.keys.table_address)
+        magnitude(angle, self.keys.angle_fraction, self.keys.table_address)
             .unwrap_or(self.table.words.len() as i64 - 1)
     }
 
@@ -61,18 +40,24 @@ impl Arithmetic {
 
 /// The golden model.
 pub fn model(config: &Config) -> Box<dyn Model> {
-    Box::new(clocked(Params::of(config)))
+    Box::new(clocked(Keys::of(config)))
+}
+
+/// The product of the word of ROM 12 with the amplitude.
+fn products(keys: &Keys) -> Products {
+    Products::amplitude(keys.f_format(), keys.colour_bits, keys.output_rounding)
+        .at_edges(keys.stages > 2)
 }
 
 /// The device, clock by clock.
-fn clocked(params: Params) -> Clocked {
+fn clocked(keys: Keys) -> Clocked {
     let mut frame = Frame::default();
-    let LineKeys { length_bits, stages, .. } = params.keys;
-    let (angle, program) = line::walker(&mut frame, params.angle_format(), length_bits, stages);
+    let Keys { length_bits, stages, .. } = keys;
+    let (angle, program) = line::walker(&mut frame, keys.angle_format(), length_bits, stages);
     // What ROM 12 read at the latest edge.
     let cosine = frame.hidden();
-    let products = params.keys.products();
-    let it = Arithmetic::new(params);
+    let products = products(&keys);
+    let it = Arithmetic::new(keys);
     if stages == 2 {
         products.slots(&mut frame, cosine);
         frame.every_edge(move |s| s[cosine] = it.cosine_of(s[angle]));
@@ -93,14 +78,14 @@ fn clocked(params: Params) -> Clocked {
 /// The accuracy contract. Control operands: `delta_zeta`, `zeta_start`, `length`; those of a point have its
 /// angle for `zeta_start`.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
-    Box::new(highlight(Params::of(config)))
+    Box::new(highlight(Keys::of(config)))
 }
 
-fn highlight(params: Params) -> Highlight {
-    let mut operands = line::angle_operands(params.angle_format()).to_vec();
-    operands.push(line::length_operand(params.keys.length_bits));
-    let products = params.keys.products();
-    Highlight::new(Arithmetic::new(params), operands, products)
+fn highlight(keys: Keys) -> Highlight {
+    let mut operands = line::angle_operands(keys.angle_format()).to_vec();
+    operands.push(line::length_operand(keys.length_bits));
+    let products = products(&keys);
+    Highlight::new(Arithmetic::new(keys), operands, products)
 }
 
 impl Reflectance for Arithmetic {
@@ -111,17 +96,17 @@ impl Reflectance for Arithmetic {
 
     #[inline]
     fn reference(&self, control: &[i64]) -> f64 {
-        let right = exp2(self.params.keys.angle_fraction as i32);
+        let right = exp2(self.keys.angle_fraction as i32);
         formulas::cosine_squared(control[1] as f64 / right * FRAC_PI_2)
     }
 
     fn expressions(&self) -> Vec<String> {
-        let angle = line::angle_expression(self.params.angle_format());
+        let angle = line::angle_expression(self.keys.angle_format());
         vec![format!("cos(pi / 2 * min(abs({angle}), 1)) ** 2")]
     }
 
     fn point(&self, control: &mut [i64], index: u64) {
-        control[1] = line::angle_at(self.params.angle_format(), control[1], control[0], index);
+        control[1] = line::angle_at(self.keys.angle_format(), control[1], control[0], index);
     }
 
     fn line(&self, first: &[i64], last: &[i64]) -> Vec<i64> {
@@ -151,7 +136,7 @@ impl Reflectance for Arithmetic {
         Some(Sweep {
             axes: vec![Axis {
                 name: "step of the table".to_string(),
-                values: Values::Range(0, (1 << self.params.keys.table_address) - 1),
+                values: Values::Range(0, (1 << self.keys.table_address) - 1),
             }],
             omits: String::new(),
         })
@@ -161,8 +146,8 @@ impl Reflectance for Arithmetic {
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let step = place[0];
         let word = self.table.words[step as usize];
-        let f = word as f64 * exp2(-(self.params.keys.intensity_fraction as i32));
-        let ulp = exp2(-(self.params.keys.table_address as i32));
+        let f = word as f64 * exp2(-(self.keys.fraction as i32));
+        let ulp = exp2(-(self.keys.table_address as i32));
         let end = |step: i64| formulas::cosine_squared(step as f64 * ulp * FRAC_PI_2);
         Some((end(step) - f).max(f - end(step + 1)))
     }
@@ -180,10 +165,20 @@ impl Reflectance for Arithmetic {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::base::fixed::Rounding;
 
     #[test]
     fn f_by_hand() {
-        let contract = highlight(Params { keys: LineKeys::small(), angle_integer: 2 });
+        let contract = highlight(Keys {
+            angle_integer: 2,
+            angle_fraction: 6,
+            table_address: 3,
+            length_bits: 12,
+            stages: 2,
+            colour_bits: 8,
+            fraction: 6,
+            output_rounding: Rounding::Nearest,
+        });
         let f = |angle| contract.f(&[0, angle, 0]);
         // Steps of 11.25°: (1 + cos² 11.25°)/2 = 0.98097; 20/64 is step 2: (0.85355 + 0.69134)/2 = 0.77245.
         assert_eq!(f(0), 63);

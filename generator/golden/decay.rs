@@ -10,12 +10,13 @@ use super::contract::{self, ErrorShare};
 use super::curve::{self, Curve, Piece};
 use super::frame::{Clocked, Frame, idle, step_by};
 use super::halving::{self, Halving};
-use super::highlight::{Highlight, Keys, Reflectance};
+use super::highlight::{self, Highlight, Reflectance};
 use super::narrow::Narrow;
-use super::{Contract, Model, keys};
+use super::{Contract, Model};
 use crate::base::fixed::{Format, Rounding, exp2};
 use crate::config::Config;
 use crate::golden::formulas;
+use crate::keys::decay::Keys;
 
 /// The decay as a function of c = cos γ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,53 +27,13 @@ pub enum Function {
     Angle,
 }
 
-/// What a configuration of a device says.
-#[derive(Clone)]
+/// One of the devices, and what a configuration of it says.
 struct Params {
-    /// The device.
     function: Function,
     keys: Keys,
-    /// `decay.fraction`: fraction bits of what the table of the decay gives, S.
-    decay_fraction: u32,
-    /// `decay.segments`, by range.
-    decay_segments: Vec<u32>,
-    /// `decay.tail`.
-    decay_tail: u32,
-    /// `decay.slope_fraction`.
-    decay_slope_fraction: u32,
-    /// `decay.coarse_fraction`: fraction bits of a decay that is not small.
-    decay_coarse_fraction: u32,
-    /// `exponential.address`.
-    exponential_address: u32,
-    /// `exponential.offset_bits` and `exponential.offset_address`, by field.
-    exponential_offsets: Vec<(u32, u32)>,
-    /// `exponential.fraction`.
-    exponential_fraction: u32,
-    /// `intensity.rounding`: of f.
-    intensity_rounding: Rounding,
 }
 
 impl Params {
-    fn new(config: &Config, function: Function) -> Self {
-        // The schema allows no negative entries.
-        let list = |key: &str| config.integers(key).iter().map(|&entry| entry as u32);
-        Self {
-            function,
-            keys: Keys::new(config),
-            decay_fraction: keys::bits(config, "decay.fraction"),
-            decay_segments: list("decay.segments").collect(),
-            decay_tail: keys::bits(config, "decay.tail"),
-            decay_slope_fraction: keys::bits(config, "decay.slope_fraction"),
-            decay_coarse_fraction: keys::bits(config, "decay.coarse_fraction"),
-            exponential_address: keys::bits(config, "exponential.address"),
-            exponential_offsets: list("exponential.offset_bits")
-                .zip(list("exponential.offset_address"))
-                .collect(),
-            exponential_fraction: keys::bits(config, "exponential.fraction"),
-            intensity_rounding: keys::rounding(config, "intensity.rounding"),
-        }
-    }
-
     /// How many times what the table gives the decay is, as a power of two.
     fn scale(&self) -> u32 {
         match self.function {
@@ -85,19 +46,19 @@ impl Params {
         curve::Params {
             // Of a cosine of at least one half, u is below one half.
             operand_bits: match self.function {
-                Function::Logarithm => self.keys.cosine_fraction - 1,
-                Function::Angle => self.keys.cosine_fraction,
+                Function::Logarithm => self.keys.operands.cosine.fraction - 1,
+                Function::Angle => self.keys.operands.cosine.fraction,
             },
-            fraction: self.decay_fraction,
-            slope_fraction: self.decay_slope_fraction,
-            segments: self.decay_segments.clone(),
-            tail: self.decay_tail,
+            fraction: self.keys.decay_fraction,
+            slope_fraction: self.keys.slope_fraction,
+            segments: self.keys.segments.clone(),
+            tail: self.keys.tail,
         }
     }
 
     /// What the table holds, at u, an integer with C fraction bits: 1 − c, less an ulp.
     fn table(&self, u: f64) -> f64 {
-        let cosine = 1.0 - (u + 1.0) * self.keys.ulp();
+        let cosine = 1.0 - (u + 1.0) * self.keys.operands.cosine.ulp();
         match self.function {
             Function::Logarithm => -libm::log2(cosine),
             Function::Angle => {
@@ -109,11 +70,11 @@ impl Params {
 
     fn halving(&self) -> halving::Params {
         halving::Params {
-            address: self.exponential_address,
-            offsets: self.exponential_offsets.clone(),
-            fraction: self.exponential_fraction,
-            result_fraction: self.keys.intensity_fraction,
-            rounding: self.intensity_rounding,
+            address: self.keys.address,
+            offsets: self.keys.offsets().collect(),
+            fraction: self.keys.fraction,
+            result_fraction: self.keys.f.fraction,
+            rounding: self.keys.f.rounding,
         }
     }
 }
@@ -121,7 +82,6 @@ impl Params {
 /// The arithmetic of the device, one operation a method.
 struct Arithmetic {
     params: Params,
-    keys: Keys,
     /// 1.0 − ulp of f.
     largest: i64,
     /// A raw decay below this is small.
@@ -140,20 +100,19 @@ impl Arithmetic {
     fn new(params: Params) -> Self {
         let halving = params.halving();
         // The integer reaches F + 2 at least, where no bit of f is left.
-        let integer = 64 - u64::from(params.keys.intensity_fraction + 2).leading_zeros();
+        let integer = 64 - u64::from(params.keys.f.fraction + 2).leading_zeros();
         let halvings = Format::unsigned(integer as i32, halving.bits() as i32);
         let narrow =
             |fraction: u32| Narrow::new(fraction - params.scale(), halvings, Rounding::Truncate);
         Self {
-            largest: (1 << params.keys.intensity_fraction) - 1,
-            small: 1 << (params.decay_fraction - 2),
-            coarse_loss: params.decay_fraction - params.decay_coarse_fraction,
+            largest: (1 << params.keys.f.fraction) - 1,
+            small: 1 << (params.keys.decay_fraction - 2),
+            coarse_loss: params.keys.decay_fraction - params.keys.coarse_fraction,
             curve: Curve::new(&params.curve(), |u| params.table(u)),
             halvings,
-            from_fine: narrow(params.decay_fraction),
-            from_coarse: narrow(params.decay_coarse_fraction),
+            from_fine: narrow(params.keys.decay_fraction),
+            from_coarse: narrow(params.keys.coarse_fraction),
             halving: Halving::new(&halving),
-            keys: params.keys.clone(),
             params,
         }
     }
@@ -164,16 +123,19 @@ impl Arithmetic {
     /// Without a fraction (c = 0 and 1.0) the hardware counts all ones; f does not depend on either.
     #[inline]
     fn operand(&self, cosine: i64) -> (i64, i64) {
-        let fraction = cosine & (self.keys.one() - 1);
+        let fraction = cosine & (self.params.keys.operands.cosine.one() - 1);
         match self.params.function {
-            Function::Angle => (0, self.keys.one() - 1 - fraction),
+            Function::Angle => (0, self.params.keys.operands.cosine.one() - 1 - fraction),
             Function::Logarithm if fraction == 0 => {
-                let ones = (self.keys.cosine_fraction - 1).ilog2() + 1;
-                ((1 << ones) - 1, self.keys.one() / 2 - 1)
+                let ones = (self.params.keys.operands.cosine.fraction - 1).ilog2() + 1;
+                ((1 << ones) - 1, self.params.keys.operands.cosine.one() / 2 - 1)
             }
             Function::Logarithm => {
-                let octave = self.keys.cosine_fraction - 1 - fraction.ilog2();
-                (i64::from(octave), self.keys.one() - 1 - (fraction << octave))
+                let octave = self.params.keys.operands.cosine.fraction - 1 - fraction.ilog2();
+                (
+                    i64::from(octave),
+                    self.params.keys.operands.cosine.one() - 1 - (fraction << octave),
+                )
             }
         }
     }
@@ -191,8 +153,7 @@ impl Arithmetic {
         if octave == 0 && decay < self.small {
             self.from_fine.apply(decay * exponent)
         } else {
-            let coarse =
-                (octave << self.params.decay_coarse_fraction) + (decay >> self.coarse_loss);
+            let coarse = (octave << self.params.keys.coarse_fraction) + (decay >> self.coarse_loss);
             self.from_coarse.apply(coarse * exponent)
         }
     }
@@ -202,7 +163,7 @@ impl Arithmetic {
     fn reflectance(&self, cosine: i64, halvings: i64) -> i64 {
         if cosine == 0 {
             0
-        } else if cosine == self.keys.one() || halvings == 0 {
+        } else if cosine == self.params.keys.operands.cosine.one() || halvings == 0 {
             self.largest
         } else {
             self.halving.at(halvings)
@@ -217,7 +178,7 @@ impl Arithmetic {
         // Small decays are multiplied whole.
         let quarter = 0.25 - piece.error;
         let coarse = if octave > 0.0 || params.table(piece.last as f64) >= quarter {
-            scale * exp2(-(params.decay_coarse_fraction as i32))
+            scale * exp2(-(params.keys.coarse_fraction as i32))
         } else {
             0.0
         };
@@ -225,7 +186,7 @@ impl Arithmetic {
         let parts = [shape, piece.error * scale - shape, coarse];
         let error: f64 = parts.iter().sum();
         let least = octave + params.table(piece.start as f64) * scale - error;
-        let (from, to) = (params.keys.exponents.0 as f64, params.keys.exponents.1 as f64);
+        let (from, to) = (params.keys.domain.least as f64, params.keys.domain.most as f64);
         let n = if least > 0.0 { (1.0 / (least * LN_2)).clamp(from, to) } else { to };
         let weight = LN_2 * n * libm::exp2(-n * least.max(0.0));
         parts.map(|part| part * weight)
@@ -234,7 +195,7 @@ impl Arithmetic {
 
 /// The golden model of one of the devices.
 pub fn model(config: &Config, function: Function) -> Box<dyn Model> {
-    Box::new(clocked(Arithmetic::new(Params::new(config, function))))
+    Box::new(clocked(Arithmetic::new(Params { function, keys: Keys::of(config) })))
 }
 
 /// The device, clock by clock.
@@ -244,10 +205,10 @@ pub fn model(config: &Config, function: Function) -> Box<dyn Model> {
 fn clocked(it: Arithmetic) -> Clocked {
     let it = Arc::new(it);
     let mut frame = Frame::default();
-    let [cosine, exponent] = it.keys.slots(&mut frame);
-    let decay = frame.register("decay", Format::unsigned(0, it.params.decay_fraction as i32));
+    let [cosine, exponent] = highlight::slots(&it.params.keys.operands, &mut frame);
+    let decay = frame.register("decay", Format::unsigned(0, it.params.keys.decay_fraction as i32));
     let halvings = frame.register("halvings", it.halvings);
-    let reflectance = frame.register("reflectance", it.keys.f_format());
+    let reflectance = frame.register("reflectance", it.params.keys.f.format());
     frame.shows("f_out", reflectance);
     let program = vec![
         idle(),
@@ -256,27 +217,34 @@ fn clocked(it: Arithmetic) -> Clocked {
         idle(),
         step_by(&it, move |it, s| s[reflectance] = it.reflectance(s[cosine], s[halvings])),
     ];
-    it.keys.products().behind(frame, reflectance, program)
+    highlight::products(&it.params.keys.operands.colours, &it.params.keys.f).behind(
+        frame,
+        reflectance,
+        program,
+    )
 }
 
 /// The accuracy contract of one of the devices. Control operands: `cos_gamma`, `exponent`.
 pub fn contract(config: &Config, function: Function) -> Box<dyn Contract> {
-    let it = Arithmetic::new(Params::new(config, function));
-    let keys = it.keys.clone();
-    Box::new(Highlight::of_cosine(it, &keys))
+    let it = Arithmetic::new(Params { function, keys: Keys::of(config) });
+    let keys = &it.params.keys;
+    let operands = highlight::operands(&keys.operands, &keys.domain);
+    let products = highlight::products(&keys.operands.colours, &keys.f);
+    Box::new(Highlight::new(it, operands, products))
 }
 
 impl Reflectance for Arithmetic {
     #[inline]
     fn f(&self, control: &[i64]) -> i64 {
-        let cosine = self.keys.clamped(control[0]);
+        let cosine = self.params.keys.operands.cosine.clamped(control[0]);
         let halvings = self.halvings(cosine, self.decay(cosine), control[1]);
         self.reflectance(cosine, halvings)
     }
 
     #[inline]
     fn reference(&self, control: &[i64]) -> f64 {
-        let (cosine, exponent) = (self.keys.cosine(control[0]), control[1] as f64);
+        let (cosine, exponent) =
+            (self.params.keys.operands.cosine.value(control[0]), control[1] as f64);
         match self.params.function {
             Function::Logarithm => formulas::blinn(cosine, exponent),
             Function::Angle => formulas::gauss(cosine, exponent),

@@ -4,72 +4,16 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use super::Operand;
 use super::contract::control;
 use super::frame::{Frame, Microinstruction, Slot, idle, step};
-use super::highlight::Products;
-use super::{Operand, keys};
-use crate::base::fixed::{Format, MAX_WIDTH, Rounding, exp2};
-use crate::config::Config;
+use crate::base::fixed::{Format, MAX_WIDTH, exp2};
 
 /// The raw value of an angle operand that is nearest to `angle`, in radians, or the end of its domain.
 pub fn raw_angle(operand: &Operand, angle: f64) -> i64 {
     let (low, high) = operand.domain;
     let raw = operand.format.quantise(angle / FRAC_PI_2) as i64;
     raw.clamp(low, high)
-}
-
-/// The keys that the devices share.
-#[derive(Clone)]
-pub struct LineKeys {
-    /// `angle.fraction`: fraction bits of an angle in right angles, F.
-    pub angle_fraction: u32,
-    /// `table.address`: log₂ of the steps of a table of ROM 12, T.
-    pub table_address: u32,
-    /// `length.bits`: bits of counter 5.
-    pub length_bits: u32,
-    /// `line.stages`: clocks from an angle to its result.
-    pub stages: u32,
-    /// `colour.bits`: bits of the amplitude and of the output, K.
-    pub colour_bits: u32,
-    /// `intensity.fraction`: fraction bits of ROM 12.
-    pub intensity_fraction: u32,
-    /// `output.rounding`: of the output.
-    pub output_rounding: Rounding,
-}
-
-impl LineKeys {
-    /// The keys of a configuration.
-    pub fn new(config: &Config) -> Self {
-        Self {
-            angle_fraction: keys::bits(config, "angle.fraction"),
-            table_address: keys::bits(config, "table.address"),
-            length_bits: keys::bits(config, "length.bits"),
-            stages: keys::bits(config, "line.stages"),
-            colour_bits: keys::bits(config, "colour.bits"),
-            intensity_fraction: keys::bits(config, "intensity.fraction"),
-            output_rounding: keys::rounding(config, "output.rounding"),
-        }
-    }
-
-    /// Small enough to follow by hand.
-    #[cfg(test)]
-    pub fn small() -> Self {
-        Self {
-            angle_fraction: 6,
-            table_address: 3,
-            length_bits: 12,
-            stages: 2,
-            colour_bits: 8,
-            intensity_fraction: 6,
-            output_rounding: Rounding::Nearest,
-        }
-    }
-
-    /// The product of the word of ROM 12 with the amplitude.
-    pub fn products(&self) -> Products {
-        let f = Format::unsigned(0, self.intensity_fraction as i32);
-        Products::amplitude(f, self.colour_bits, self.output_rounding).at_edges(self.stages > 2)
-    }
 }
 
 /// Control block 14 with the accumulator: counter 5, adder 6, mux 7, register 8, and the operand registers

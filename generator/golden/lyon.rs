@@ -8,62 +8,18 @@ pub use contract::contract;
 
 use std::sync::Arc;
 
+use super::Model;
 use super::frame::{Clocked, Frame, idle, step, step_by};
-use super::highlight::Keys;
+use super::highlight::{self, Products};
 use super::narrow::Narrow;
-use super::{Model, keys};
-use crate::base::fixed::{Format, Rounding};
+use crate::base::fixed::Format;
 use crate::config::Config;
+use crate::keys::lyon::{Keys, Scale};
 
-/// How β is had.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Scale {
-    /// `2^shift/(2·m)`; the operand is `shift`.
-    Shift,
-    /// `n/(2·m)`; the operand is `exponent`.
-    Multiplier,
-}
-
-/// What a configuration of the device says.
-#[derive(Clone)]
-struct Params {
-    keys: Keys,
-    /// `power`: m, a power of two, 2 … 16.
-    power: u32,
-    /// `scale`.
-    scale: Scale,
-    /// `vector.fraction`: fraction bits of dx, dy and dz.
-    vector_fraction: u32,
-    /// `distance.fraction`: fraction bits of D².
-    distance_fraction: u32,
-    /// `distance.multipliers`: one for all components, which squares them in turn.
-    squares_in_turn: bool,
-    /// `distance.rounding`: of D².
-    distance_rounding: Rounding,
-    /// `intensity.rounding`: of β·D² and of the squares.
-    intensity_rounding: Rounding,
-}
-
-impl Params {
-    fn of(config: &Config) -> Self {
-        Self {
-            keys: Keys::without_cosine(config),
-            power: keys::bits(config, "power"),
-            scale: match config.choice("scale") {
-                "shift" => Scale::Shift,
-                _ => Scale::Multiplier,
-            },
-            vector_fraction: keys::bits(config, "vector.fraction"),
-            distance_fraction: keys::bits(config, "distance.fraction"),
-            squares_in_turn: config.choice("distance.multipliers") == "1",
-            distance_rounding: keys::rounding(config, "distance.rounding"),
-            intensity_rounding: keys::rounding(config, "intensity.rounding"),
-        }
-    }
-
-    /// s, the number of squarings.
-    fn squarings(&self) -> u32 {
-        self.power.ilog2()
+/// What the keys mean for operands and results.
+impl Keys {
+    fn products(&self) -> Products {
+        highlight::products(&self.colours, &self.f)
     }
 
     fn vector_format(&self) -> Format {
@@ -73,8 +29,8 @@ impl Params {
     /// Of n, or of log₂ n, which is `exponent.bits` at most.
     fn scale_format(&self) -> Format {
         match self.scale {
-            Scale::Shift => Format::unsigned(self.keys.exponent_bits.ilog2() as i32 + 1, 0),
-            Scale::Multiplier => self.keys.exponent_format(),
+            Scale::Shift => Format::unsigned(self.exponent_bits.ilog2() as i32 + 1, 0),
+            Scale::Multiplier => Format::unsigned(self.exponent_bits as i32, 0),
         }
     }
 
@@ -100,7 +56,7 @@ impl Params {
 
     /// The domain of that operand.
     fn scale_domain(&self) -> (i64, i64) {
-        (self.scale_operand(self.keys.exponents.0), self.scale_operand(self.keys.exponents.1))
+        (self.scale_operand(self.domain.least), self.scale_operand(self.domain.most))
     }
 
     /// The exponent that an operand `shift` or `exponent` stands for.
@@ -114,7 +70,7 @@ impl Params {
 
 /// The arithmetic of the device, one operation a method.
 struct Arithmetic {
-    params: Params,
+    keys: Keys,
     squarings: u32,
     /// 1.0 in the point of f.
     one: i64,
@@ -128,12 +84,11 @@ struct Arithmetic {
 }
 
 impl Arithmetic {
-    fn new(params: Params) -> Self {
-        let (f, squarings) = (params.keys.intensity_fraction, params.squarings());
-        let distance = params.distance_fraction;
-        let rounding = params.intensity_rounding;
+    fn new(keys: Keys) -> Self {
+        let (f, squarings) = (keys.f.fraction, keys.squarings());
+        let (distance, rounding) = (keys.distance_fraction, keys.f.rounding);
         // n/2^(s+1) is the integer n with s + 1 fraction bits; the shift register has one more.
-        let beta_fraction = match params.scale {
+        let beta_fraction = match keys.scale {
             Scale::Multiplier => squarings + 1,
             Scale::Shift => squarings + 2,
         };
@@ -142,13 +97,13 @@ impl Arithmetic {
             one: 1 << f,
             shifted_most: (2 << (distance + squarings + 2)) - 1,
             distance: Narrow::new(
-                2 * params.vector_fraction,
+                2 * keys.vector_fraction,
                 Format::unsigned(4, distance as i32),
-                params.distance_rounding,
+                keys.distance_rounding,
             ),
             scaled: Narrow::new(distance + beta_fraction, Format::unsigned(1, f as i32), rounding),
-            square: Narrow::new(2 * f, params.keys.f_format(), rounding),
-            params,
+            square: Narrow::new(2 * f, keys.f.format(), rounding),
+            keys,
         }
     }
 
@@ -168,7 +123,7 @@ impl Arithmetic {
     /// β·D² from the word of D² and the operand `shift` or `exponent`.
     #[inline]
     fn beta_distance(&self, distance: i64, operand: i64) -> i64 {
-        self.scaled.apply(match self.params.scale {
+        self.scaled.apply(match self.keys.scale {
             Scale::Multiplier => distance * operand,
             Scale::Shift => (distance << (operand + 1)).min(self.shifted_most),
         })
@@ -198,31 +153,31 @@ impl Arithmetic {
 
 /// The golden model.
 pub fn model(config: &Config) -> Box<dyn Model> {
-    Box::new(clocked(Params::of(config)))
+    Box::new(clocked(Keys::of(config)))
 }
 
 /// The device, clock by clock.
-fn clocked(params: Params) -> Clocked {
-    let it = Arc::new(Arithmetic::new(params));
-    let (params, squarings) = (&it.params, it.squarings);
-    let (shift, in_turn) = (params.scale == Scale::Shift, params.squares_in_turn);
-    let (vector, scale) = (params.vector_format(), params.scale_format());
+fn clocked(keys: Keys) -> Clocked {
+    let it = Arc::new(Arithmetic::new(keys));
+    let (keys, squarings) = (&it.keys, it.squarings);
+    let (shift, in_turn) = (keys.scale == Scale::Shift, keys.squares_in_turn());
+    let (vector, scale) = (keys.vector_format(), keys.scale_format());
     // The counter counts squarings after the first, and shifts.
     let remaining = match (shift, squarings) {
         (false, _) => 2,
         (true, 3..) => scale.width().max(2),
         (true, _) => scale.width(),
     };
-    let point = params.distance_fraction as i32;
+    let point = keys.distance_fraction as i32;
     let mut frame = Frame::default();
     let vector = ["dx", "dy", "dz"].map(|name| frame.operand(name, vector));
-    let operand = frame.operand(params.scale_name(), scale);
+    let operand = frame.operand(keys.scale_name(), scale);
     let mut register_if = |there: bool, name, int: i32, frac: i32| {
         let format = Format::unsigned(int, frac);
         if there { frame.register(name, format) } else { frame.hidden() }
     };
     // The sum of the first squares, where one multiplier makes all.
-    let sum = register_if(in_turn, "distance_sum", 4, 2 * params.vector_fraction as i32);
+    let sum = register_if(in_turn, "distance_sum", 4, 2 * keys.vector_fraction as i32);
     // D², where a multiplier scales it; otherwise the shift register.
     let distance = if shift {
         register_if(true, "shift_register", 1, point + squarings as i32 + 2)
@@ -230,7 +185,7 @@ fn clocked(params: Params) -> Clocked {
         register_if(true, "distance", 4, point)
     };
     // β·D² behind the multiplier.
-    let f = params.keys.intensity_fraction as i32;
+    let f = keys.f.fraction as i32;
     let scaled = register_if(!shift, "scaled", 1, f);
     let accumulator = register_if(true, "accumulator", 0, f);
     let remaining = register_if(shift || squarings > 1, "remaining", remaining as i32, 0);
@@ -272,5 +227,5 @@ fn clocked(params: Params) -> Clocked {
         });
         program.push(square.repeat_while(move |s| s[remaining] > 1));
     }
-    params.keys.products().behind(frame, accumulator, program)
+    keys.products().behind(frame, accumulator, program)
 }

@@ -16,7 +16,6 @@ pub mod frame;
 pub mod gauss;
 pub mod halving;
 pub mod highlight;
-pub mod keys;
 pub mod line;
 pub mod lyon;
 pub mod narrow;

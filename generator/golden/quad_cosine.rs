@@ -6,45 +6,13 @@ mod tests;
 
 pub use contract::contract;
 
+use super::Model;
 use super::frame::{Clocked, Frame};
-use super::line::{self, CosineTable, LineKeys, magnitude};
-use super::{Model, keys};
+use super::highlight::Products;
+use super::line::{self, CosineTable, magnitude};
 use crate::base::fixed::Format;
 use crate::config::Config;
-
-/// What a configuration of the device says.
-#[derive(Clone)]
-struct Params {
-    keys: LineKeys,
-    /// `angle.multiplied`: those that multiplier 11 takes, A.
-    angle_multiplied: u32,
-    /// `root.fraction`: fraction bits of ROM 9, G.
-    root_fraction: u32,
-    /// `exponent.bits`: bits of n.
-    exponent_bits: u32,
-    /// `domain.exponent_min` and `domain.exponent_max`: the contract's n.
-    exponents: (i64, i64),
-}
-
-impl Params {
-    fn of(config: &Config) -> Self {
-        Self {
-            keys: LineKeys::new(config),
-            angle_multiplied: keys::bits(config, "angle.multiplied"),
-            root_fraction: keys::bits(config, "root.fraction"),
-            exponent_bits: keys::bits(config, "exponent.bits"),
-            exponents: keys::exponents(config),
-        }
-    }
-
-    fn angle_format(&self) -> Format {
-        Format::signed(1, self.keys.angle_fraction as i32)
-    }
-
-    fn exponent_format(&self) -> Format {
-        Format::unsigned(self.exponent_bits as i32, 0)
-    }
-}
+use crate::keys::quad_cosine::Keys;
 
 /// The power that serves n, as a number of a table: the seed's ranges.
 #[inline]
@@ -65,7 +33,7 @@ const POWERS: [i64; 4] = [1, 2, 4, 16];
 
 /// The arithmetic of the device, one operation a method.
 struct Arithmetic {
-    params: Params,
+    keys: Keys,
     /// ROM 9, a word for each n.
     roots: Vec<i64>,
     /// ROM 12, a table for each range of n.
@@ -73,23 +41,21 @@ struct Arithmetic {
 }
 
 impl Arithmetic {
-    fn new(params: Params) -> Self {
-        let f = params.keys.intensity_fraction;
+    fn new(keys: Keys) -> Self {
+        let f = keys.fraction;
         Self {
-            roots: (0..1 << params.exponent_bits)
-                .map(|n| root(n, POWERS[range_of(n)], params.root_fraction))
+            roots: (0..1 << keys.exponent_bits)
+                .map(|n| root(n, POWERS[range_of(n)], keys.root_fraction))
                 .collect(),
-            tables: POWERS
-                .map(|power| CosineTable::new(power as u32, params.keys.table_address, f)),
-            params,
+            tables: POWERS.map(|power| CosineTable::new(power as u32, keys.table_address, f)),
+            keys,
         }
     }
 
     /// What multiplier 11 takes of register 8; `None` where the surface faces away.
     #[inline]
     fn magnitude(&self, angle: i64) -> Option<i64> {
-        let params = &self.params;
-        magnitude(angle, params.keys.angle_fraction, params.angle_multiplied)
+        magnitude(angle, self.keys.angle_fraction, self.keys.angle_multiplied)
     }
 
     /// The word of ROM 12 for n, the magnitude, and ROM 9's word.
@@ -102,8 +68,8 @@ impl Arithmetic {
     /// The step of a table for an angle times ROM 9's word.
     #[inline]
     fn step_of(&self, scaled: i64) -> usize {
-        let fraction = self.params.angle_multiplied + self.params.root_fraction;
-        CosineTable::address(scaled, fraction, self.params.keys.table_address)
+        let fraction = self.keys.angle_multiplied + self.keys.root_fraction;
+        CosineTable::address(scaled, fraction, self.keys.table_address)
     }
 
     #[inline]
@@ -123,19 +89,25 @@ fn root(n: i64, k: i64, fraction: u32) -> i64 {
 
 /// The golden model.
 pub fn model(config: &Config) -> Box<dyn Model> {
-    Box::new(clocked(Params::of(config)))
+    Box::new(clocked(Keys::of(config)))
+}
+
+/// The product of the word of ROM 12 with the amplitude.
+fn products(keys: &Keys) -> Products {
+    Products::amplitude(keys.f_format(), keys.colour_bits, keys.output_rounding)
+        .at_edges(keys.stages > 2)
 }
 
 /// The device, clock by clock.
-fn clocked(params: Params) -> Clocked {
+fn clocked(keys: Keys) -> Clocked {
     let mut frame = Frame::default();
-    let LineKeys { length_bits, stages, .. } = params.keys;
-    let (angle, program) = line::walker(&mut frame, params.angle_format(), length_bits, stages);
-    let exponent = frame.operand("exponent", params.exponent_format());
+    let Keys { length_bits, stages, exponent_bits, .. } = keys;
+    let (angle, program) = line::walker(&mut frame, keys.angle_format(), length_bits, stages);
+    let exponent = frame.operand("exponent", Format::unsigned(exponent_bits as i32, 0));
     // What ROM 9 and ROM 12 read at the latest edge.
     let (root, cosine) = (frame.hidden(), frame.hidden());
-    let products = params.keys.products();
-    let it = Arithmetic::new(params);
+    let products = products(&keys);
+    let it = Arithmetic::new(keys);
     if stages == 2 {
         products.slots(&mut frame, cosine);
         frame.every_edge(move |s| {

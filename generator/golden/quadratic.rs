@@ -8,39 +8,17 @@ use std::sync::Arc;
 
 use super::contract::{self, ErrorShare};
 use super::frame::{Clocked, Frame, idle, step_by};
-use super::highlight::{Highlight, Keys, Reflectance};
+use super::highlight::{self, Highlight, Reflectance};
 use super::narrow::{Narrow, rounding_error};
-use super::{Contract, Model, keys};
-use crate::base::fixed::{Format, Rounding, exp2};
+use super::{Contract, Model};
+use crate::base::fixed::{Format, exp2};
 use crate::config::Config;
 use crate::golden::formulas;
-
-/// What ROM(n) holds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum CoefficientScheme {
-    /// n − 1.
-    Taylor,
-    /// The coefficient with the smallest largest error, with this number of fraction bits.
-    Minimax { fraction: u32 },
-}
-
-impl CoefficientScheme {
-    fn fraction(self) -> u32 {
-        match self {
-            Self::Taylor => 0,
-            Self::Minimax { fraction } => fraction,
-        }
-    }
-}
+use crate::keys::quadratic::{Keys, Scheme};
 
 /// The arithmetic of the device, one operation a method.
 struct Arithmetic {
     keys: Keys,
-    scheme: CoefficientScheme,
-    /// `difference.fraction`: fraction bits of c² − c, which is from −0.25 to 0.
-    difference_fraction: u32,
-    /// `difference.rounding`: of c² − c.
-    difference_rounding: Rounding,
     difference: Narrow,
     /// ROM(n), unrounded and as words.
     exact: Vec<f64>,
@@ -51,51 +29,27 @@ struct Arithmetic {
 }
 
 impl Arithmetic {
-    /// The difference c² − c and f by their fraction bits and roundings.
-    fn new(
-        keys: Keys,
-        scheme: CoefficientScheme,
-        difference: (u32, Rounding),
-        rounding: Rounding,
-    ) -> Self {
-        let cosine = keys.cosine_fraction;
-        let scale = f64::from(1u32 << scheme.fraction());
-        let exact = coefficient::table(scheme, 1 << keys.exponent_bits);
-        let product = difference.0 + scheme.fraction();
+    fn new(keys: Keys) -> Self {
+        let (cosine, fraction) = (keys.operands.cosine.fraction, keys.coefficient_fraction());
+        let scale = f64::from(1u32 << fraction);
+        let exact = coefficient::table(keys.scheme, 1 << keys.operands.exponent_bits);
+        let product = keys.difference_fraction + fraction;
         let point = product.max(cosine);
+        let difference = difference_format(keys.difference_fraction);
         Self {
-            scheme,
-            difference_fraction: difference.0,
-            difference_rounding: difference.1,
-            difference: Narrow::new(2 * cosine, difference_format(difference.0), difference.1),
+            difference: Narrow::new(2 * cosine, difference, keys.difference_rounding),
             words: exact.iter().map(|a| (a * scale + 0.5).floor() as i64).collect(),
             exact,
             pads: (point - cosine, point - product),
-            sum: Narrow::new(point, keys.f_format(), rounding),
+            sum: Narrow::new(point, keys.f.format(), keys.f.rounding),
             keys,
         }
-    }
-
-    fn of(config: &Config) -> Self {
-        let scheme = match config.choice("coefficient.scheme") {
-            "minimax" => {
-                CoefficientScheme::Minimax { fraction: keys::bits(config, "coefficient.fraction") }
-            }
-            _ => CoefficientScheme::Taylor,
-        };
-        let difference = keys::rounding(config, "difference.rounding");
-        Self::new(
-            Keys::new(config),
-            scheme,
-            (keys::bits(config, "difference.fraction"), difference),
-            keys::rounding(config, "intensity.rounding"),
-        )
     }
 
     /// `c² − c`.
     #[inline]
     fn difference(&self, cosine: i64) -> i64 {
-        self.difference.apply(cosine * cosine - (cosine << self.keys.cosine_fraction))
+        self.difference.apply(cosine * cosine - (cosine << self.keys.operands.cosine.fraction))
     }
 
     /// `c + a(n)·(c² − c)`, limited to a fraction.
@@ -112,16 +66,16 @@ fn difference_format(fraction: u32) -> Format {
 
 /// The golden model.
 pub fn model(config: &Config) -> Box<dyn Model> {
-    Box::new(clocked(Arithmetic::of(config)))
+    Box::new(clocked(Arithmetic::new(Keys::of(config))))
 }
 
 /// The device, clock by clock.
 fn clocked(it: Arithmetic) -> Clocked {
     let it = Arc::new(it);
     let mut frame = Frame::default();
-    let [cosine, exponent] = it.keys.slots(&mut frame);
-    let difference = frame.register("difference", difference_format(it.difference_fraction));
-    let intensity = frame.register("intensity", it.keys.f_format());
+    let [cosine, exponent] = highlight::slots(&it.keys.operands, &mut frame);
+    let difference = frame.register("difference", difference_format(it.keys.difference_fraction));
+    let intensity = frame.register("intensity", it.keys.f.format());
     let program = vec![
         idle(),
         step_by(&it, move |it, s| s[difference] = it.difference(s[cosine])),
@@ -129,34 +83,38 @@ fn clocked(it: Arithmetic) -> Clocked {
             s[intensity] = it.intensity(s[cosine], s[exponent], s[difference]);
         }),
     ];
-    it.keys.products().behind(frame, intensity, program)
+    highlight::products(&it.keys.operands.colours, &it.keys.f).behind(frame, intensity, program)
 }
 
 /// The accuracy contract. Control operands: `cos_gamma`, `exponent`.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
-    let it = Arithmetic::of(config);
-    let keys = it.keys.clone();
-    Box::new(Highlight::of_cosine(it, &keys))
+    let it = Arithmetic::new(Keys::of(config));
+    let operands = highlight::operands(&it.keys.operands, &it.keys.domain);
+    let products = highlight::products(&it.keys.operands.colours, &it.keys.f);
+    Box::new(Highlight::new(it, operands, products))
 }
 
 impl Reflectance for Arithmetic {
     #[inline]
     fn f(&self, control: &[i64]) -> i64 {
-        let cosine = self.keys.clamped(control[0]);
+        let cosine = self.keys.operands.cosine.clamped(control[0]);
         self.intensity(cosine, control[1], self.difference(cosine))
     }
 
     /// With a(n) as it was before ROM(n) rounded it.
     #[inline]
     fn reference(&self, control: &[i64]) -> f64 {
-        formulas::quadratic(self.keys.cosine(control[0]), self.exact[control[1] as usize])
+        formulas::quadratic(
+            self.keys.operands.cosine.value(control[0]),
+            self.exact[control[1] as usize],
+        )
     }
 
     /// The coefficient of the least largest error has no closed form; ROM(n) holds it.
     fn expressions(&self) -> Vec<String> {
-        let coefficient = match self.scheme {
-            CoefficientScheme::Taylor => "(max(exponent, 1) - 1)",
-            CoefficientScheme::Minimax { .. } => "coefficient[int(exponent)]",
+        let coefficient = match self.keys.scheme {
+            Scheme::Taylor => "(max(exponent, 1) - 1)",
+            Scheme::Minimax => "coefficient[int(exponent)]",
         };
         let f = format!("cos_gamma * (1 - {coefficient} * (1 - cos_gamma))");
         vec![contract::where_it_faces(&contract::clamped_at_0(&f))]
@@ -169,9 +127,9 @@ impl Reflectance for Arithmetic {
     /// - The rounding of g is multiplied by the word a(n).
     /// - f is rounded; 1.0 is an ulp low.
     fn shares(&self) -> Vec<ErrorShare> {
-        let f = self.keys.intensity_fraction;
-        let scale = exp2(-(self.scheme.fraction() as i32));
-        let (first, last) = self.keys.exponents;
+        let f = self.keys.f.fraction;
+        let scale = exp2(-(self.keys.coefficient_fraction() as i32));
+        let (first, last) = self.keys.domain.exponents();
         let table = (first..=last).map(|n| {
             let n = n as usize;
             (self.exact[n], self.words[n] as f64 * scale)
@@ -183,9 +141,9 @@ impl Reflectance for Arithmetic {
             largest = largest.max(word);
         }
         let difference = rounding_error(
-            2 * self.keys.cosine_fraction,
-            self.difference_fraction,
-            self.difference_rounding,
+            2 * self.keys.operands.cosine.fraction,
+            self.keys.difference_fraction,
+            self.keys.difference_rounding,
         );
         vec![
             ("coefficient.fraction", "rounding of a(n)", rounded),
@@ -196,11 +154,11 @@ impl Reflectance for Arithmetic {
 
     /// What n − 1 costs beside the minimax table.
     fn remarks(&self) -> Vec<String> {
-        if self.scheme != CoefficientScheme::Taylor {
+        if self.keys.scheme != Scheme::Taylor {
             return Vec::new();
         }
-        let n = self.keys.exponents.1;
-        let best = coefficient::table(CoefficientScheme::Minimax { fraction: 0 }, n as u32 + 1);
+        let n = self.keys.domain.most;
+        let best = coefficient::table(Scheme::Minimax, n as u32 + 1);
         let errors = [(n - 1) as f64, best[n as usize]].map(|a| formula_error(n, a));
         if errors[1] >= errors[0] {
             return Vec::new();

@@ -11,114 +11,62 @@ mod tests;
 pub use clock_model::model;
 pub use contract::contract;
 
-use super::highlight::Keys;
-use super::keys;
+use super::highlight::{self, Products};
 use super::narrow::Narrow;
 use super::sine::{self, Sine, TableScheme};
-use crate::base::fixed::{Format, Rounding};
+use crate::base::fixed::Format;
 use crate::config::Config;
+use crate::keys::rough::{Arithmetic as Kind, Keys, Scheme};
 
-/// How sums and products are kept.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
-    /// With integer bits and signs.
-    Exact,
-    /// The patent's: every word is a fraction modulo 1.0, and every "−1" a missing carry.
-    Patent,
-}
-
-/// What a configuration of the device says.
-///
-/// In the patent's arithmetic all words have `cosine.fraction` bits; `cosine.signed`, `clamp`,
-/// `product.*`, `intensity.*` and `sine.fraction` do not apply.
-#[derive(Clone)]
-struct Params {
-    /// In the patent's arithmetic f has the fraction bits of the cosine, which has no sign.
-    keys: Keys,
-    /// `arithmetic`.
-    arithmetic: Kind,
-    /// `clamp`: a negative base becomes 0.
-    clamp: bool,
-    /// `product.fraction`: fraction bits of registers 11 and 12, P.
-    product_fraction: u32,
-    /// `product.rounding`: of what they take.
-    product_rounding: Rounding,
-    /// `intensity.rounding`: of what it takes.
-    intensity_rounding: Rounding,
-    /// `sine.scheme` with `sine.address`, or `sine.segments` and `sine.slope_fraction`.
-    sine_scheme: TableScheme,
-    /// `sine.fraction`: fraction bits of the sine, S.
-    sine_fraction: u32,
-    /// `domain.deviation`: the contract's largest dγ, in degrees, 0 … 90.
-    deviation: f64,
-}
-
-impl Params {
-    fn of(config: &Config) -> Self {
-        let sine_scheme = match config.choice("sine.scheme") {
-            "direct" => TableScheme::Direct { address: keys::bits(config, "sine.address") },
-            _ => TableScheme::Segmented {
-                // The schema allows no negative entries.
-                segments: config
-                    .integers("sine.segments")
-                    .iter()
-                    .map(|&bits| bits as u32)
-                    .collect(),
-                slope_fraction: keys::bits(config, "sine.slope_fraction"),
-            },
-        };
-        let mut keys = Keys::new(config);
-        let arithmetic = match config.choice("arithmetic") {
-            "patent" => Kind::Patent,
-            _ => Kind::Exact,
-        };
-        if arithmetic == Kind::Patent {
-            keys.intensity_fraction = keys.cosine_fraction;
-            keys.cosine_signed = false;
-        }
-        Self {
-            keys,
-            arithmetic,
-            clamp: config.flag("clamp"),
-            product_fraction: keys::bits(config, "product.fraction"),
-            product_rounding: keys::rounding(config, "product.rounding"),
-            intensity_rounding: keys::rounding(config, "intensity.rounding"),
-            sine_scheme,
-            sine_fraction: keys::bits(config, "sine.fraction"),
-            deviation: config.number("domain.deviation"),
-        }
+/// What a configuration says. In the patent's arithmetic f has the fraction bits of the cosine, which has no sign.
+fn keys_of(config: &Config) -> Keys {
+    let mut keys = Keys::of(config);
+    if keys.patent() {
+        keys.f.fraction = keys.operands.cosine.fraction;
+        keys.operands.cosine.signed = false;
     }
+    keys
+}
 
-    fn patent(&self) -> bool {
-        self.arithmetic == Kind::Patent
+/// What the keys mean for words.
+impl Keys {
+    fn products(&self) -> Products {
+        highlight::products(&self.operands.colours, &self.f)
     }
 
     fn sine(&self) -> sine::Params {
+        let cosine = self.operands.cosine.fraction;
         sine::Params {
-            operand_fraction: self.keys.cosine_fraction,
-            fraction: if self.patent() { self.keys.cosine_fraction } else { self.sine_fraction },
-            scheme: self.sine_scheme.clone(),
+            operand_fraction: cosine,
+            fraction: if self.patent() { cosine } else { self.sine_fraction },
+            scheme: match self.scheme {
+                Scheme::Direct => TableScheme::Direct { address: self.address },
+                Scheme::Segmented => TableScheme::Segmented {
+                    segments: self.segments.clone(),
+                    slope_fraction: self.slope_fraction,
+                },
+            },
         }
     }
 
     /// The format of cos γ, which may have a sign.
     fn cos_gamma_format(&self) -> Format {
-        Format { signed: self.keys.cosine_signed, ..self.cos_dgamma_format() }
+        Format { signed: self.operands.cosine.signed, ..self.cos_dgamma_format() }
     }
 
     fn cos_dgamma_format(&self) -> Format {
         let int = if self.patent() { 0 } else { 1 };
-        Format::unsigned(int, self.keys.cosine_fraction as i32)
+        Format::unsigned(int, self.operands.cosine.fraction as i32)
     }
 
     /// The largest raw cosine that a register holds: 1.0, or in the patent's words an ulp less.
     fn largest_cosine(&self) -> i64 {
-        (1 << self.keys.cosine_fraction) - i64::from(self.patent())
+        (1 << self.operands.cosine.fraction) - i64::from(self.patent())
     }
 
     /// The format of register 13.
     fn result_format(&self) -> Format {
-        let frac = self.keys.intensity_fraction as i32;
+        let frac = self.f.fraction as i32;
         match (self.arithmetic, self.clamp) {
             (Kind::Patent, _) => Format::unsigned(0, frac),
             (Kind::Exact, true) => Format::signed(0, frac),
@@ -129,7 +77,7 @@ impl Params {
 
 /// The blocks between the registers, one a method. Words are raw values.
 struct Arithmetic {
-    params: Params,
+    keys: Keys,
     sine: Sine,
     kind: Blocks,
 }
@@ -152,31 +100,30 @@ enum Blocks {
 }
 
 impl Arithmetic {
-    fn new(params: Params) -> Self {
-        let (p, f) = (params.product_fraction, params.keys.intensity_fraction);
-        let kind = match params.arithmetic {
+    fn new(keys: Keys) -> Self {
+        let (p, f) = (keys.product_fraction, keys.f.fraction);
+        let kind = match keys.arithmetic {
             Kind::Patent => Blocks::Patent {
-                width: params.keys.cosine_fraction,
-                mask: (1 << params.keys.cosine_fraction) - 1,
+                width: keys.operands.cosine.fraction,
+                mask: (1 << keys.operands.cosine.fraction) - 1,
             },
             Kind::Exact => {
                 let product = |from, int| {
-                    Narrow::new(from, Format::unsigned(int, p as i32), params.product_rounding)
+                    Narrow::new(from, Format::unsigned(int, p as i32), keys.product_rounding)
                 };
-                let result =
-                    |from| Narrow::new(from, params.result_format(), params.intensity_rounding);
+                let result = |from| Narrow::new(from, keys.result_format(), keys.f.rounding);
                 Blocks::Exact {
                     product_one: 1 << p,
                     result_one: 1 << f,
-                    clamp: params.clamp,
-                    cos_cos: product(2 * params.keys.cosine_fraction, 1),
-                    sin_sin: product(2 * params.sine_fraction, 0),
+                    clamp: keys.clamp,
+                    cos_cos: product(2 * keys.operands.cosine.fraction, 1),
+                    sin_sin: product(2 * keys.sine_fraction, 0),
                     scaled: result(p + 1),
                     square: result(2 * f),
                 }
             }
         };
-        Self { sine: Sine::new(&params.sine()), kind, params }
+        Self { sine: Sine::new(&keys.sine()), kind, keys }
     }
 
     /// What register 11 takes: cos γ·cos dγ.

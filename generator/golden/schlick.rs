@@ -2,11 +2,12 @@
 
 use super::contract::{self, ErrorShare};
 use super::frame::{Clocked, Frame, idle, step};
-use super::highlight::{Highlight, Keys, Reflectance};
+use super::highlight::{self, Highlight, Products, Reflectance};
 use super::{Contract, Model};
 use crate::base::fixed::{Format, exp2, mask};
 use crate::config::Config;
 use crate::golden::formulas;
+use crate::keys::schlick::Keys;
 
 /// The arithmetic of the device. Cosines, divisors and remainders are in ulps of the cosine, and the quotient
 /// is f.
@@ -16,7 +17,9 @@ impl Arithmetic {
     /// `n − n·cos γ + cos γ`, and an ulp for a surface that faces away.
     #[inline]
     fn divisor(&self, cosine: i64, exponent: i64) -> i64 {
-        exponent * self.0.one() - exponent * cosine + cosine + i64::from(cosine == 0)
+        exponent * self.0.operands.cosine.one() - exponent * cosine
+            + cosine
+            + i64::from(cosine == 0)
     }
 }
 
@@ -28,9 +31,15 @@ fn divide(dividend: i64, divisor: i64, bits: u32) -> (i64, i64) {
     (quotient, (dividend << bits) - quotient * divisor)
 }
 
+fn products(keys: &Keys) -> Products {
+    let colours = &keys.operands.colours;
+    Products::colours(keys.f_format(), colours.bits, keys.output_rounding)
+        .in_turn(colours.in_turn())
+}
+
 /// The golden model.
 pub fn model(config: &Config) -> Box<dyn Model> {
-    Box::new(clocked(Arithmetic(Keys::new(config))))
+    Box::new(clocked(Arithmetic(Keys::of(config))))
 }
 
 /// The device, clock by clock.
@@ -38,12 +47,12 @@ pub fn model(config: &Config) -> Box<dyn Model> {
 /// The divider's registers are predicted from the division as a whole: after k steps the quotient ends
 /// in the first k bits of the true one, and the remainder is what these leave.
 fn clocked(it: Arithmetic) -> Clocked {
-    let Keys { intensity_fraction: bits, cosine_fraction, exponent_bits, .. } = it.0;
-    let products = it.0.products();
+    let (bits, cosine_fraction) = (it.0.fraction, it.0.operands.cosine.fraction);
+    let products = products(&it.0);
     let mut frame = Frame::default();
-    let [cosine, exponent] = it.0.slots(&mut frame);
+    let [cosine, exponent] = highlight::slots(&it.0.operands, &mut frame);
     // Up to 1.0 + n.
-    let format = Format::unsigned(exponent_bits as i32 + 1, cosine_fraction as i32);
+    let format = Format::unsigned(it.0.operands.exponent_bits as i32 + 1, cosine_fraction as i32);
     let quotient = frame.register("quotient", it.0.f_format());
     let divisor = frame.register("quotient_divisor", format);
     let remainder = frame.register("quotient_remainder", format);
@@ -73,20 +82,22 @@ fn clocked(it: Arithmetic) -> Clocked {
 
 /// The accuracy contract. Control operands: `cos_gamma`, `exponent`.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
-    let keys = Keys::new(config);
-    Box::new(Highlight::of_cosine(Arithmetic(keys.clone()), &keys))
+    let keys = Keys::of(config);
+    let operands = highlight::operands(&keys.operands, &keys.domain);
+    let products = products(&keys);
+    Box::new(Highlight::new(Arithmetic(keys), operands, products))
 }
 
 impl Reflectance for Arithmetic {
     #[inline]
     fn f(&self, control: &[i64]) -> i64 {
-        let cosine = self.0.clamped(control[0]);
-        divide(cosine, self.divisor(cosine, control[1]), self.0.intensity_fraction).0
+        let cosine = self.0.operands.cosine.clamped(control[0]);
+        divide(cosine, self.divisor(cosine, control[1]), self.0.fraction).0
     }
 
     #[inline]
     fn reference(&self, control: &[i64]) -> f64 {
-        formulas::schlick(self.0.cosine(control[0]), control[1] as f64)
+        formulas::schlick(self.0.operands.cosine.value(control[0]), control[1] as f64)
     }
 
     fn expressions(&self) -> Vec<String> {
@@ -96,7 +107,7 @@ impl Reflectance for Arithmetic {
     /// Dividend and divisor are exact, so that nothing but the quotient's own last bit is lost: it is
     /// truncated, and 1.0 becomes the largest fraction. Both are at most an ulp below the formula.
     fn shares(&self) -> Vec<ErrorShare> {
-        let ulp = exp2(-(self.0.intensity_fraction as i32));
+        let ulp = exp2(-(self.0.fraction as i32));
         vec![("intensity.fraction", "truncation of the quotient", ulp)]
     }
 }
@@ -104,11 +115,18 @@ impl Reflectance for Arithmetic {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::base::fixed::Rounding;
     use crate::golden::watch;
+    use crate::keys::common::{Domain, Operands};
 
     /// C = 4, Q = 4: small enough to follow by hand.
     fn small() -> Arithmetic {
-        Arithmetic(Keys::small())
+        Arithmetic(Keys {
+            operands: Operands::small(),
+            fraction: 4,
+            output_rounding: Rounding::Nearest,
+            domain: Domain::small(),
+        })
     }
 
     #[test]

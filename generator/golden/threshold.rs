@@ -7,18 +7,17 @@ use std::sync::Arc;
 
 use super::contract::{self, ErrorShare};
 use super::frame::{Clocked, Frame, idle, step_by};
-use super::highlight::{Highlight, Keys, Reflectance};
+use super::highlight::{self, Highlight, Reflectance};
 use super::narrow::{Narrow, rounding_error};
-use super::{Contract, Model, keys};
-use crate::base::fixed::{Format, Rounding, exp2};
+use super::{Contract, Model};
+use crate::base::fixed::{Format, exp2};
 use crate::config::Config;
 use crate::golden::formulas;
+use crate::keys::threshold::Keys;
 
 /// The arithmetic of the device, one operation a method.
 struct Arithmetic {
     keys: Keys,
-    /// `intensity.rounding`: of the base and of its square.
-    rounding: Rounding,
     /// 1.0 as a base.
     base_one: i64,
     scaled: Narrow,
@@ -30,45 +29,42 @@ struct Arithmetic {
 }
 
 impl Arithmetic {
-    /// `levels` are hundredths of an output unit, an octave of n each, at least one.
-    fn new(keys: Keys, rounding: Rounding, levels: &[i64]) -> Self {
-        let f = keys.intensity_fraction;
+    fn new(keys: Keys) -> Self {
+        let (f, rounding) = (keys.f.fraction, keys.f.rounding);
         let mut it = Self {
             base_one: 1 << f,
             // n/2 has one fraction bit.
-            scaled: Narrow::new(keys.cosine_fraction + 1, Format::signed(0, f as i32), rounding),
-            square: Narrow::new(2 * f, keys.f_format(), rounding),
-            thresholds: Self::thresholds(&keys, levels),
+            scaled: Narrow::new(
+                keys.operands.cosine.fraction + 1,
+                Format::signed(0, f as i32),
+                rounding,
+            ),
+            square: Narrow::new(2 * f, keys.f.format(), rounding),
+            thresholds: Self::thresholds(&keys),
             margin: 0.0,
             keys,
-            rounding,
         };
         it.margin = it.shares().iter().map(|share| share.2).sum::<f64>().min(1.0);
         it
     }
 
-    fn of(config: &Config) -> Self {
-        let rounding = keys::rounding(config, "intensity.rounding");
-        Self::new(Keys::new(config), rounding, config.integers("visibility.levels"))
-    }
-
     /// The least word of f that is shown, an entry an octave of n: `levels / 100` units, rounded up to a
     /// word. There is none above 1.0 − ulp.
-    fn thresholds(keys: &Keys, levels: &[i64]) -> Vec<i64> {
+    fn thresholds(keys: &Keys) -> Vec<i64> {
         // 100 · largest · word ≥ level · 2^F, for the least word; less than 2^30 · 2^24.
-        let unit = 100 * ((1 << keys.colour_bits) - 1);
+        let unit = 100 * ((1 << keys.operands.colours.bits) - 1);
         let word = |level: i64| {
-            let wanted = level << keys.intensity_fraction;
+            let wanted = level << keys.f.fraction;
             wanted / unit + i64::from(wanted % unit != 0)
         };
-        let largest = (1 << keys.intensity_fraction) - 1;
-        levels.iter().map(|&level| word(level).min(largest)).collect()
+        let largest = (1 << keys.f.fraction) - 1;
+        keys.levels.iter().map(|&level| word(level.into()).min(largest)).collect()
     }
 
     /// `n/2·(cos γ − 1)`, not below −1.0.
     #[inline]
     fn scaled(&self, cosine: i64, exponent: i64) -> i64 {
-        self.scaled.apply((cosine - self.keys.one()) * exponent)
+        self.scaled.apply((cosine - self.keys.operands.cosine.one()) * exponent)
     }
 
     /// ROM(n).
@@ -89,47 +85,48 @@ impl Arithmetic {
     /// The ungated parabola's square in f64, and ROM(n).
     #[inline]
     fn square_and_level(&self, control: &[i64]) -> (f64, f64) {
-        let ulp = exp2(-(self.keys.intensity_fraction as i32));
+        let ulp = exp2(-(self.keys.f.fraction as i32));
         let level = self.threshold(control[1]) as f64 * ulp;
-        (formulas::parabola(self.keys.cosine(control[0]), control[1] as f64), level)
+        (formulas::parabola(self.keys.operands.cosine.value(control[0]), control[1] as f64), level)
     }
 }
 
 /// The golden model.
 pub fn model(config: &Config) -> Box<dyn Model> {
-    Box::new(clocked(Arithmetic::of(config)))
+    Box::new(clocked(Arithmetic::new(Keys::of(config))))
 }
 
 /// The device, clock by clock.
 fn clocked(it: Arithmetic) -> Clocked {
     let it = Arc::new(it);
     let mut frame = Frame::default();
-    let [cosine, exponent] = it.keys.slots(&mut frame);
-    let fraction = it.keys.intensity_fraction as i32;
+    let [cosine, exponent] = highlight::slots(&it.keys.operands, &mut frame);
+    let fraction = it.keys.f.fraction as i32;
     let scaled = frame.register("scaled", Format::signed(0, fraction));
-    let intensity = frame.register("intensity", it.keys.f_format());
+    let intensity = frame.register("intensity", it.keys.f.format());
     let program = vec![
         idle(),
         step_by(&it, move |it, s| s[scaled] = it.scaled(s[cosine], s[exponent])),
         step_by(&it, move |it, s| s[intensity] = it.gated(s[cosine], s[exponent], s[scaled])),
     ];
-    it.keys.products().behind(frame, intensity, program)
+    highlight::products(&it.keys.operands.colours, &it.keys.f).behind(frame, intensity, program)
 }
 
 /// The accuracy contract. Control operands: `cos_gamma`, `exponent`.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
-    Box::new(highlight(Arithmetic::of(config)))
+    Box::new(highlight(Arithmetic::new(Keys::of(config))))
 }
 
 fn highlight(it: Arithmetic) -> Highlight {
-    let keys = it.keys.clone();
-    Highlight::of_cosine(it, &keys)
+    let operands = highlight::operands(&it.keys.operands, &it.keys.domain);
+    let products = highlight::products(&it.keys.operands.colours, &it.keys.f);
+    Highlight::new(it, operands, products)
 }
 
 impl Reflectance for Arithmetic {
     #[inline]
     fn f(&self, control: &[i64]) -> i64 {
-        let cosine = self.keys.clamped(control[0]);
+        let cosine = self.keys.operands.cosine.clamped(control[0]);
         self.gated(cosine, control[1], self.scaled(cosine, control[1]))
     }
 
@@ -169,8 +166,8 @@ impl Reflectance for Arithmetic {
     /// is rounded; the square of 1.0 is an ulp low. The gates add nothing: within the sum of these of
     /// ROM(n) either side is right.
     fn shares(&self) -> Vec<ErrorShare> {
-        let f = self.keys.intensity_fraction;
-        let base = rounding_error(self.keys.cosine_fraction + 1, f, self.rounding);
+        let f = self.keys.f.fraction;
+        let base = rounding_error(self.keys.operands.cosine.fraction + 1, f, self.keys.f.rounding);
         vec![
             ("intensity.rounding", "rounding of the base", 2.0 * base),
             (
@@ -183,12 +180,12 @@ impl Reflectance for Arithmetic {
 
     /// A level above what rounds to 0 is seen as an edge around the highlight.
     fn remarks(&self) -> Vec<String> {
-        let largest = (1 << self.keys.colour_bits) - 1;
-        let (first, last) = self.keys.exponents;
+        let largest = (1 << self.keys.operands.colours.bits) - 1;
+        let (first, last) = self.keys.domain.exponents();
         let output = Narrow::new(
-            self.keys.intensity_fraction,
-            Format::unsigned(self.keys.colour_bits as i32, 0),
-            self.keys.output_rounding,
+            self.keys.f.fraction,
+            Format::unsigned(self.keys.operands.colours.bits as i32, 0),
+            self.keys.f.output_rounding,
         );
         let hidden = |n: i64| self.threshold(n) - 1;
         // One n of each octave stands for all.

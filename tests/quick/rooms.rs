@@ -8,10 +8,11 @@ use glint::registry::Registry;
 use regex::Regex;
 
 /// From the bottom: a room and those above it that it may import from.
-const ROOMS: [(&str, &str); 26] = [
+const ROOMS: [(&str, &str); 27] = [
     ("base", ""),
     ("config", "base"),
-    ("golden", "base config"),
+    ("keys", "base config"),
+    ("golden", "base config keys"),
     ("hdl/netlist", "base"),
     ("hdl/dsl", "base hdl/netlist"),
     ("hdl/blocks", "base hdl/dsl"),
@@ -19,13 +20,13 @@ const ROOMS: [(&str, &str); 26] = [
     ("hdl/pipeline", "base config hdl/netlist"),
     ("observation", "golden"),
     ("hdl/verilog", "base hdl/netlist observation"),
-    ("devices", "base config hdl/netlist hdl/dsl hdl/blocks"),
+    ("devices", "base config keys hdl/netlist hdl/dsl hdl/blocks"),
     ("package", "base config golden hdl/netlist hdl/pipeline hdl/verilog observation"),
     ("tools", "base package"),
     ("equality", "base hdl/netlist tools"),
     ("synth", "base hdl/netlist package tools"),
     ("cosim", "base golden hdl/netlist hdl/sim observation package tools"),
-    ("registry", "base config golden hdl/netlist hdl/dsl hdl/pipeline devices"),
+    ("registry", "base config keys golden hdl/netlist hdl/dsl hdl/pipeline devices"),
     ("core", "base config golden hdl/netlist package tools cosim registry"),
     ("certify", "base golden hdl/netlist hdl/pipeline tools"),
     ("mutate", "base golden hdl/netlist hdl/sim package tools cosim core"),
@@ -44,7 +45,7 @@ const ROOMS: [(&str, &str); 26] = [
 ];
 
 /// Where devices may be known by name.
-const NAMING: [&str; 4] = ["devices", "golden", "registry", "evidence"];
+const NAMING: [&str; 5] = ["keys", "devices", "golden", "registry", "evidence"];
 
 /// And with them: the examples of the command line's help, and what the report says of Schlick's function.
 const ALSO_NAMING: [&str; 2] = ["cli/mod.rs", "pages/report.rs"];

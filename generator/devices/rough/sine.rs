@@ -2,35 +2,34 @@
 
 use super::Formats;
 use crate::base::fixed::Format;
-use crate::config::Config;
 use crate::hdl::blocks::segmented::{self, Entry, Segment, Segmentation, SegmentedFormats};
 use crate::hdl::dsl::{Designer, Signal};
+use crate::keys::rough::{Keys, Scheme};
 
 /// ROM 18: sin = √(1 − cos²).
 pub(super) fn sine_rom<'d>(
     d: &'d Designer,
-    config: &Config,
+    keys: &Keys,
     formats: &Formats,
     cosine: Signal<'d>,
 ) -> Signal<'d> {
-    let fraction = config.integer("cosine.fraction") as u32;
-    let synchronous = config.flag("sine.synchronous");
-    if config.choice("sine.scheme") == "direct" {
-        return direct_sine(d, config, formats, cosine);
+    let fraction = keys.operands.cosine.fraction;
+    if keys.scheme == Scheme::Direct {
+        return direct_sine(d, keys, formats, cosine);
     }
     let one = d.constant("one", 1.0, Format::unsigned(1, fraction as i32));
     let complement = d.sub("complement", one, cosine).doc("1.0 - cos");
     let u = complement.shift_left(fraction as i32);
     let cut = Segmentation {
         operand_bits: fraction,
-        segments: config.integers("sine.segments").iter().map(|&k| k as u32).collect(),
+        segments: keys.segments.clone(),
         tail: None,
         packed: false,
     };
     let shape = SegmentedFormats {
         fraction: formats.sine.frac,
-        slope_fraction: config.integer("sine.slope_fraction") as i32,
-        synchronous,
+        slope_fraction: keys.slope_fraction as i32,
+        synchronous: keys.synchronous,
     };
     let entry = |segment: Segment| sine_entry(segment, fraction, shape);
     segmented::interpolate(d, "sine", u, &cut, shape, entry, Some(18))
@@ -40,12 +39,12 @@ pub(super) fn sine_rom<'d>(
 /// The patent's own: one entry for each bucket of the cosine, the sine at its middle.
 fn direct_sine<'d>(
     d: &'d Designer,
-    config: &Config,
+    keys: &Keys,
     formats: &Formats,
     cosine: Signal<'d>,
 ) -> Signal<'d> {
-    let fraction = config.integer("cosine.fraction") as u32;
-    let bits = config.integer("sine.address") as u32;
+    let fraction = keys.operands.cosine.fraction;
+    let bits = keys.address;
     let mut address = cosine.bits(fraction - bits, Format::unsigned(bits as i32, 0));
     if !formats.patent {
         // 1.0 has no bucket of its own: it reads the last one.
@@ -59,7 +58,7 @@ fn direct_sine<'d>(
         })
         .collect();
     let rom = d
-        .rom("sine", address, formats.sine, &words, config.flag("sine.synchronous"))
+        .rom("sine", address, formats.sine, &words, keys.synchronous)
         .block(18)
         .doc(&format!("sine ({}) at the middle of a bucket of the cosine", formats.sine));
     rom.out().doc("sine of the addressed cosine")

@@ -1,22 +1,28 @@
 //! `blinn` and `gauss` worked by hand in words of a few bits.
 
 use super::*;
+use crate::golden::highlight::Reflectance;
+use crate::keys::common::{Domain, Intensity, Operands};
 
 /// C = 4, S = 6 with one range and a tail; y with 1 + 2 fraction bits; F = 6.
 fn small(function: Function) -> Arithmetic {
-    Arithmetic::new(Params {
-        function,
-        keys: Keys { intensity_fraction: 6, ..Keys::small() },
+    let f = Intensity { fraction: 6, ..Intensity::small() };
+    let keys = Keys {
+        operands: Operands::small(),
         decay_fraction: 6,
-        decay_segments: vec![2],
-        decay_tail: 0,
-        decay_slope_fraction: 6,
-        decay_coarse_fraction: 4,
-        exponential_address: 1,
-        exponential_offsets: vec![(2, 0)],
-        exponential_fraction: 6,
-        intensity_rounding: Rounding::Truncate,
-    })
+        segments: vec![2],
+        tail: 0,
+        slope_fraction: 6,
+        coarse_fraction: 4,
+        address: 1,
+        offset_bits: vec![2],
+        offset_address: vec![0],
+        fraction: 6,
+        synchronous: true,
+        f,
+        domain: Domain::small(),
+    };
+    Arithmetic::new(Params { function, keys })
 }
 
 #[test]

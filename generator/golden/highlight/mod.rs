@@ -1,10 +1,10 @@
 //! What highlights have in common: colours that are multiplied by a reflectance `f`.
 
 mod keys;
-mod products;
+mod multiplied;
 
-pub use keys::Keys;
-pub use products::Products;
+pub use keys::{operands, products, slots};
+pub use multiplied::Products;
 
 use std::borrow::Cow;
 use std::sync::OnceLock;
@@ -135,11 +135,6 @@ impl Highlight {
         let single = reflectance.length().is_none();
         let bound = OnceLock::new();
         Self { reflectance: Box::new(reflectance), single, products, operands, bound }
-    }
-
-    /// The contract of a reflectance with the control operands cos γ and n.
-    pub fn of_cosine(reflectance: impl Reflectance + 'static, keys: &Keys) -> Self {
-        Self::new(reflectance, keys.operands(), keys.products())
     }
 
     /// The number of control operands, which come first.

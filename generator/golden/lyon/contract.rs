@@ -1,6 +1,6 @@
 //! The accuracy contract of `lyon`.
 
-use super::{Arithmetic, Params, Scale};
+use super::{Arithmetic, Keys, Scale};
 use crate::base::fixed::{Rounding, exp2};
 use crate::config::Config;
 use crate::golden::contract::{self as shared, ErrorShare};
@@ -14,25 +14,25 @@ const FARTHEST: i64 = 12;
 
 /// The accuracy contract. Control operands: `dx`, `dy`, `dz`, and `shift` or `exponent`.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
-    Box::new(highlight(Params::of(config)))
+    Box::new(of_keys(Keys::of(config)))
 }
 
-pub(super) fn highlight(params: Params) -> Highlight {
-    let vector = params.vector_format();
+pub(super) fn of_keys(keys: Keys) -> Highlight {
+    let vector = keys.vector_format();
     let component = |name: &str| {
         let domain = (vector.min_raw() as i64, vector.max_raw() as i64);
         let doc = format!("{} of the normal less the half vector", &name[1..]);
         shared::control(name, vector, domain, &doc)
     };
-    let doc = match params.scale {
+    let doc = match keys.scale {
         Scale::Shift => "log2 of the specular exponent n, rounded",
         Scale::Multiplier => "specular exponent n",
     };
     let mut operands: Vec<Operand> = ["dx", "dy", "dz"].map(component).into();
-    let (name, format) = (params.scale_name(), params.scale_format());
-    operands.push(shared::control(name, format, params.scale_domain(), doc));
-    let products = params.keys.products();
-    Highlight::new(Arithmetic::new(params), operands, products)
+    let (name, format) = (keys.scale_name(), keys.scale_format());
+    operands.push(shared::control(name, format, keys.scale_domain(), doc));
+    let products = keys.products();
+    Highlight::new(Arithmetic::new(keys), operands, products)
 }
 
 impl Arithmetic {
@@ -40,14 +40,14 @@ impl Arithmetic {
     #[inline]
     fn exact_distance(&self, vector: &[i64]) -> f64 {
         let squares = vector[..3].iter().map(|component| component * component);
-        squares.sum::<i64>() as f64 * exp2(-2 * self.params.vector_fraction as i32)
+        squares.sum::<i64>() as f64 * exp2(-2 * self.keys.vector_fraction as i32)
     }
 
     /// The formula at a D², with the β that the operand stands for.
     #[inline]
     fn formula(&self, distance: f64, operand: i64) -> f64 {
-        let power = self.params.power;
-        let beta = self.params.exponent(operand) as f64 / f64::from(2 * power);
+        let power = self.keys.power;
+        let beta = self.keys.exponent(operand) as f64 / f64::from(2 * power);
         formulas::lyon(distance, beta, power)
     }
 }
@@ -64,8 +64,8 @@ impl Reflectance for Arithmetic {
     }
 
     fn expressions(&self) -> Vec<String> {
-        let power = self.params.power;
-        let exponent = match self.params.scale {
+        let power = self.keys.power;
+        let exponent = match self.keys.scale {
             Scale::Shift => "2 ** shift",
             Scale::Multiplier => "exponent",
         };
@@ -76,7 +76,7 @@ impl Reflectance for Arithmetic {
 
     /// The normal is (0, 0, 1), and the half vector (sin γ, 0, cos γ).
     fn at(&self, operands: &[Operand], gamma: f64, n: f64) -> Option<Vec<i64>> {
-        let (first, last) = self.params.keys.exponents;
+        let (first, last) = self.keys.domain.exponents();
         let exponent = n as i64;
         if exponent as f64 != n || !(first..=last).contains(&exponent) {
             return None;
@@ -88,7 +88,7 @@ impl Reflectance for Arithmetic {
             component(-libm::sin(gamma)),
             0,
             component(2.0 * half * half),
-            self.params.scale_operand(exponent),
+            self.keys.scale_operand(exponent),
         ])
     }
 
@@ -99,14 +99,11 @@ impl Reflectance for Arithmetic {
 
     /// The word of D² and the operand that scales it determine f: adders 1 and 2 and multipliers 1 to 3 are exact.
     fn sweep(&self) -> Option<Sweep> {
-        let (low, high) = self.params.scale_domain();
-        let most = FARTHEST << self.params.distance_fraction;
+        let (low, high) = self.keys.scale_domain();
+        let most = FARTHEST << self.keys.distance_fraction;
         Some(Sweep {
             axes: vec![
-                Axis {
-                    name: self.params.scale_name().to_owned(),
-                    values: Values::Range(low, high),
-                },
+                Axis { name: self.keys.scale_name().to_owned(), values: Values::Range(low, high) },
                 Axis { name: "word of D^2".to_owned(), values: Values::Range(0, most) },
             ],
             omits: String::new(),
@@ -117,12 +114,11 @@ impl Reflectance for Arithmetic {
     #[inline]
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let (operand, word) = (place[0], place[1]);
-        let f =
-            self.f_of(word, operand) as f64 * exp2(-(self.params.keys.intensity_fraction as i32));
+        let f = self.f_of(word, operand) as f64 * exp2(-(self.keys.f.fraction as i32));
         let word = word as f64;
-        let ulp = exp2(-(self.params.distance_fraction as i32));
-        let exact = 2 * self.params.vector_fraction <= self.params.distance_fraction;
-        let (low, high) = match self.params.distance_rounding {
+        let ulp = exp2(-(self.keys.distance_fraction as i32));
+        let exact = 2 * self.keys.vector_fraction <= self.keys.distance_fraction;
+        let (low, high) = match self.keys.distance_rounding {
             _ if exact => (word, word),
             Rounding::Truncate => (word, word + 1.0),
             Rounding::Nearest => (word - 0.5, word + 0.5),
@@ -147,28 +143,27 @@ impl Reflectance for Arithmetic {
     /// Where all of them truncate, D² makes f too large and the others make it too small, by so much at
     /// most: only the larger of the two counts.
     fn shares(&self) -> Vec<ErrorShare> {
-        let params = &self.params;
-        let (f, power) = (params.keys.intensity_fraction, f64::from(params.power));
+        let keys = &self.keys;
+        let (f, power) = (keys.f.fraction, f64::from(keys.power));
         let ulp = exp2(-(f as i32));
         let distance = rounding_error(
-            2 * params.vector_fraction,
-            params.distance_fraction,
-            params.distance_rounding,
+            2 * keys.vector_fraction,
+            keys.distance_fraction,
+            keys.distance_rounding,
         );
-        let largest = params.exponent(params.scale_domain().1) as f64;
-        let scaled_fraction = params.distance_fraction + params.squarings() + 1;
-        let base = match params.intensity_rounding {
+        let largest = keys.exponent(keys.scale_domain().1) as f64;
+        let scaled_fraction = keys.distance_fraction + keys.squarings() + 1;
+        let base = match keys.f.rounding {
             Rounding::Truncate => ulp,
             Rounding::Nearest => ulp + rounding_error(scaled_fraction, f, Rounding::Nearest),
         };
-        let squares = rounding_error(2 * f, f, params.intensity_rounding);
+        let squares = rounding_error(2 * f, f, keys.f.rounding);
         let above = [("distance.fraction", "rounding of D², times n/2", distance * largest / 2.0)];
         let below = [
             ("intensity.fraction", "the base, with the inverse for 1.0 − β·D²", base * power),
             ("intensity.rounding", "rounding of the squares", squares * (power - 1.0)),
         ];
-        let apart =
-            [params.distance_rounding, params.intensity_rounding] == [Rounding::Truncate; 2];
+        let apart = [keys.distance_rounding, keys.f.rounding] == [Rounding::Truncate; 2];
         match apart {
             true if above[0].2 > below[0].2 + below[1].2 => above.to_vec(),
             true => below.to_vec(),
@@ -178,18 +173,18 @@ impl Reflectance for Arithmetic {
 
     /// What a β that is a power of two costs: most where n is midway between two.
     fn remarks(&self) -> Vec<String> {
-        let (params, (first, last)) = (&self.params, self.params.keys.exponents);
-        if params.scale == Scale::Multiplier {
+        let (keys, (first, last)) = (&self.keys, self.keys.domain.exponents());
+        if keys.scale == Scale::Multiplier {
             return Vec::new();
         }
-        let midway = (0..=params.keys.exponent_bits)
+        let midway = (0..=keys.exponent_bits)
             .map(|octave| (exp2(octave as i32) * std::f64::consts::SQRT_2) as i64);
         let worst = midway
             .flat_map(|n| [n, n + 1])
             .filter(|n| (first.max(1)..=last).contains(n))
             .map(|n| {
-                let rounded = params.exponent(params.scale_operand(n));
-                let errors = [rounded, n].map(|taken| formula_error(n, taken, params.power));
+                let rounded = keys.exponent(keys.scale_operand(n));
+                let errors = [rounded, n].map(|taken| formula_error(n, taken, keys.power));
                 (n, rounded, errors)
             })
             .max_by(|a, b| (a.2[0] - a.2[1]).total_cmp(&(b.2[0] - b.2[1])));

@@ -1,22 +1,26 @@
 //! Values worked out by hand.
 
-use super::contract::highlight;
+use super::contract::of_keys;
 use super::*;
+use crate::base::fixed::Rounding;
 use crate::golden::Contract;
 use crate::golden::highlight::Reflectance;
 use crate::golden::watch;
+use crate::keys::common::{Colours, Domain, Intensity};
 
 /// V = 4, D = 6, F = 4, K = 4, small enough to follow by hand.
-fn small(power: u32, scale: Scale) -> Params {
-    Params {
-        keys: Keys::small(),
+fn small(power: u32, scale: Scale) -> Keys {
+    Keys {
         power,
         scale,
         vector_fraction: 4,
         distance_fraction: 6,
-        squares_in_turn: false,
         distance_rounding: Rounding::Truncate,
-        intensity_rounding: Rounding::Truncate,
+        distance_multipliers: 3,
+        exponent_bits: 4,
+        colours: Colours::small(),
+        f: Intensity::small(),
+        domain: Domain::small(),
     }
 }
 
@@ -42,15 +46,15 @@ fn points_by_hand() {
 
 #[test]
 fn exponents_round_to_powers_of_two_by_their_ratio() {
-    let params = small(4, Scale::Shift);
-    let shifts = [0, 1, 2, 3, 5, 6, 11, 12, 15].map(|n| params.scale_operand(n));
+    let keys = small(4, Scale::Shift);
+    let shifts = [0, 1, 2, 3, 5, 6, 11, 12, 15].map(|n| keys.scale_operand(n));
     assert_eq!(shifts, [0, 0, 1, 2, 2, 3, 3, 4, 4]);
-    assert_eq!(params.scale_format().width(), 3);
+    assert_eq!(keys.scale_format().width(), 3);
 }
 
 #[test]
 fn operands_of_an_angle() {
-    let contract = highlight(small(4, Scale::Shift));
+    let contract = of_keys(small(4, Scale::Shift));
     // N − H = (−sin 60°, 0, 1/2), in sixteenths; 11 is nearest to 2³.
     let third = std::f64::consts::FRAC_PI_3;
     let control = contract.at(third, 11.0).unwrap();
@@ -63,7 +67,7 @@ fn operands_of_an_angle() {
 /// The sweep's error is the worst over what rounds to a word.
 #[test]
 fn a_word_stands_for_an_interval() {
-    let contract = highlight(small(2, Scale::Multiplier));
+    let contract = of_keys(small(2, Scale::Multiplier));
     // Word 3 and n = 12: 10/16 is held against (1 − 3/64·3)² and (1 − 4/64·3)².
     let ends: [f64; 2] = [55.0 / 64.0, 52.0 / 64.0];
     let worst = ends.map(|base| (base * base - 0.625).abs());
@@ -100,8 +104,8 @@ fn a_point_clock_by_clock() {
 /// The same point by one multiplier for all components: two microinstructions more.
 #[test]
 fn squares_in_turn_clock_by_clock() {
-    let params = Params { squares_in_turn: true, ..small(4, Scale::Shift) };
-    let mut model = clocked(params);
+    let keys = Keys { distance_multipliers: 1, ..small(4, Scale::Shift) };
+    let mut model = clocked(keys);
     let first = [1, 1, 3, 1, 62, 1, 1, 1, 2, 1, 15, 1, 0, 0, 0, 0];
     let then = [1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0];
     let names = ["run", "word_address", "distance_sum", "shift_register", "accumulator", "valid"];

@@ -2,8 +2,8 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use super::{Arithmetic, POWERS, Params, range_of};
-use crate::base::fixed::exp2;
+use super::{Arithmetic, Keys, POWERS, products, range_of};
+use crate::base::fixed::{Format, exp2};
 use crate::config::Config;
 use crate::golden::contract::{self as shared, ErrorShare};
 use crate::golden::formulas;
@@ -14,15 +14,18 @@ use crate::golden::{Axis, Contract, Operand, Sweep, Values};
 /// The accuracy contract. Control operands: `delta_zeta`, `zeta_start`, `exponent`, `length`; those of a
 /// point have its angle for `zeta_start`.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
-    Box::new(highlight(Params::of(config)))
+    Box::new(highlight(Keys::of(config)))
 }
 
-pub(super) fn highlight(params: Params) -> Highlight {
-    let mut operands = line::angle_operands(params.angle_format()).to_vec();
-    operands.push(shared::exponent_operand(params.exponent_format(), params.exponents));
-    operands.push(line::length_operand(params.keys.length_bits));
-    let products = params.keys.products();
-    Highlight::new(Arithmetic::new(params), operands, products)
+pub(super) fn highlight(keys: Keys) -> Highlight {
+    let mut operands = line::angle_operands(keys.angle_format()).to_vec();
+    operands.push(shared::exponent_operand(
+        Format::unsigned(keys.exponent_bits as i32, 0),
+        keys.domain.exponents(),
+    ));
+    operands.push(line::length_operand(keys.length_bits));
+    let products = products(&keys);
+    Highlight::new(Arithmetic::new(keys), operands, products)
 }
 
 impl Arithmetic {
@@ -34,9 +37,9 @@ impl Arithmetic {
     /// 1/s is in the table's last word anyway, and so is one beyond 1/s'.
     fn stretching(&self, n: i64) -> (f64, f64) {
         let s = (n as f64 / POWERS[range_of(n)] as f64).sqrt();
-        let word = self.root(n) as f64 * exp2(-(self.params.root_fraction as i32));
+        let word = self.root(n) as f64 * exp2(-(self.keys.root_fraction as i32));
         let reach = (1.0 / s.min(word)).min(1.0);
-        let cut = s * exp2(-(self.params.angle_multiplied as i32));
+        let cut = s * exp2(-(self.keys.angle_multiplied as i32));
         (cut, (s - word).abs() * reach)
     }
 }
@@ -52,7 +55,7 @@ impl Reflectance for Arithmetic {
     #[inline]
     fn reference(&self, control: &[i64]) -> f64 {
         let (angle, n) = (control[1], control[2]);
-        let right = 1i64 << self.params.keys.angle_fraction;
+        let right = 1i64 << self.keys.angle_fraction;
         if angle >= right {
             return 0.0;
         }
@@ -61,14 +64,14 @@ impl Reflectance for Arithmetic {
     }
 
     fn expressions(&self) -> Vec<String> {
-        let angle = line::angle_expression(self.params.angle_format());
+        let angle = line::angle_expression(self.keys.angle_format());
         let power = "{1: 1, 2: 2, 3: 4, 4: 4, 5: 4, 6: 4}.get(exponent, 16)";
         let stretched = format!("sqrt(exponent / {power}) * abs({angle})");
         vec![format!("cos(pi / 2 * min({stretched}, 1)) ** {power} if -1 <= {angle} < 1 else 0")]
     }
 
     fn point(&self, control: &mut [i64], index: u64) {
-        control[1] = line::angle_at(self.params.angle_format(), control[1], control[0], index);
+        control[1] = line::angle_at(self.keys.angle_format(), control[1], control[0], index);
     }
 
     fn line(&self, first: &[i64], last: &[i64]) -> Vec<i64> {
@@ -83,7 +86,7 @@ impl Reflectance for Arithmetic {
     }
 
     fn cosine(&self, _: &[Operand], control: &[i64]) -> Option<f64> {
-        let angle = control[1] as f64 * exp2(-(self.params.keys.angle_fraction as i32));
+        let angle = control[1] as f64 * exp2(-(self.keys.angle_fraction as i32));
         Some(libm::cos(angle * FRAC_PI_2).max(0.0))
     }
 
@@ -94,8 +97,8 @@ impl Reflectance for Arithmetic {
     /// Every angle that a line can come to, by what multiplier 11 takes of it, and every n. Where the surface
     /// faces away the word is the table's last, 0, for every n, and so is the formula.
     fn sweep(&self) -> Option<Sweep> {
-        let magnitudes = 1i64 << self.params.angle_multiplied;
-        let (low, high) = self.params.exponents;
+        let magnitudes = 1i64 << self.keys.angle_multiplied;
+        let (low, high) = self.keys.domain.exponents();
         Some(Sweep {
             axes: vec![
                 Axis { name: "exponent".to_string(), values: Values::Range(low, high) },
@@ -113,8 +116,8 @@ impl Reflectance for Arithmetic {
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let (n, magnitude) = (place[0], place[1]);
         let word = self.cosine_of(n, Some(magnitude), self.root(n));
-        let f = word as f64 * exp2(-(self.params.keys.intensity_fraction as i32));
-        let ulp = exp2(-(self.params.angle_multiplied as i32));
+        let f = word as f64 * exp2(-(self.keys.fraction as i32));
+        let ulp = exp2(-(self.keys.angle_multiplied as i32));
         let end = |magnitude: i64| formulas::quad_cosine(magnitude as f64 * ulp * FRAC_PI_2, n);
         Some((end(magnitude) - f).max(f - end(magnitude + 1)))
     }
@@ -122,9 +125,9 @@ impl Reflectance for Arithmetic {
     /// For each n: how far ROM 12 is from the formula within a step, and the error of the stretched angle
     /// by the steepest slope of the power. The terms are those of the worst n.
     fn shares(&self) -> Vec<ErrorShare> {
-        let params = &self.params;
-        let (low, high) = params.exponents;
-        let largest = (1 << params.exponent_bits) - 1;
+        let keys = &self.keys;
+        let (low, high) = keys.domain.exponents();
+        let largest = (1 << keys.exponent_bits) - 1;
         let worst = (low..=high.min(largest))
             .map(|n| {
                 let table = &self.tables[range_of(n)];

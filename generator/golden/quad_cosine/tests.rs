@@ -1,14 +1,22 @@
 use super::contract::highlight;
 use super::*;
+use crate::base::fixed::Rounding;
+use crate::keys::common::Domain;
 
 /// The default with 4 + 4 bits of angle and root, and tables of 8 steps.
-fn small() -> Params {
-    Params {
-        keys: LineKeys::small(),
+fn small() -> Keys {
+    Keys {
+        angle_fraction: 6,
         angle_multiplied: 4,
         root_fraction: 4,
+        table_address: 3,
+        length_bits: 12,
+        stages: 2,
         exponent_bits: 10,
-        exponents: (1, 1000),
+        colour_bits: 8,
+        fraction: 6,
+        output_rounding: Rounding::Nearest,
+        domain: Domain { least: 1, most: 1000 },
     }
 }
 

@@ -1,16 +1,28 @@
 //! Values worked out by hand.
 
 use super::*;
+use crate::base::fixed::Rounding;
 use crate::golden::watch;
+use crate::keys::common::{Domain, Intensity, Operands};
 
 /// C = 4, D = 6, F = 4, K = 4, small enough to follow by hand.
-fn small(scheme: CoefficientScheme) -> Arithmetic {
-    Arithmetic::new(Keys::small(), scheme, (6, Rounding::Truncate), Rounding::Truncate)
+fn small(scheme: Scheme, multipliers: u32) -> Arithmetic {
+    let mut operands = Operands::small();
+    operands.colours.multipliers = multipliers;
+    Arithmetic::new(Keys {
+        scheme,
+        fraction: 2,
+        operands,
+        difference_fraction: 6,
+        difference_rounding: Rounding::Truncate,
+        f: Intensity::small(),
+        domain: Domain::small(),
+    })
 }
 
 #[test]
 fn points_by_hand() {
-    let contract = small(CoefficientScheme::Taylor);
+    let contract = small(Scheme::Taylor, 3);
     let f = |cosine, n| contract.f(&[cosine, n]);
     // n = 1 and n = 0: f = c.
     assert_eq!((f(14, 1), f(14, 0)), (14, 14));
@@ -26,8 +38,7 @@ fn points_by_hand() {
 
 #[test]
 fn minimax_words_by_hand() {
-    let scheme = CoefficientScheme::Minimax { fraction: 2 };
-    let contract = small(scheme);
+    let contract = small(Scheme::Minimax, 3);
     // n = 3: the errors are equal, 0.0424, at a = 1.535; six quarters.
     assert_eq!(contract.words[..4], [0, 0, 4, 6]);
     // c = 14/16: 56/64 − 1.5·7/64 = 45.5/64 → 11/16.
@@ -37,7 +48,7 @@ fn minimax_words_by_hand() {
 /// The table makes both errors equal: on a grid, no larger and no smaller coefficient does better.
 #[test]
 fn the_table_is_minimax() {
-    let table = coefficient::table(CoefficientScheme::Minimax { fraction: 0 }, 4096);
+    let table = coefficient::table(Scheme::Minimax, 4096);
     for n in [3, 5, 16, 250, 1000, 4095] {
         let a = table[n];
         let error = |a: f64| {
@@ -57,7 +68,7 @@ fn the_table_is_minimax() {
 /// One point followed clock by clock: words 0, 1, 2, 3 and idle.
 #[test]
 fn a_point_clock_by_clock() {
-    let mut model = clocked(small(CoefficientScheme::Taylor));
+    let mut model = clocked(small(Scheme::Taylor, 3));
     // c = 14/16, n = 5, red 15, written together with start.
     let first = [1, 1, 14, 1, 5, 1, 15, 1, 0, 0, 0, 0];
     // Writes while busy change nothing.
@@ -78,9 +89,7 @@ fn a_point_clock_by_clock() {
 /// The same point by one multiplier for all colours: three microinstructions more, and outputs that hold.
 #[test]
 fn colours_in_turn_clock_by_clock() {
-    let it = small(CoefficientScheme::Taylor);
-    let keys = Keys { colours_in_turn: true, ..it.keys.clone() };
-    let mut model = clocked(Arithmetic { keys, ..it });
+    let mut model = clocked(small(Scheme::Taylor, 1));
     // As above, with green 9 and blue 4.
     let first = [1, 1, 14, 1, 5, 1, 15, 1, 9, 1, 4, 1];
     // The last of these writes come when it is idle again, and change no output.

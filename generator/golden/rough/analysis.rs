@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use super::Params;
+use super::Keys;
 use crate::base::fixed::{Rounding, exp2};
 use crate::golden::narrow::rounding_error;
 use crate::golden::sine::{Piece, Sine};
@@ -64,17 +64,17 @@ pub struct Weight {
 
 impl Weight {
     /// `anywhere` is the largest error of the base for whatever angles.
-    fn new(params: &Params, distance: usize, anywhere: f64) -> Self {
-        let (least, most) = exponents(params);
+    fn new(keys: &Keys, distance: usize, anywhere: f64) -> Self {
+        let (least, most) = exponents(keys);
         let sine = libm::sin((distance.saturating_sub(1)) as f64 * BIN / 2.0);
         let q = 2.0 * sine * sine;
         // The square is constant beyond n·q/2 = 1 + E, or, where |b| counts, 2 + E.
-        let reach = if params.clamp { 1.0 } else { 2.0 };
+        let reach = if keys.clamp { 1.0 } else { 2.0 };
         let limit = most.min(2.0 * (reach + anywhere) / q);
         if limit < least {
             return Self { linear: 0.0, exponent: 0.0 };
         }
-        let linear = if params.clamp {
+        let linear = if keys.clamp {
             let best = (1.0 / q).clamp(least, most);
             best * (1.0 - best * q / 2.0).max(0.0)
         } else {
@@ -84,8 +84,8 @@ impl Weight {
     }
 }
 
-fn exponents(params: &Params) -> (f64, f64) {
-    (params.keys.exponents.0 as f64, params.keys.exponents.1 as f64)
+fn exponents(keys: &Keys) -> (f64, f64) {
+    (keys.domain.least as f64, keys.domain.most as f64)
 }
 
 fn bin(angle: f64) -> usize {
@@ -109,19 +109,19 @@ pub struct Analysis {
 
 impl Analysis {
     /// The bounds with the errors of a table.
-    pub fn new(params: &Params, sine: &Sine) -> Self {
+    pub fn new(keys: &Keys, sine: &Sine) -> Self {
         let errors = Errors::new(sine);
-        let deviation = bin(params.deviation.to_radians() + SLACK);
-        let (p, f) = (params.product_fraction, params.keys.intensity_fraction);
-        let rounding = params.product_rounding;
-        let cos_cos = rounding_error(2 * params.keys.cosine_fraction, p, rounding);
-        let mut sin_sin = rounding_error(2 * params.sine_fraction, p, rounding);
+        let deviation = bin(keys.deviation.to_radians() + SLACK);
+        let (p, f) = (keys.product_fraction, keys.f.fraction);
+        let rounding = keys.product_rounding;
+        let cos_cos = rounding_error(2 * keys.operands.cosine.fraction, p, rounding);
+        let mut sin_sin = rounding_error(2 * keys.sine_fraction, p, rounding);
         let largest_product = errors.sines[deviation] + errors.errors[deviation].0;
         if rounding == Rounding::Nearest && largest_product >= 1.0 - exp2(-(p as i32)) {
             // What would round to 1.0 saturates to 1.0 − ulp.
             sin_sin = sin_sin.max(exp2(-(p as i32)));
         }
-        let base = rounding_error(p + 1, f, params.intensity_rounding);
+        let base = rounding_error(p + 1, f, keys.f.rounding);
         let mut it = Self {
             errors,
             weights: Vec::new(),
@@ -132,10 +132,9 @@ impl Analysis {
             square: 0.0,
         };
         let largest = it.pairs().map(|(i, j)| it.errors.product(i, j)).fold(0.0, f64::max);
-        let (_, most) = exponents(params);
+        let (_, most) = exponents(keys);
         let anywhere = most / 2.0 * (largest + it.products) + base;
-        it.weights =
-            (0..2 * BINS).map(|distance| Weight::new(params, distance, anywhere)).collect();
+        it.weights = (0..2 * BINS).map(|distance| Weight::new(keys, distance, anywhere)).collect();
         let square = |(i, j): (usize, usize)| {
             it.weights[i.abs_diff(j)].exponent / 2.0 * (it.errors.product(i, j) + it.products)
         };

@@ -22,14 +22,13 @@
 //! the pair of bins, in proportion.
 
 use super::analysis::Analysis;
-use super::{Arithmetic, Kind, Params, pairs};
+use super::{Arithmetic, Keys, Kind, Scheme, pairs};
 use crate::base::fixed::exp2;
 use crate::golden::contract::ErrorShare;
-use crate::golden::sine::TableScheme;
 
 /// What the error of f is made of.
 pub fn shares(it: &Arithmetic) -> Vec<ErrorShare> {
-    match it.params.arithmetic {
+    match it.keys.arithmetic {
         Kind::Patent => {
             vec![("arithmetic", "words modulo 1.0 wrap where the base is negative", 1.0)]
         }
@@ -38,19 +37,19 @@ pub fn shares(it: &Arithmetic) -> Vec<ErrorShare> {
 }
 
 fn exact(it: &Arithmetic) -> Vec<ErrorShare> {
-    let params = &it.params;
-    let analysis = Analysis::new(params, &it.sine);
+    let keys = &it.keys;
+    let analysis = Analysis::new(keys, &it.sine);
     let of = |&(i, j): &(usize, usize)| analysis.bound(i, j, true);
     let pairs = analysis.pairs();
     let at = pairs.reduce(|one, other| if of(&other) > of(&one) { other } else { one });
     let at = at.unwrap_or_default();
     let linear = analysis.weights[at.0.abs_diff(at.1)].linear;
     let base = analysis.square + analysis.base;
-    let mut shares: Vec<ErrorShare> = sine_terms(params)
+    let mut shares: Vec<ErrorShare> = sine_terms(keys)
         .iter()
         .enumerate()
         .map(|(k, &(key, what))| {
-            let part = |error, shape| split(params, error, shape)[k];
+            let part = |error, shape| split(keys, error, shape)[k];
             (key, what, linear * analysis.errors.part(at.0, at.1, part))
         })
         .collect();
@@ -64,7 +63,7 @@ fn exact(it: &Arithmetic) -> Vec<ErrorShare> {
         ("intensity.fraction", "rounding of register 13, twice", twice),
         ("domain.exponent_max", "square of the base's error", base * base),
     ]);
-    if params.clamp {
+    if keys.clamp {
         let sum: f64 = shares.iter().map(|share| share.2).sum();
         let part = pairs::largest_error(it, &analysis) / sum;
         shares.iter_mut().for_each(|share| share.2 *= part);
@@ -73,13 +72,13 @@ fn exact(it: &Arithmetic) -> Vec<ErrorShare> {
 }
 
 /// The keys that govern the parts which [`split`] tells apart.
-fn sine_terms(params: &Params) -> &'static [(&'static str, &'static str)] {
-    match params.sine_scheme {
-        TableScheme::Direct { .. } => &[
+fn sine_terms(keys: &Keys) -> &'static [(&'static str, &'static str)] {
+    match keys.scheme {
+        Scheme::Direct => &[
             ("sine.fraction", "rounding of the sine, times n"),
             ("sine.address", "one sine for a whole bucket, times n"),
         ],
-        TableScheme::Segmented { .. } => &[
+        Scheme::Segmented => &[
             ("sine.fraction", "rounding of the sine, times n"),
             ("sine.segments", "straight segments for the sine, times n"),
             ("sine.slope_fraction", "rounding of the slopes, times n"),
@@ -89,14 +88,12 @@ fn sine_terms(params: &Params) -> &'static [(&'static str, &'static str)] {
 
 /// An entry's error, which is known as a whole, in parts that add up to it: in proportion to what
 /// rounding (with the floor after interpolation), the shape and the slope's rounding could cost at most.
-fn split(params: &Params, error: f64, shape: f64) -> [f64; 3] {
-    let ulp = exp2(-(params.sine_fraction as i32));
-    let most = match params.sine_scheme {
-        TableScheme::Direct { .. } => [ulp / 2.0, shape, 0.0],
+fn split(keys: &Keys, error: f64, shape: f64) -> [f64; 3] {
+    let ulp = exp2(-(keys.sine_fraction as i32));
+    let most = match keys.scheme {
+        Scheme::Direct => [ulp / 2.0, shape, 0.0],
         // A slope is off by half an ulp over the segment, and the base halves that again.
-        TableScheme::Segmented { slope_fraction, .. } => {
-            [1.5 * ulp, shape, exp2(-(slope_fraction as i32)) / 4.0]
-        }
+        Scheme::Segmented => [1.5 * ulp, shape, exp2(-(keys.slope_fraction as i32)) / 4.0],
     };
     most.map(|part| part * error / most.iter().sum::<f64>())
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{Arithmetic, Params};
+use super::{Arithmetic, Keys, keys_of};
 use crate::base::fixed::Format;
 use crate::config::Config;
 use crate::golden::Model;
@@ -10,32 +10,32 @@ use crate::golden::frame::{Clocked, Frame, idle, step_by};
 
 /// The golden model.
 pub fn model(config: &Config) -> Box<dyn Model> {
-    Box::new(clocked(Params::of(config)))
+    Box::new(clocked(keys_of(config)))
 }
 
 /// The device, clock by clock.
 ///
 /// A synchronous ROM 18 is addressed a microinstruction before its sine is taken, with operands that do not change in
 /// between, so that it shows the same as another would.
-pub(super) fn clocked(params: Params) -> Clocked {
-    let it = Arc::new(Arithmetic::new(params));
-    let params = &it.params;
-    let largest = params.largest_cosine();
-    let product = |int| Format::unsigned(int, params.product_fraction as i32);
-    let [cos_cos, sin_sin, sine] = if params.patent() {
-        [params.cos_dgamma_format(); 3]
+pub(super) fn clocked(keys: Keys) -> Clocked {
+    let it = Arc::new(Arithmetic::new(keys));
+    let keys = &it.keys;
+    let largest = keys.largest_cosine();
+    let product = |int| Format::unsigned(int, keys.product_fraction as i32);
+    let [cos_cos, sin_sin, sine] = if keys.patent() {
+        [keys.cos_dgamma_format(); 3]
     } else {
-        [product(1), product(0), Format::unsigned(0, params.sine_fraction as i32)]
+        [product(1), product(0), Format::unsigned(0, keys.sine_fraction as i32)]
     };
     let mut frame = Frame::default();
-    let cos_gamma = frame.clamped("cos_gamma", params.cos_gamma_format(), 0, largest);
-    let cos_dgamma = frame.clamped("cos_dgamma", params.cos_dgamma_format(), 0, largest);
-    let exponent = frame.operand("exponent", params.keys.exponent_format());
+    let cos_gamma = frame.clamped("cos_gamma", keys.cos_gamma_format(), 0, largest);
+    let cos_dgamma = frame.clamped("cos_dgamma", keys.cos_dgamma_format(), 0, largest);
+    let exponent = frame.operand("exponent", keys.operands.exponent_format());
     let negative = frame.operand("dgamma_negative", Format::BIT);
     let reg19 = frame.register("reg19_sin_gamma", sine);
     let reg11 = frame.register("reg11_cos_cos", cos_cos);
     let reg12 = frame.register("reg12_sin_sin", sin_sin);
-    let reg13 = frame.register("reg13_result", params.result_format());
+    let reg13 = frame.register("reg13_result", keys.result_format());
     // f, as it is read from register 13.
     let reflectance = frame.hidden();
     // Each odd microinstruction captures what the one before it let settle.
@@ -61,7 +61,7 @@ pub(super) fn clocked(params: Params) -> Clocked {
             s[reflectance] = it.f_of(s[reg13]);
         }),
     ];
-    program.extend(params.keys.products().slots(&mut frame, reflectance));
+    program.extend(keys.products().slots(&mut frame, reflectance));
     program.extend([idle().valid(), idle().end()]);
     frame.model(program)
 }

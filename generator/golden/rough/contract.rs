@@ -1,6 +1,6 @@
 //! The accuracy contract of `rough`.
 
-use super::{Arithmetic, Kind, Params, bound};
+use super::{Arithmetic, Keys, Kind, bound, keys_of};
 use crate::base::fixed::{Format, exp2};
 use crate::config::Config;
 use crate::golden::contract::{self as shared, ErrorShare};
@@ -13,14 +13,14 @@ const SWEPT_DEVIATIONS: [f64; 4] = [0.0, 1.0, 5.0, 15.0];
 
 /// The accuracy contract. Control operands: `cos_gamma`, `cos_dgamma`, `exponent`, `dgamma_negative`.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
-    let params = Params::of(config);
-    let (operands, products) = (params.operands(), params.keys.products());
-    Box::new(Highlight::new(Arithmetic::new(params), operands, products))
+    let keys = keys_of(config);
+    let (control, products) = (keys.control(), keys.products());
+    Box::new(Highlight::new(Arithmetic::new(keys), control, products))
 }
 
-impl Params {
+impl Keys {
     fn ulp(&self) -> f64 {
-        exp2(-(self.keys.cosine_fraction as i32))
+        exp2(-(self.operands.cosine.fraction as i32))
     }
 
     /// The domain of cos dγ: from the smallest cosine whose angle is within the deviation.
@@ -30,7 +30,7 @@ impl Params {
         (((cosine / self.ulp()).ceil() as i64).min(largest), largest)
     }
 
-    fn operands(&self) -> Vec<Operand> {
+    fn control(&self) -> Vec<Operand> {
         let (largest, cos_gamma) = (self.largest_cosine(), self.cos_gamma_format());
         let lowest = if cos_gamma.signed { -largest } else { 0 };
         let sign = "1: the deviation is taken from the angle; 0: added to it";
@@ -42,7 +42,7 @@ impl Params {
                 self.cos_dgamma_domain(),
                 "cosine of the deviation of the microfacet",
             ),
-            shared::exponent_operand(self.keys.exponent_format(), self.keys.exponents),
+            shared::exponent_operand(self.operands.exponent_format(), self.domain.exponents()),
             shared::control("dgamma_negative", Format::BIT, (0, 1), sign),
         ]
     }
@@ -58,7 +58,7 @@ impl Reflectance for Arithmetic {
     fn f(&self, control: &[i64]) -> i64 {
         let it = self;
         let (cos_gamma, cos_dgamma) =
-            (self.params.clamped(control[0]), self.params.clamped(control[1]));
+            (self.keys.clamped(control[0]), self.keys.clamped(control[1]));
         let sin_sin = it.sin_sin(it.sine.at(cos_gamma), it.sine.at(cos_dgamma));
         let adder_15 = it.adder_15(it.cos_cos(cos_gamma, cos_dgamma), sin_sin, control[3]);
         let scaled = it.scaled(adder_15, control[2], cos_gamma);
@@ -68,10 +68,10 @@ impl Reflectance for Arithmetic {
     /// The patent's arithmetic is held against the clamped formula, which shows what it costs.
     #[inline]
     fn reference(&self, control: &[i64]) -> f64 {
-        let cosine = |raw| self.params.clamped(raw) as f64 * self.params.ulp();
+        let cosine = |raw| self.keys.clamped(raw) as f64 * self.keys.ulp();
         let (cos_gamma, cos_dgamma) = (cosine(control[0]), cosine(control[1]));
         let (negative, exponent) = (control[3] == 1, control[2] as f64);
-        match (self.params.arithmetic, self.params.clamp) {
+        match (self.keys.arithmetic, self.keys.clamp) {
             (Kind::Exact, false) => {
                 formulas::rough_unclamped(cos_gamma, cos_dgamma, negative, exponent)
             }
@@ -83,7 +83,7 @@ impl Reflectance for Arithmetic {
         let sines = "sqrt((1 - cos_gamma ** 2) * (1 - cos_dgamma ** 2))";
         let turned = format!("cos_gamma * cos_dgamma + (2 * dgamma_negative - 1) * {sines}");
         let base = format!("exponent / 2 * ({turned} - 1) + 1");
-        vec![shared::where_it_faces(&match (self.params.arithmetic, self.params.clamp) {
+        vec![shared::where_it_faces(&match (self.keys.arithmetic, self.keys.clamp) {
             (Kind::Exact, false) => format!("min(({base}) ** 2, 1)"),
             _ => format!("{} ** 2", shared::clamped_at_0(&base)),
         })]
@@ -91,28 +91,28 @@ impl Reflectance for Arithmetic {
 
     /// With dγ = 0.
     fn at(&self, operands: &[Operand], gamma: f64, n: f64) -> Option<Vec<i64>> {
-        let no_deviation = [("cos_dgamma", self.params.largest_cosine())];
+        let no_deviation = [("cos_dgamma", self.keys.largest_cosine())];
         shared::operands_at(operands, gamma, n, &no_deviation)
     }
 
     /// Where γ is dγ; where dγ is added to it, both are 0.
     fn peak(&self, control: &[i64]) -> Option<Vec<i64>> {
-        let deviation = if control[3] == 1 { control[1] } else { self.params.largest_cosine() };
+        let deviation = if control[3] == 1 { control[1] } else { self.keys.largest_cosine() };
         Some(vec![deviation, deviation, control[2], control[3]])
     }
 
     /// Every cos γ and every n, with some settings of dγ of the domain, of both signs.
     fn sweep(&self) -> Option<Sweep> {
-        let (low, high) = self.params.cos_dgamma_domain();
+        let (low, high) = self.keys.cos_dgamma_domain();
         let mut deviations: Vec<i64> = SWEPT_DEVIATIONS
             .into_iter()
-            .filter(|&degrees| degrees < self.params.deviation)
-            .chain([self.params.deviation])
-            .map(|degrees| (libm::cos(degrees.to_radians()) / self.params.ulp()).ceil() as i64)
+            .filter(|&degrees| degrees < self.keys.deviation)
+            .chain([self.keys.deviation])
+            .map(|degrees| (libm::cos(degrees.to_radians()) / self.keys.ulp()).ceil() as i64)
             .map(|raw| raw.clamp(low, high))
             .collect();
         deviations.dedup();
-        let axes = self.params.operands().into_iter().map(|operand| Axis {
+        let axes = self.keys.control().into_iter().map(|operand| Axis {
             values: match operand.name.as_str() {
                 "cos_dgamma" => Values::List(deviations.clone()),
                 _ => Values::Range(operand.domain.0, operand.domain.1),

@@ -100,7 +100,7 @@ impl Search<'_> {
             self.cosines.entry(bin).or_insert(cosines);
         }
         let cosines = std::mem::take(&mut self.cosines);
-        let lowest = self.it.params.cos_dgamma_domain().0;
+        let lowest = self.it.keys.cos_dgamma_domain().0;
         let (analysis, mut within) = (self.analysis, true);
         'pairs: for x in &cosines[&i] {
             for y in cosines[&j].iter().filter(|y| y.raw >= lowest) {
@@ -123,15 +123,15 @@ impl Search<'_> {
 
     /// The pair, if its bound is larger than the largest error that was met.
     fn pair(&mut self, x: &Cosine, y: &Cosine, negative: i64) -> Option<Pair> {
-        let (it, params) = (self.it, &self.it.params);
-        let ulp = exp2(-(params.keys.cosine_fraction as i32));
+        let (it, keys) = (self.it, &self.it.keys);
+        let ulp = exp2(-(keys.operands.cosine.fraction as i32));
         let turned = if negative == 1 { x.sine * y.sine } else { -(x.sine * y.sine) };
         let exact = (x.raw as f64 * ulp) * (y.raw as f64 * ulp) + turned - 1.0;
         let sin_sin = it.sin_sin(it.sine.at(x.raw), it.sine.at(y.raw));
         let adder_15 = it.adder_15(it.cos_cos(x.raw, y.raw), sin_sin, negative) as f64;
-        let distance = (adder_15 * exp2(-(params.product_fraction as i32)) - exact).abs();
+        let distance = (adder_15 * exp2(-(keys.product_fraction as i32)) - exact).abs();
         let below = (-exact).max(0.0);
-        let (least, most) = params.keys.exponents;
+        let (least, most) = keys.domain.exponents();
         let n = (1.0 / below).clamp(least as f64, most as f64);
         let bound = self.analysis.rounded(weight(n, below) * distance);
         if bound <= self.largest {
@@ -144,7 +144,7 @@ impl Search<'_> {
 
     /// Computes the error for every n that may have a larger one; false when that takes too many steps.
     fn go_through_exponents(&mut self, pair: &Pair) -> bool {
-        let (least, most) = self.it.params.keys.exponents;
+        let (least, most) = self.it.keys.domain.exponents();
         let [x, y, _, negative] = pair.control;
         for n in (least..=most).rev() {
             let bound = self.analysis.rounded(weight(n as f64, pair.below) * pair.distance);
@@ -160,18 +160,18 @@ impl Search<'_> {
     }
 
     fn error(&self, control: &[i64]) -> f64 {
-        let f = self.it.f(control) as f64 * exp2(-(self.it.params.keys.intensity_fraction as i32));
+        let f = self.it.f(control) as f64 * exp2(-(self.it.keys.f.fraction as i32));
         (f - self.it.reference(control)).abs()
     }
 
     /// The cosines of angles in a bin, and one more at each end.
     fn cosines_of(&self, bin: usize) -> Vec<Cosine> {
-        let params = &self.it.params;
-        let one = 1_i64 << params.keys.cosine_fraction;
+        let keys = &self.it.keys;
+        let one = 1_i64 << keys.operands.cosine.fraction;
         let raw = |edge: usize| libm::cos(edge as f64 * BIN) * one as f64;
         let (low, high) = (raw(bin + 1).floor() as i64 - 1, raw(bin).ceil() as i64 + 1);
-        let unit = exp2(-(params.sine_fraction as i32));
-        let cosines = (low.max(0)..=high.min(params.largest_cosine())).map(|raw| {
+        let unit = exp2(-(keys.sine_fraction as i32));
+        let cosines = (low.max(0)..=high.min(keys.largest_cosine())).map(|raw| {
             let sine = ((one * one - raw * raw) as f64).sqrt() / one as f64;
             let error = (self.it.sine.at(raw) as f64 * unit - sine).abs() + F64;
             Cosine { raw, sine, error }

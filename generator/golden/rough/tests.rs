@@ -2,26 +2,33 @@
 
 use super::clock_model::clocked;
 use super::*;
+use crate::base::fixed::Rounding;
 use crate::golden::highlight::Reflectance;
 use crate::golden::{Model, watch};
+use crate::keys::common::{Domain, Intensity, Operands};
 
 /// C = 4, S = P = 6, F = 4, and the sine table that `sine.rs` works out by hand.
-fn small() -> Params {
-    Params {
-        keys: Keys::small(),
-        product_fraction: 6,
-        sine_scheme: TableScheme::Segmented { segments: vec![2], slope_fraction: 5 },
-        sine_fraction: 6,
+fn small() -> Keys {
+    Keys {
         arithmetic: Kind::Exact,
         clamp: true,
+        operands: Operands::small(),
+        product_fraction: 6,
         product_rounding: Rounding::Truncate,
-        intensity_rounding: Rounding::Truncate,
+        f: Intensity::small(),
+        scheme: Scheme::Segmented,
+        sine_fraction: 6,
+        synchronous: true,
+        address: 4,
+        segments: vec![2],
+        slope_fraction: 5,
+        domain: Domain::small(),
         deviation: 30.0,
     }
 }
 
-fn f(params: &Params, control: [i64; 4]) -> i64 {
-    Arithmetic::new(params.clone()).f(&control)
+fn f(keys: &Keys, control: [i64; 4]) -> i64 {
+    Arithmetic::new(keys.clone()).f(&control)
 }
 
 #[test]
@@ -35,11 +42,9 @@ fn exact_arithmetic() {
     // n = 4: −168/128 clamps to −1.0.
     assert_eq!(f(&small(), [12, 14, 4, 0]), 0);
     // To the nearest: 168/256 → 42/64 and 1333/4096 → 21/64, n = 1: −43/128 → −5/16, 121/256 → 8/16.
-    let nearest = Params {
-        product_rounding: Rounding::Nearest,
-        intensity_rounding: Rounding::Nearest,
-        ..small()
-    };
+    let rounding = Rounding::Nearest;
+    let f_nearest = Intensity { rounding, ..Intensity::small() };
+    let nearest = Keys { product_rounding: rounding, f: f_nearest, ..small() };
     assert_eq!(f(&nearest, [12, 14, 1, 0]), 8);
 }
 
@@ -54,30 +59,26 @@ fn ends_of_the_operands() {
 
 #[test]
 fn without_the_clamp_the_parabola_rises_again() {
-    let params = Params { clamp: false, ..small() };
+    let keys = Keys { clamp: false, ..small() };
     // n = 4: −168/128 → −21/16; (−5/16)² = 25/256 → 1/16.
-    assert_eq!(f(&params, [12, 14, 4, 0]), 1);
+    assert_eq!(f(&keys, [12, 14, 4, 0]), 1);
     // n = 15: −630/128 saturates to −2.0; (−1.0)² is 1.0, of which f has an ulp less.
-    assert_eq!(f(&params, [12, 14, 15, 0]), 15);
+    assert_eq!(f(&keys, [12, 14, 15, 0]), 15);
     // And so at the peak.
-    assert_eq!(f(&params, [16, 16, 15, 0]), 15);
-    assert_eq!(f(&params, [0, 14, 15, 0]), 0);
+    assert_eq!(f(&keys, [16, 16, 15, 0]), 15);
+    assert_eq!(f(&keys, [0, 14, 15, 0]), 0);
 }
 
 #[test]
 fn patent_arithmetic() {
-    let params = Params {
-        arithmetic: Kind::Patent,
-        sine_scheme: TableScheme::Direct { address: 4 },
-        ..small()
-    };
+    let keys = Keys { arithmetic: Kind::Patent, scheme: Scheme::Direct, ..small() };
     // Sines at 12.5/16 and 14.5/16: 0.6242 and 0.4227, or 10/16 and 7/16. Register 11: 168/256 →
     // 10/16; register 12: 70/256 → 4/16.
     // dγ positive, n = 4: 10 + ¬4 = 10 + 11 = 21 → 5; 5·2 = 10; 10 + 1 = 11; 121/256 → 7/16.
-    assert_eq!(f(&params, [12, 14, 4, 0]), 7);
+    assert_eq!(f(&keys, [12, 14, 4, 0]), 7);
     // dγ negative: 10 + (4 − 1) + 1 = 14; 28 → 12; 13; 169/256 → 10/16. n = 5 loses its low bit.
-    assert_eq!(f(&params, [12, 14, 4, 1]), 10);
-    assert_eq!(f(&params, [12, 14, 5, 1]), 10);
+    assert_eq!(f(&keys, [12, 14, 4, 1]), 10);
+    assert_eq!(f(&keys, [12, 14, 5, 1]), 10);
 }
 
 /// c = 12/16, cd = 14/16, n = 4, dγ negative, red 15; all written, together with start.
@@ -125,38 +126,33 @@ fn a_reset_stops_the_words_alone() {
 /// The bound is that of every operand, one by one: never below the largest error, and where the search has found that, it.
 #[test]
 fn the_bound_is_the_largest_error_of_all_operands() {
-    let wide = Params {
-        keys: Keys {
-            cosine_fraction: 8,
-            intensity_fraction: 10,
-            exponents: (1, 30),
-            ..Keys::small()
-        },
+    let mut wide = Keys {
         product_fraction: 12,
-        sine_scheme: TableScheme::Segmented { segments: vec![4, 3], slope_fraction: 10 },
+        segments: vec![4, 3],
+        slope_fraction: 10,
         sine_fraction: 12,
+        domain: Domain { least: 1, most: 30 },
         ..small()
     };
-    let nearest = Rounding::Nearest;
+    wide.operands.cosine.fraction = 8;
+    wide.f.fraction = 10;
+    let rounding = Rounding::Nearest;
+    let f = Intensity { rounding, ..wide.f.clone() };
     let all = [
-        Params { product_rounding: nearest, intensity_rounding: nearest, ..wide.clone() },
-        Params { sine_scheme: TableScheme::Direct { address: 7 }, ..wide.clone() },
-        Params {
-            deviation: 90.0,
-            keys: Keys { exponents: (3, 9), ..wide.keys.clone() },
-            ..wide.clone()
-        },
-        Params { sine_fraction: 9, product_fraction: 16, ..wide.clone() },
-        Params { clamp: false, ..wide.clone() },
+        Keys { product_rounding: rounding, f, ..wide.clone() },
+        Keys { scheme: Scheme::Direct, address: 7, ..wide.clone() },
+        Keys { deviation: 90.0, domain: Domain { least: 3, most: 9 }, ..wide.clone() },
+        Keys { sine_fraction: 9, product_fraction: 16, ..wide.clone() },
+        Keys { clamp: false, ..wide.clone() },
         wide,
     ];
     let mut met = 0;
-    for params in all {
-        let it = Arithmetic::new(params.clone());
-        let (lowest, one) = (params.cos_dgamma_domain().0, params.largest_cosine());
+    for keys in all {
+        let it = Arithmetic::new(keys.clone());
+        let (lowest, one) = (keys.cos_dgamma_domain().0, keys.largest_cosine());
         let mut largest = 0.0_f64;
         for (x, y) in (0..=one).flat_map(|x| (lowest..=one).map(move |y| (x, y))) {
-            for n in params.keys.exponents.0..=params.keys.exponents.1 {
+            for n in keys.domain.least..=keys.domain.most {
                 for negative in [0, 1] {
                     let control = [x, y, n, negative];
                     let f = it.f(&control) as f64 / 1024.0;

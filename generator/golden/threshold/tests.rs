@@ -2,15 +2,17 @@
 
 use super::*;
 use crate::golden::watch;
+use crate::keys::common::{Domain, Intensity, Operands};
 
 /// C = 4, F = 4, K = 4, small enough to follow by hand.
-fn small(levels: &[i64]) -> Arithmetic {
-    Arithmetic::new(Keys::small(), Rounding::Truncate, levels)
+fn small(levels: &[u32]) -> Arithmetic {
+    let (operands, f, domain) = (Operands::small(), Intensity::small(), Domain::small());
+    Arithmetic::new(Keys { operands, f, levels: levels.to_vec(), domain })
 }
 
 #[test]
 fn points_by_hand() {
-    let f = |levels: &[i64], cosine, n| small(levels).f(&[cosine, n]);
+    let f = |levels: &[u32], cosine, n| small(levels).f(&[cosine, n]);
     // n = 4, c = 14/16: 2·(−2/16) = −4/16; base 12/16; 144/256 = 9/16.
     assert_eq!(f(&[0], 14, 4), 9);
     // n = 3: −3/16; 13² = 169 → 10.
@@ -74,17 +76,10 @@ fn a_point_clock_by_clock() {
 /// Half a unit hides nothing that could be seen; a whole unit does.
 #[test]
 fn levels_that_are_seen_are_remarked_on() {
-    let remarks = |levels: &[i64]| {
-        let keys = Keys {
-            cosine_fraction: 20,
-            exponent_bits: 10,
-            colour_bits: 8,
-            colours_in_turn: false,
-            intensity_fraction: 16,
-            exponents: (1, 1000),
-            ..small(&[0]).keys
-        };
-        Arithmetic::new(keys, Rounding::Truncate, levels).remarks()
+    let remarks = |levels: &[u32]| {
+        let schema = crate::keys::threshold::schema();
+        let defaults = Keys::of(&Config::defaults(&schema, "defaults"));
+        Arithmetic::new(Keys { levels: levels.to_vec(), ..defaults }).remarks()
     };
     assert!(remarks(&[50]).is_empty());
     let seen = remarks(&[50, 50, 320]);

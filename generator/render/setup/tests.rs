@@ -7,7 +7,7 @@ use super::*;
 use crate::config::{self, Config};
 use crate::golden::Contract;
 use crate::render::Feed;
-use crate::{devices, golden};
+use crate::{golden, keys};
 
 const X: Vector = Vector([1.0, 0.0, 0.0]);
 const Y: Vector = Vector([0.0, 1.0, 0.0]);
@@ -158,14 +158,14 @@ fn opposite_normals_and_half_vectors() {
 
 /// The raw operands for the default of `quad-cosine`.
 fn quad(line: &Line) -> Vec<i64> {
-    let config = Config::defaults(&devices::quad_cosine::schema(), "line");
+    let config = Config::defaults(&keys::quad_cosine::schema(), "line");
     operands(golden::quad_cosine::contract(&config).as_ref(), line).unwrap()
 }
 
 /// And for a configuration of `cosine-squared`.
 fn squared(keys: &str, line: &Line) -> anyhow::Result<Vec<i64>> {
     let text = format!("device = \"cosine-squared\"\n{keys}");
-    let config = config::parse("line.toml", &text, &[devices::cosine_squared::schema()]).unwrap();
+    let config = config::parse("line.toml", &text, &[keys::cosine_squared::schema()]).unwrap();
     operands(golden::cosine_squared::contract(&config).as_ref(), line)
 }
 

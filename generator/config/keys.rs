@@ -1,0 +1,144 @@
+//! Keys as the fields of a struct, which description and golden model read.
+
+use super::schema::Key;
+use super::values::Config;
+use crate::base::fixed::Rounding;
+
+/// A type of field in a table of [`keys!`](crate::keys).
+pub trait Setting: Sized {
+    /// The value that a configuration has for the keys of the field.
+    fn read(config: &Config, keys: &[Key]) -> Self;
+}
+
+/// Makes a struct of keys: `keys()` states them for a [`Schema`](super::Schema) in the order of the fields, and `of`
+/// reads a configuration. A field has a [`Key`] or, as another such struct, several.
+///
+/// ```
+/// use glint::config::{Config, Key, Schema};
+/// use glint::fixed::Rounding;
+///
+/// glint::keys! {
+///     struct Keys {
+///         fraction: u32 = Key::integer("x.fraction", 12, 4..=20, "Fraction bits of x."),
+///         rounding: Rounding = Key::rounding("x.rounding", "nearest", "How x is rounded."),
+///     }
+/// }
+///
+/// let schema = Schema { device: "lamp", keys: Keys::keys(), check: |_, _| {} };
+/// let keys = Keys::of(&Config::defaults(&schema, "lamp"));
+/// assert_eq!((keys.fraction, keys.rounding), (12, Rounding::Nearest));
+/// ```
+#[macro_export]
+macro_rules! keys {
+    (
+        $(#[$about:meta])* $visible:vis struct $Keys:ident {
+            $($(#[$doc:meta])* $field:ident: $type:ty = $key:expr),* $(,)?
+        }
+    ) => {
+        $(#[$about])*
+        #[derive(Clone, Debug, PartialEq)]
+        $visible struct $Keys { $($(#[$doc])* $visible $field: $type),* }
+
+        impl $Keys {
+            /// The keys, in the order in which a written file shows them.
+            $visible fn keys() -> Vec<$crate::config::Key> {
+                let mut keys = Vec::new();
+                $(keys.extend(Vec::<$crate::config::Key>::from($key));)*
+                keys
+            }
+
+            /// The values of a configuration.
+            $visible fn of(config: &$crate::config::Config) -> Self {
+                Self { $($field: $crate::config::Setting::read(config, &Vec::from($key))),* }
+            }
+        }
+
+        impl $crate::config::Setting for $Keys {
+            fn read(config: &$crate::config::Config, _: &[$crate::config::Key]) -> Self {
+                Self::of(config)
+            }
+        }
+    };
+}
+
+/// Makes an enum of the words of a choice, [`Key::choice`], for a field of [`keys!`](crate::keys).
+#[macro_export]
+macro_rules! choices {
+    (
+        $(#[$about:meta])* $visible:vis enum $Choice:ident {
+            $($(#[$doc:meta])* $Variant:ident = $word:literal),* $(,)?
+        }
+    ) => {
+        $(#[$about])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        $visible enum $Choice { $($(#[$doc])* $Variant),* }
+
+        impl $Choice {
+            /// The words, in order.
+            $visible const WORDS: &'static [&'static str] = &[$($word),*];
+        }
+
+        impl $crate::config::Setting for $Choice {
+            fn read(config: &$crate::config::Config, keys: &[$crate::config::Key]) -> Self {
+                match config.choice(keys[0].name) {
+                    $($word => Self::$Variant,)*
+                    other => unreachable!("`{}` = {other}", keys[0].name),
+                }
+            }
+        }
+    };
+}
+
+impl From<Key> for Vec<Key> {
+    fn from(key: Key) -> Self {
+        vec![key]
+    }
+}
+
+impl Key {
+    /// A choice between `"truncate"` and `"nearest"`.
+    pub fn rounding(name: &'static str, default: &'static str, doc: &'static str) -> Self {
+        Self::choice(name, default, &["truncate", "nearest"], doc)
+    }
+}
+
+impl Setting for Rounding {
+    fn read(config: &Config, keys: &[Key]) -> Self {
+        match config.choice(keys[0].name) {
+            "nearest" => Self::Nearest,
+            _ => Self::Truncate,
+        }
+    }
+}
+
+impl Setting for i64 {
+    fn read(config: &Config, keys: &[Key]) -> Self {
+        config.integer(keys[0].name)
+    }
+}
+
+/// A number of bits, of which the limits of the key allow no negative one.
+impl Setting for u32 {
+    fn read(config: &Config, keys: &[Key]) -> Self {
+        u32::try_from(config.integer(keys[0].name)).expect("no negative number")
+    }
+}
+
+impl Setting for Vec<u32> {
+    fn read(config: &Config, keys: &[Key]) -> Self {
+        let entries = config.integers(keys[0].name).iter();
+        entries.map(|&entry| u32::try_from(entry).expect("no negative number")).collect()
+    }
+}
+
+impl Setting for f64 {
+    fn read(config: &Config, keys: &[Key]) -> Self {
+        config.number(keys[0].name)
+    }
+}
+
+impl Setting for bool {
+    fn read(config: &Config, keys: &[Key]) -> Self {
+        config.flag(keys[0].name)
+    }
+}

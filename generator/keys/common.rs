@@ -1,0 +1,275 @@
+//! Keys that several devices share, so that one name means one thing everywhere.
+
+use crate::base::fixed::{Format, Rounding, exp2};
+use crate::config::{Key, Problems};
+use crate::keys;
+
+keys! {
+    /// The operand cos γ.
+    pub struct Cosine {
+        fraction: u32 = Key::integer("cosine.fraction", 20, 6..=24,
+            "Fraction bits of the cosine operands; 1.0 is representable."),
+        signed: bool = Key::flag("cosine.signed", false,
+            "The cosine port has a sign bit; a negative cosine gives 0."),
+    }
+}
+
+impl Cosine {
+    /// The format of cos γ.
+    pub fn format(&self) -> Format {
+        Format { signed: self.signed, int: 1, frac: self.fraction as i32 }
+    }
+
+    /// 1.0 as a raw cosine.
+    pub fn one(&self) -> i64 {
+        1 << self.fraction
+    }
+
+    /// An ulp of the cosine.
+    pub fn ulp(&self) -> f64 {
+        exp2(-(self.fraction as i32))
+    }
+
+    /// A raw cosine as the register takes it.
+    #[inline]
+    pub fn clamped(&self, raw: i64) -> i64 {
+        raw.clamp(0, self.one())
+    }
+
+    /// Its value.
+    #[inline]
+    pub fn value(&self, raw: i64) -> f64 {
+        self.clamped(raw) as f64 * self.ulp()
+    }
+}
+
+keys! {
+    /// The colours that f multiplies.
+    pub struct Colours {
+        bits: u32 = colour_bits(),
+        multipliers: u32 = Key::choice("colour.multipliers", "3", &["1", "3"],
+            "Multipliers for f times the colours: one for each, or one for all, which takes three clocks a point more and saves DSP blocks. A pipeline has one for each.")
+            .only_when("architecture", "sequential").joined_later(),
+    }
+}
+
+impl Colours {
+    /// Whether one multiplier makes the products with all colours.
+    pub fn in_turn(&self) -> bool {
+        self.multipliers == 1
+    }
+
+    /// Words of four bits.
+    #[cfg(test)]
+    pub fn small() -> Self {
+        Self { bits: 4, multipliers: 3 }
+    }
+}
+
+keys! {
+    /// The operands of a device that has cos γ, n and colours.
+    pub struct Operands {
+        cosine: Cosine = Cosine::keys(),
+        exponent_bits: u32 = exponent_bits(),
+        colours: Colours = Colours::keys(),
+    }
+}
+
+impl Operands {
+    /// The format of n.
+    pub fn exponent_format(&self) -> Format {
+        Format::unsigned(self.exponent_bits as i32, 0)
+    }
+
+    /// Words of four bits, small enough to follow by hand.
+    #[cfg(test)]
+    pub fn small() -> Self {
+        Self {
+            cosine: Cosine { fraction: 4, signed: false },
+            exponent_bits: 4,
+            colours: Colours::small(),
+        }
+    }
+}
+
+keys! {
+    /// The reflectance f, and its products with the colours.
+    pub struct Intensity {
+        fraction: u32 = intensity_fraction(16),
+        rounding: Rounding = Key::rounding("intensity.rounding", "truncate",
+            "Rounding into the register that holds f."),
+        output_rounding: Rounding = output_rounding(),
+    }
+}
+
+impl Intensity {
+    /// The format of f.
+    pub fn format(&self) -> Format {
+        Format::unsigned(0, self.fraction as i32)
+    }
+
+    /// Words of four bits.
+    #[cfg(test)]
+    pub fn small() -> Self {
+        let (rounding, output_rounding) = (Rounding::Truncate, Rounding::Nearest);
+        Self { fraction: 4, rounding, output_rounding }
+    }
+}
+
+keys! {
+    /// The exponents for which the contract is stated.
+    pub struct Domain {
+        least: i64 = Key::integer("domain.exponent_min", 1, 0..=4095,
+            "The smallest n for which the accuracy contract is stated."),
+        most: i64 = Key::integer("domain.exponent_max", 1000, 1..=4095,
+            "The largest n for which the accuracy contract is stated."),
+    }
+}
+
+impl Domain {
+    /// The smallest and the largest.
+    pub fn exponents(&self) -> (i64, i64) {
+        (self.least, self.most)
+    }
+
+    /// The exponents of four bits.
+    #[cfg(test)]
+    pub fn small() -> Self {
+        Self { least: 1, most: 15 }
+    }
+}
+
+/// `exponent.bits`.
+pub fn exponent_bits() -> Key {
+    Key::integer("exponent.bits", 10, 1..=12, "Bits of the specular exponent n.")
+}
+
+/// `power`.
+pub fn power() -> Key {
+    Key::choice(
+        "power",
+        "16",
+        &["2", "4", "8", "16"],
+        "The power m: the larger, the closer to cos^n, and the more squarings.",
+    )
+}
+
+/// `colour.bits`.
+pub fn colour_bits() -> Key {
+    Key::integer("colour.bits", 8, 1..=12, "Bits of a colour operand, and of an output.")
+}
+
+/// `intensity.fraction`.
+pub fn intensity_fraction(default: i64) -> Key {
+    Key::integer(
+        "intensity.fraction",
+        default,
+        6..=24,
+        "Fraction bits of the reflectance f, which multiplies the colours.",
+    )
+}
+
+/// `output.rounding`.
+pub fn output_rounding() -> Key {
+    Key::rounding("output.rounding", "nearest", "Rounding of the colour outputs to integers.")
+}
+
+/// `angle.fraction`.
+pub fn angle_fraction(default: i64) -> Key {
+    Key::integer(
+        "angle.fraction",
+        default,
+        4..=28,
+        "Fraction bits of the angles, in right angles. A line adds up their rounding: one bit more halves its drift.",
+    )
+}
+
+/// `table.address`.
+pub fn table_address(default: i64) -> Key {
+    Key::integer(
+        "table.address",
+        default,
+        4..=14,
+        "Address bits of a table of the cosine's power in ROM 12, over a right angle.",
+    )
+}
+
+/// `length.bits`.
+pub fn length_bits() -> Key {
+    Key::integer(
+        "length.bits",
+        12,
+        1..=12,
+        "Bits of the line's length l; a line has up to 2^bits points.",
+    )
+}
+
+/// `line.stages`.
+pub fn line_stages(choices: &'static [&'static str]) -> Key {
+    Key::choice(
+        "line.stages",
+        "2",
+        choices,
+        "Clocks from a point's angle to its result: the fewest, or one for each memory and multiplier, at twice the frequency.",
+    )
+    .joined_later()
+}
+
+/// The domain of n is not empty and fits the operand.
+pub fn check_exponents(domain: &Domain, bits: u32, problems: &mut Problems) {
+    let (min, max) = domain.exponents();
+    if min > max {
+        problems.push(
+            "domain.exponent_min",
+            format!("{min} is above domain.exponent_max, {max}"),
+            format!("at most {max}"),
+        );
+    }
+    if max >= 1 << bits {
+        problems.push(
+            "domain.exponent_max",
+            format!("{max} does not fit the {bits} bits of the exponent"),
+            format!("at most {}, or a larger exponent.bits", (1 << bits) - 1),
+        );
+    }
+}
+
+/// The most bits of a ROM: a megabit.
+const ROM_LIMIT: i64 = 1 << 20;
+
+/// The ROM with as many address bits and bits in a word as `size` says is not too large. `key` governs it.
+pub fn check_rom_size(
+    key: &str,
+    rom: &str,
+    (address, width): (u32, u32),
+    remedy: &str,
+    problems: &mut Problems,
+) {
+    let bits = i64::from(width) << address;
+    if bits > ROM_LIMIT {
+        problems.push(
+            key,
+            format!("{rom} would have 2^{address} entries of {width} bits, {bits} bits in all"),
+            format!("{remedy}, for at most {ROM_LIMIT} bits"),
+        );
+    }
+}
+
+/// Every range of `key`, each a quarter of the one before it, has as many of the `bits` bits of 1 − cos as it is cut by. The
+/// most bits that a segment is left with, up to a range that has too few.
+pub fn check_segments(segments: &[u32], key: &str, bits: u32, problems: &mut Problems) -> u32 {
+    let mut most = 0;
+    for (range, &prefix) in (0u32..).zip(segments) {
+        let bits = bits.saturating_sub(2 * range);
+        if prefix > bits {
+            problems.push(
+                key,
+                format!("range {range} has {bits} bits of 1 - cos, which cannot be cut into 2^{prefix} segments"),
+                "fewer ranges or smaller entries, or a larger cosine.fraction".to_owned(),
+            );
+            break;
+        }
+        most = most.max(bits - prefix);
+    }
+    most
+}

@@ -1,0 +1,25 @@
+//! The keys of `cosine-power`.
+
+use super::common::{self, Domain, Intensity, Operands};
+use crate::config::{Config, Problems, Schema};
+use crate::keys;
+
+keys! {
+    /// What a configuration says.
+    pub struct Keys {
+        power: u32 = common::power(),
+        operands: Operands = Operands::keys(),
+        f: Intensity = Intensity::keys(),
+        domain: Domain = Domain::keys(),
+    }
+}
+
+/// The keys of the device.
+pub fn schema() -> Schema {
+    Schema { device: "cosine-power", keys: Keys::keys(), check }
+}
+
+fn check(config: &Config, problems: &mut Problems) {
+    let keys = Keys::of(config);
+    common::check_exponents(&keys.domain, keys.operands.exponent_bits, problems);
+}

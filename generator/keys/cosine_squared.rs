@@ -1,0 +1,53 @@
+//! The keys of `cosine-squared`.
+
+use super::common;
+use crate::base::fixed::{Format, Rounding};
+use crate::config::{Config, Key, Problems, Schema};
+use crate::keys;
+
+keys! {
+    /// What a configuration says.
+    pub struct Keys {
+        angle_integer: u32 = Key::integer("angle.integer", 7, 1..=8,
+            "Integer bits of the stretched angles, which are in right angles and signed."),
+        angle_fraction: u32 = common::angle_fraction(22),
+        table_address: u32 = common::table_address(10),
+        length_bits: u32 = common::length_bits(),
+        stages: u32 = common::line_stages(&["2", "5"]),
+        colour_bits: u32 = common::colour_bits(),
+        fraction: u32 = common::intensity_fraction(10),
+        output_rounding: Rounding = common::output_rounding(),
+    }
+}
+
+impl Keys {
+    /// The format of an angle.
+    pub fn angle_format(&self) -> Format {
+        Format::signed(self.angle_integer as i32, self.angle_fraction as i32)
+    }
+
+    /// The format of f.
+    pub fn f_format(&self) -> Format {
+        Format::unsigned(0, self.fraction as i32)
+    }
+}
+
+/// The keys of the device.
+pub fn schema() -> Schema {
+    Schema { device: "cosine-squared", keys: Keys::keys(), check }
+}
+
+fn check(config: &Config, problems: &mut Problems) {
+    let keys = Keys::of(config);
+    let fraction = keys.angle_fraction;
+    if keys.table_address > fraction {
+        problems.push(
+            "table.address",
+            format!("the angle has {fraction} fraction bits"),
+            format!("at most {fraction}, or a larger angle.fraction"),
+        );
+    }
+    let size = (keys.table_address, keys.fraction);
+    let remedy = "fewer address bits or narrower entries";
+    common::check_rom_size("table.address", "ROM 12", size, remedy, problems);
+}

@@ -1,0 +1,68 @@
+//! The keys of `lyon`.
+
+use super::common::{self, Colours, Domain, Intensity};
+use crate::base::fixed::Rounding;
+use crate::config::{Config, Key, Problems, Schema};
+use crate::{choices, keys};
+
+choices! {
+    /// How β is had.
+    pub enum Scale {
+        /// `2^shift/(2·m)`; the operand is `shift`.
+        Shift = "shift",
+        /// `n/(2·m)`; the operand is `exponent`.
+        Multiplier = "multiplier",
+    }
+}
+
+keys! {
+    /// What a configuration says.
+    pub struct Keys {
+        power: u32 = common::power(),
+        scale: Scale = Key::choice("scale", "shift", Scale::WORDS,
+            "shift: as in the patent, beta is a power of two, and the operand is shift = log2 n, rounded. multiplier: beta = n/(2*power) for every n, by a fifth multiplier."),
+        vector_fraction: u32 = Key::integer("vector.fraction", 16, 4..=20,
+            "Fraction bits of the components of D = N - H, which run from -2.0 up to 2.0."),
+        distance_fraction: u32 = Key::integer("distance.fraction", 20, 8..=28,
+            "Fraction bits of D^2, which n multiplies."),
+        distance_rounding: Rounding = Key::rounding("distance.rounding", "truncate",
+            "Rounding into the register that holds D^2."),
+        distance_multipliers: u32 = Key::choice("distance.multipliers", "3", &["1", "3"],
+            "Multipliers that square the components of D: one for each, or one for all, which takes two clocks a point more and saves DSP blocks. A pipeline has one for each.")
+            .only_when("architecture", "sequential").joined_later(),
+        exponent_bits: u32 = common::exponent_bits(),
+        colours: Colours = Colours::keys(),
+        f: Intensity = Intensity::keys(),
+        domain: Domain = Domain::keys(),
+    }
+}
+
+impl Keys {
+    /// s, the number of squarings.
+    pub fn squarings(&self) -> u32 {
+        self.power.ilog2()
+    }
+
+    /// Whether one multiplier squares all components.
+    pub fn squares_in_turn(&self) -> bool {
+        self.distance_multipliers == 1
+    }
+}
+
+/// The keys of the device.
+pub fn schema() -> Schema {
+    Schema { device: "lyon", keys: Keys::keys(), check }
+}
+
+fn check(config: &Config, problems: &mut Problems) {
+    let keys = Keys::of(config);
+    common::check_exponents(&keys.domain, keys.exponent_bits, problems);
+    let (distance, vector) = (keys.distance_fraction, keys.vector_fraction);
+    if distance > 2 * vector {
+        problems.push(
+            "distance.fraction",
+            format!("{distance} fraction bits are more than the squares of the components have"),
+            format!("at most {}, or a larger vector.fraction", 2 * vector),
+        );
+    }
+}

@@ -1,0 +1,73 @@
+//! The keys of `quad-cosine`.
+
+use super::common::{self, Domain};
+use crate::base::fixed::{Format, Rounding};
+use crate::config::{Config, Key, Problems, Schema};
+use crate::keys;
+
+keys! {
+    /// What a configuration says.
+    pub struct Keys {
+        angle_fraction: u32 = common::angle_fraction(26),
+        angle_multiplied: u32 = Key::integer("angle.multiplied", 17, 4..=24,
+            "Fraction bits of the angle that multiplier 11 takes: the leading ones."),
+        root_fraction: u32 = Key::integer("root.fraction", 14, 8..=20,
+            "Fraction bits of sqrt(n/k) in ROM 9."),
+        table_address: u32 = common::table_address(11),
+        length_bits: u32 = common::length_bits(),
+        stages: u32 = common::line_stages(&["2", "7"]),
+        exponent_bits: u32 = common::exponent_bits(),
+        colour_bits: u32 = common::colour_bits(),
+        fraction: u32 = common::intensity_fraction(10),
+        output_rounding: Rounding = common::output_rounding(),
+        domain: Domain = Domain::keys(),
+    }
+}
+
+impl Keys {
+    /// The format of an angle.
+    pub fn angle_format(&self) -> Format {
+        Format::signed(1, self.angle_fraction as i32)
+    }
+
+    /// The format of f.
+    pub fn f_format(&self) -> Format {
+        Format::unsigned(0, self.fraction as i32)
+    }
+}
+
+/// The keys of the device.
+pub fn schema() -> Schema {
+    Schema { device: "quad-cosine", keys: Keys::keys(), check }
+}
+
+fn check(config: &Config, problems: &mut Problems) {
+    let keys = Keys::of(config);
+    common::check_exponents(&keys.domain, keys.exponent_bits, problems);
+    if keys.exponent_bits < 3 {
+        problems.push(
+            "exponent.bits",
+            "decoder 10 tells n = 7 from smaller ones, which takes three bits".to_owned(),
+            "at least 3".to_owned(),
+        );
+    }
+    let fraction = keys.angle_fraction;
+    if keys.angle_multiplied > fraction {
+        problems.push(
+            "angle.multiplied",
+            format!("the angle has {fraction} fraction bits"),
+            format!("at most {fraction}, or a larger angle.fraction"),
+        );
+    }
+    let product = keys.angle_multiplied + keys.root_fraction;
+    if keys.table_address > product {
+        problems.push(
+            "table.address",
+            format!("the angle times the root has {product} fraction bits"),
+            format!("at most {product}, or a larger angle.multiplied or root.fraction"),
+        );
+    }
+    let size = (keys.table_address + 2, keys.fraction);
+    let remedy = "fewer address bits or narrower entries";
+    common::check_rom_size("table.address", "ROM 12", size, remedy, problems);
+}

@@ -1,0 +1,58 @@
+//! The keys of `quadratic`.
+
+use super::common::{self, Domain, Intensity, Operands};
+use crate::base::fixed::Rounding;
+use crate::config::{Config, Key, Problems, Schema};
+use crate::{choices, keys};
+
+choices! {
+    /// What ROM(n) holds.
+    pub enum Scheme {
+        /// n − 1.
+        Taylor = "taylor",
+        /// The coefficient with the smallest largest error.
+        Minimax = "minimax",
+    }
+}
+
+keys! {
+    /// What a configuration says.
+    pub struct Keys {
+        scheme: Scheme = Key::choice("coefficient.scheme", "minimax", Scheme::WORDS,
+            "ROM(n) holds a(n) = n - 1, which agrees with cos^n to the slope at its peak, or the a(n) whose largest error is least."),
+        fraction: u32 = Key::integer("coefficient.fraction", 8, 0..=12, "Fraction bits of a(n).")
+            .only_when("coefficient.scheme", "minimax"),
+        operands: Operands = Operands::keys(),
+        difference_fraction: u32 = Key::integer("difference.fraction", 19, 8..=28,
+            "Fraction bits of c^2 - c, which a(n) multiplies."),
+        difference_rounding: Rounding = Key::rounding("difference.rounding", "truncate",
+            "Rounding into the register that holds c^2 - c."),
+        f: Intensity = Intensity::keys(),
+        domain: Domain = Domain::keys(),
+    }
+}
+
+impl Keys {
+    /// Fraction bits of a(n).
+    pub fn coefficient_fraction(&self) -> u32 {
+        if self.scheme == Scheme::Minimax { self.fraction } else { 0 }
+    }
+}
+
+/// The keys of the device.
+pub fn schema() -> Schema {
+    Schema { device: "quadratic", keys: Keys::keys(), check }
+}
+
+fn check(config: &Config, problems: &mut Problems) {
+    let keys = Keys::of(config);
+    common::check_exponents(&keys.domain, keys.operands.exponent_bits, problems);
+    let (difference, cosine) = (keys.difference_fraction, keys.operands.cosine.fraction);
+    if difference > 2 * cosine {
+        problems.push(
+            "difference.fraction",
+            format!("{difference} fraction bits are more than the square of the cosine has"),
+            format!("at most {}, or a larger cosine.fraction", 2 * cosine),
+        );
+    }
+}

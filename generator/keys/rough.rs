@@ -1,0 +1,138 @@
+//! The keys of `rough`, and which of their combinations make a device.
+
+use super::common::{self, Domain, Intensity, Operands};
+use crate::base::fixed::Rounding;
+use crate::config::{Config, Key, Problems, Schema};
+use crate::{choices, keys};
+
+choices! {
+    /// How sums and products are kept.
+    pub enum Arithmetic {
+        /// With integer bits and signs.
+        Exact = "exact",
+        /// The patent's: every word is a fraction modulo 1.0, and every "−1" a missing carry.
+        Patent = "patent",
+    }
+}
+
+choices! {
+    /// How ROM 18 is organised.
+    pub enum Scheme {
+        /// Ranges that shrink toward cos = 1, in straight segments.
+        Segmented = "segmented",
+        /// One entry a bucket.
+        Direct = "direct",
+    }
+}
+
+keys! {
+    /// What a configuration says.
+    ///
+    /// In the patent's arithmetic all words have `cosine.fraction` bits; `cosine.signed`, `clamp`,
+    /// `product.*`, `intensity.*` and `sine.fraction` do not apply.
+    pub struct Keys {
+        arithmetic: Arithmetic = Key::choice("arithmetic", "exact", Arithmetic::WORDS,
+            "exact: numbers with an integer position. patent: numbers modulo 1.0, as in UA 60139."),
+        clamp: bool = exact(Key::flag("clamp", true,
+            "Clamp a negative n/2*(cos - 1) + 1 to 0; without it a ring appears around the highlight.")),
+        operands: Operands = exact_of(Operands::keys(), &["cosine.signed"]),
+        product_fraction: u32 = exact(Key::integer("product.fraction", 22, 8..=28,
+            "Fraction bits of registers 11 and 12, the products of cosines and of sines.")),
+        product_rounding: Rounding = exact(Key::rounding("product.rounding", "truncate",
+            "Rounding into registers 11 and 12.")),
+        f: Intensity = exact_of(Intensity::keys(), &["intensity.fraction", "intensity.rounding"]),
+        scheme: Scheme = Key::choice("sine.scheme", "segmented", Scheme::WORDS,
+            "ROM 18: segments that shrink toward cos = 1, with interpolation; or one entry a bucket, as in the patent."),
+        sine_fraction: u32 = exact(Key::integer("sine.fraction", 22, 8..=28,
+            "Fraction bits of the sine.")),
+        synchronous: bool = Key::flag("sine.synchronous", true,
+            "ROM 18 reads on the clock edge (block RAM) instead of at once (logic)."),
+        address: u32 = Key::integer("sine.address", 12, 4..=16,
+            "Address bits of the direct table.")
+            .only_when("sine.scheme", "direct"),
+        segments: Vec<u32> = Key::integers("sine.segments", &[6, 8, 7, 6, 5, 4, 3, 3, 2], 2..=10, 1..=11,
+            "log2 of the segments for each factor of four of 1 - cos, from the top.")
+            .only_when("sine.scheme", "segmented"),
+        slope_fraction: u32 = Key::integer("sine.slope_fraction", 18, 8..=28,
+            "Fraction bits of the rise over a segment.")
+            .only_when("sine.scheme", "segmented"),
+        domain: Domain = Domain::keys(),
+        deviation: f64 = Key::number("domain.deviation", 30.0, 0.0..=90.0,
+            "The largest angle between the normal and the perturbed normal, in degrees."),
+    }
+}
+
+fn exact(key: Key) -> Key {
+    key.only_when("arithmetic", "exact")
+}
+
+fn exact_of(keys: Vec<Key>, names: &[&str]) -> Vec<Key> {
+    let keys = keys.into_iter();
+    keys.map(|key| if names.contains(&key.name) { exact(key) } else { key }).collect()
+}
+
+impl Keys {
+    /// Whether numbers are kept as the patent does.
+    pub fn patent(&self) -> bool {
+        self.arithmetic == Arithmetic::Patent
+    }
+}
+
+/// The keys of the device.
+pub fn schema() -> Schema {
+    Schema { device: "rough", keys: Keys::keys(), check }
+}
+
+fn check(config: &Config, problems: &mut Problems) {
+    let keys = Keys::of(config);
+    common::check_exponents(&keys.domain, keys.operands.exponent_bits, problems);
+    let cosine = keys.operands.cosine.fraction;
+    // No range of a key makes a net wider than 64 bits: the widest is n/2 * adder 15 with the point of the
+    // square, 13 + 48 bits.
+    if keys.patent() && keys.operands.exponent_bits < 2 {
+        problems.push(
+            "exponent.bits",
+            "the patent's wiring of n/2 drops the only bit of n".to_owned(),
+            "at least 2 with arithmetic = \"patent\"".to_owned(),
+        );
+    }
+    let (fraction, product) =
+        if keys.patent() { (cosine, cosine) } else { (keys.sine_fraction, keys.product_fraction) };
+    if product > 2 * fraction.min(cosine) {
+        problems.push(
+            "product.fraction",
+            format!("{product} fraction bits are more than the products have"),
+            format!("at most {}", 2 * fraction.min(cosine)),
+        );
+    }
+    if keys.scheme == Scheme::Direct {
+        if keys.address > cosine {
+            problems.push(
+                "sine.address",
+                "more address bits than the cosine has fraction bits".to_owned(),
+                format!("at most {cosine}, or a larger cosine.fraction"),
+            );
+        }
+        let remedy = "fewer address bits, or sine.scheme = \"segmented\"";
+        let size = (keys.address, fraction);
+        common::check_rom_size("sine.address", "ROM 18", size, remedy, problems);
+        return;
+    }
+    let most = common::check_segments(&keys.segments, "sine.segments", cosine, problems);
+    let rest = i64::from(cosine) - 2 * keys.segments.len() as i64;
+    if !(0..=12).contains(&rest) {
+        problems.push(
+            "sine.segments",
+            format!("2^{rest} exact entries would remain below the last range"),
+            "as many ranges as leave 0 to 12 bits of cosine.fraction, two bits a range".to_owned(),
+        );
+    }
+    let slope = keys.slope_fraction;
+    if slope > fraction || most + slope < fraction {
+        problems.push(
+            "sine.slope_fraction",
+            format!("{slope} fraction bits of the slope do not go with {fraction} of the sine"),
+            format!("{} to {fraction}", fraction.saturating_sub(most).max(8)),
+        );
+    }
+}

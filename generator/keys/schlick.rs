@@ -1,0 +1,37 @@
+//! The keys of `schlick`.
+
+use super::common::{self, Domain, Operands};
+use crate::base::fixed::{Format, Rounding};
+use crate::config::{Config, Key, Problems, Schema};
+use crate::keys;
+
+keys! {
+    /// What a configuration says.
+    pub struct Keys {
+        operands: Operands = Operands::keys(),
+        fraction: u32 = Key {
+            doc: "Fraction bits of the reflectance f, the quotient; each takes a clock. It is truncated: \
+                  one bit more is as near as rounding.",
+            ..common::intensity_fraction(10)
+        },
+        output_rounding: Rounding = common::output_rounding(),
+        domain: Domain = Domain::keys(),
+    }
+}
+
+impl Keys {
+    /// The format of f.
+    pub fn f_format(&self) -> Format {
+        Format::unsigned(0, self.fraction as i32)
+    }
+}
+
+/// The keys of the device.
+pub fn schema() -> Schema {
+    Schema { device: "schlick", keys: Keys::keys(), check }
+}
+
+fn check(config: &Config, problems: &mut Problems) {
+    let keys = Keys::of(config);
+    common::check_exponents(&keys.domain, keys.operands.exponent_bits, problems);
+}

@@ -1,0 +1,36 @@
+//! The keys of `threshold`.
+
+use super::common::{self, Domain, Intensity, Operands};
+use crate::config::{Config, Key, Problems, Schema};
+use crate::keys;
+
+keys! {
+    /// What a configuration says.
+    pub struct Keys {
+        operands: Operands = Operands::keys(),
+        f: Intensity = Intensity::keys(),
+        levels: Vec<u32> = Key::integers("visibility.levels", &[50], 0..=10_000, 1..=12,
+            "The levels in ROM(n), in hundredths of an output unit: one for each octave of n (up to 1, 2 to 3, 4 to 7, ...), of which the last holds for all above. A smaller f is shown as 0."),
+        domain: Domain = Domain::keys(),
+    }
+}
+
+/// The keys of the device.
+pub fn schema() -> Schema {
+    Schema { device: "threshold", keys: Keys::keys(), check }
+}
+
+fn check(config: &Config, problems: &mut Problems) {
+    let keys = Keys::of(config);
+    common::check_exponents(&keys.domain, keys.operands.exponent_bits, problems);
+    let most = 100 * ((1 << keys.operands.colours.bits) - 1);
+    if let Some(level) = keys.levels.iter().find(|&&level| level >= most) {
+        problems.push(
+            "visibility.levels",
+            format!(
+                "{level} hundredths are as much as the largest output: nothing would be visible"
+            ),
+            format!("at most {}, or a larger colour.bits", most - 1),
+        );
+    }
+}
