@@ -3,11 +3,11 @@
 //! The decay is read from straight segments (the first product), the exponent multiplies it (the second,
 //! in the same multiplier), and 2^−y of their product is one look at tables and a shift.
 
-use crate::base::fixed::{Format, Overflow, Rounding, exp2};
+use crate::base::fixed::{Format, Overflow, Rounding};
 use crate::hdl::blocks::colour::Colours;
 use crate::hdl::blocks::exponential::{self, ExponentialFormats};
 use crate::hdl::blocks::multipartite::{Cut, Offset};
-use crate::hdl::blocks::segmented::{self, Entry, Segment, Segmentation, SegmentedFormats};
+use crate::hdl::blocks::segmented::{self, Bend, Segmentation, SegmentedFormats};
 use crate::hdl::dsl::{Designer, Note, Signal, Topic, step};
 use crate::keys::decay::Keys;
 
@@ -119,41 +119,8 @@ fn look_up<'d>(
         slope_fraction: keys.slope_fraction as i32,
         synchronous: keys.synchronous,
     };
-    let entry = |segment: Segment| chord(segment, curve.table, shape);
+    let entry = |segment| segmented::chord(segment, shape, Bend::Convex, curve.table);
     segmented::look_up(d, "curve", curve.u, &cut, shape, entry, None)
-}
-
-/// The straight line through a segment of a convex function with the least error: the slope of the chord,
-/// and the base that puts the error of the segment's points symmetrically about 0, half an ulp up for what
-/// the truncated rise loses.
-fn chord(segment: Segment, function: &dyn Fn(f64) -> f64, shape: SegmentedFormats) -> Entry {
-    let value = Format::unsigned(0, shape.fraction);
-    let (from, length) = (segment.from as f64, segment.length as f64);
-    if segment.length == 1 {
-        return Entry { base: value.quantise(function(from)), slope: 0 };
-    }
-    let scale = exp2(shape.slope_fraction);
-    let slope = ((function(from + length) - function(from)) * scale + 0.5).floor();
-    let residual = |at: f64| function(from + at) - slope / scale * at / length;
-    // Convex: the greatest residual is at an end, the least where the curve is parallel to the line.
-    let last = length - 1.0;
-    let most = residual(0.0).max(residual(last));
-    let (mut low, mut high) = (0.0, last);
-    while high - low > 2.0 {
-        let third = (high - low) / 3.0;
-        let (a, b) = ((low + third).floor(), (high - third).ceil());
-        if residual(a) > residual(b) {
-            low = a;
-        } else {
-            high = b;
-        }
-    }
-    let middle = ((low + high) / 2.0).floor();
-    let least = [low, middle, high].into_iter().map(residual).fold(f64::MAX, f64::min);
-    Entry {
-        base: value.quantise((least + most) / 2.0 + exp2(-shape.fraction - 1)),
-        slope: slope as i128,
-    }
 }
 
 /// The decay as an operand of the multiplier, and whether it is a small one.

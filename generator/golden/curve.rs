@@ -1,4 +1,4 @@
-//! An increasing convex function by straight segments, computed afresh.
+//! An increasing function by straight segments, computed afresh.
 //!
 //! The operand u is an integer of C bits. Ranges, each a quarter of the one before, are cut uniformly,
 //! and so is the tail below them; a value is a raw u0.S.
@@ -20,10 +20,17 @@ pub struct Params {
     pub tail: u32,
 }
 
-impl Params {}
-
 /// Segments of up to this many operands are looked at operand by operand for their errors.
 const SHORT: u64 = 64;
+
+/// How the function bends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Bend {
+    /// Its slope grows.
+    Convex,
+    /// Its slope falls.
+    Concave,
+}
 
 /// A segment, with what is stored for it.
 #[derive(Clone, Copy, Debug)]
@@ -60,8 +67,8 @@ pub struct Curve {
 }
 
 impl Curve {
-    /// The table of `function`, of u as an integer: increasing and convex from 0 to below 1.
-    pub fn new(params: &Params, function: impl Fn(f64) -> f64) -> Self {
+    /// The table of `function`, of u as an integer: increasing from 0 to 1.
+    pub fn new(params: &Params, bend: Bend, function: impl Fn(f64) -> f64) -> Self {
         let mut curve = Self {
             params: params.clone(),
             ranges: Vec::new(),
@@ -76,7 +83,7 @@ impl Curve {
         }
         curve.cut(bits - params.tail, 0, 1 << params.tail);
         for at in 0..curve.segments.len() {
-            curve.fit(at, &function);
+            curve.fit(at, bend, &function);
         }
         curve
     }
@@ -95,56 +102,67 @@ impl Curve {
 
     /// Base and slope of a segment, and its errors.
     ///
-    /// The slope is the chord's, rounded. Relative to it the convex function falls and then rises, so its
+    /// The slope is the chord's, rounded. Relative to it a convex function falls and then rises, so its
     /// extremes are the ends and the point from which on it rises more, from one operand to the next, than
-    /// the line. The base halves the extremes, and makes up for half an ulp that the truncated rise
-    /// loses; where a segment has one operand there is no rise.
-    fn fit(&mut self, at: usize, function: &impl Fn(f64) -> f64) {
+    /// the line; a concave one rises and then falls. The base halves the extremes. Of a convex function it makes up for
+    /// half an ulp that the truncated rise loses; where a segment has one operand there is no rise.
+    fn fit(&mut self, at: usize, bend: Bend, function: &impl Fn(f64) -> f64) {
         let Segment { start, log_length, .. } = self.segments[at];
         let steps = 1u64 << log_length;
         let scale = exp2(self.params.fraction as i32);
         let value = |step: u64| function((start + step) as f64);
-        let (slope, low, high) = if steps == 1 {
-            (0, value(0), value(0))
+        let first = value(0);
+        let (slope, turn, low, high) = if steps == 1 {
+            (0, 0, first, first)
         } else {
             let slope_scale = exp2(self.params.slope_fraction as i32);
-            let slope = ((value(steps) - value(0)) * slope_scale + 0.5).floor();
+            let slope = ((value(steps) - first) * slope_scale + 0.5).floor();
             let rise = slope / slope_scale / steps as f64;
-            // The first step at which the function is the steeper one.
+            let above = |step: u64| value(step) - rise * step as f64;
+            let turned = |step: u64| match bend {
+                Bend::Convex => value(step + 1) - value(step) > rise,
+                Bend::Concave => above(step + 1) <= above(step),
+            };
+            // The first step at which the function has turned.
             let (mut from, mut to) = (0, steps - 1);
             while from < to {
                 let middle = (from + to) / 2;
-                if value(middle + 1) - value(middle) > rise {
+                if turned(middle) {
                     to = middle;
                 } else {
                     from = middle + 1;
                 }
             }
-            let above = |step: u64| value(step) - rise * step as f64;
-            let high = above(0).max(above(steps - 1));
-            (slope as i64, above(from), high)
+            let ends = [above(0), above(steps - 1)];
+            match bend {
+                Bend::Convex => (slope as i64, from, above(from), ends[0].max(ends[1])),
+                Bend::Concave => (slope as i64, from, ends[0].min(ends[1]), above(from)),
+            }
         };
-        let half = if steps == 1 { 0.0 } else { 0.5 };
+        let half = if steps == 1 || bend == Bend::Concave { 0.0 } else { 0.5 };
         let base = ((low + high) / 2.0 * scale + half + 0.5).floor() as i64;
         let segment = &mut self.segments[at];
         segment.base = base.clamp(0, self.largest);
         segment.slope = slope;
 
-        let error = if steps <= SHORT {
-            (0..steps)
-                .map(|step| (self.at((start + step) as i64) as f64 / scale - value(step)).abs())
-                .fold(0.0, f64::max)
-        } else {
-            // The line is off by the most at its extremes; the truncated rise takes less than an ulp.
-            let line = self.segments[at].base as f64 / scale;
-            (line - low).max(high - line + 1.0 / scale)
+        // The line is off by the most at its extremes; the truncated rise takes less than an ulp.
+        let line = segment.base as f64 / scale;
+        let each = |step| (self.at((start + step) as i64) as f64 / scale - value(step)).abs();
+        let error = match bend {
+            _ if steps == 1 => each(0),
+            Bend::Convex if steps <= SHORT => (0..steps).map(each).fold(0.0, f64::max),
+            Bend::Convex => (line - low).max(high - line + 1.0 / scale),
+            // Saturation to 1 − ulp is off by up to an ulp.
+            Bend::Concave => (high + 1.0 / scale - line).max(line - low).max(1.0 / scale),
         };
-        self.pieces.push(Piece {
-            start,
-            last: start + steps - 1,
-            error,
-            shape: (high - low) / 2.0,
-        });
+        let shape = match bend {
+            Bend::Convex => (high - low) / 2.0,
+            Bend::Concave => {
+                let chord = first + (value(steps) - first) * turn as f64 / steps as f64;
+                if steps == 1 { 0.0 } else { (value(turn) - chord) / 2.0 }
+            }
+        };
+        self.pieces.push(Piece { start, last: start + steps - 1, error, shape });
     }
 
     /// Every segment.
@@ -185,7 +203,7 @@ mod tests {
             segments: segments.to_vec(),
             tail,
         };
-        Curve::new(&params, |u| 0.75 * u * u / 256.0)
+        Curve::new(&params, Bend::Convex, |u| 0.75 * u * u / 256.0)
     }
 
     #[test]

@@ -7,7 +7,7 @@ use std::f64::consts::LN_2;
 use std::sync::Arc;
 
 use super::contract::{self, ErrorShare};
-use super::curve::{self, Curve, Piece};
+use super::curve::{self, Bend, Curve, Piece};
 use super::frame::{Clocked, Frame, idle, step_by};
 use super::halving::{self, Halving};
 use super::highlight::{self, Highlight, Reflectance};
@@ -108,7 +108,7 @@ impl Arithmetic {
             largest: (1 << params.keys.f.fraction) - 1,
             small: 1 << (params.keys.decay_fraction - 2),
             coarse_loss: params.keys.decay_fraction - params.keys.coarse_fraction,
-            curve: Curve::new(&params.curve(), |u| params.table(u)),
+            curve: Curve::new(&params.curve(), Bend::Convex, |u| params.table(u)),
             halvings,
             from_fine: narrow(params.keys.decay_fraction),
             from_coarse: narrow(params.keys.coarse_fraction),

@@ -2,6 +2,7 @@
 //!
 //! Operands are raw values with C fraction bits, 0 … 2^C; a sine is a raw u0.S.
 
+use super::curve::{self, Bend, Curve};
 use crate::base::fixed::exp2;
 
 /// How the table is organised.
@@ -59,36 +60,11 @@ enum Table {
         address: u32,
         entries: Vec<i64>,
     },
+    /// Of u = 1.0 − x; the tail has an entry for each, so many of them.
     Segmented {
-        ranges: Vec<Range>,
-        /// The exact block: the sine of u = 0, 1, 2, ….
-        rest: Vec<i64>,
-        /// Bits of the left-justified remainder, R.
-        remainder: u32,
-        slope_fraction: u32,
+        curve: Curve,
+        rest: i64,
     },
-}
-
-#[derive(Clone, Debug)]
-struct Range {
-    /// Bits of u below the prefix, w_j.
-    width: u32,
-    /// The smallest prefix that occurs, 2^k_j / 4.
-    first: i64,
-    /// From prefix `first` on.
-    segments: Vec<Segment>,
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Segment {
-    base: i64,
-    slope: i64,
-}
-
-/// R: the bits of u below the prefix in the range that has most of them.
-fn remainder_bits(operand: u32, segments: &[u32]) -> u32 {
-    let bits = |(j, &k): (usize, &u32)| operand - 2 * j as u32 - k;
-    segments.iter().enumerate().map(bits).max().unwrap_or(0)
 }
 
 impl Sine {
@@ -101,20 +77,18 @@ impl Sine {
                 entries: (0..1 << address).map(|a| direct_entry(a, *address, fraction)).collect(),
             },
             TableScheme::Segmented { segments, slope_fraction } => {
-                let range = |(j, &bits): (usize, &u32)| {
-                    let width = operand - 2 * j as u32 - bits;
-                    let first = 1i64 << (bits - 2);
-                    let fit = |prefix| {
-                        fit(operand, fraction, *slope_fraction, prefix << width, width).segment
-                    };
-                    Range { width, first, segments: (first..1 << bits).map(fit).collect() }
-                };
-                let block = 1i64 << (operand - 2 * segments.len() as u32);
-                Table::Segmented {
-                    ranges: segments.iter().enumerate().map(range).collect(),
-                    rest: (0..block).map(|u| to_raw(sine_of(operand, u), fraction)).collect(),
-                    remainder: remainder_bits(operand, segments),
+                let tail = operand - 2 * segments.len() as u32;
+                let params = curve::Params {
+                    operand_bits: operand,
+                    fraction,
                     slope_fraction: *slope_fraction,
+                    segments: segments.clone(),
+                    tail,
+                };
+                let sine = |u: f64| sine_of(operand, u as i64);
+                Table::Segmented {
+                    curve: Curve::new(&params, Bend::Concave, sine),
+                    rest: 1 << tail,
                 }
             }
         };
@@ -125,36 +99,20 @@ impl Sine {
     #[inline]
     pub fn at(&self, x: i64) -> i64 {
         let one = 1i64 << self.operand_fraction;
-        let largest = (1i64 << self.fraction) - 1;
         match &self.table {
             Table::Direct { address, entries } => {
                 // 1.0 has no fraction bits; it goes to the last bucket.
                 let fraction = x.min(one - 1);
                 entries[(fraction >> (self.operand_fraction - address)) as usize]
             }
-            Table::Segmented { ranges, rest, remainder, slope_fraction } => {
-                let u = one - x;
-                if u == one {
-                    return largest;
-                }
-                // Range j holds the u whose leading one is bit C − 2j − 1 or C − 2j − 2.
-                let j = (u.leading_zeros() - (64 - self.operand_fraction)) / 2;
-                let Some(range) = ranges.get(j as usize) else {
-                    return rest[u as usize];
-                };
-                let segment = range.segments[((u >> range.width) - range.first) as usize];
-                let t = (u & ((1 << range.width) - 1)) << (remainder - range.width);
-                let rise = (segment.slope * t) >> (remainder + slope_fraction - self.fraction);
-                (segment.base + rise).min(largest)
-            }
+            Table::Segmented { .. } if x == 0 => (1 << self.fraction) - 1,
+            Table::Segmented { curve, .. } => curve.at(one - x),
         }
     }
 
     /// Visits sets of operands that together are all of 0 … 2^C, with the error of each.
     ///
-    /// A segment's error follows from its entry: with e(i) = sine − slope·i, concave, the table is
-    /// base + slope·i − (what the floor takes, less than an ulp), so that its error lies between
-    /// base − max e − ulp and base − min e. A bucket's sine is monotonic, and so is worst at an end.
+    /// A bucket's sine is monotonic, and so is worst at an end.
     pub fn for_each_piece(&self, mut visit: impl FnMut(Piece)) {
         let operand = self.operand_fraction;
         let (one, ulp) = (1i64 << operand, exp2(-(self.fraction as i32)));
@@ -174,23 +132,17 @@ impl Sine {
                     });
                 }
             }
-            Table::Segmented { ranges, rest, slope_fraction, .. } => {
+            Table::Segmented { curve, rest } => {
                 // x = 0 reads 1 − ulp.
                 visit(Piece { cosines: (0.0, 0.0), error: ulp, shape: 0.0 });
-                for range in ranges {
-                    for prefix in range.first..4 * range.first {
-                        let u = prefix << range.width;
-                        let fit = fit(operand, self.fraction, *slope_fraction, u, range.width);
-                        visit(Piece {
-                            cosines: (cosine(one - u - (1 << range.width) + 1), cosine(one - u)),
-                            error: fit.error,
-                            shape: fit.shape,
-                        });
-                    }
+                for piece in curve.pieces().iter().filter(|piece| piece.start as i64 >= *rest) {
+                    let cosines =
+                        (cosine(one - piece.last as i64), cosine(one - piece.start as i64));
+                    visit(Piece { cosines, error: piece.error, shape: piece.shape });
                 }
                 // These sines are below √7/4, so that no entry saturates.
                 visit(Piece {
-                    cosines: (cosine(one - rest.len() as i64 + 1), 1.0),
+                    cosines: (cosine(one - rest + 1), 1.0),
                     error: ulp / 2.0,
                     shape: 0.0,
                 });
@@ -216,52 +168,6 @@ fn to_raw(sine: f64, fraction: u32) -> i64 {
 fn direct_entry(a: i64, address: u32, fraction: u32) -> i64 {
     let x = (a as f64 + 0.5) * exp2(-(address as i32));
     to_raw((1.0 - x * x).sqrt(), fraction)
-}
-
-/// A segment's entry with what it costs, as in [`Piece`].
-struct Fit {
-    segment: Segment,
-    error: f64,
-    shape: f64,
-}
-
-/// The entry for the segment u … u + 2^width.
-fn fit(operand: u32, fraction: u32, slope_fraction: u32, u: i64, width: u32) -> Fit {
-    let (start, length) = (sine_of(operand, u), 1i64 << width);
-    let ulp = exp2(-(fraction as i32));
-    if width == 0 {
-        let base = to_raw(start, fraction);
-        return Fit {
-            segment: Segment { base, slope: 0 },
-            error: (base as f64 * ulp - start).abs(),
-            shape: 0.0,
-        };
-    }
-    let rise = sine_of(operand, u + length) - start;
-    let slope = (rise * exp2(slope_fraction as i32) + 0.5).floor() as i64;
-    let line = slope as f64 * exp2(-(slope_fraction as i32)) * exp2(-(width as i32));
-    let above = |i: i64| sine_of(operand, u + i) - line * i as f64;
-    // The sine is concave in u: bisect for the first i after which it no longer rises above the line.
-    let (mut low, mut high) = (0, length - 1);
-    while low < high {
-        let middle = (low + high) / 2;
-        if above(middle + 1) > above(middle) {
-            low = middle + 1;
-        } else {
-            high = middle;
-        }
-    }
-    let (most, least) = (above(low), above(0).min(above(length - 1)));
-    let base = to_raw((least + most) / 2.0, fraction);
-    let height = base as f64 * ulp;
-    let below = most + ulp - height;
-    // Saturation to 1 − ulp is off by up to an ulp, which `below` covers.
-    let chord = start + rise * low as f64 / length as f64;
-    Fit {
-        segment: Segment { base, slope },
-        error: below.max(height - least).max(ulp),
-        shape: (sine_of(operand, u + low) - chord) / 2.0,
-    }
 }
 
 #[cfg(test)]

@@ -1,8 +1,8 @@
 //! ROM 18 of `rough`: the sine of a cosine, in one of two schemes.
 
 use super::Formats;
-use crate::base::fixed::Format;
-use crate::hdl::blocks::segmented::{self, Entry, Segment, Segmentation, SegmentedFormats};
+use crate::base::fixed::{Format, exp2};
+use crate::hdl::blocks::segmented::{self, Bend, Segment, Segmentation, SegmentedFormats};
 use crate::hdl::dsl::{Designer, Signal};
 use crate::keys::rough::{Keys, Scheme};
 
@@ -31,7 +31,11 @@ pub(super) fn sine_rom<'d>(
         slope_fraction: keys.slope_fraction as i32,
         synchronous: keys.synchronous,
     };
-    let entry = |segment: Segment| sine_entry(segment, fraction, shape);
+    let sine = |u: f64| {
+        let x = 1.0 - u / exp2(fraction as i32);
+        (1.0 - x * x).max(0.0).sqrt()
+    };
+    let entry = |segment: Segment| segmented::chord(segment, shape, Bend::Concave, sine);
     segmented::interpolate(d, "sine", u, &cut, shape, entry, Some(18))
         .doc("sine of the addressed cosine")
 }
@@ -62,37 +66,4 @@ fn direct_sine<'d>(
         .block(18)
         .doc(&format!("sine ({}) at the middle of a bucket of the cosine", formats.sine));
     rom.out().doc("sine of the addressed cosine")
-}
-
-/// The straight line through a segment of s(u) = √(1 − (1 − u)²) with the least error: the slope of
-/// the chord, and the base that puts the error of the segment's points symmetrically about 0.
-fn sine_entry(segment: Segment, fraction: u32, shape: SegmentedFormats) -> Entry {
-    let one = f64::from(1u32 << fraction);
-    let sine = |u: f64| {
-        let x = (one - u) / one;
-        (1.0 - x * x).max(0.0).sqrt()
-    };
-    let value = Format::unsigned(0, shape.fraction);
-    let (from, length) = (segment.from as f64, segment.length as f64);
-    if segment.length == 1 {
-        return Entry { base: value.quantise(sine(from)), slope: 0 };
-    }
-    let scale = f64::from(1u32 << shape.slope_fraction);
-    let slope = ((sine(from + length) - sine(from)) * scale + 0.5).floor();
-    let residual = |at: f64| sine(from + at) - slope / scale * at / length;
-    // Concave: the least residual is at an end, the greatest where the line is parallel.
-    let last = length - 1.0;
-    let least = residual(0.0).min(residual(last));
-    let (mut low, mut high) = (0.0, last);
-    while high - low > 2.0 {
-        let (a, b) = ((low + (high - low) / 3.0).floor(), (high - (high - low) / 3.0).ceil());
-        if residual(a) < residual(b) {
-            low = a;
-        } else {
-            high = b;
-        }
-    }
-    let middle = ((low + high) / 2.0).floor();
-    let most = [low, middle, high].into_iter().map(residual).fold(f64::MIN, f64::max);
-    Entry { base: value.quantise((least + most) / 2.0), slope: slope as i128 }
 }

@@ -6,7 +6,7 @@
 //! the segments are fine where a function such as √u is steep, or where one such as −log₂(1 − u) must
 //! keep its relative accuracy, at a cost of one mux, a tree, and no shifter.
 
-use crate::base::fixed::{Format, Overflow, Rounding};
+use crate::base::fixed::{Format, Overflow, Rounding, exp2};
 use crate::hdl::dsl::{Designer, Signal};
 
 /// How the operand is cut.
@@ -42,6 +42,55 @@ pub struct Entry {
     pub base: i128,
     /// Over the whole segment; not negative.
     pub slope: i128,
+}
+
+/// How a function bends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Bend {
+    /// Its slope grows.
+    Convex,
+    /// Its slope falls.
+    Concave,
+}
+
+/// The straight line through a segment of a function with the least error: the slope of the chord,
+/// and the base that puts the error of the segment's points symmetrically about 0, of a convex function half an ulp up for
+/// what the truncated rise loses.
+pub fn chord(
+    segment: Segment,
+    shape: SegmentedFormats,
+    bend: Bend,
+    function: impl Fn(f64) -> f64,
+) -> Entry {
+    let value = Format::unsigned(0, shape.fraction);
+    let (from, length) = (segment.from as f64, segment.length as f64);
+    if segment.length == 1 {
+        return Entry { base: value.quantise(function(from)), slope: 0 };
+    }
+    let (sign, lost) = match bend {
+        Bend::Convex => (1.0, exp2(-shape.fraction - 1)),
+        Bend::Concave => (-1.0, 0.0),
+    };
+    let scale = exp2(shape.slope_fraction);
+    let slope = ((function(from + length) - function(from)) * scale + 0.5).floor();
+    let residual = |at: f64| sign * (function(from + at) - slope / scale * at / length);
+    // The greatest residual is at an end, the least where the curve is parallel to the line.
+    let last = length - 1.0;
+    let most = residual(0.0).max(residual(last));
+    let (mut low, mut high) = (0.0, last);
+    while high - low > 2.0 {
+        let third = (high - low) / 3.0;
+        let (a, b) = ((low + third).floor(), (high - third).ceil());
+        if residual(a) > residual(b) {
+            low = a;
+        } else {
+            high = b;
+        }
+    }
+    let middle = ((low + high) / 2.0).floor();
+    let least = [low, middle, high].into_iter().map(residual).fold(f64::MAX, f64::min);
+    let base = value.quantise(sign * (least + most) / 2.0 + lost);
+    Entry { base, slope: slope as i128 }
 }
 
 /// A segment: the values of u that one entry is for.
