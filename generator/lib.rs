@@ -35,6 +35,7 @@ pub mod base;
 pub mod certify;
 #[cfg(feature = "cli")]
 pub mod cli;
+#[macro_use]
 pub mod config;
 pub mod core;
 pub mod cosim;

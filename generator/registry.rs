@@ -3,7 +3,7 @@
 use anyhow::{Result, ensure};
 
 use crate::base::diagnostic::Diagnostics;
-use crate::config::{Config, Schema};
+use crate::config::{Config, Schema, Shared};
 use crate::devices;
 use crate::golden::{self, Contract, Model};
 use crate::hdl::dsl::Designer;
@@ -68,14 +68,15 @@ impl Device {
     /// The mistakes of the description.
     pub fn sequential(&self, config: &Config) -> Result<Design, Diagnostics> {
         let designer = Designer::new(&config.name);
-        if config.flag(OPERANDS_BUFFERED) {
+        let keys = Shared::of(config);
+        if keys.operands_buffered {
             designer.buffer_operands();
         }
         (self.describe)(&designer, config);
-        if config.flag(OUTPUT_REGISTERED) {
+        if keys.output_registered {
             designer.register_outputs();
         }
-        if config.choice("operands.logic") == "combinational" {
+        if keys.operands_logic == "combinational" {
             designer.keep_operand_logic();
         }
         designer.finish()

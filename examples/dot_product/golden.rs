@@ -6,7 +6,7 @@ use glint::fixed::{Format, Rounding, exp2};
 use glint::golden::device::{self, Formula};
 use glint::golden::frame::{Frame, idle, step};
 use glint::golden::narrow::{Narrow, rounding_error};
-use glint::golden::{Axis, Contract, Model, Sweep, Term, Values};
+use glint::golden::{Contract, Model, Sweep, Term};
 
 /// A sum of products to a cosine of 0 ... 1.
 #[derive(Clone, Copy)]
@@ -128,9 +128,7 @@ impl Formula for Cosine {
     /// The sum determines the result.
     fn sweep(&self) -> Option<Sweep> {
         let most = 3 << (2 * self.keys.fraction);
-        let name = "sum of the products".to_owned();
-        let axes = vec![Axis { name, values: Values::Range(-most, most) }];
-        Some(Sweep { axes, omits: String::new() })
+        Some(Sweep::ranges([("sum of the products", (-most, most))]))
     }
 
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {

@@ -8,7 +8,7 @@ use glint::fixed::{Format, exp2, mask};
 use glint::golden::device::{self, Formula};
 use glint::golden::frame::{Frame, Slot, idle, step, step_by};
 use glint::golden::narrow::{Narrow, rounding_error};
-use glint::golden::{Axis, Contract, Model, Sweep, Term, Values};
+use glint::golden::{Contract, Model, Sweep, Term};
 
 /// The most that the sum of squares can be: each component is at least −2.0.
 const FARTHEST: i64 = 12;
@@ -193,9 +193,7 @@ impl Formula for Normaliser {
     /// The sum of squares determines the inverse root, and the largest error of any component with it.
     fn sweep(&self) -> Option<Sweep> {
         let most = FARTHEST << (2 * self.keys.fraction);
-        let name = "sum of squares".to_owned();
-        let axes = vec![Axis { name, values: Values::Range(1, most) }];
-        Some(Sweep { axes, omits: String::new() })
+        Some(Sweep::ranges([("sum of squares", (1, most))]))
     }
 
     /// Of a component as long as the vector, before it is rounded, and the rounding.

@@ -4,7 +4,7 @@ use super::schema::Key;
 use super::values::Config;
 use crate::base::fixed::Rounding;
 
-/// A type of field in a table of [`keys!`](crate::keys).
+/// A type of field in a table of [`keys!`](macro@crate::keys).
 pub trait Setting: Sized {
     /// The value that a configuration has for the keys of the field.
     fn read(config: &Config, keys: &[Key]) -> Self;
@@ -61,7 +61,7 @@ macro_rules! keys {
     };
 }
 
-/// Makes an enum of the words of a choice, [`Key::choice`], for a field of [`keys!`](crate::keys).
+/// Makes an enum of the words of a choice, [`Key::choice`], for a field of [`keys!`](macro@crate::keys).
 #[macro_export]
 macro_rules! choices {
     (
@@ -134,6 +134,13 @@ impl Setting for Vec<u32> {
 impl Setting for f64 {
     fn read(config: &Config, keys: &[Key]) -> Self {
         config.number(keys[0].name)
+    }
+}
+
+/// A text, or the word of a choice.
+impl Setting for String {
+    fn read(config: &Config, keys: &[Key]) -> Self {
+        config.text(keys[0].name).to_owned()
     }
 }
 

@@ -8,6 +8,7 @@
 mod audit;
 mod follow;
 mod json_schema;
+#[macro_use]
 mod keys;
 mod module_name;
 mod nearest;
@@ -30,7 +31,7 @@ pub use problems::{Problem, Problems};
 pub use read::{read, read_located};
 pub use sample::sample;
 pub use schema::{Key, Kind, Schema};
-pub use shared::shared_keys;
+pub use shared::{Shared, shared_keys};
 pub use text_pattern::TextPattern;
 pub use values::{Config, Value};
 pub use write::commented;

@@ -13,184 +13,89 @@ pub fn shared_keys() -> &'static [Key] {
     &KEYS
 }
 
-static KEYS: LazyLock<Vec<Key>> = LazyLock::new(|| {
-    vec![
-        Key::choice(
-            "architecture",
-            "sequential",
-            &["sequential", "pipelined"],
-            "A microprogram on one set of arithmetic, or the same unrolled: a point every clock.",
-        ),
-        Key::choice(
-            "pipeline.target",
-            "ecp5",
-            &["ecp5", "ice40", "xilinx7", "generic"],
-            "Whose delays and multipliers decide what a stage of the pipeline does.",
-        )
-        .only_when("architecture", "pipelined"),
-        Key::number(
-            "pipeline.clock_mhz",
-            130.0,
-            1.0..=2000.0,
-            "The clock that every stage must reach; the schedule has the fewest registers for it.",
-        )
-        .only_when("architecture", "pipelined"),
-        Key::integer(
-            "pipeline.stages",
-            0,
-            0..=1000,
-            "The number of stages, in place of a clock; as fast as they allow. 0: pipeline.clock_mhz decides.",
-        )
-        .only_when("architecture", "pipelined"),
-        Key::choice(
-            "pipeline.multipliers",
-            "inferred",
-            &["inferred", "registered"],
+static KEYS: LazyLock<Vec<Key>> = LazyLock::new(Shared::keys);
+
+keys! {
+    /// What a configuration says of them.
+    pub struct Shared {
+        architecture: String = Key::choice("architecture", "sequential", &["sequential", "pipelined"],
+            "A microprogram on one set of arithmetic, or the same unrolled: a point every clock."),
+        target: String = Key::choice("pipeline.target", "ecp5", &["ecp5", "ice40", "xilinx7", "generic"],
+            "Whose delays and multipliers decide what a stage of the pipeline does.")
+            .only_when("architecture", "pipelined"),
+        pipeline_clock_mhz: f64 = Key::number("pipeline.clock_mhz", 130.0, 1.0..=2000.0,
+            "The clock that every stage must reach; the schedule has the fewest registers for it.")
+            .only_when("architecture", "pipelined"),
+        stages: u32 = Key::integer("pipeline.stages", 0, 0..=1000,
+            "The number of stages, in place of a clock; as fast as they allow. 0: pipeline.clock_mhz decides.")
+            .only_when("architecture", "pipelined"),
+        multipliers: String = Key::choice("pipeline.multipliers", "inferred", &["inferred", "registered"],
             "Products as the synthesiser finds them, or in instances of <name>_multiplier, whose output register is that of \
-             the DSP block: faster, and every product takes a block.",
-        )
-        .only_when("pipeline.target", "ecp5"),
-        Key::choice(
-            "pipeline.stall",
-            "ready",
-            &["ready", "none"],
-            "Whether out_ready can hold the results back; without it every register moves in every clock.",
-        )
-        .only_when("architecture", "pipelined"),
-        Key::choice(
-            "pipeline.delays",
-            "memory",
-            &["memory", "registers"],
+             the DSP block: faster, and every product takes a block.")
+            .only_when("pipeline.target", "ecp5"),
+        stall: String = Key::choice("pipeline.stall", "ready", &["ready", "none"],
+            "Whether out_ready can hold the results back; without it every register moves in every clock.")
+            .only_when("architecture", "pipelined"),
+        delays: String = Key::choice("pipeline.delays", "memory", &["memory", "registers"],
             "What holds values that no stage reads for some time: memory in look-up tables, where the target has such, \
-             or a register a stage.",
-        )
-        .only_when("architecture", "pipelined"),
-        Key::integer(
-            "pipeline.side",
-            0,
-            0..=64,
-            "Bits of side_in and side_out, which travel with a point: a pixel's address, say.",
-        )
-        .only_when("architecture", "pipelined"),
-        Key::flag(
-            "output.registered",
-            false,
-            "Registers behind results that are logic: a multiplier and a rounding adder for a colour. They are valid a clock later.",
-        )
-        .only_when("architecture", "sequential"),
-        Key::flag(
-            "operands.buffered",
-            false,
-            "Buffers that take operands while a point is computed. The next one then begins in the clock after the last of this one.",
-        )
-        .only_when("architecture", "sequential"),
-        Key::choice(
-            "operands.logic",
-            "registered",
-            &["registered", "combinational"],
-            "Logic of operands alone: with registers in it where there is a clock to spare, or without.",
-        )
-        .only_when("architecture", "sequential"),
-        Key::flag(
-            "interface.stream",
-            false,
-            "Write an AXI4-Stream wrapper of the core, <name>_axis.v.",
-        ),
-        Key::integer(
-            "interface.user_bits",
-            1,
-            1..=1024,
-            "Bits of tuser, the side channel that travels with a point.",
-        )
-        .only_when("interface.stream", "true"),
-        Key::choice(
-            "interface.registers",
-            "none",
-            &["none", "axi-lite", "wishbone"],
-            "Write registers around the core: <name>_axil.v on AXI4-Lite, <name>_wb.v on Wishbone.",
-        )
-        .only_when("architecture", "sequential"),
-        Key::flag(
-            "package.software",
-            false,
-            "Write software/<name>/: a bit-accurate model of the core in C.",
-        ),
-        Key::choice(
-            "package.memories",
-            "files",
-            &["files", "inline", "case"],
+             or a register a stage.").only_when("architecture", "pipelined"),
+        side: u32 = Key::integer("pipeline.side", 0, 0..=64,
+            "Bits of side_in and side_out, which travel with a point: a pixel's address, say.")
+            .only_when("architecture", "pipelined"),
+        output_registered: bool = Key::flag("output.registered", false,
+            "Registers behind results that are logic: a multiplier and a rounding adder for a colour. They are valid a clock later.")
+            .only_when("architecture", "sequential"),
+        operands_buffered: bool = Key::flag("operands.buffered", false,
+            "Buffers that take operands while a point is computed. The next one then begins in the clock after the last of this one.")
+            .only_when("architecture", "sequential"),
+        operands_logic: String = Key::choice("operands.logic", "registered", &["registered", "combinational"],
+            "Logic of operands alone: with registers in it where there is a clock to spare, or without.")
+            .only_when("architecture", "sequential"),
+        stream: bool = Key::flag("interface.stream", false,
+            "Write an AXI4-Stream wrapper of the core, <name>_axis.v."),
+        user_bits: u32 = Key::integer("interface.user_bits", 1, 1..=1024,
+            "Bits of tuser, the side channel that travels with a point.")
+            .only_when("interface.stream", "true"),
+        registers: String = Key::choice("interface.registers", "none", &["none", "axi-lite", "wishbone"],
+            "Write registers around the core: <name>_axil.v on AXI4-Lite, <name>_wb.v on Wishbone.")
+            .only_when("architecture", "sequential"),
+        software: bool = Key::flag("package.software", false,
+            "Write software/<name>/: a bit-accurate model of the core in C."),
+        memories: String = Key::choice("package.memories", "files", &["files", "inline", "case"],
             "Whether ROM contents are .mem files, or stand in the Verilog, for flows that do not find files: as initial values, or as \
-             the choices of a case, for flows that drop those.",
-        ),
-        Key::choice(
-            "package.rom_style",
-            "auto",
-            &["auto", "block", "distributed"],
+             the choices of a case, for flows that drop those."),
+        rom_style: String = Key::choice("package.rom_style", "auto", &["auto", "block", "distributed"],
             "Where ROMs that are read on the clock are to be, as their attribute rom_style says: block memory, look-up tables, or \
-             as the synthesiser finds.",
-        ),
-        Key::flag(
-            "package.initial_values",
-            false,
+             as the synthesiser finds."),
+        initial_values: bool = Key::flag("package.initial_values", false,
             "Registers of the core are 0 before the first clock, but for those that ROMs are read into. Without it a simulation has unknown \
-             values until the first reset and the first writes; wrappers need their reset all the same.",
-        )
-        .only_when("architecture", "sequential"),
-        Key::flag(
-            "package.litex",
-            false,
-            "Write software/<name>/<name>_litex.py: the core as a module of LiteX.",
-        )
-        .only_when("package.memories", "inline"),
-        Key::flag(
-            "package.constraints",
-            false,
-            "Write the clock as constraints: <top>.sdc and <top>.xdc.",
-        ),
-        Key::number_or_zero(
-            "package.clock_mhz",
-            1.0..=2000.0,
+             values until the first reset and the first writes; wrappers need their reset all the same.")
+            .only_when("architecture", "sequential"),
+        litex: bool = Key::flag("package.litex", false,
+            "Write software/<name>/<name>_litex.py: the core as a module of LiteX.")
+            .only_when("package.memories", "inline"),
+        constraints: bool = Key::flag("package.constraints", false,
+            "Write the clock as constraints: <top>.sdc and <top>.xdc."),
+        clock_mhz: f64 = Key::number_or_zero("package.clock_mhz", 1.0..=2000.0,
             "The frequency of the clock in constraints and vendors' projects. 0 for that of the pipeline, \
-             or 100 for a sequential core.",
-        )
-        .only_when("package.constraints", "true"),
-        Key::flag(
-            "package.vivado",
-            false,
-            "Write Tcl for Vivado: <name>_vivado.tcl builds, <name>_vivado_ip.tcl packages IP.",
-        )
-        .only_when("package.constraints", "true"),
-        Key::flag(
-            "package.quartus",
-            false,
-            "Write Tcl for Quartus: <name>_quartus.tcl builds, <top>_hw.tcl is for Platform Designer.",
-        )
-        .only_when("package.constraints", "true"),
-        Key::flag(
-            "package.ip_xact",
-            false,
-            "Write IP-XACT components (IEEE 1685-2014): <top>.xml.",
-        ),
-        Key::text(
-            "package.vendor",
-            "glint",
-            TextPattern::Name,
-            "The vendor in IP-XACT, Vivado and Platform Designer; a domain name, as a rule.",
-        ),
-        Key::text(
-            "package.version",
-            "0.1.0",
-            TextPattern::Version,
-            "The version of the core for FuseSoC, IP-XACT, Vivado and Platform Designer.",
-        ),
-        Key::text(
-            "package.licence",
-            "LicenseRef-belongs-to-its-user",
-            TextPattern::Licence,
-            "The licence of the files for FuseSoC, of which only the characters are checked. What Glint generates belongs to its user.",
-        ),
-    ]
-});
+             or 100 for a sequential core.")
+            .only_when("package.constraints", "true"),
+        vivado: bool = Key::flag("package.vivado", false,
+            "Write Tcl for Vivado: <name>_vivado.tcl builds, <name>_vivado_ip.tcl packages IP.")
+            .only_when("package.constraints", "true"),
+        quartus: bool = Key::flag("package.quartus", false,
+            "Write Tcl for Quartus: <name>_quartus.tcl builds, <top>_hw.tcl is for Platform Designer.")
+            .only_when("package.constraints", "true"),
+        ip_xact: bool = Key::flag("package.ip_xact", false,
+            "Write IP-XACT components (IEEE 1685-2014): <top>.xml."),
+        vendor: String = Key::text("package.vendor", "glint", TextPattern::Name,
+            "The vendor in IP-XACT, Vivado and Platform Designer; a domain name, as a rule."),
+        version: String = Key::text("package.version", "0.1.0", TextPattern::Version,
+            "The version of the core for FuseSoC, IP-XACT, Vivado and Platform Designer."),
+        licence: String = Key::text("package.licence", "LicenseRef-belongs-to-its-user", TextPattern::Licence,
+            "The licence of the files for FuseSoC, of which only the characters are checked. What Glint generates belongs to its user."),
+    }
+}
 
 impl Schema {
     /// The key of this name, the device's own or one of [`shared_keys`].

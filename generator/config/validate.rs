@@ -7,6 +7,7 @@ use super::module_name;
 use super::nearest::nearest;
 use super::problems::{Problem, Problems, Violation, out_of_range, quoted, shown};
 use super::schema::{Key, Kind, Schema};
+use super::shared::Shared;
 use super::values::{Config, Value};
 
 impl Key {
@@ -197,7 +198,8 @@ fn check(schema: &Schema, draft: &Draft, problems: &mut Problems) {
         }
     }
 
-    if draft.config.integer("pipeline.stages") != 0 && draft.given.contains("pipeline.clock_mhz") {
+    let keys = Shared::of(&draft.config);
+    if keys.stages != 0 && draft.given.contains("pipeline.clock_mhz") {
         problems.push(
             "pipeline.clock_mhz",
             "`pipeline.clock_mhz` and `pipeline.stages` both say how fast the pipeline is"
@@ -206,7 +208,7 @@ fn check(schema: &Schema, draft: &Draft, problems: &mut Problems) {
         );
     }
 
-    if draft.config.flag("interface.stream") && draft.config.choice("pipeline.stall") == "none" {
+    if keys.stream && keys.stall == "none" {
         problems.push(
             "interface.stream",
             "`interface.stream` needs a pipeline that its receiver can hold back".to_owned(),

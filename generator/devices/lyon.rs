@@ -5,7 +5,7 @@
 //! mux. The wiring is our reading. Numbers count each kind of block.
 
 use crate::base::fixed::{Format, Overflow, Rounding};
-use crate::config::Config;
+use crate::config::{Config, Shared};
 use crate::hdl::blocks::colour::Colours;
 use crate::hdl::blocks::squaring::Squarings;
 use crate::hdl::dsl::{Designer, Setting, Signal, Step, loop_while, step};
@@ -210,7 +210,7 @@ fn shift_format(keys: &Keys) -> Format {
 fn clocks_note(keys: &Keys, config: &Config) -> Note {
     let shift = keys.scale == Scale::Shift;
     let (squares, colours) = (keys.squares_in_turn(), keys.colours.in_turn());
-    let output = config.flag("output.registered") && !colours;
+    let output = Shared::of(config).output_registered && !colours;
     Topic::Latency.note(format!(
         "Valid is {}{} clocks after start: one each for {}D^2, scaling, base{} and result, and one for each squaring \
          after the first{}.",

@@ -6,7 +6,7 @@
 mod sine;
 
 use crate::base::fixed::{Format, Overflow, Rounding};
-use crate::config::Config;
+use crate::config::{Config, Shared};
 use crate::hdl::blocks::colour::{ChannelBlocks, Colours};
 use crate::hdl::dsl::{Designer, Register, Signal, end, hold, step, valid};
 use crate::hdl::netlist::{About, Note, Topic};
@@ -300,7 +300,7 @@ fn about(keys: &Keys, config: &Config) -> About {
         "Registers, muxes, adders and multipliers carry the numbers of the patent's figure 1.".into(),
         Topic::Microprogram.note(format!(
             "The control ROM is the patent's table 1, {}.",
-            match (keys.operands.colours.in_turn(), config.flag("output.registered")) {
+            match (keys.operands.colours.in_turn(), Shared::of(config).output_registered) {
                 (true, _) => "with a microinstruction more for each colour",
                 (_, true) => "with a microinstruction more for the output registers",
                 _ => "bit for bit",

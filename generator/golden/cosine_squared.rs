@@ -6,7 +6,7 @@ use super::contract::ErrorShare;
 use super::frame::{Clocked, Frame};
 use super::highlight::{Highlight, Products, Reflectance};
 use super::line::{self, CosineTable, magnitude};
-use super::{Axis, Contract, Model, Operand, Sweep, Values};
+use super::{Contract, Model, Operand, Sweep};
 use crate::base::fixed::exp2;
 use crate::config::Config;
 use crate::golden::formulas;
@@ -133,13 +133,8 @@ impl Reflectance for Arithmetic {
     /// Every angle that a line can come to, by the step of ROM 12 that it is in. Beyond a right angle the
     /// word is the table's last, 0, and so is the formula.
     fn sweep(&self) -> Option<Sweep> {
-        Some(Sweep {
-            axes: vec![Axis {
-                name: "step of the table".to_string(),
-                values: Values::Range(0, (1 << self.keys.table_address) - 1),
-            }],
-            omits: String::new(),
-        })
+        let last = (1 << self.keys.table_address) - 1;
+        Some(Sweep::ranges([("step of the table", (0, last))]))
     }
 
     /// The worst over the step's angles of either sign: the formula falls from one end to the other.

@@ -264,11 +264,16 @@ pub enum Values {
 impl Sweep {
     /// Every combination of some operands.
     pub fn all<'a>(operands: impl Iterator<Item = &'a Operand>) -> Self {
-        let axis = |operand: &Operand| Axis {
-            name: operand.name.clone(),
-            values: Values::Range(operand.domain.0, operand.domain.1),
-        };
-        Self { axes: operands.map(axis).collect(), omits: String::new() }
+        Self::ranges(operands.map(|operand| (operand.name.as_str(), operand.domain)))
+    }
+
+    /// Every combination of values by name, each from the first to the last.
+    pub fn ranges<'a>(ranges: impl IntoIterator<Item = (&'a str, (i64, i64))>) -> Self {
+        let axes = ranges.into_iter().map(|(name, (low, high))| Axis {
+            name: name.to_owned(),
+            values: Values::Range(low, high),
+        });
+        Self { axes: axes.collect(), omits: String::new() }
     }
 
     /// Its axes in a sentence.

@@ -2,7 +2,6 @@
 
 use crate::base::fixed::{Format, Rounding, exp2};
 use crate::config::{Key, Problems};
-use crate::keys;
 
 keys! {
     /// The operand cos γ.

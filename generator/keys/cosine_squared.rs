@@ -3,7 +3,6 @@
 use super::common;
 use crate::base::fixed::{Format, Rounding};
 use crate::config::{Config, Key, Problems, Schema};
-use crate::keys;
 
 keys! {
     /// What a configuration says.

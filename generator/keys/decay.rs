@@ -2,7 +2,6 @@
 
 use super::common::{self, Domain, Intensity, Operands};
 use crate::config::{Config, Key, Problems, Schema, Value};
-use crate::keys;
 
 keys! {
     /// What a configuration says.

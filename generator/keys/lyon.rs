@@ -3,7 +3,6 @@
 use super::common::{self, Colours, Domain, Intensity};
 use crate::base::fixed::Rounding;
 use crate::config::{Config, Key, Problems, Schema};
-use crate::{choices, keys};
 
 choices! {
     /// How β is had.

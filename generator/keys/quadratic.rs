@@ -3,7 +3,6 @@
 use super::common::{self, Domain, Intensity, Operands};
 use crate::base::fixed::Rounding;
 use crate::config::{Config, Key, Problems, Schema};
-use crate::{choices, keys};
 
 choices! {
     /// What ROM(n) holds.

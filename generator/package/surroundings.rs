@@ -1,7 +1,7 @@
 //! What a configuration asks for around a core.
 
 use super::Unfit;
-use crate::config::{Config, Schema};
+use crate::config::{Config, Schema, Shared};
 use crate::hdl::netlist::{Design, Pipeline};
 use crate::hdl::verilog::naming::Style;
 
@@ -119,37 +119,38 @@ impl Default for Surroundings {
 impl Surroundings {
     /// What the keys that every device shares say; of a pipeline, with the clock that it is made for.
     pub fn new(config: &Config, pipeline: Option<&Pipeline>) -> Self {
+        let keys = Shared::of(config);
         Self {
-            stream: config.flag("interface.stream"),
-            user_bits: config.integer("interface.user_bits") as u32,
-            registers: match config.choice("interface.registers") {
+            stream: keys.stream,
+            user_bits: keys.user_bits,
+            registers: match keys.registers.as_str() {
                 "axi-lite" => Some(Bus::AxiLite),
                 "wishbone" => Some(Bus::Wishbone),
                 _ => None,
             },
-            software: config.flag("package.software"),
+            software: keys.software,
             style: Style {
-                inline: config.choice("package.memories") != "files",
-                case: config.choice("package.memories") == "case",
-                rom_style: match config.choice(ROM_STYLE) {
+                inline: keys.memories != "files",
+                case: keys.memories == "case",
+                rom_style: match keys.rom_style.as_str() {
                     "block" => Some("rom_style = \"block\""),
                     // To Yosys, which reads the first, memory in look-up tables is one that can be written.
                     "distributed" => Some("ram_style = \"logic\", rom_style = \"distributed\""),
                     _ => None,
                 },
-                initial: config.flag("package.initial_values"),
+                initial: keys.initial_values,
             },
-            litex: config.flag("package.litex"),
-            clock_mhz: config.flag("package.constraints").then(|| {
+            litex: keys.litex,
+            clock_mhz: keys.constraints.then(|| {
                 let made_for = pipeline.map_or(CLOCK_MHZ, |pipeline| pipeline.clock_mhz);
-                Some(config.number(CLOCK)).filter(|&given| given > 0.0).unwrap_or(made_for)
+                Some(keys.clock_mhz).filter(|&given| given > 0.0).unwrap_or(made_for)
             }),
-            vivado: config.flag("package.vivado"),
-            quartus: config.flag("package.quartus"),
-            ip_xact: config.flag("package.ip_xact"),
-            vendor: config.text("package.vendor").to_owned(),
-            version: config.text("package.version").to_owned(),
-            licence: config.text("package.licence").to_owned(),
+            vivado: keys.vivado,
+            quartus: keys.quartus,
+            ip_xact: keys.ip_xact,
+            vendor: keys.vendor,
+            version: keys.version,
+            licence: keys.licence,
         }
     }
 }

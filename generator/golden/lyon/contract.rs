@@ -7,7 +7,7 @@ use crate::golden::contract::{self as shared, ErrorShare};
 use crate::golden::formulas;
 use crate::golden::highlight::{Highlight, Reflectance};
 use crate::golden::narrow::rounding_error;
-use crate::golden::{Axis, Contract, Operand, Sweep, Values};
+use crate::golden::{Contract, Operand, Sweep};
 
 /// The most that D² can be: each component is at least −2.0.
 const FARTHEST: i64 = 12;
@@ -99,15 +99,11 @@ impl Reflectance for Arithmetic {
 
     /// The word of D² and the operand that scales it determine f: adders 1 and 2 and multipliers 1 to 3 are exact.
     fn sweep(&self) -> Option<Sweep> {
-        let (low, high) = self.keys.scale_domain();
         let most = FARTHEST << self.keys.distance_fraction;
-        Some(Sweep {
-            axes: vec![
-                Axis { name: self.keys.scale_name().to_owned(), values: Values::Range(low, high) },
-                Axis { name: "word of D^2".to_owned(), values: Values::Range(0, most) },
-            ],
-            omits: String::new(),
-        })
+        Some(Sweep::ranges([
+            (self.keys.scale_name(), self.keys.scale_domain()),
+            ("word of D^2", (0, most)),
+        ]))
     }
 
     /// The worst over every D² that is rounded to the word. The formula falls as D² grows, so that it is at an end.

@@ -9,7 +9,7 @@ use crate::golden::contract::{self as shared, ErrorShare};
 use crate::golden::formulas;
 use crate::golden::highlight::{Highlight, Reflectance};
 use crate::golden::line;
-use crate::golden::{Axis, Contract, Operand, Sweep, Values};
+use crate::golden::{Contract, Operand, Sweep};
 
 /// The accuracy contract. Control operands: `delta_zeta`, `zeta_start`, `exponent`, `length`; those of a
 /// point have its angle for `zeta_start`.
@@ -98,17 +98,10 @@ impl Reflectance for Arithmetic {
     /// faces away the word is the table's last, 0, for every n, and so is the formula.
     fn sweep(&self) -> Option<Sweep> {
         let magnitudes = 1i64 << self.keys.angle_multiplied;
-        let (low, high) = self.keys.domain.exponents();
-        Some(Sweep {
-            axes: vec![
-                Axis { name: "exponent".to_string(), values: Values::Range(low, high) },
-                Axis {
-                    name: "magnitude of the angle".to_string(),
-                    values: Values::Range(0, magnitudes - 1),
-                },
-            ],
-            omits: String::new(),
-        })
+        Some(Sweep::ranges([
+            ("exponent", self.keys.domain.exponents()),
+            ("magnitude of the angle", (0, magnitudes - 1)),
+        ]))
     }
 
     /// The worst over the angles of either sign that have this magnitude: the formula falls from one end

@@ -20,7 +20,7 @@ mod tests;
 mod unroll;
 
 use crate::base::diagnostic::{Diagnostic, Diagnostics};
-use crate::config::Config;
+use crate::config::{Config, Shared};
 use crate::hdl::netlist::Design;
 
 pub use graph::{Cell, Graph, Node, NodeId, Op};
@@ -67,16 +67,17 @@ pub struct Options {
 
 /// What a configuration says; none if its architecture is sequential.
 pub fn options(config: &Config) -> Option<Options> {
-    (config.choice("architecture") == "pipelined").then(|| Options {
-        target: Target::named(config.choice("pipeline.target")).unwrap_or(&TARGETS[0]),
-        goal: match config.integer("pipeline.stages") {
-            0 => Goal::ClockMhz(config.number("pipeline.clock_mhz")),
+    let keys = Shared::of(config);
+    (keys.architecture == "pipelined").then(|| Options {
+        target: Target::named(&keys.target).unwrap_or(&TARGETS[0]),
+        goal: match keys.stages {
+            0 => Goal::ClockMhz(keys.pipeline_clock_mhz),
             stages => Goal::Stages(stages as usize),
         },
-        registered: config.choice("pipeline.multipliers") == "registered",
-        stall: config.choice("pipeline.stall") == "ready",
-        side: config.integer("pipeline.side") as u32,
-        delays: match config.choice("pipeline.delays") {
+        registered: keys.multipliers == "registered",
+        stall: keys.stall == "ready",
+        side: keys.side,
+        delays: match keys.delays.as_str() {
             "registers" => Delays::Registers,
             _ => Delays::Memory,
         },
