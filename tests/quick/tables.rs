@@ -23,11 +23,14 @@ use crate::common::cores::{all_configurations, configuration};
 /// The cells of a row.
 type Row = Vec<String>;
 
+/// Makes the rows of a table from those that stand there.
+type Make = fn(Vec<Row>) -> Vec<Row>;
+
 const MEASUREMENTS: &str = "docs/measurements.md";
 const VERIFICATION: &str = "docs/verification.md";
 
-/// A table's page and name, and the function that makes its rows of those that stand there.
-const TABLES: [(&str, &str, fn(Vec<Row>) -> Vec<Row>); 14] = [
+/// A table: its page, its name, and the function that makes it.
+const TABLES: [(&str, &str, Make); 14] = [
     ("README.md", "main_job", main_job),
     (MEASUREMENTS, "devices", devices),
     (MEASUREMENTS, "choices", choices),
