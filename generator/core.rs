@@ -39,7 +39,7 @@ const PIPELINE_POINTS: u64 = 2000;
 /// The seed of the stimulus of benches.
 pub const BENCH_SEED: u64 = 1;
 
-/// What computes with a device.
+/// The engine that computes with a device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Through {
     /// The golden model's arithmetic.
@@ -94,7 +94,7 @@ impl Core {
         self.digest_of((self.device.schema)().keys.iter())
     }
 
-    /// What the bound of the contract rests on; `proofs` is the directory of records.
+    /// Returns the evidence for the contract's bound; `proofs` is the directory of records.
     ///
     /// # Errors
     /// A record that cannot be read.
@@ -159,7 +159,7 @@ impl Core {
         self.job_of(self.contract.sweep())
     }
 
-    /// The same by a sweep with other values than those of the contract.
+    /// Returns the job by a sweep with other values than those of the contract.
     ///
     /// # Errors
     /// Model and design do not name the same signals.
@@ -213,7 +213,7 @@ impl Core {
     /// and directed ones, which show the datapath and its tables.
     ///
     /// # Errors
-    /// Those of [`Core::vectors`].
+    /// As of [`Core::vectors`].
     pub fn shipped_vectors(&self) -> Result<Vectors> {
         let contract = self.contract.as_ref();
         if self.design.pipeline.is_some() {
@@ -260,7 +260,7 @@ impl Core {
         self.verilog_for("")
     }
 
-    /// The same for a target, by name, with what it has of its own.
+    /// Returns the Verilog for a target, by name, with its own files.
     ///
     /// # Errors
     /// The design cannot be written as Verilog.
@@ -273,7 +273,7 @@ impl Core {
         Ok(package::sources_for(files, target))
     }
 
-    /// What computes many points of the device; see [`crate::cosim::batch`].
+    /// Returns an engine that computes many points of the device; see [`crate::cosim::batch`].
     ///
     /// # Errors
     /// The design cannot be simulated or written as Verilog, or an outside tool is missing or refuses it.

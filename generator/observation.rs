@@ -1,4 +1,4 @@
-//! What is known of a design beyond its netlist: clocks, worked examples, computations with their results.
+//! Observations of a design beyond its netlist: clocks, worked examples, computations with their results.
 
 use std::iter::repeat;
 
@@ -50,11 +50,11 @@ pub struct WorkedExample {
 pub struct LineClocks {
     /// The name of that operand.
     pub length: String,
-    /// Of the last clock in which `valid` is high.
+    /// The last clock in which `valid` is high.
     pub last_valid: Linear,
-    /// Of the clock in which `done` is high.
+    /// The clock in which `done` is high.
     pub done: Linear,
-    /// Of the first clock in which the next `start` is taken.
+    /// The first clock in which the next `start` is taken.
     pub next_start: Linear,
 }
 
@@ -83,7 +83,7 @@ impl Linear {
     }
 }
 
-/// What a device promises of its results, as far as a program can use it.
+/// The contract of a device's results, as far as a program can use it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContractFacts {
     /// The operands with the smallest and the largest raw value for which it promises anything.
@@ -130,7 +130,7 @@ impl ContractFacts {
 pub struct Computation {
     /// Raw, in the order of [`ContractFacts::domain`].
     pub operands: Vec<i64>,
-    /// What is on the outputs whenever `valid` is high.
+    /// The outputs in every clock in which `valid` is high.
     pub results: Vec<Shown>,
     /// The clock in which `done` is high.
     pub done: u32,

@@ -1,4 +1,4 @@
-//! What a device is to the command line: keys, description, golden model, contract.
+//! The registry of devices: keys, description, golden model, contract of each.
 
 use anyhow::{Result, ensure};
 

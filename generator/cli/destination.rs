@@ -59,7 +59,7 @@ impl Destination {
     }
 }
 
-/// What is said when it cannot be written.
+/// The message when it cannot be written.
 fn cannot(path: &Path) -> String {
     format!("cannot write `{}`", path.display())
 }

@@ -1,4 +1,4 @@
-//! What happens on Ctrl-C, and on the other signals that ask a process to end.
+//! Ends the program on Ctrl-C, and on the other signals that ask a process to end.
 
 use std::fmt;
 use std::sync::atomic::{AtomicBool, AtomicI32, Ordering};
@@ -13,7 +13,7 @@ static NOTED: AtomicI32 = AtomicI32::new(0);
 pub struct Interrupted {
     /// The number of the signal.
     signal: i32,
-    /// What was saved.
+    /// The work that was saved.
     saved: String,
 }
 
@@ -47,7 +47,7 @@ impl Deferred {
         NOTED.load(Ordering::SeqCst) != 0
     }
 
-    /// What to end with if a signal has come, once what `saved` says is done.
+    /// Returns the error to end with if a signal has come, once the work that `saved` tells of is saved.
     pub fn end(self, saved: impl FnOnce() -> String) -> Option<Interrupted> {
         match NOTED.load(Ordering::SeqCst) {
             0 => None,

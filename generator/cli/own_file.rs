@@ -17,7 +17,7 @@ pub struct OwnFile {
 }
 
 impl OwnFile {
-    /// What a JSON file that Glint wrote begins with.
+    /// The first characters of a JSON file that Glint wrote.
     pub const JSON: &str = "{\n  \"glint\":";
 
     /// A file `name` in `directory`, which is made, if what is there under this name contains `marker`, or nothing is

@@ -23,7 +23,7 @@ use crate::package::{OutputFile, Seal, is_sealed};
 use staging::Staging;
 use survey::Survey;
 
-/// What [`write()`] did with the directories of a configuration, or [`write_sealed`] with a file.
+/// The result of [`write()`] for the directories of a configuration, or of [`write_sealed`] for a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Written {
     /// They were there already, byte for byte.

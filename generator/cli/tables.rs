@@ -7,14 +7,14 @@ use anyhow::{Result, bail};
 use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, Table, Width, presets};
 use serde_json::Value;
 
-/// What stands beside the text of each cell: blanks and a bar.
+/// The characters beside the text of each cell: blanks and a bar.
 const FRAME: usize = 3;
 
 /// A column of a table.
 #[derive(Clone, Copy)]
 pub struct Column<'a> {
     heading: &'a str,
-    /// Of numbers: aligned to the right, and never broken.
+    /// Whether it has numbers: aligned to the right, and never broken.
     number: bool,
     /// Columns go, those of the largest number first, where there is no room for all; those of 0 stay.
     dispensable: u8,
@@ -31,7 +31,7 @@ impl<'a> Column<'a> {
         Self { heading, number: true, dispensable: 0 }
     }
 
-    /// The same, which goes where there is no room, before those of a smaller number.
+    /// Makes the column one which goes where there is no room, before those of a smaller number.
     #[must_use]
     pub const fn dispensable(self, order: u8) -> Self {
         Self { dispensable: order, ..self }

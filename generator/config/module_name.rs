@@ -6,7 +6,7 @@ use crate::base::keywords::is_keyword;
 /// The longest name; the modules and files derived from it append to it.
 const LONGEST: usize = 60;
 
-/// What is wrong with a module name; nothing if it is an identifier of Verilog and SystemVerilog
+/// Checks a module name; nothing is wrong if it is an identifier of Verilog and SystemVerilog
 /// that every tool takes, and a plain file name.
 pub(super) fn violation(name: &str) -> Option<Violation> {
     let message = complaint(name)?;

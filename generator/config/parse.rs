@@ -29,7 +29,7 @@ pub fn parse(file_name: &str, text: &str, schemas: &[Schema]) -> Result<Config, 
 /// As [`parse`]; and where the text gives which key, for problems that show later.
 ///
 /// # Errors
-/// Those of [`parse`].
+/// As of [`parse`].
 pub(super) fn located(
     file_name: &str,
     text: &str,

@@ -21,7 +21,7 @@ pub struct Problems {
     further: usize,
 }
 
-/// What problems call standard input.
+/// The name of standard input in problems.
 pub(super) const STANDARD_INPUT: &str = "standard input";
 
 /// The most problems that are kept: a file that is no configuration at all has no end of them.
@@ -32,9 +32,9 @@ const LIMIT: usize = 200;
 pub struct Problem {
     /// The dotted name of the key; empty if the problem is one of the whole file.
     pub key: String,
-    /// What is wrong.
+    /// The message.
     pub message: String,
-    /// What to do about it.
+    /// The remedy.
     pub remedy: String,
     /// The bytes of the file that it is about, if the file has any such.
     span: Option<Range<usize>>,
@@ -77,7 +77,7 @@ impl Problems {
         self.locations.contains_key(key)
     }
 
-    /// The same file and locations, no problems: for a trial run of a check.
+    /// Returns the file and locations without problems: for a trial run of a check.
     pub(super) fn cleared(&self) -> Self {
         Problems { list: Vec::new(), further: 0, ..self.clone() }
     }
@@ -198,7 +198,7 @@ impl fmt::Display for Problems {
 
 impl std::error::Error for Problems {}
 
-/// What is wrong with a value, before it is known where it stands.
+/// A problem of a value, before its place is known.
 pub(super) struct Violation {
     /// The entry of a list that it is about.
     pub entry: Option<usize>,

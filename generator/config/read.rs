@@ -25,7 +25,7 @@ pub fn read(path: &Path, schemas: &[Schema]) -> Result<Config, Problems> {
 /// As [`read`]; and where the file gives which key: what shows later to be wrong is added there.
 ///
 /// # Errors
-/// Those of [`read`].
+/// As of [`read`].
 pub fn read_located(path: &Path, schemas: &[Schema]) -> Result<(Config, Problems), Problems> {
     let file_name = if path == Path::new(input::STDIN) {
         STANDARD_INPUT.to_owned()

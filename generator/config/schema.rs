@@ -1,4 +1,4 @@
-//! What a device says about its configuration keys.
+//! The configuration keys of a device.
 
 use std::ops::RangeInclusive;
 
@@ -29,7 +29,7 @@ pub struct Key {
     pub kind: Kind,
     /// The value when a file does not give one.
     pub default: Value,
-    /// What it governs, in one or two sentences.
+    /// The meaning, in one or two sentences.
     pub doc: &'static str,
     /// The key applies only when another key (the first) has a value (the second, written without
     /// quotes). Elsewhere it may not be given, and it keeps its default.

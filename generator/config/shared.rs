@@ -16,7 +16,7 @@ pub fn shared_keys() -> &'static [Key] {
 static KEYS: LazyLock<Vec<Key>> = LazyLock::new(Shared::keys);
 
 keys! {
-    /// What a configuration says of them.
+    /// The shared keys of a configuration.
     pub struct Shared {
         architecture: String = Key::choice("architecture", "sequential", &["sequential", "pipelined"],
             "A microprogram on one set of arithmetic, or the same unrolled: a point every clock."),

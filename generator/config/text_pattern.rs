@@ -1,6 +1,6 @@
-//! What a text in a configuration may look like. Each pattern can stand in Tcl, XML, YAML and TOML as it is.
+//! Patterns of texts in a configuration. Each can stand in Tcl, XML, YAML and TOML as it is.
 
-/// What a text must look like.
+/// The pattern of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TextPattern {
     /// Who makes or sells something: a letter, then letters, digits, `.`, `-` and `_`.
@@ -37,7 +37,7 @@ impl TextPattern {
         }
     }
 
-    /// The same as a regular expression that JavaScript and Rust know.
+    /// Returns the pattern as a regular expression that JavaScript and Rust know.
     pub fn regex(self) -> &'static str {
         match self {
             TextPattern::Name => "^[A-Za-z][A-Za-z0-9._-]{0,59}$",
@@ -46,7 +46,7 @@ impl TextPattern {
         }
     }
 
-    /// The same in words.
+    /// Returns the pattern in words.
     pub fn text(self) -> &'static str {
         match self {
             TextPattern::Name => {

@@ -11,7 +11,7 @@ use super::shared::Shared;
 use super::values::{Config, Value};
 
 impl Key {
-    /// What is wrong with a value; empty if the key accepts it.
+    /// Returns the problems of a value; none if the key accepts it.
     pub(super) fn violations_of(&self, value: &Value) -> Vec<Violation> {
         let name = self.name;
         match (&self.kind, value) {
@@ -165,7 +165,7 @@ pub(super) struct Draft<'a> {
     pub config: Config,
     /// The keys that were given.
     pub given: BTreeSet<&'a str>,
-    /// Those of them whose true value is not known, since what was given is wrong.
+    /// The keys among them whose true value is not known, since the given one is wrong.
     pub doubtful: BTreeSet<&'a str>,
 }
 

@@ -3,15 +3,15 @@
 /// The value of a key.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
-    /// Of [`super::Kind::Integer`].
+    /// A value of [`super::Kind::Integer`].
     Integer(i64),
-    /// Of [`super::Kind::Number`].
+    /// A value of [`super::Kind::Number`].
     Number(f64),
-    /// Of [`super::Kind::Choice`] and [`super::Kind::Text`].
+    /// A value of [`super::Kind::Choice`] and [`super::Kind::Text`].
     Text(String),
-    /// Of [`super::Kind::Flag`].
+    /// A value of [`super::Kind::Flag`].
     Flag(bool),
-    /// Of [`super::Kind::Integers`].
+    /// A value of [`super::Kind::Integers`].
     Integers(Vec<i64>),
 }
 

@@ -36,7 +36,7 @@ impl<'a> Alone<'a> {
         self.stream.follow(combinations);
     }
 
-    /// What it has shown so far.
+    /// Returns the record of the stream so far.
     pub(super) fn seen(&self) -> &Seen {
         &self.stream.seen
     }
@@ -71,7 +71,7 @@ impl<'a> Alone<'a> {
     /// All of it; `progress` is called now and then with the number of points since its last call.
     ///
     /// # Errors
-    /// Those of [`Alone::clock`].
+    /// As of [`Alone::clock`].
     pub(super) fn run(mut self, progress: &dyn Fn(u64)) -> Result<Seen> {
         let mut told = 0;
         while !self.ended() {

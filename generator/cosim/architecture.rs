@@ -39,7 +39,7 @@ impl<'a> Lockstep<'a> {
         }))
     }
 
-    /// The same with some operands held at raw values: the stimulus seldom draws others for them.
+    /// Holds some operands at raw values: the stimulus seldom draws others for them.
     #[must_use]
     pub fn holding(self, held: &[(String, i64)]) -> Self {
         Self(match self.0 {
@@ -48,7 +48,7 @@ impl<'a> Lockstep<'a> {
         })
     }
 
-    /// The same with lines of at most `results` results.
+    /// Limits lines to at most `results` results.
     #[must_use]
     pub fn with_lines_of(self, results: i64) -> Self {
         Self(match self.0 {
@@ -73,7 +73,7 @@ impl<'a> Lockstep<'a> {
     /// As [`Lockstep::run`], in one stream.
     ///
     /// # Errors
-    /// Those of [`Lockstep::run`].
+    /// As of [`Lockstep::run`].
     pub fn run_alone(&self, points: u64) -> Result<Outcome> {
         match &self.0 {
             Core(core) => core.run_alone(points),
@@ -86,7 +86,7 @@ impl<'a> Lockstep<'a> {
     /// in the order of the streams.
     ///
     /// # Errors
-    /// Those of [`Lockstep::run`].
+    /// As of [`Lockstep::run`].
     pub fn watch<W: Send>(
         &self,
         points: u64,
@@ -117,7 +117,7 @@ impl<'a> Lockstep<'a> {
     /// end. Results are compared with the golden model, and not with the formula.
     ///
     /// # Errors
-    /// Those of [`Lockstep::run`]; a stream without a clock, or a clock with more or fewer inputs than the design; a
+    /// As of [`Lockstep::run`]; a stream without a clock, or a clock with more or fewer inputs than the design; a
     /// pipeline, whose golden model speaks of points and not of inputs.
     pub fn replay(&self, streams: &[Vec<Vec<u64>>], clocks: u64) -> Result<Outcome> {
         match &self.0 {
@@ -129,7 +129,7 @@ impl<'a> Lockstep<'a> {
     /// As [`Lockstep::run`], in one stream, of which `file` takes the waveform from clock `from` on.
     ///
     /// # Errors
-    /// Those of [`Lockstep::run`]; the file cannot be written.
+    /// As of [`Lockstep::run`]; the file cannot be written.
     pub fn trace(
         &self,
         points: u64,

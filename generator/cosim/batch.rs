@@ -82,7 +82,7 @@ impl Points {
     }
 }
 
-/// What computes points.
+/// An engine that computes points.
 pub trait Engine {
     /// The raw outputs, those of a [`Contract`] in its order, result after result.
     ///

@@ -22,7 +22,7 @@ pub(super) struct Binding<'a> {
     pub(super) order: Option<Vec<usize>>,
     /// The nets that the model predicts, in its order.
     pub(super) compared: Vec<NetId>,
-    /// Of the outputs `busy` and `valid`, the positions among these.
+    /// The positions of the outputs `busy` and `valid` among these.
     pub(super) busy: usize,
     pub(super) valid: usize,
     /// That of `done`, where `start` is heard while it is high.

@@ -139,7 +139,7 @@ pub(super) struct Combinations {
 }
 
 impl Combinations {
-    /// Those at `count` places, from the first on.
+    /// The combinations at `count` places, from the first on.
     pub(super) fn new(ports: Arc<Ports>, first: u64, count: u64) -> Self {
         Self {
             inputs: vec![0; ports.inputs],

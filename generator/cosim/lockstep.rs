@@ -63,7 +63,7 @@ impl<'a> Sequential<'a> {
         Ok(Self { binding, seed })
     }
 
-    /// The same with some operands mostly at these raw values: the stimulus seldom draws others for them.
+    /// Holds some operands mostly at these raw values: the stimulus seldom draws others for them.
     #[must_use]
     pub fn holding(self, held: &[(String, i64)]) -> Self {
         Self { binding: self.binding.holding(held), ..self }
@@ -122,7 +122,7 @@ impl<'a> Sequential<'a> {
     /// See [`Lockstep::replay`](super::Lockstep::replay).
     ///
     /// # Errors
-    /// Those of [`Sequential::run`]; a stream without a clock, or a clock with more or fewer inputs than the design.
+    /// As of [`Sequential::run`]; a stream without a clock, or a clock with more or fewer inputs than the design.
     pub fn replay(&self, streams: &[Vec<Vec<u64>>], clocks: u64) -> Result<Outcome> {
         let inputs = self.binding.design.inputs().count();
         for (number, stream) in streams.iter().enumerate() {
@@ -173,7 +173,7 @@ impl<'a> Sequential<'a> {
     /// As [`Sequential::run`], in one stream.
     ///
     /// # Errors
-    /// Those of [`Sequential::run`].
+    /// As of [`Sequential::run`].
     pub fn run_alone(&self, points: u64) -> Result<Outcome> {
         Ok(self.outcome([self.alone(points)?.run(&|_| ())?]))
     }
@@ -183,7 +183,7 @@ impl<'a> Sequential<'a> {
     /// in the order of the streams.
     ///
     /// # Errors
-    /// Those of [`Sequential::run`].
+    /// As of [`Sequential::run`].
     pub fn watch<W: Send>(
         &self,
         points: u64,
@@ -221,7 +221,7 @@ impl<'a> Sequential<'a> {
         Ok(vectors)
     }
 
-    /// The same with lines of at most `results` results.
+    /// Limits lines to at most `results` results.
     #[must_use]
     pub fn with_lines_of(mut self, results: i64) -> Self {
         self.binding.shorten(results);
@@ -253,7 +253,7 @@ impl<'a> Sequential<'a> {
     /// As [`Sequential::run`], in one stream, of which `file` takes the waveform from clock `from` on.
     ///
     /// # Errors
-    /// Those of [`Sequential::run`]; the file cannot be written.
+    /// As of [`Sequential::run`]; the file cannot be written.
     pub fn trace(
         &self,
         points: u64,

@@ -1,4 +1,4 @@
-//! What results show of the formula in f64.
+//! Measures results against the formula in f64.
 
 use anyhow::{Context, Result, ensure};
 

@@ -1,4 +1,4 @@
-//! What runs show: results, errors, and the first difference.
+//! The outcome of runs: results, errors, and the first difference.
 
 use std::fmt;
 use std::sync::Arc;
@@ -8,7 +8,7 @@ use super::random::Random;
 use super::recorded::Recording;
 use crate::golden::Bound;
 
-/// What a run showed.
+/// The outcome of a run.
 #[derive(Clone, Debug, Default)]
 pub struct Outcome {
     /// Results seen.
@@ -28,7 +28,7 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// What streams showed together, up to the first that differs; registers and outputs are counts.
+    /// Joins the records of streams, up to the first that differs; registers and outputs are counts.
     pub(super) fn of(
         registers: usize,
         outputs: usize,
@@ -51,7 +51,7 @@ impl Outcome {
         outcome
     }
 
-    /// What does not hold, with a contract whose bound this is.
+    /// Returns the failures, with a contract whose bound this is.
     pub fn failures(&self, bound: &Bound) -> Vec<String> {
         let mut failures = Vec::new();
         if let Some(mismatch) = &self.mismatch {
@@ -93,11 +93,11 @@ pub struct Mismatch {
     pub clock: u64,
     /// Its name.
     pub signal: String,
-    /// What the golden model says, a bit pattern.
+    /// The golden model's value, a bit pattern.
     pub golden: u64,
-    /// What the simulated hardware says.
+    /// The simulated hardware's value.
     pub simulated: u64,
-    /// What was executed at the edge: ``microinstruction `count` ``, or the signal's stage of a pipeline, `stage 3`.
+    /// The microinstruction that was executed at the edge, ``microinstruction `count` ``, or the signal's stage of a pipeline, `stage 3`.
     pub during: String,
 }
 
@@ -111,7 +111,7 @@ impl fmt::Display for Mismatch {
     }
 }
 
-/// What a stream showed.
+/// The record of a stream.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Seen {
     pub(super) points: u64,
@@ -139,7 +139,7 @@ pub(super) fn share(points: u64, streams: u64, number: u64) -> u64 {
     points / streams + u64::from(number < points % streams)
 }
 
-/// What a stream goes through.
+/// The course of a stream.
 #[derive(Clone, Debug)]
 pub(super) enum Course {
     /// `points` results under the stimulus of a seed.

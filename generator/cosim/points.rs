@@ -1,4 +1,4 @@
-//! Which operands computations are given.
+//! Draws the operands of computations.
 //!
 //! Of all operands of a domain most leave `f` at 0 and some at 1: a highlight is narrow. Three of four points are
 //! therefore drawn *by the value of the formula*: the control operands are drawn, and moved along the straight line
@@ -19,7 +19,7 @@ use super::random::Random;
 /// others are drawn by the value of the formula.
 const KINDS: i64 = 16;
 
-/// Of a device that is no highlight, a point of a higher kind is one that its contract hints at.
+/// The kind from which on a point of a device that is no highlight is one that its contract hints at.
 const HINTED: i64 = 7;
 
 /// A line that is not drawn by the value of the formula has at most `SHORT` intervals, but for one in `LONG`: long
@@ -46,10 +46,10 @@ const OCTAVES: u32 = 32;
 const SETTINGS: u32 = 8;
 const MOVED: usize = 6;
 
-/// What operands a point is given.
+/// The source of a point's operands.
 pub struct Points<'a> {
     contract: &'a dyn Contract,
-    /// Of a device that multiplies by an f: without it there is no value to draw points by.
+    /// The highlight, of a device that multiplies by an f: without it there is no value to draw points by.
     highlight: Option<&'a Highlight>,
     /// With the domains that are drawn from: those of the contract, but for operands that are held.
     operands: Vec<Operand>,

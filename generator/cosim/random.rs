@@ -11,7 +11,7 @@ pub struct Random(u64);
 /// From the state of one number to that of the next.
 const STEP: u64 = 0x9e37_79b9_7f4a_7c15;
 
-/// Which of the values that [`Random::of_domain`] works out each of its choices takes, of a domain on both sides of 0 and
+/// The values among those of [`Random::of_domain`] that each of its choices takes, of a domain on both sides of 0 and
 /// of any other.
 const AROUND_ZERO: [usize; 16] = [0, 1, 2, 3, 3, 6, 5, 6, 5, 6, 5, 6, 5, 6, 2, 2];
 const TO_ONE_SIDE: [usize; 16] = [0, 1, 2, 3, 3, 4, 4, 4, 4, 2, 2, 2, 2, 2, 2, 2];
@@ -139,7 +139,7 @@ mod tests {
             assert_eq!(ends, [true; 2], "{low}..={high}");
         }
     }
-    /// Of a domain one number after the other, and no more of them than are needed.
+    /// Draws numbers of a domain one after the other, and no more of them than are needed.
     fn one_by_one(random: &mut Random, (low, high): (i64, i64)) -> i64 {
         let choice = random.below(16);
         match choice {

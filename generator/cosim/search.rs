@@ -35,7 +35,7 @@ pub struct Reached {
     pub operands: Vec<i64>,
     /// The output, by its position in the contract.
     pub output: usize,
-    /// What the output is, in its units, and what the formula says.
+    /// The output, in its units, and the formula's value.
     pub raw: i64,
     pub exact: f64,
 }
@@ -103,7 +103,7 @@ struct End {
     /// The largest error of f of a highlight, else of an output, and the moved operands where it is.
     height: f64,
     highest: Vec<i64>,
-    /// Of a highlight with the colour of the largest error of an output that was climbed to from there.
+    /// The operands, of a highlight with the colour of the largest error of an output that was climbed to from there.
     operands: Vec<i64>,
 }
 

@@ -1,4 +1,4 @@
-//! What the inputs do, clock by clock.
+//! Drives the inputs, clock by clock.
 //!
 //! A stimulus is a mix of everything that a device meets: points with idle gaps and back to back,
 //! operands written one after another, all at once or together with `start`, some left from the point
@@ -58,7 +58,7 @@ pub struct Stimulus {
     next: Vec<i64>,
     /// The raw values that were last written where the device could take them.
     written: Vec<i64>,
-    /// Of operands with buffers, those that the latest `start` took of them.
+    /// The operands that the latest `start` took of buffers.
     taken: Option<Vec<i64>>,
     first: bool,
 }
@@ -193,7 +193,7 @@ impl Stimulus {
         }
     }
 
-    /// What to do for the next point.
+    /// Returns the first phase of the next point.
     fn next_point(&mut self, points: &Points) -> Phase {
         let all = (1u64 << self.operands.len()) - 1;
         let written = if self.first {
@@ -309,7 +309,7 @@ mod tests {
         d.finish().unwrap()
     }
 
-    /// What happened to computations of some length.
+    /// The events in computations of some length.
     #[derive(Debug, Default)]
     struct Events {
         complete: u32,

@@ -10,7 +10,7 @@ use super::stimulus::Stimulus;
 use crate::golden::Model;
 use crate::hdl::netlist::NetId;
 
-/// What makes the inputs.
+/// The source of the inputs.
 enum Source {
     Random { stimulus: Stimulus, seed: u64, points: u64 },
     Combinations(Combinations),
@@ -73,7 +73,7 @@ impl Stream {
         self.source = Source::Combinations(combinations);
     }
 
-    /// What it goes through, for another to go the same way.
+    /// Returns the course of the stream, for another to go the same way.
     pub(super) fn course(&self) -> Course {
         match &self.source {
             &Source::Random { seed, points, .. } => Course::Random { seed, points },
@@ -84,7 +84,7 @@ impl Stream {
         }
     }
 
-    /// What the inputs can be made again from: the seed, or the place of the combination that runs; 0 for recorded ones.
+    /// Returns the number from which the inputs can be made again: the seed, or the place of the combination that runs; 0 for recorded ones.
     pub(super) fn seed(&self) -> u64 {
         match &self.source {
             Source::Random { seed, .. } => *seed,
@@ -139,7 +139,7 @@ impl Stream {
         }
     }
 
-    /// What the model predicts after the latest clock.
+    /// Returns the model's predictions after the latest clock.
     #[inline]
     pub(super) fn predicted(&self) -> &[u64] {
         self.model.values()

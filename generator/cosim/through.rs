@@ -80,7 +80,7 @@ impl<'a> Through<'a> {
         anyhow::bail!("`{}` shows no result within {limit} clocks", self.design.name)
     }
 
-    /// What `nets` carry in each clock, just before its rising edge: the points are offered one a clock, but for a bubble
+    /// Records `nets` in each clock, just before its rising edge: the points are offered one a clock, but for a bubble
     /// before the last; the first result waits for `pause` clocks. The recording ends with the last result.
     ///
     /// # Errors

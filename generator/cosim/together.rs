@@ -24,7 +24,7 @@ pub(super) struct Together<'a, const LANES: usize> {
     simulator: Simulator<LANES>,
     /// The first are in the first lanes.
     streams: Vec<Stream>,
-    /// Those in which something differs.
+    /// The lanes in which something differs.
     differ: [bool; LANES],
     /// The clocks to come.
     ahead: Vec<Clock<LANES>>,
@@ -120,7 +120,7 @@ impl<'a, const LANES: usize> Together<'a, LANES> {
         Ok(points)
     }
 
-    /// What each showed, up to the first that differs.
+    /// Returns the record of each lane, up to the first that differs.
     ///
     /// # Errors
     /// A simulation that does not settle.

@@ -32,7 +32,7 @@ const PAUSE: usize = 2;
 /// Hints of a contract that are tried for a worked example.
 const TRIES: u32 = 256;
 
-/// What one computation showed.
+/// The record of one computation.
 struct Trial {
     timing: Timing,
     /// The result outputs whenever `valid` is high.
@@ -110,7 +110,7 @@ fn corners(contract: &dyn Contract) -> [Vec<i64>; 3] {
 /// model computes the same results.
 ///
 /// # Errors
-/// Those of [`timing`]; golden model and simulation do not agree.
+/// As of [`timing`]; golden model and simulation do not agree.
 pub fn computations(design: &Design, contract: &dyn Contract) -> Result<Vec<Computation>> {
     let mut random = Random::new(1);
     let mut points = Points::new(contract);
@@ -161,7 +161,7 @@ fn listed<'a>(names: impl Iterator<Item = &'a str>, raw: &[i64]) -> String {
 /// The clocks of one computation, from `start` to the next, and the results that it shows.
 ///
 /// # Errors
-/// Those of [`timing`].
+/// As of [`timing`].
 pub fn throughput(
     design: &Design,
     contract: &dyn Contract,
@@ -176,7 +176,7 @@ pub fn throughput(
 /// walks none, or whose clocks are no constant and a multiple of the length.
 ///
 /// # Errors
-/// Those of [`timing`].
+/// As of [`timing`].
 pub fn line(design: &Design, contract: &dyn Contract) -> Result<Option<LineClocks>> {
     let mut operands = typical(contract, &[]);
     let name = contract.length();
@@ -208,7 +208,7 @@ pub fn line(design: &Design, contract: &dyn Contract) -> Result<Option<LineClock
 /// results it shows the first.
 ///
 /// # Errors
-/// Those of [`timing`].
+/// As of [`timing`].
 pub fn example(design: &Design, contract: &dyn Contract) -> Result<WorkedExample> {
     let operands = typical(contract, &[]);
     let trial = run(design, contract, &operands, &mut |_| Ok(()))?;
@@ -291,7 +291,7 @@ pub fn typical(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<i64> {
     values
 }
 
-/// Of a line: lowers what f does not depend on at its first point until f at its middle is a quarter of that.
+/// Lowers the operands of a line that f does not depend on at its first point, until f at its middle is a quarter of that.
 fn slow_down(
     contract: &dyn Contract,
     highlight: &Highlight,
@@ -334,12 +334,12 @@ fn results(design: &Design, contract: &dyn Contract) -> Vec<NetId> {
     contract.outputs().iter().filter_map(|output| design.find(&output.name)).collect()
 }
 
-/// What nets carry in each clock of the computation of [`example`], from clock 0, in which `start` is high, to the
+/// Records nets in each clock of the computation of [`example`], from clock 0, in which `start` is high, to the
 /// first in which the device is idle again: the bit patterns just before the clock's rising edge, in the order of
 /// `nets`, all of which are named.
 ///
 /// # Errors
-/// Those of [`timing`].
+/// As of [`timing`].
 pub fn record(design: &Design, contract: &dyn Contract, nets: &[NetId]) -> Result<Vec<Vec<u64>>> {
     let mut clocks = Vec::new();
     run(design, contract, &typical(contract, &[]), &mut |simulator| {
@@ -350,11 +350,11 @@ pub fn record(design: &Design, contract: &dyn Contract, nets: &[NetId]) -> Resul
     Ok(clocks)
 }
 
-/// What nets carry in each clock while three points go through a pipeline, the first of them that of [`example`]: one clock
+/// Records nets in each clock while three points go through a pipeline, the first of them that of [`example`]: one clock
 /// has no point, and the first result waits, where it can, for two.
 ///
 /// # Errors
-/// Those of [`timing`].
+/// As of [`timing`].
 pub fn record_points(
     design: &Design,
     contract: &dyn Contract,

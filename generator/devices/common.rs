@@ -35,7 +35,7 @@ pub fn colour_products<'d>(
     Vec::new()
 }
 
-/// The same with the microinstruction that has the result, which ends the microprogram.
+/// Makes the colour outputs, with the microinstruction that has the result, which ends the microprogram.
 #[track_caller]
 pub fn colour_outputs<'d>(
     keys: &keys::Colours,
@@ -48,7 +48,7 @@ pub fn colour_outputs<'d>(
     steps
 }
 
-/// What a device says of writes while it is busy and of how long its outputs hold, where each colour has a
+/// Returns the note on writes while the device is busy and on how long its outputs hold, where each colour has a
 /// multiplier of its own behind the register that `follow` names, until `until`.
 pub fn outputs_note(keys: &keys::Colours, follow: &str, until: &str) -> Note {
     if keys.in_turn() {

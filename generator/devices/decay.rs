@@ -1,4 +1,4 @@
-//! What `blinn` and `gauss` share: `f = 2^(−n·decay)`, where the decay is a function of cos γ alone.
+//! The shared description of `blinn` and `gauss`: `f = 2^(−n·decay)`, where the decay is a function of cos γ alone.
 //!
 //! The decay is read from straight segments (the first product), the exponent multiplies it (the second,
 //! in the same multiplier), and 2^−y of their product is one look at tables and a shift.
@@ -19,13 +19,13 @@ pub struct Curve<'d> {
     pub u: Signal<'d>,
     /// Bits of the operand.
     pub operand_bits: u32,
-    /// What the table holds, a function of u as an integer: from 0 to below 1, increasing and convex.
+    /// The contents of the table, a function of u as an integer: from 0 to below 1, increasing and convex.
     pub table: &'d dyn Fn(f64) -> f64,
     /// An integer that the decay has in front of what the table holds.
     pub octave: Option<Signal<'d>>,
     /// log₂ of what the sum of both is multiplied by to give the decay.
     pub scale: i32,
-    /// What the table holds, in words.
+    /// The contents of the table, in words.
     pub doc: &'static str,
 }
 
@@ -176,7 +176,7 @@ fn ends<'d>(
     d.choose("reflectance_next", facing, [dark, lit])
 }
 
-/// What [`About::notes`](crate::hdl::dsl::About::notes) says of both devices.
+/// Returns the [`About::notes`](crate::hdl::dsl::About::notes) of both devices.
 pub fn notes(keys: &Keys) -> Vec<Note> {
     vec![
         Topic::Microprogram.note(

@@ -89,7 +89,7 @@ fn distance<'d>(d: &'d Designer, keys: &Keys, components: [Signal<'d>; 3]) -> Di
     Distance { value: rounded_distance(d, keys, adder2), steps: Vec::new(), settings: Vec::new() }
 }
 
-/// The same by one multiplier and one adder: two squares to a register, before the third comes to them.
+/// Makes the distance by one multiplier and one adder: two squares to a register, before the third comes to them.
 fn distance_in_turn<'d>(d: &'d Designer, keys: &Keys, components: [Signal<'d>; 3]) -> Distance<'d> {
     let sum = d
         .register("distance_sum", Format::unsigned(4, 2 * components[0].format().frac))

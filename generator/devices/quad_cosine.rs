@@ -97,7 +97,7 @@ fn decoder<'d>(d: &'d Designer, exponent: Signal<'d>) -> Signal<'d> {
     d.concat("power_code", high, low).block(10).doc("the number of the decoder's output that is 1")
 }
 
-/// Which of the powers serves the exponent n.
+/// Returns the place of the power for the exponent n.
 fn power_of(n: i64) -> usize {
     match n {
         1 => 0,

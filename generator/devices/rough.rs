@@ -287,7 +287,7 @@ fn patent_sums<'d>(
     (adder15, half, adder16)
 }
 
-/// What register 13 takes: the product, or −1.0, which makes f = 0, when cos γ ≤ 0.
+/// Returns the next value of register 13: the product, or −1.0, which makes f = 0, when cos γ ≤ 0.
 fn facing_only<'d>(d: &'d Designer, cos_gamma: Signal<'d>, result: Signal<'d>) -> Signal<'d> {
     let facing = d.any("facing", cos_gamma).doc("the surface faces the half vector");
     let dark = d.constant("minus_one", -1.0, Format::signed(0, result.format().frac));

@@ -12,7 +12,7 @@ pub struct Product {
     pub ranges: [Interval; 2],
 }
 
-/// What registers and synchronous memories hold between two clocks.
+/// The contents of registers and synchronous memories between two clocks.
 #[derive(Clone)]
 pub struct State {
     pub registers: Vec<Id>,
@@ -57,7 +57,7 @@ impl<'a> Execution<'a> {
         State { registers, words }
     }
 
-    /// What every net carries, with these inputs; the products among them are added to `products`.
+    /// Returns the term of every net, with these inputs; the products among them are added to `products`.
     pub fn settle(
         &self,
         terms: &mut Terms,

@@ -17,11 +17,11 @@ pub enum Bit {
 
 pub type Bits = Vec<Bit>;
 
-/// What every wire carries: a bit of a term.
+/// The value of every wire: a bit of a term.
 pub struct Values(Vec<Option<(Id, u32)>>);
 
 impl Values {
-    /// Of so many wires, none of which carries anything yet.
+    /// The values of so many wires, none of which has a value yet.
     pub fn new(wires: usize) -> Self {
         Self(vec![None; wires])
     }
@@ -36,12 +36,12 @@ impl Values {
         }
     }
 
-    /// What some bits carry, in terms of at most 64.
+    /// Returns the terms of some bits, each of at most 64.
     pub fn columns(&self, terms: &mut Terms, bits: &Bits) -> Vec<Id> {
         bits.chunks(MAX_WIDTH as usize).map(|bits| self.word(terms, bits)).collect()
     }
 
-    /// What at most 64 bits carry. Copies of a highest bit are an extension by a sign.
+    /// Returns the term of at most 64 bits. Copies of a highest bit are an extension by a sign.
     pub fn word(&self, terms: &mut Terms, bits: &[Bit]) -> Id {
         let copies = bits.iter().rev().take_while(|bit| Some(*bit) == bits.last()).count();
         if copies > 1 && matches!(bits.last(), Some(Bit::Wire(_))) {

@@ -1,8 +1,8 @@
-//! What holds of products and of words of memories, whatever their operands are.
+//! Instances of laws about products and words of memories, which the solver takes for unknown functions.
 //!
-//! To the solver a product is a function of its factors that it knows nothing of. What is said of it here are instances of
-//! laws of integers, of products modulo 2^64: that bits of a factor can be multiplied on their own, what a product by 0, 1 and -1
-//! is, and that of factors within bounds the product is within bounds. No instance depends on where it is taken from: a useless one does not help, and none is wrong.
+//! The laws are those of integers, of products modulo 2^64: bits of a factor can be multiplied on their own; a product by 0, 1
+//! and -1 is known; of factors within bounds the product is within bounds. No instance depends on where it is taken from:
+//! a useless one does not help, and none is wrong.
 
 use std::collections::{HashMap, HashSet};
 
@@ -238,7 +238,7 @@ fn between(terms: &mut Terms, value: Id, range: Interval) -> Option<Id> {
     Some(terms.not(outside))
 }
 
-/// What a word of a memory can be: the words one by one, or the bits that any of them has, and the interval of all.
+/// Returns the possible values of a memory's word: the words one by one, or the bits that any of them has, and the interval of all.
 fn contents(terms: &mut Terms, word: Id, memory: usize, address: Id) -> Vec<Id> {
     let words = terms.memories[memory].clone();
     let width = terms.width(word);

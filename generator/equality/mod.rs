@@ -45,7 +45,7 @@ const TRIALS: usize = 400;
 /// More clocks than a computation takes.
 const MOST_CLOCKS: usize = 8192;
 
-/// What is known of a pipeline and its sequential core.
+/// The verdict on a pipeline and its sequential core.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// Every output is the same for every point.
@@ -65,7 +65,7 @@ pub enum Open {
     Limit,
 }
 
-/// What a proof consists of.
+/// The parts of a proof.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Proof {
     /// Outputs that are equal.
@@ -87,9 +87,9 @@ pub struct Difference {
     pub operands: Vec<(String, u64)>,
     /// The output.
     pub output: String,
-    /// What the sequential core shows.
+    /// The value of the sequential core.
     pub sequential: u64,
-    /// What the pipeline shows.
+    /// The value of the pipeline.
     pub pipeline: u64,
 }
 
@@ -170,7 +170,7 @@ fn differs(pair: &Pair<'_>, operands: &[u64]) -> Result<Option<Difference>> {
 
 /// A way through the microprogram.
 struct Way {
-    /// What operands decided: a bit, and its value.
+    /// The bits that operands decided, and their values.
     conditions: Vec<(Id, bool)>,
     state: State,
     /// How often each microinstruction was executed.
@@ -192,7 +192,7 @@ struct Comparison<'p> {
     proof: Proof,
 }
 
-/// What became of a question.
+/// The answer to a question.
 enum Answer {
     Equal,
     Different(Difference),
@@ -239,7 +239,7 @@ impl<'p> Comparison<'p> {
         Ok(Verdict::Equal(self.proof))
     }
 
-    /// What every net of the pipeline carries in each clock from the one that takes the point on.
+    /// Returns the term of every net of the pipeline in each clock from the one that takes the point on.
     fn pipeline(&mut self) -> Result<Vec<Vec<Id>>> {
         let pair = self.pair;
         let execution = Execution::new(&mut self.terms, pair.pipeline);
@@ -274,7 +274,7 @@ impl<'p> Comparison<'p> {
         Ok(stages)
     }
 
-    /// What every net carries, with inputs that are known, the operands of the point in the clock that takes it, and
+    /// Returns the term of every net, with inputs that are known, the operands of the point in the clock that takes it, and
     /// anything else.
     fn settle(
         &mut self,
@@ -435,7 +435,7 @@ impl<'p> Comparison<'p> {
         Ok(Answer::Equal)
     }
 
-    /// What the outputs of the pipeline show of the point.
+    /// Returns the outputs of the pipeline for the point.
     fn results_of(&self, stages: &[Vec<Id>]) -> Vec<Id> {
         let last = &stages[self.pair.latency];
         self.pair.outputs.iter().map(|&(_, net, _)| last[net.index()]).collect()

@@ -11,7 +11,7 @@ use super::cells::{Bit, Bits, Values};
 use super::term::{Id, Terms};
 use crate::base::fixed::MAX_WIDTH;
 
-/// What drives wires in the same clock.
+/// The driver of wires in the same clock.
 enum What {
     Cell {
         kind: String,
@@ -67,7 +67,7 @@ pub struct Module {
     wires: usize,
 }
 
-/// What the registers hold, each in terms of at most 64 bits, the lowest first.
+/// The contents of the registers, each in terms of at most 64 bits, the lowest first.
 pub type Held = Vec<Vec<Id>>;
 
 fn bits(value: &Value) -> Result<Bits> {
@@ -259,7 +259,7 @@ impl Module {
         self.registers.iter().map(|it| unknown(terms, it.output.len())).collect()
     }
 
-    /// What every wire carries, with what the inputs and the read ports of memories that are written give.
+    /// Returns the value of every wire, from the inputs and the read ports of memories that are written.
     ///
     /// # Errors
     /// A cell that is not known here, or wider than terms are.
@@ -313,7 +313,7 @@ impl Memory {
         unknown(terms, self.width)
     }
 
-    /// What is written.
+    /// Returns the values that are written.
     pub fn written(&self, terms: &mut Terms, values: &Values) -> Vec<Id> {
         values.columns(terms, &self.write.data)
     }

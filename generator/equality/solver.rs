@@ -13,7 +13,7 @@ use super::term::{ADDRESS, Id, Term, Terms};
 use crate::base::transient::Directory;
 use crate::tools::{LimitReached, Tool};
 
-/// What the solver says of terms that are asked to be 1 together.
+/// The solver's answer on terms that are asked to be 1 together.
 pub enum Said {
     /// They never are.
     Never,

@@ -19,7 +19,7 @@ impl Id {
     }
 }
 
-/// What a term says. Operands have the width of the result where nothing else is said.
+/// A term. Operands have the width of the result where nothing else is said.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Term {
     /// Any value, the same wherever the number is.
@@ -70,7 +70,7 @@ pub struct Terms {
     unknowns: u32,
     /// The contents of memories, each once.
     pub memories: Vec<Vec<u64>>,
-    /// What is beyond them, by memory and address.
+    /// The word beyond the contents, by memory and address.
     beyond: HashMap<(usize, Id), Id>,
 }
 
@@ -300,7 +300,7 @@ impl Terms {
         bits & mask(width)
     }
 
-    /// What the term is too, when that is simpler.
+    /// Returns a simpler term of the same value, if there is one.
     fn simpler(&mut self, term: &Term, width: u32) -> Option<Id> {
         let ones = mask(width);
         match *term {
@@ -515,7 +515,7 @@ fn ordered(mut term: Term) -> Term {
     term
 }
 
-/// The same term with other operands.
+/// Returns the term with other operands.
 fn renamed(term: &Term, of: impl Fn(Id) -> Id) -> Term {
     let mut term = term.clone();
     term.operands_mut().into_iter().for_each(|id| *id = of(*id));

@@ -23,7 +23,7 @@ use crate::base::fixed::mask;
 use crate::hdl::netlist::{Design, Role};
 use crate::tools::Tool;
 
-/// What is known of a text and its netlist.
+/// The verdict on a text and its netlist.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum TextVerdict {
     /// Every output is the same for every point.
@@ -36,7 +36,7 @@ pub enum TextVerdict {
     Unread(String),
 }
 
-/// What a proof consists of.
+/// The parts of a proof.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TextProof {
     /// Outputs that are equal.
@@ -164,8 +164,8 @@ fn lags(course: &[&[u64]], reads: usize) -> Option<Vec<usize>> {
     (0..reads).map(of_read).collect()
 }
 
-/// Which registers hold a constant after a clock, of a reset or in which the results are taken, and what it is, and what the ports of each
-/// memory are given in it where these are constants and all bits are written; of the registers some are known before.
+/// Finds the registers that hold a constant after a clock, of a reset or in which the results are taken, and the constants, and those that
+/// the ports of each memory are given in it where all bits are written; some registers are known before.
 fn constants(
     module: &Module,
     roles: &Roles,
@@ -209,7 +209,7 @@ struct Comparison<'p> {
     delays: &'p [Vec<usize>],
     latency: usize,
     terms: Terms,
-    /// What the inputs are given, by name and clock.
+    /// The values of the inputs, by name and clock.
     inputs: HashMap<(String, usize), Id>,
     products: Vec<Product>,
     solver: Solver<'p>,
@@ -332,7 +332,7 @@ impl Comparison<'_> {
         Ok(())
     }
 
-    /// What every net of the netlist carries in each clock of a point.
+    /// Returns the term of every net of the netlist in each clock of a point.
     fn netlist(&mut self) -> Vec<Vec<Id>> {
         let design = self.design;
         let execution = Execution::new(&mut self.terms, design);

@@ -97,7 +97,7 @@ impl<'a> Pair<'a> {
         Ok(self.outputs.iter().map(|&(_, net, _)| core.value(net)).collect())
     }
 
-    /// What the inputs carry; `now` in the clock that takes the point.
+    /// Returns the values of the inputs; `now` in the clock that takes the point.
     fn inputs(&self, design: &Design, operands: &[u64], rst_n: u64, now: u64) -> Vec<u64> {
         let inputs = design.inputs().map(|port| match port.role {
             Role::Reset => rst_n,

@@ -1,4 +1,4 @@
-//! Which nets may carry a product that was put together from parts.
+//! Finds the nets that may carry a product that was put together from parts.
 
 use std::collections::HashMap;
 

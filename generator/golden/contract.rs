@@ -1,4 +1,4 @@
-//! What the contracts of all devices share: colour operands and the sum of a bound.
+//! Colour operands and the sum of a bound, for the contracts of all devices.
 
 use super::{Bound, Operand, Term};
 use crate::base::fixed::{Format, Rounding, exp2};

@@ -121,7 +121,7 @@ impl Reflectance for Arithmetic {
         Some(vec![0, line::raw_angle(&operands[1], stretched), 0])
     }
 
-    /// What the operand denotes is an angle and n together.
+    /// The operand denotes an angle and n together.
     fn cosine(&self, _: &[Operand], _: &[i64]) -> Option<f64> {
         None
     }

@@ -5,7 +5,7 @@
 
 use crate::base::fixed::exp2;
 
-/// What determines the table.
+/// The parameters of the table.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Params {
     /// Bits of the operand, C.
@@ -50,7 +50,7 @@ pub struct Piece {
     pub last: u64,
     /// The largest `|value − function|` among its operands.
     pub error: f64,
-    /// What the best straight line with words of unlimited width leaves of it.
+    /// The error of the best straight line with words of unlimited width.
     pub shape: f64,
 }
 

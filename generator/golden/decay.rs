@@ -1,4 +1,4 @@
-//! What the models of `blinn` and `gauss` share: f = 2^(−n·decay), where the decay is a function of cos γ.
+//! The shared model of `blinn` and `gauss`: f = 2^(−n·decay), where the decay is a function of cos γ.
 
 #[cfg(test)]
 mod tests;
@@ -56,7 +56,7 @@ impl Params {
         }
     }
 
-    /// What the table holds, at u, an integer with C fraction bits: 1 − c, less an ulp.
+    /// Returns the entry of the table at u, an integer with C fraction bits: 1 − c, less an ulp.
     fn table(&self, u: f64) -> f64 {
         let cosine = 1.0 - (u + 1.0) * self.keys.operands.cosine.ulp();
         match self.function {
@@ -89,7 +89,7 @@ struct Arithmetic {
     /// Bits that a coarse decay loses.
     coarse_loss: u32,
     curve: Curve,
-    /// Of the register `halvings`.
+    /// The format of the register `halvings`.
     halvings: Format,
     from_fine: Narrow,
     from_coarse: Narrow,
@@ -140,7 +140,7 @@ impl Arithmetic {
         }
     }
 
-    /// What the table says of the decay.
+    /// Returns the decay by the table.
     #[inline]
     fn decay(&self, cosine: i64) -> i64 {
         self.curve.at(self.operand(cosine).1)

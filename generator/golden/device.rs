@@ -102,7 +102,7 @@ pub trait Formula: Send + Sync {
     /// The outputs in f64, unrounded, for the values (not raw) of the operands, in the order of the frame.
     fn exact(&self, operands: &[f64]) -> Vec<f64>;
 
-    /// What the error of an output is made of, each a proven upper limit; none where the bound is not known yet.
+    /// The terms of an output's error, each a proven upper limit; none where the bound is not known yet.
     fn terms(&self) -> Vec<Term> {
         Vec::new()
     }
@@ -181,7 +181,7 @@ impl<F: Formula> Contract for OfModel<F> {
         &self.device.outputs
     }
 
-    /// Of a result that is never shown there is a number further off than any bound.
+    /// A result that is never shown is a number further off than any bound.
     fn results(&self, operands: &[i64], index: u64, raw: &mut Vec<i64>) {
         match self.shown(operands, index) {
             Some(shown) => raw.extend(shown),

@@ -4,7 +4,7 @@ use crate::base::fixed::{Format, Rounding, exp2};
 
 use super::narrow::Narrow;
 
-/// What determines the tables.
+/// The parameters of the tables.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Params {
     /// Leading bits of the fraction of y, of which each value has a word.
@@ -15,7 +15,7 @@ pub struct Params {
     pub fraction: u32,
     /// Fraction bits of the result.
     pub result_fraction: u32,
-    /// Of the result.
+    /// The rounding of the result.
     pub rounding: Rounding,
 }
 

@@ -1,4 +1,4 @@
-//! What the devices of seed 000 share: a walk along a scan line, and tables of powers of a cosine.
+//! The shared parts of the devices of seed 000: a walk along a scan line, and tables of powers of a cosine.
 //!
 //! Angles are in right angles: a raw value of `2^F` is 90°.
 

@@ -16,7 +16,7 @@ use crate::base::fixed::Format;
 use crate::config::Config;
 use crate::keys::lyon::{Keys, Scale};
 
-/// What the keys mean for operands and results.
+/// Formats and constants that follow from the keys.
 impl Keys {
     fn products(&self) -> Products {
         highlight::products(&self.colours, &self.f)
@@ -26,7 +26,7 @@ impl Keys {
         Format::signed(1, self.vector_fraction as i32)
     }
 
-    /// Of n, or of log₂ n, which is `exponent.bits` at most.
+    /// The format of n, or of log₂ n, which is `exponent.bits` at most.
     fn scale_format(&self) -> Format {
         match self.scale {
             Scale::Shift => Format::unsigned(self.exponent_bits.ilog2() as i32 + 1, 0),

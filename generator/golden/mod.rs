@@ -53,8 +53,8 @@ pub trait Model: CloneModel + Send + Sync {
     /// One rising edge, with the inputs as they stand just before it.
     fn clock(&mut self, inputs: &[u64]);
 
-    /// The same device at power-up with a register `<output>_reg` behind each result that is logic, loaded in the
-    /// microinstruction that was to set `valid`; one after it sets `valid`. What is no result stays as it is.
+    /// Returns the device at power-up with a register `<output>_reg` behind each result that is logic, loaded in the
+    /// microinstruction that was to set `valid`; one after it sets `valid`. Other outputs stay as they are.
     ///
     /// A device of a [`frame::Frame`] has it, unless it goes on by a condition from such a microinstruction; for any other
     /// its author writes it, or there is none.
@@ -62,7 +62,7 @@ pub trait Model: CloneModel + Send + Sync {
         None
     }
 
-    /// The same device at power-up with a register `<operand>_buffer` in front of each operand register. Writes go there
+    /// Returns the device at power-up with a register `<operand>_buffer` in front of each operand register. Writes go there
     /// at any time. `start` loads the operand registers, with what is written in the same clock where something is,
     /// and is heard in the last clock of a computation too: the next one follows at once.
     ///
@@ -81,7 +81,7 @@ pub trait Model: CloneModel + Send + Sync {
     }
 }
 
-/// What a [`Model`] has by being [`Clone`].
+/// The clone of a [`Model`], which it has by being [`Clone`].
 pub trait CloneModel {
     /// A copy, with the state that it has now.
     fn boxed_clone(&self) -> Box<dyn Model>;
@@ -149,13 +149,13 @@ pub trait Contract: Send + Sync {
     /// [`crate::certify`] may find one.
     fn bound(&self) -> Bound;
 
-    /// What the formula says of each output, as an expression of Python, as in
+    /// The formula of each output, as an expression of Python, as in
     /// [`highlight::Reflectance::expressions`]; none where nobody wrote them. A [`Highlight`] has its own.
     fn expressions(&self) -> Vec<String> {
         Vec::new()
     }
 
-    /// What the contract has beyond this of a device that multiplies by a reflectance.
+    /// The contract of a device that multiplies by a reflectance.
     fn highlight(&self) -> Option<&Highlight> {
         None
     }
@@ -176,7 +176,7 @@ pub trait Contract: Send + Sync {
         None
     }
 
-    /// What an exhaustive check goes through: by default every combination of the operands.
+    /// The places of an exhaustive check: by default every combination of the operands.
     fn sweep(&self) -> Sweep {
         Sweep::all(self.operands().iter())
     }
@@ -200,7 +200,7 @@ pub trait Contract: Send + Sync {
         errors.fold(0.0, f64::max)
     }
 
-    /// What a user of this configuration should know of the formula itself, with figures: where in the
+    /// Facts about the formula itself that a user of this configuration should know, with figures: where in the
     /// domain another choice of the same device would come closer to what it stands for.
     fn remarks(&self) -> Vec<String> {
         Vec::new()
@@ -239,7 +239,7 @@ pub fn nearer(value: f64, right: [f64; 2]) -> f64 {
 pub struct Sweep {
     /// The outermost first.
     pub axes: Vec<Axis>,
-    /// What is not covered, in a sentence; empty when every combination of operands is.
+    /// The operands that are left out, in a sentence; empty when every combination is covered.
     pub omits: String,
 }
 
@@ -328,7 +328,7 @@ pub struct Bound {
 pub struct Term {
     /// The configuration key that governs it.
     pub key: &'static str,
-    /// What rounds or approximates.
+    /// The operation that rounds or approximates.
     pub what: &'static str,
     /// Its share, in output units.
     pub units: f64,

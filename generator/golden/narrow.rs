@@ -4,7 +4,7 @@ use crate::base::fixed::{Format, Rounding};
 
 /// Brings raw values of a fixed number of fraction bits to one format, saturating.
 ///
-/// The same as [`Format::narrow`] with `Overflow::Saturate`, on `i64`.
+/// It computes [`Format::narrow`] with `Overflow::Saturate`, on `i64`.
 #[derive(Clone, Copy, Debug)]
 pub struct Narrow {
     /// Added before the shift: half an ulp of the result, or 0.

@@ -52,7 +52,7 @@ impl Arithmetic {
         }
     }
 
-    /// What multiplier 11 takes of register 8; `None` where the surface faces away.
+    /// Returns the number that multiplier 11 takes of register 8; `None` where the surface faces away.
     #[inline]
     fn magnitude(&self, angle: i64) -> Option<i64> {
         magnitude(angle, self.keys.angle_fraction, self.keys.angle_multiplied)

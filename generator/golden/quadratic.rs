@@ -152,7 +152,7 @@ impl Reflectance for Arithmetic {
         ]
     }
 
-    /// What n − 1 costs beside the minimax table.
+    /// The error by n − 1 beside that of the minimax table.
     fn remarks(&self) -> Vec<String> {
         if self.keys.scheme != Scheme::Taylor {
             return Vec::new();

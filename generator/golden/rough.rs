@@ -18,7 +18,7 @@ use crate::base::fixed::Format;
 use crate::config::Config;
 use crate::keys::rough::{Arithmetic as Kind, Keys, Scheme};
 
-/// What a configuration says. In the patent's arithmetic f has the fraction bits of the cosine, which has no sign.
+/// Returns the keys of a configuration. In the patent's arithmetic f has the fraction bits of the cosine, which has no sign.
 fn keys_of(config: &Config) -> Keys {
     let mut keys = Keys::of(config);
     if keys.patent() {
@@ -28,7 +28,7 @@ fn keys_of(config: &Config) -> Keys {
     keys
 }
 
-/// What the keys mean for words.
+/// Formats and words that follow from the keys.
 impl Keys {
     fn products(&self) -> Products {
         highlight::products(&self.operands.colours, &self.f)
@@ -126,7 +126,7 @@ impl Arithmetic {
         Self { sine: Sine::new(&keys.sine()), kind, keys }
     }
 
-    /// What register 11 takes: cos γ·cos dγ.
+    /// The next value of register 11: cos γ·cos dγ.
     #[inline]
     fn cos_cos(&self, cos_gamma: i64, cos_dgamma: i64) -> i64 {
         match &self.kind {
@@ -135,7 +135,7 @@ impl Arithmetic {
         }
     }
 
-    /// What register 12 takes: sin γ·sin dγ.
+    /// The next value of register 12: sin γ·sin dγ.
     #[inline]
     fn sin_sin(&self, sin_gamma: i64, sin_dgamma: i64) -> i64 {
         match &self.kind {
@@ -164,7 +164,7 @@ impl Arithmetic {
         }
     }
 
-    /// What register 13 takes first: n/2·(cos(γ ± dγ) − 1), or −1.0 for a surface that faces away.
+    /// The first value of register 13: n/2·(cos(γ ± dγ) − 1), or −1.0 for a surface that faces away.
     #[inline]
     fn scaled(&self, adder_15: i64, exponent: i64, cos_gamma: i64) -> i64 {
         match &self.kind {
@@ -176,7 +176,7 @@ impl Arithmetic {
         }
     }
 
-    /// What register 13 takes next: the square of adder 16, which is register 13 + 1.0.
+    /// The second value of register 13: the square of adder 16, which is register 13 + 1.0.
     #[inline]
     fn squared(&self, result: i64, cos_gamma: i64) -> i64 {
         match &self.kind {

@@ -23,7 +23,7 @@ pub enum TableScheme {
     },
 }
 
-/// What determines the table.
+/// The parameters of the table.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Params {
     /// Fraction bits of the operand, C.
@@ -60,7 +60,7 @@ enum Table {
         address: u32,
         entries: Vec<i64>,
     },
-    /// Of u = 1.0 − x; the tail has an entry for each, so many of them.
+    /// A segmented table of u = 1.0 − x; the tail has an entry for each, so many of them.
     Segmented {
         curve: Curve,
         rest: i64,

@@ -4,7 +4,7 @@ use super::common::{self, Domain, Intensity, Operands};
 use crate::config::{Config, Problems, Schema};
 
 keys! {
-    /// What a configuration says.
+    /// The keys of a configuration.
     pub struct Keys {
         power: u32 = common::power(),
         operands: Operands = Operands::keys(),

@@ -5,7 +5,7 @@ use crate::base::fixed::{Format, Rounding};
 use crate::config::{Config, Key, Problems, Schema};
 
 keys! {
-    /// What a configuration says.
+    /// The keys of a configuration.
     pub struct Keys {
         angle_integer: u32 = Key::integer("angle.integer", 7, 1..=8,
             "Integer bits of the stretched angles, which are in right angles and signed."),

@@ -4,7 +4,7 @@ use super::common::{self, Domain, Intensity, Operands};
 use crate::config::{Config, Key, Problems, Schema, Value};
 
 keys! {
-    /// What a configuration says.
+    /// The keys of a configuration.
     pub struct Keys {
         operands: Operands = Operands::keys(),
         decay_fraction: u32 = Key::integer("decay.fraction", 26, 12..=28,

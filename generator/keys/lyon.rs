@@ -15,7 +15,7 @@ choices! {
 }
 
 keys! {
-    /// What a configuration says.
+    /// The keys of a configuration.
     pub struct Keys {
         power: u32 = common::power(),
         scale: Scale = Key::choice("scale", "shift", Scale::WORDS,

@@ -5,7 +5,7 @@ use crate::base::fixed::{Format, Rounding};
 use crate::config::{Config, Key, Problems, Schema};
 
 keys! {
-    /// What a configuration says.
+    /// The keys of a configuration.
     pub struct Keys {
         angle_fraction: u32 = common::angle_fraction(26),
         angle_multiplied: u32 = Key::integer("angle.multiplied", 17, 4..=24,

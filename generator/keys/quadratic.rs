@@ -5,7 +5,7 @@ use crate::base::fixed::Rounding;
 use crate::config::{Config, Key, Problems, Schema};
 
 choices! {
-    /// What ROM(n) holds.
+    /// The contents of ROM(n).
     pub enum Scheme {
         /// n − 1.
         Taylor = "taylor",
@@ -15,7 +15,7 @@ choices! {
 }
 
 keys! {
-    /// What a configuration says.
+    /// The keys of a configuration.
     pub struct Keys {
         scheme: Scheme = Key::choice("coefficient.scheme", "minimax", Scheme::WORDS,
             "ROM(n) holds a(n) = n - 1, which agrees with cos^n to the slope at its peak, or the a(n) whose largest error is least."),

@@ -25,7 +25,7 @@ choices! {
 }
 
 keys! {
-    /// What a configuration says.
+    /// The keys of a configuration.
     ///
     /// In the patent's arithmetic all words have `cosine.fraction` bits; `cosine.signed`, `clamp`,
     /// `product.*`, `intensity.*` and `sine.fraction` do not apply.

@@ -5,7 +5,7 @@ use crate::base::fixed::{Format, Rounding};
 use crate::config::{Config, Key, Problems, Schema};
 
 keys! {
-    /// What a configuration says.
+    /// The keys of a configuration.
     pub struct Keys {
         operands: Operands = Operands::keys(),
         fraction: u32 = Key {

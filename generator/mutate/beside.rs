@@ -47,7 +47,7 @@ pub(super) struct Beside {
 #[derive(Clone, Default)]
 struct Stage {
     registers: Vec<NetId>,
-    /// Those that the golden model predicts.
+    /// The nets that the golden model predicts.
     predicted: Vec<NetId>,
 }
 
@@ -89,11 +89,11 @@ impl Beside {
         })
     }
 
-    /// What `confirm` makes of the first point that differs where the golden model predicts a value; none if no such point
+    /// Returns `confirm`'s result for the first point that differs where the golden model predicts a value; none if no such point
     /// is found, or it confirms none.
     ///
     /// # Errors
-    /// Those of `confirm`; a mutant that cannot be simulated.
+    /// As of `confirm`; a mutant that cannot be simulated.
     pub(super) fn search<T>(
         &self,
         mutant: &Design,

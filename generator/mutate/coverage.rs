@@ -1,4 +1,4 @@
-//! Which words of tables a test reads, and where: so that a fault in a word need not be looked for all over the
+//! Records where a test reads each word of a table, so that a fault in a word need not be looked for all over the
 //! test.
 
 use anyhow::Result;
@@ -17,11 +17,11 @@ pub(super) type Operands = Vec<(String, i64)>;
 /// A place in a test.
 #[derive(Clone)]
 pub(super) struct Place {
-    /// Of the stream.
+    /// The seed of the stream.
     pub(super) seed: u64,
     /// The results in it up to there.
     pub(super) points: u64,
-    /// What the operand registers hold.
+    /// The contents of the operand registers.
     operands: Vec<u64>,
 }
 
@@ -74,7 +74,7 @@ impl<'a> Watch<'a> {
 }
 
 impl Coverage {
-    /// Of a run of `points` results.
+    /// Records a run of `points` results.
     ///
     /// # Errors
     /// A design that cannot be simulated.

@@ -13,13 +13,13 @@ use crate::hdl::netlist::{Design, Driver, Net, NetId, Op, RegId, Role, RomId};
 const ALL_WORDS: usize = 32;
 const ALL_BITS: usize = 1024;
 
-/// Of larger ROMs, so many pairs of words and so many bits are drawn, and about so many neighbours
+/// The number of pairs of words, and of bits, that are drawn of larger ROMs; about as many neighbours are
 /// swapped.
 const SAMPLE: usize = 200;
 const SAMPLED_BITS: usize = 200;
 const NEIGHBOURS: usize = 256;
 
-/// What is done to a bit.
+/// The change of a bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Bit {
     /// It is always 0.
@@ -64,7 +64,7 @@ pub enum Site {
 pub struct Fault {
     /// Made of the names in the design: `adder15[3]:stuck-at-0`. No two faults of a design have the same.
     pub id: String,
-    /// What goes wrong.
+    /// The kind of the fault.
     pub kind: FaultKind,
     /// Where.
     pub site: Site,

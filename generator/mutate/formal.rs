@@ -24,7 +24,7 @@ const ROUNDS: usize = 4;
 /// A net that differs, of either module.
 static DIFFERS: LazyLock<Regex> = LazyLock::new(|| pattern(r"^  Unproven .*: \\(\w+)_gold\b"));
 
-/// What must not differ: ports and registers.
+/// The names that must not differ: ports and registers.
 static KEPT: LazyLock<Regex> =
     LazyLock::new(|| pattern(r"(?m)^ *(?:input|output|reg)\b[^;,/]*?(\w+)(?:,|;| *(?://.*)?$)"));
 

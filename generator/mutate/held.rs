@@ -45,7 +45,7 @@ pub(super) fn drawn(core: &Core, mutant: &Design, held: Operands) -> Result<Opti
     Ok(mismatch.map(|mismatch| Difference { held, mismatch }))
 }
 
-/// The same of few points, where all operands are held.
+/// Runs a few points at which all operands are held.
 ///
 /// # Errors
 /// The mutant cannot be simulated.
@@ -59,7 +59,7 @@ fn lockstep<'a>(core: &'a Core, mutant: &'a Design, held: &Operands) -> Result<L
     Ok(Lockstep::new(mutant, model, core.contract.as_ref(), SEED)?.holding(held))
 }
 
-/// What goes through the other operands that determine `f` has shown.
+/// The result of a run through the other operands that determine `f`.
 pub(super) enum Tried {
     /// They have too many values.
     Nothing,

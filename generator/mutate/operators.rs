@@ -1,4 +1,4 @@
-//! What can be wrong with a cell as a whole.
+//! Faults of a cell as a whole.
 
 use super::kind::FaultKind;
 use crate::hdl::netlist::{Design, Driver, NetId, Op};

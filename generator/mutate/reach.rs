@@ -1,4 +1,4 @@
-//! Which faults a test cannot notice because it never comes to them: that speaks of the stimulus, and not of the
+//! Finds faults that a test never comes to and cannot notice: a fact about the stimulus, and not about the
 //! design.
 
 use anyhow::Result;
@@ -9,7 +9,7 @@ use crate::core::{Core, TEST_POINTS, TEST_SEED};
 use crate::hdl::netlist::NetId;
 use crate::hdl::sim::Simulator;
 
-/// Which values the bits of some nets have had.
+/// The values that the bits of some nets have had.
 struct Watch<'a> {
     nets: &'a [NetId],
     /// For each net the bits that were 0, and those that were 1.
@@ -26,7 +26,7 @@ impl Watch<'_> {
     }
 }
 
-/// Those of the faults that the default test never comes to: a bit of a register that is stuck at the value that it
+/// Returns the faults that the default test never comes to: a bit of a register that is stuck at the value that it
 /// has anyway, words of tables that are never read. Of other faults it says nothing.
 ///
 /// # Errors

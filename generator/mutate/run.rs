@@ -61,16 +61,16 @@ pub fn run<'f>(
         .collect()
 }
 
-/// What all faults of a configuration share.
+/// The shared state of all faults of a configuration.
 struct Bench<'a> {
     core: &'a Core,
     sound: Design,
     beside: Option<Beside>,
     model: Box<dyn Model>,
     prover: Option<Prover<'a>>,
-    /// Which words the default test reads, and where.
+    /// The words that the default test reads, with the places.
     tested: Coverage,
-    /// Which words a longer test reads, once one is asked for that the default test does not read.
+    /// The words that a longer test reads, once one is asked for that the default test does not read.
     beyond: OnceLock<Coverage>,
     shipped: Shipped,
     /// Points that may be on their way together.
@@ -108,7 +108,7 @@ impl Bench<'_> {
         }
     }
 
-    /// Of a pipeline, a point that is searched for beside the pipeline without a fault.
+    /// Searches, for a pipeline, for a point that differs beside the pipeline without a fault.
     fn searched(&self, mutant: &Design) -> Result<Verdict> {
         let Some(beside) = &self.beside else {
             return Ok(Verdict::Undecided);
@@ -177,7 +177,7 @@ impl Bench<'_> {
         Ok(readings)
     }
 
-    /// Of a pipeline, which has no registers that keep the operands of a reading: the streams of a longer test that
+    /// Runs, for a pipeline, which has no registers that keep the operands of a reading, the streams of a longer test that
     /// read a word, where the default test does not.
     fn beyond_shows(&self, mutant: &Design, rom: RomId, word: usize) -> Result<Option<Mismatch>> {
         if self.latency == 0 || !self.tested.places(rom, word).is_empty() {

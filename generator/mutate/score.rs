@@ -1,4 +1,4 @@
-//! What a run found, in numbers and names.
+//! The score of a run, in numbers and names.
 
 use std::collections::BTreeMap;
 
@@ -22,7 +22,7 @@ pub const GOAL_MEMORY: f64 = 0.95;
 /// Some of the faults.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Share {
-    /// Those that are noticed.
+    /// The faults that are noticed.
     pub noticed: usize,
     /// All that could be.
     pub of: usize,
@@ -78,7 +78,7 @@ impl Tally {
         if self.planted == 0 { 0.0 } else { self.undecided as f64 / self.planted as f64 }
     }
 
-    /// What the shipped bench notices of those that anything notices.
+    /// Returns the shipped bench's share of the faults that anything notices.
     pub fn of_shipped(&self) -> Share {
         Share { noticed: self.shipped, of: self.shipped + self.missed }
     }
@@ -129,7 +129,7 @@ impl Score {
         self.all.share_undecided() <= TOLERATED
     }
 
-    /// What the shipped bench notices of the bits in the upper half of the words of tables; nothing without tables.
+    /// Returns the shipped bench's share of the bits in the upper half of the words of tables; nothing without tables.
     pub fn of_memory(&self) -> Option<Share> {
         self.kinds.get(&FaultKind::RomHighBit).map(Tally::of_shipped)
     }
@@ -148,7 +148,7 @@ pub struct TextScore {
     pub equivalent: Vec<String>,
     /// The ids of the others.
     pub undecided: Vec<String>,
-    /// What the shipped bench notices by itself of those that it or a longer one notices.
+    /// The shipped bench's share of the faults that it or a longer one notices.
     pub shipped: Share,
     /// The ids of those that it does not.
     pub missed: Vec<String>,

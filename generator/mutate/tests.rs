@@ -86,7 +86,7 @@ fn what_is_never_reached_is_never_noticed() {
     assert_eq!(unreached.iter().filter(stuck).count(), 0);
 }
 
-/// What becomes of a fault.
+/// Returns the verdict on a fault.
 fn verdict(core: &Core, id: &str) -> Verdict {
     let faults = Faults::of(&core.design);
     let fault = faults.iter().find(|fault| fault.id == id);
@@ -136,7 +136,7 @@ fn the_sign_decides_a_comparison_with_0() {
     assert!(!proved("sum[4]:inverted") && !proved("sum[4]:stuck-at-0"));
 }
 
-/// What is left of a dividend is the difference where that is not negative: no more than before.
+/// The remainder of a dividend is the difference where that is not negative: no more than before.
 #[test]
 fn a_remainder_does_not_grow_by_a_subtraction() {
     let core = core("configs/schlick_pipelined.toml");

@@ -1,4 +1,4 @@
-//! What becomes of a fault.
+//! Verdicts on faults.
 
 use std::fmt;
 
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::fault::Fault;
 use crate::cosim::Mismatch;
 
-/// What notices a fault.
+/// The check that notices a fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Detector {
@@ -48,7 +48,7 @@ impl fmt::Display for How {
     }
 }
 
-/// What a check showed.
+/// The difference that a check showed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Difference {
     /// Operands that the stimulus held, by name, at raw values ([`crate::cosim::Lockstep::holding`]).
@@ -57,7 +57,7 @@ pub struct Difference {
     pub mismatch: Mismatch,
 }
 
-/// What became of a mutant.
+/// The verdict on a mutant.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verdict {
     /// A check differs, and where.
@@ -73,7 +73,7 @@ pub enum Verdict {
 pub struct Found {
     /// The fault.
     pub fault: Fault,
-    /// What became of it.
+    /// The verdict.
     pub verdict: Verdict,
     /// Whether the vectors of the shipped bench notice it, at the outputs alone.
     pub shipped: bool,

@@ -26,7 +26,7 @@ use crate::tools::{BuiltBench, Simulator, Tool, Waveform};
 /// Results of the longer bench, which runs where the shipped one notices nothing.
 const POINTS: u64 = 10_000;
 
-/// What Yosys may take for the proof that a fault changes nothing. Those that succeed take some seconds; a machine that
+/// The time limit of Yosys for the proof that a fault changes nothing. Proofs that succeed take some seconds; a machine that
 /// is busy with other things does not make them fail.
 const PROOF_LIMIT: Duration = Duration::from_secs(120);
 
@@ -35,7 +35,7 @@ const PROOF_LIMIT: Duration = Duration::from_secs(120);
 pub struct TextFault {
     /// The file, the number of the line, and what was done there.
     pub id: String,
-    /// What was done, by the name of its kind.
+    /// The name of the fault's kind.
     pub kind: &'static str,
     file: usize,
     /// The line, from 0, and what it becomes.
@@ -43,7 +43,7 @@ pub struct TextFault {
     text: String,
 }
 
-/// What became of a fault of a text.
+/// The verdict on a fault of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum TextVerdict {
@@ -57,7 +57,7 @@ pub enum TextVerdict {
     Undecided,
 }
 
-/// What the shipped bench by itself says of a fault of a text.
+/// The verdict of the shipped bench by itself on a fault of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum ShippedBench {
     /// Icarus Verilog does not build it.
@@ -70,7 +70,7 @@ pub enum ShippedBench {
     Silent,
 }
 
-/// What was found of a fault of a text.
+/// The result for a fault of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TextFound {
     /// By all checks together.
@@ -79,7 +79,7 @@ pub struct TextFound {
     pub shipped: ShippedBench,
 }
 
-/// What the faults are shown to.
+/// The tools to which faults are shown.
 const TOOLS: [&str; 4] = ["iverilog", "vvp", "verilator", "yosys"];
 
 /// Files by name, with which ones are modules of the device.
@@ -91,7 +91,7 @@ pub struct Text {
     modules: Vec<usize>,
 }
 
-/// What is replaced by what, and its name. A replacement may differ from what it replaces in nothing; then
+/// A replacement of text, and its name. A replacement may equal what it replaces; then
 /// there is no fault.
 struct Operator {
     kind: &'static str,
@@ -262,7 +262,7 @@ impl Text {
         faults
     }
 
-    /// What is found of each of the faults.
+    /// Returns the result for each of the faults.
     ///
     /// # Errors
     /// A linter is missing, or does not end within `limit`.
@@ -320,7 +320,7 @@ impl Text {
         Ok(!lint.status.success() || !lint.output.is_empty())
     }
 
-    /// What the shipped bench says of a mutant, and the bench as it was built.
+    /// Returns the shipped bench's verdict on a mutant, and the bench as it was built.
     fn benches(
         &self,
         mutant: &[(String, String)],

@@ -27,11 +27,11 @@ struct Bench {
     stimulus: Vec<String>,
     connections: Vec<String>,
     reset: Option<String>,
-    /// What `was_reset` begins with.
+    /// The initial value of `was_reset`.
     reset_seen: &'static str,
     handshake: Vec<Output>,
     results: Vec<Output>,
-    /// Of a pipeline, where the expected word says that results are those of a point: in a bubble they mean nothing.
+    /// The signal of a pipeline by which the expected word says that results are those of a point: in a bubble they mean nothing.
     shown: Option<String>,
     /// None without a microprogram.
     address: Option<String>,

@@ -13,7 +13,7 @@ struct Bench<'a> {
     name: &'a str,
     operands: Vec<String>,
     outputs: Vec<String>,
-    /// What is imported of the driver, sorted.
+    /// The names that are imported from the driver, sorted.
     tests: Vec<&'static str>,
     pipeline: bool,
     /// The results of the example.
@@ -32,7 +32,7 @@ const SEQUENTIAL: [&str; 5] = [
 /// In place of the last, where operands have buffers.
 const BUFFERED: &str = "writes_while_busy_are_for_the_next_computation";
 
-/// The same for a pipeline.
+/// The names for a pipeline.
 const PIPELINE: [&str; 4] = [
     "random_points_follow_the_formula",
     "points_are_exact",

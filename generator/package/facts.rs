@@ -1,4 +1,4 @@
-//! What a device is, as plain facts: ports, fields, microprogram, ROMs.
+//! The facts of a device: ports, fields, microprogram, ROMs.
 //!
 //! The manifest writes them as JSON, the page as tables.
 
@@ -14,11 +14,11 @@ pub struct Port<'a> {
     pub name: &'a str,
     /// `input` or `output`.
     pub direction: &'static str,
-    /// What the environment does with it.
+    /// The role of the port.
     pub role: &'static str,
     /// In bits.
     pub width: u32,
-    /// Of operands, results and status.
+    /// The format of operands, results and status.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub format: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -41,13 +41,13 @@ pub struct Port<'a> {
 pub struct Field<'a> {
     /// Its name.
     pub name: &'a str,
-    /// What it controls: `select`, `enable`, `flag` or `sequence`.
+    /// The kind of the field: `select`, `enable`, `flag` or `sequence`.
     pub kind: &'static str,
     /// Its lowest bit in the control word.
     pub low: u32,
     /// In bits.
     pub width: u32,
-    /// What the values of a select choose, from 0.
+    /// The choices of a select's values, from 0.
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     pub choices: &'a [String],
     /// The numbers of its lines in the source's figure.
@@ -60,12 +60,12 @@ pub struct Field<'a> {
 pub struct Microinstruction<'a> {
     /// Its address.
     pub address: usize,
-    /// What it does.
+    /// The name of the operation.
     pub name: &'a str,
     /// The value of each field, in their order.
     #[serde(serialize_with = "as_map")]
     pub fields: Vec<(&'a str, u64)>,
-    /// What follows.
+    /// The successor.
     pub sequence: Sequence<'a>,
 }
 
@@ -109,7 +109,7 @@ pub struct Rom<'a> {
     pub width: u32,
     /// Bits in all.
     pub bits: u64,
-    /// Of the net that takes a word.
+    /// The format of the net that takes a word.
     pub format: String,
     /// Reads on the clock.
     pub synchronous: bool,
@@ -118,7 +118,7 @@ pub struct Rom<'a> {
     /// Its words, where no file has them.
     #[serde(skip_serializing_if = "Option::is_none")]
     words: Option<&'a [u64]>,
-    /// What an entry means.
+    /// The meaning of an entry.
     pub doc: &'a [String],
     /// The number in the source's figure.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -1,4 +1,4 @@
-//! What is proved of the emitted Verilog itself, by k-induction.
+//! Properties of the emitted Verilog itself, proved by k-induction.
 //!
 //! Both units carry the invariants that a proof stands on, in a section for formal tools alone. A wrapper
 //! states what the manifest promises of the handshake, and a Yosys script makes the problem for
@@ -51,7 +51,7 @@ impl Age {
     }
 }
 
-/// The same for the template.
+/// The age for the template.
 struct AgeView {
     name: String,
     range: String,
@@ -67,7 +67,7 @@ struct Exact {
 
 /// The latest end, where the clocks depend on the data.
 struct Bounded {
-    /// What the proof sees of the inside: declarations.
+    /// The declarations of the proof's view of the inside.
     inside: Vec<String>,
     address: String,
     most: String,

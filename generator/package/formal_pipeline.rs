@@ -1,4 +1,4 @@
-//! What is proved of the emitted Verilog of a pipeline, by k-induction.
+//! Properties of the emitted Verilog of a pipeline, proved by k-induction.
 //!
 //! A wrapper holds a queue beside the pipeline, and states that its stages have points exactly where the
 //! queue has them. With a side channel it follows any one point, and states that its side value stays
@@ -27,7 +27,7 @@ struct Wrapper {
     ports: Vec<String>,
     outputs: Vec<String>,
     connections: Vec<String>,
-    /// What the proof sees of the inside: declarations.
+    /// The declarations of the proof's view of the inside.
     inside: Vec<String>,
     stages: usize,
     /// One bit a stage, under its path.
@@ -56,7 +56,7 @@ struct Side {
     stages: Vec<SideStage>,
 }
 
-/// What travels with the point in a stage.
+/// The side value of a stage.
 struct SideStage {
     number: usize,
     value: String,

@@ -12,7 +12,7 @@ use super::{Computation, ContractFacts, EmitInputs, OutputFile, Quantity, Timing
 use crate::hdl::netlist::{Design, Pipeline, RegId};
 use crate::hdl::verilog::naming::Naming;
 
-/// What a program that reads manifests has to know: a number for what names mean and where they stand. It grows
+/// The version of the manifest's structure, for programs that read it: of what names mean and where they stand. It grows
 /// when something is renamed, moved, or means something else; not when something is added.
 const SCHEMA: u32 = 1;
 
@@ -61,7 +61,7 @@ struct Computations<'a> {
 
 /// The files that the manifest lists.
 pub struct Files<'a> {
-    /// What the core is made of.
+    /// The sources of the core.
     pub sources: Sources<'a>,
     /// FuseSoC cores.
     pub cores: &'a [String],

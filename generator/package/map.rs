@@ -30,7 +30,7 @@ pub const INTERRUPT_PENDING: u32 = 7;
 /// The place of the first operand, in words.
 const FIRST_OPERAND: u32 = 8;
 
-/// What software can do with bits of a register.
+/// The access of software to bits of a register.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Access {
     /// They can be read.
@@ -52,7 +52,7 @@ pub struct Bits {
     pub low: u32,
     /// How many.
     pub width: u32,
-    /// What software can do with them.
+    /// The access of software to them.
     pub access: Access,
     /// Their value after a reset.
     pub reset: u64,

@@ -100,12 +100,12 @@ impl OutputFile {
     }
 }
 
-/// What simulators and synthesisers read of some files: Verilog and memories, each with its plain name.
+/// Returns the files that simulators and synthesisers read, Verilog and memories, each with its plain name.
 pub fn sources(files: Vec<OutputFile>) -> Vec<(String, String)> {
     sources_for(files, "")
 }
 
-/// The same for a target, whose own files take the place of portable ones of the same name.
+/// Returns the files for a target, whose own take the place of portable ones of the same name.
 pub fn sources_for(files: Vec<OutputFile>, target: &str) -> Vec<(String, String)> {
     let needed = |file: &OutputFile| [".v", ".mem"].iter().any(|it| file.name().ends_with(it));
     let (primitives, portable): (Vec<_>, Vec<_>) =
@@ -122,7 +122,7 @@ pub fn sources_for(files: Vec<OutputFile>, target: &str) -> Vec<(String, String)
         .collect()
 }
 
-/// What the files say beyond the design.
+/// The inputs of the files beyond the design.
 #[derive(Clone, Debug, Default)]
 pub struct EmitInputs {
     /// The configuration by its [`crate::base::input::label`].
@@ -133,15 +133,15 @@ pub struct EmitInputs {
     pub timing: Timing,
     /// One computation with all its numbers, for the manifest.
     pub example: Option<WorkedExample>,
-    /// What the results are to be, for the manifest.
+    /// The contract of the results, for the manifest.
     pub accuracy: Option<ContractFacts>,
     /// Computations with all that they show, for the manifest.
     pub computations: Vec<Computation>,
     /// Stimulus and expected outputs; without them there is no bench.
     pub vectors: Option<Vectors>,
-    /// What is put around the core.
+    /// The surroundings of the core.
     pub around: Surroundings,
-    /// Of a pipeline, the design with the microprogram that it computes the same as: the model in C is made of it.
+    /// The design with the microprogram from which a pipeline is made: the model in C is made of it.
     pub sequential: Option<Design>,
 }
 

@@ -29,7 +29,7 @@ pub struct PointsBench {
     pub results: Vec<String>,
 }
 
-/// What the templates print of a list of points, whatever the architecture.
+/// The view of a list of points in templates, whatever the architecture.
 struct List {
     name: String,
     module: String,
@@ -48,7 +48,7 @@ struct List {
 }
 
 impl List {
-    /// Of the input ports that are operands; reset and `valid` are nets of the design.
+    /// The list by the input ports that are operands; reset and `valid` are nets of the design.
     fn new(
         design: &Design,
         limit: u32,

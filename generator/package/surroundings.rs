@@ -1,4 +1,4 @@
-//! What a configuration asks for around a core.
+//! The surroundings of a core that a configuration asks for.
 
 use super::Unfit;
 use crate::config::{Config, Schema, Shared};
@@ -77,7 +77,7 @@ impl Bus {
     }
 }
 
-/// What is put around a core.
+/// The surroundings of a core.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surroundings {
     /// The core between two AXI4-Streams.
@@ -108,7 +108,7 @@ pub struct Surroundings {
     pub licence: String,
 }
 
-/// What the keys say at their defaults.
+/// The defaults of the keys.
 impl Default for Surroundings {
     fn default() -> Self {
         let schema = Schema { device: "", keys: Vec::new(), check: |_, _| () };
@@ -117,7 +117,7 @@ impl Default for Surroundings {
 }
 
 impl Surroundings {
-    /// What the keys that every device shares say; of a pipeline, with the clock that it is made for.
+    /// Reads the keys that every device shares; of a pipeline, with the clock that it is made for.
     pub fn new(config: &Config, pipeline: Option<&Pipeline>) -> Self {
         let keys = Shared::of(config);
         Self {

@@ -9,7 +9,7 @@ use super::wrap::fields::{bits, operands, results};
 use crate::hdl::netlist::Design;
 use crate::hdl::verilog::text::ascii;
 
-/// What a system sees of a module.
+/// The interface of a module to a system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Face {
     /// The core itself.
@@ -40,7 +40,7 @@ pub struct TopPort {
 pub struct Top {
     /// Its name.
     pub module: String,
-    /// What it shows.
+    /// The interface.
     pub face: Face,
     /// The clock, the first port.
     pub clock: &'static str,
@@ -55,7 +55,7 @@ pub struct Top {
 }
 
 impl Top {
-    /// What it is, in a few words.
+    /// Returns a description in a few words.
     pub fn what(&self) -> &'static str {
         match self.face {
             Face::Core => "the core",

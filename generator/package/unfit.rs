@@ -7,9 +7,9 @@ use std::fmt;
 pub struct Unfit {
     /// The dotted name of the key.
     pub key: &'static str,
-    /// What is wrong.
+    /// The message.
     pub message: String,
-    /// What to do about it.
+    /// The remedy.
     pub remedy: String,
 }
 

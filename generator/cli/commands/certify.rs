@@ -47,13 +47,13 @@ pub struct Arguments {
     time_limit: u64,
 }
 
-/// What a script that Glint wrote begins with: nothing else is overwritten.
+/// The first words of a script that Glint wrote: nothing else is overwritten.
 const MARKER: &str = "# Certificate by Glint: ";
 
-/// What precedes the digest of a script, in the line after that of the marker.
+/// The text before the digest of a script, in the line after that of the marker.
 const DIGEST: &str = "# SHA-256 of the script below: ";
 
-/// What precedes a point at which the hypotheses hold, in the next line.
+/// The text before a point at which the hypotheses hold, in the next line.
 const WITNESS: &str = "# The hypotheses hold at ";
 
 /// `glint certify`.

@@ -72,11 +72,11 @@ struct Entry {
     figures: Figures,
     /// By family; empty where nothing is known.
     usage: Vec<Result<Usage, String>>,
-    /// What `synth` has measured of it.
+    /// The record of `synth`.
     record: Option<Record>,
 }
 
-/// What is known of a configuration without a tool.
+/// The figures of a configuration that need no tool.
 struct Figures {
     /// `None` when the exponent is outside the domain.
     accuracy: Option<Accuracy>,
@@ -203,7 +203,7 @@ fn figures(core: &Core, n: f64) -> Result<Figures> {
     })
 }
 
-/// What a record says of every family; nothing where it leaves one out.
+/// Returns a record's usage of every family; nothing where it leaves one out.
 fn recorded(record: Option<&Record>) -> Vec<Result<Usage, String>> {
     let usage = |family: &Family| {
         let mut targets = record?.targets.iter();
@@ -213,7 +213,7 @@ fn recorded(record: Option<&Record>) -> Vec<Result<Usage, String>> {
     all.into_iter().flatten().map(Ok).collect()
 }
 
-/// What every core takes in every family: an outcome, or what went wrong.
+/// Synthesises every core for every family: a usage, or the error.
 fn synthesise(
     cores: &[&(String, Core)],
     yosys: &Tool,

@@ -67,7 +67,7 @@ pub struct Arguments {
     time_limit: TimeLimit,
 }
 
-/// What an exhaustive check goes through in place of the contract's values.
+/// The values of an exhaustive check in place of the contract's.
 #[derive(Args)]
 pub struct SweepValues {
     /// Visit these raw values of an operand in place of those of the contract, as `cos_dgamma=1000,2000..3000/50`;

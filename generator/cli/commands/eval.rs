@@ -165,7 +165,7 @@ fn point(output: Output, one: &Loaded, given: &[Option<i64>]) -> Result<bool> {
     Ok(true)
 }
 
-/// What the device makes of a point, beside the formula: f of a highlight, and each output.
+/// The results of a point, beside the formula: f of a highlight, and each output.
 struct Computed {
     name: String,
     value: f64,

@@ -17,12 +17,12 @@ use crate::golden::Bound;
 use crate::package::Timing;
 use crate::registry::Registry;
 
-/// What the main job found of one configuration.
+/// The result of the main job for one configuration.
 struct Finding {
     timing: Timing,
     bound: Bound,
     outcome: Outcome,
-    /// What does not hold.
+    /// The failures.
     failures: Vec<String>,
 }
 

@@ -46,7 +46,7 @@ impl Reproducer {
         })
     }
 
-    /// The same for a combination of operands.
+    /// The report of a combination of operands.
     ///
     /// # Errors
     /// It cannot be written.
@@ -111,7 +111,7 @@ pub fn first_clock(clock: u64) -> u64 {
 /// A run with a waveform from clock `from` on: written beside its place and moved there when it is whole.
 ///
 /// # Errors
-/// Those of [`Lockstep::trace`]; the file cannot be written.
+/// As of [`Lockstep::trace`]; the file cannot be written.
 pub fn traced(lockstep: &Lockstep<'_>, path: &Path, points: u64, from: u64) -> Result<Outcome> {
     write(path, |file| lockstep.trace(points, from, file))
 }

@@ -1,4 +1,4 @@
-//! What the commands do. Each returns whether everything holds.
+//! The commands. Each returns whether everything holds.
 
 pub mod certify;
 
@@ -178,7 +178,7 @@ const UNSTATED: &str = "no bound is stated";
 /// The verdict on one with failures.
 const FAILS: &str = "FAILS";
 
-/// What is said of a configuration with this bound, and these failures.
+/// Returns the verdict on a configuration with this bound, and these failures.
 fn verdict(bound: &Bound, failures: &[String]) -> &'static str {
     match (failures.is_empty(), bound.units < 1.0) {
         (true, _) if !bound.is_stated() => UNSTATED,

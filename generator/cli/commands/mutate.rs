@@ -54,7 +54,7 @@ pub struct Arguments {
     time_limit: TimeLimit,
 }
 
-/// What was found of one configuration.
+/// The score of one configuration.
 #[derive(Serialize)]
 struct Scored {
     /// The version; a record begins with it.
@@ -62,7 +62,7 @@ struct Scored {
     config: String,
     device: &'static str,
     netlist: Score,
-    /// Of the emitted text, where that was asked for.
+    /// The score of the emitted text, where that was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     verilog: Option<TextScore>,
 }
@@ -309,7 +309,7 @@ fn print_undecided(ids: &[String]) {
     }
 }
 
-/// What the shipped bench notices by itself of those faults that anything notices, beside its goal.
+/// Prints the shipped bench's share of the faults that anything notices, beside its goal.
 fn print_shipped(faults: &str, share: Share, goal: Option<f64>) {
     let goal = goal.map_or(String::new(), |goal| {
         let reached = if share.value() >= goal { "reached" } else { "missed" };

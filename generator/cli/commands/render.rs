@@ -179,7 +179,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     Ok(true)
 }
 
-/// What the configuration asks for, with its name for people.
+/// Returns the core of the configuration, with its name for people.
 fn core(registry: &Registry, config: Option<&Path>) -> Result<(String, Core)> {
     if let Some(path) = config {
         let one = load_one(registry, &registry.schemas(), path)?;
@@ -216,7 +216,7 @@ fn settings(core: &Core, arguments: &Arguments) -> Result<Settings> {
     })
 }
 
-/// What is shown; `coarse`: in triangles that one can see.
+/// Returns the scene; `coarse`: in triangles that one can see.
 fn scene(arguments: &Arguments, coarse: bool) -> Result<Scene> {
     let objects = match &arguments.mesh {
         Some(path) => {

@@ -8,7 +8,7 @@ use csv::{ReaderBuilder, StringRecord, Trim};
 
 use crate::base::input;
 
-/// What `of_row` makes of the rows of a file, or of standard input for `-`; `columns` understands the headings.
+/// Applies `of_row` to the rows of a file, or of standard input for `-`; `columns` understands the headings.
 ///
 /// # Errors
 /// The file cannot be read, or has no row below the headings; what `columns` and `of_row` refuse, with the place.

@@ -130,10 +130,10 @@ struct Host<'a> {
     line: bool,
 }
 
-/// What was given of each input of a [`Host`].
+/// The values of each input of a [`Host`].
 type Given = Vec<[Option<f64>; 3]>;
 
-/// What comes out.
+/// The operands that come out.
 struct SetUp {
     /// Quantities of the formulas, in their order: a name, where it comes from, the number, its unit.
     quantities: Vec<(&'static str, &'static str, f64, &'static str)>,
@@ -191,7 +191,7 @@ impl<'a> Host<'a> {
         Ok(Self { one, feed, line: render::walks_lines(contract) })
     }
 
-    /// Those of a device of this kind; some may not concern it.
+    /// Returns the inputs of a device of this kind; some may not concern it.
     fn inputs(&self) -> &'static [Input] {
         if self.line { &OF_LINE } else { &OF_POINT }
     }

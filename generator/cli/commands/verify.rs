@@ -133,7 +133,7 @@ fn one_configuration(
     Ok((Record::new(&subject, answers), timings))
 }
 
-/// What all checks say together, which of them say what but that it holds, and the command that completes it.
+/// Prints the conclusion, the checks that say more than that it holds, and the command that completes it.
 fn print_conclusion(one: &Loaded, record: &Record) {
     let with = |verdict| record.checks.iter().filter(move |it| it.finding.verdict == verdict);
     let counts = record.counts.iter();

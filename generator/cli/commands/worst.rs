@@ -49,7 +49,7 @@ struct Known {
     config: String,
     /// Tells what the contract depends on from others.
     contract: String,
-    /// Of the search that found it.
+    /// The starts of the search that found it.
     starts: u64,
     seed: u64,
     /// In output units.
@@ -62,7 +62,7 @@ struct Known {
     exact: f64,
 }
 
-/// What is said of a configuration.
+/// The report on a configuration.
 #[derive(Serialize)]
 struct Report {
     #[serde(flatten)]

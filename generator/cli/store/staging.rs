@@ -14,7 +14,7 @@ use super::{create_parent, directories, relative_name};
 use crate::base::transient::{self, Directory};
 use crate::package::OutputFile;
 
-/// What the directory's name begins with.
+/// The prefix of the directory's name.
 const PREFIX: &str = ".glint-";
 /// The file that says whose the directory is.
 const LOCK: &str = "glint.lock";

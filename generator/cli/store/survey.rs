@@ -1,4 +1,4 @@
-//! What stands in the directories of a configuration, and whose it is.
+//! The files in the directories of a configuration, and their owners.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -11,7 +11,7 @@ use serde_json::Value;
 use super::{differs, directories, relative_name};
 use crate::package::{OutputFile, digest};
 
-/// What is there, held against what is to be there. All lists are sorted.
+/// The files that are there, held against those that are to be there. All lists are sorted.
 pub struct Survey {
     /// Names of files that are to be written, replaced, or deleted because Glint wrote them once.
     pub different: Vec<String>,
@@ -22,7 +22,7 @@ pub struct Survey {
 }
 
 impl Survey {
-    /// Of the configuration `name` below `out`, of which `files` are to be there.
+    /// Surveys the configuration `name` below `out`, of which `files` are to be there.
     ///
     /// # Errors
     /// A file or a directory that cannot be read.
@@ -67,7 +67,7 @@ impl Survey {
     }
 }
 
-/// Whose a file is.
+/// The owner of a file.
 pub enum Owner {
     /// As Glint wrote it.
     Glint,
@@ -84,12 +84,12 @@ pub struct Digests {
 }
 
 impl Digests {
-    /// Of a manifest below `out`.
+    /// Reads a manifest below `out`.
     pub fn read(manifest: &Path, out: &Path) -> Self {
         Self { manifest: relative_name(out, manifest), digests: parsed(manifest) }
     }
 
-    /// Whose the file `relative` is, which stands at `path`.
+    /// Returns the owner of the file `relative`, which stands at `path`.
     pub fn owner(&self, relative: &str, path: &Path) -> Owner {
         let Some(digests) = &self.digests else {
             return Owner::Other;

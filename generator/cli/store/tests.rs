@@ -1,4 +1,4 @@
-//! What a killed run leaves at each of its steps, and what the next one makes of it.
+//! Remains of a run that is killed at each of its steps, and how the next one goes on.
 
 use std::fs;
 use std::path::Path;

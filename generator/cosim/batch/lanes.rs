@@ -30,7 +30,7 @@ impl RustHdl {
     /// Simulators of a design, at power-up and reset.
     ///
     /// # Errors
-    /// Those of [`Simulator::new`], and a contract that speaks of ports that the design does not have.
+    /// As of [`Simulator::new`], and a contract that speaks of ports that the design does not have.
     pub fn new(design: &Design, contract: &dyn Contract) -> Result<Self> {
         let teams = (0..rayon::current_num_threads())
             .map(|_| match &design.pipeline {
@@ -72,7 +72,7 @@ struct Team {
     busy: NetId,
 }
 
-/// What an instance is at.
+/// The task of an instance.
 #[derive(Clone, Copy, Default)]
 struct Task {
     point: usize,

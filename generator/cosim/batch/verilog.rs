@@ -31,7 +31,7 @@ impl Verilog {
     /// build, and on each list of points.
     ///
     /// # Errors
-    /// Those of [`BuiltBench::build`], and a contract that speaks of other ports than the design's.
+    /// As of [`BuiltBench::build`], and a contract that speaks of other ports than the design's.
     pub fn new(
         simulator: Simulator,
         design: &Design,

@@ -1,5 +1,5 @@
-//! What a computation does within a design, in bits: which inputs of muxes it takes, on which side of a comparison it
-//! is, which bits it sets and clears, which words it reads.
+//! The features of a computation within a design, in bits: the inputs of muxes that it takes, the sides of comparisons,
+//! the bits that it sets and clears, the words that it reads.
 
 use super::side_by_side::{LANES, Lanes};
 use crate::base::fixed::mask;
@@ -24,7 +24,7 @@ enum Watched {
     Pair(NetId, NetId),
 }
 
-/// What is watched in a design, and which of it the computations in the lanes have done.
+/// The watched features of a design, and those that the computations in the lanes have shown.
 pub struct Watch {
     watched: Vec<Watched>,
     done: Vec<[u64; LANES]>,
@@ -141,7 +141,7 @@ impl Watch {
         self.note_words(machine, busy);
     }
 
-    /// Of a clock the words alone.
+    /// Notes the words alone of a clock.
     pub fn note_words(&mut self, machine: &Machine<LANES>, busy: Lanes) {
         for &(address, first, count) in &self.addresses {
             let bits = machine.lanes(address);
@@ -154,7 +154,7 @@ impl Watch {
         }
     }
 
-    /// What the computation in a lane has done: its features, for results as bright as this, and the words that it has
+    /// Returns the features of the computation in a lane, for results as bright as this, and the words that it has
     /// read, numbered through all ROMs. The lane is clean then.
     pub fn take(&mut self, lane: usize, class: usize) -> (Vec<u32>, Vec<u32>) {
         let mut features = Vec::new();

@@ -8,7 +8,7 @@ use crate::hdl::sim::Machine;
 pub struct Memories {
     /// The input port that says which copy is read.
     pub lane: NetId,
-    /// Of each ROM the number of its first word among those of the design, the number of its first word here, and how
+    /// For each ROM the number of its first word among those of the design, the number of its first word here, and how
     /// far the copies lie apart.
     roms: Vec<(u32, usize, usize)>,
 }

@@ -94,7 +94,7 @@ pub fn computations(design: &Design, contract: &dyn Contract) -> Result<Vec<Vec<
     Ok(chosen.chain(of_words.found).collect())
 }
 
-/// Of lines that read table after table the first, which is the longest, and those of which most words are new.
+/// Returns, of lines that read table after table, the first, which is the longest, and those of which most words are new.
 fn sweeps(lines: &[Candidate]) -> Vec<usize> {
     let mut read = HashSet::new();
     let mut chosen = Vec::new();

@@ -15,8 +15,8 @@ const SHOWN: usize = 3840;
 /// values than this.
 const MOST_VALUES: u64 = 4096;
 
-/// Of the operands that choose a table the values above the lowest for which lines go through the highlight, and how
-/// many bits their lengths have.
+/// The values above the lowest, of operands that choose a table, for which lines go through the highlight, and the
+/// bits of their lengths.
 const FIRST_VALUES: [i64; 6] = [0, 1, 2, 3, 7, 15];
 const LINE_BITS: std::ops::RangeInclusive<u32> = 8..=12;
 
@@ -34,11 +34,11 @@ const CORNER_LENGTH: i64 = 2;
 
 /// Computations to choose from.
 pub struct Pool {
-    /// Those with every control operand at an end of its domain or of its format.
+    /// The computations with every control operand at an end of its domain or of its format.
     pub corners: Vec<Vec<i64>>,
-    /// Those that are watched in all that they do.
+    /// The computations that are watched in all that they do.
     pub drawn: Vec<Vec<i64>>,
-    /// Those that read words.
+    /// The computations that read words.
     pub readers: Vec<Vec<i64>>,
     /// Lines that read a table from its beginning to its end.
     pub sweeps: Vec<Vec<i64>>,

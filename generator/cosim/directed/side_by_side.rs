@@ -17,7 +17,7 @@ const LIMIT: u32 = 1 << 16;
 /// A set of lanes.
 pub type Lanes = u32;
 
-/// What a computation shows.
+/// The outputs of a computation.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Shown {
     /// Clocks from `start` to the next.
@@ -51,7 +51,7 @@ pub struct SideBySide {
     valid: NetId,
     busy: NetId,
     results: Vec<NetId>,
-    /// Of a design whose lanes have tables of their own.
+    /// The memories of a design whose lanes have tables of their own.
     copies: Option<Memories>,
 }
 
@@ -114,7 +114,7 @@ impl SideBySide {
     /// As [`SideBySide::run`], of each lane with these bits of a word inverted. Words are numbered through all ROMs.
     ///
     /// # Errors
-    /// Those of [`SideBySide::run`].
+    /// As of [`SideBySide::run`].
     pub fn run_with(
         &mut self,
         computations: &[&[i64]],

@@ -22,13 +22,13 @@ pub const LONGEST: u32 = 64;
 const ROUNDS: usize = 6;
 const ROUNDS_BEYOND: usize = 6;
 
-/// Of those tried so many remain of which a larger fault in the word shows most: others near them are tried next.
+/// The number of tried computations that remain, those which show a larger fault in the word most: others near them are tried next.
 const KEPT: usize = 8;
 
-/// What notices faults in words.
+/// The computations that notice faults in words.
 #[derive(Default)]
 pub struct Chosen {
-    /// Of the candidates, by number.
+    /// The numbers of the chosen candidates.
     pub chosen: BTreeSet<usize>,
     /// Others, by their operands.
     pub found: Vec<Vec<i64>>,
@@ -162,13 +162,13 @@ impl Search<'_> {
         Ok(())
     }
 
-    /// What computations show with bits of a word inverted.
+    /// Returns the outputs of computations with bits of a word inverted.
     fn run(&mut self, computations: &[&[i64]], word: u32, bits: u64) -> Result<Vec<Shown>> {
         let faults: Vec<u64> = vec![bits; computations.len()];
         self.device.run_with(computations, word, &faults)
     }
 
-    /// Those of some bits of a word which a computation notices, one inverted at a time. It shows this without a fault.
+    /// Returns the bits of a word which a computation notices, one inverted at a time. `right` is its output without a fault.
     fn noticed(&mut self, word: u32, bits: u64, operands: &[i64], right: &Shown) -> Result<u64> {
         let bits: Vec<u64> =
             (0..u64::BITS).map(|bit| bits & 1 << bit).filter(|&bit| bit != 0).collect();

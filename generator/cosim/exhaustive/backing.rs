@@ -1,4 +1,4 @@
-//! What a stated bound rests on: a proof in the catalogue, a record of all operands, a certificate, or its author's word.
+//! The evidence for a stated bound: a proof in the catalogue, a record of all operands, a certificate, or its author's word.
 
 use std::fmt;
 use std::path::Path;
@@ -16,7 +16,7 @@ const CERTIFICATES: &str = "certificates";
 /// How far the recorded bound may be from today's, in units.
 const SAME: f64 = 1e-9;
 
-/// What a stated bound rests on.
+/// The evidence for a stated bound.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Backing {
     /// The proof beside the golden model of a device of the catalogue.
@@ -45,7 +45,7 @@ pub struct Certificate {
 }
 
 impl Backing {
-    /// What the records in a directory say of a contract outside the catalogue.
+    /// Returns the evidence in the records of a directory for a contract outside the catalogue.
     ///
     /// # Errors
     /// A record that cannot be read.

@@ -52,7 +52,7 @@ pub struct Difference {
     pub clock: u64,
     /// The operands, as bit patterns.
     pub operands: Vec<(String, u64)>,
-    /// What differs; its clocks count from the power-up of the lane.
+    /// The mismatch; its clocks count from the power-up of the lane.
     pub mismatch: Mismatch,
 }
 
@@ -111,7 +111,7 @@ impl<'a> Clocks<'a> {
         })
     }
 
-    /// The same with some operands held at raw values: the combinations are those of the others.
+    /// Holds some operands at raw values: the combinations are those of the others.
     #[must_use]
     pub fn holding(mut self, held: &[(String, i64)]) -> Self {
         match self.architecture {
@@ -141,7 +141,7 @@ impl<'a> Clocks<'a> {
         }
     }
 
-    /// What is not covered, in a sentence: why there are no combinations, or what going through them leaves to
+    /// Returns the part that is not covered, in a sentence: why there are no combinations, or what going through them leaves to
     /// random stimulus.
     pub fn omits(&self) -> String {
         match self.count() {
@@ -221,7 +221,7 @@ impl<'a> Clocks<'a> {
         }
     }
 
-    /// What differs at a place that [`Clocks::check`] found.
+    /// Returns the difference at a place that [`Clocks::check`] found.
     ///
     /// # Errors
     /// Nothing differs there; those of [`Clocks::check`].
@@ -256,7 +256,7 @@ impl<'a> Clocks<'a> {
     /// Writes the waveform of the clocks that end with a difference, from clock `from` of its lane on.
     ///
     /// # Errors
-    /// Those of [`Clocks::difference`]; the file cannot be written.
+    /// As of [`Clocks::difference`]; the file cannot be written.
     pub fn trace(&self, place: u64, from: u64, file: impl Write + Send + 'static) -> Result<()> {
         match &self.architecture {
             Architecture::Sequential(binding) => {
@@ -291,7 +291,7 @@ impl<'a> Clocks<'a> {
         Ok((first, place - first + 1))
     }
 
-    /// The same in a simulator of its own.
+    /// Runs the combination in a simulator of its own.
     fn alone<'p>(&self, binding: &'p Binding<'a>, place: u64) -> Result<Alone<'p>> {
         let (first, count) = self.run_to(place)?;
         Alone::new(binding, Course::Combinations { first, count })
@@ -300,7 +300,7 @@ impl<'a> Clocks<'a> {
     /// How long one combination takes on one thread.
     ///
     /// # Errors
-    /// Those of [`Clocks::check`].
+    /// As of [`Clocks::check`].
     pub(super) fn pace(&self) -> Result<Duration> {
         let places = 0..self.count().min(BLOCK / 8);
         let count = places.end as u32;

@@ -99,7 +99,7 @@ pub struct Progress {
 pub struct State {
     /// Tells one configuration, and what computes with it, from another.
     pub digest: String,
-    /// Which part of the job.
+    /// The part of the job.
     pub shard: Shard,
     /// The sweep of `f`.
     pub f: Progress,
@@ -139,7 +139,7 @@ impl<'a> Job<'a> {
         Self::of_sweep(contract, contract.sweep())
     }
 
-    /// The same by a sweep with other values than those of the contract.
+    /// The job by a sweep with other values than those of the contract.
     pub fn of_sweep(contract: &'a dyn Contract, sweep: Sweep) -> Self {
         let (f, colours) = (Places::of_sweep(contract, sweep), Places::of_colours(contract));
         Self { f, colours, clocks: None }
@@ -156,7 +156,7 @@ impl<'a> Job<'a> {
         }
     }
 
-    /// The same, and every combination of operands clock by clock, if they are not too many.
+    /// Adds every combination of operands clock by clock, if they are not too many.
     #[must_use]
     pub fn with(mut self, clocks: Clocks<'a>) -> Self {
         self.clocks = Some(clocks);
@@ -173,7 +173,7 @@ impl<'a> Job<'a> {
         self.parts_remaining(state).iter().sum()
     }
 
-    /// The same of each part: of `f`, of the colours, of the combinations.
+    /// Returns the remaining work of each part: of `f`, of the colours, of the combinations.
     fn parts_remaining(&self, state: &State) -> [u64; 3] {
         let shard = state.shard;
         let blocks = |done: u64, blocks| {
@@ -194,7 +194,7 @@ impl<'a> Job<'a> {
     /// largest errors are found again where it says that they are.
     ///
     /// # Errors
-    /// What cannot be.
+    /// The state cannot be of this job.
     pub fn validate(&self, state: &State) -> Result<()> {
         let shard = state.shard;
         ensure!(shard.is_valid(), "there is no shard {shard}");
@@ -300,7 +300,7 @@ impl<'a> Job<'a> {
         Ok(ControlFlow::Continue(()))
     }
 
-    /// What the shards of one job give together.
+    /// Merges the shards of one job.
     ///
     /// # Errors
     /// Shards of different jobs, shards that are missing, twice there, or not done. `names` say which,

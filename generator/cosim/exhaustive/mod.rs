@@ -28,21 +28,21 @@ use crate::golden::{Contract, Sweep};
 /// Where records are by default.
 pub const PROOFS: &str = "proofs";
 
-/// What f64 itself may add to an error in units.
+/// The rounding of f64 itself, in units.
 const F64: f64 = 1e-6;
 
-/// What the proof found.
+/// The result of the proof.
 #[derive(Clone, Debug)]
 pub struct Proof {
     /// Whether what is swept is the f of a highlight, and not the outputs themselves.
     of_f: bool,
     /// The largest error of `f`, or of an output in units.
     pub f: Peak,
-    /// The same in output units, for the largest colour.
+    /// The error of f in output units, for the largest colour.
     pub f_units: f64,
     /// The largest error of a colour multiplier, in output units.
     pub colours: Peak,
-    /// What is not within the stated bound, or not below one unit though the bound is.
+    /// The failures: an error above the stated bound, or one unit and more though the bound is below.
     pub failures: Vec<String>,
 }
 
@@ -71,7 +71,7 @@ impl Proof {
         proof
     }
 
-    /// What the proof shows: "proved" only if the sweep left no control operands out, and only of a bound that keeps
+    /// Returns the verdict: "proved" only if the sweep left no control operands out, and only of a bound that keeps
     /// the contract.
     pub fn verdict(&self, contract: &dyn Contract, sweep: &Sweep) -> &'static str {
         if !self.failures.is_empty() {

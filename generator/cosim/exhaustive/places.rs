@@ -24,10 +24,10 @@ pub struct Peak {
 }
 
 impl Peak {
-    /// Of no places.
+    /// The peak of no places.
     pub const NONE: Self = Self { error: 0.0, place: u64::MAX };
 
-    /// Of two sets of places together.
+    /// Returns the peak of two sets of places together.
     #[must_use]
     pub fn join(self, other: Self) -> Self {
         let later = self.place > other.place;
@@ -35,12 +35,12 @@ impl Peak {
     }
 }
 
-/// What is measured at a place.
+/// The quantity that is measured at a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Measure {
     /// As [`Contract::sweep_error`] has it: of a highlight the error of `f`.
     F,
-    /// What a colour multiplier adds, in output units.
+    /// The error that a colour multiplier adds, in output units.
     Colour,
 }
 

@@ -13,7 +13,7 @@ use crate::golden::{Axis, Contract, Sweep, Values};
 /// How near a recorded figure must come to that of today.
 const SAME: f64 = 1e-9;
 
-/// What a check found.
+/// The record of a check.
 #[derive(Clone, Debug, Deserialize)]
 pub struct Record {
     axes: Vec<RecordedAxis>,
@@ -99,7 +99,7 @@ impl Record {
         Ok(None)
     }
 
-    /// What the check went through: the contract's sweep, or more values of an axis that lists some.
+    /// Returns the sweep of the check: the contract's, or more values of an axis that lists some.
     pub fn sweep(&self, contract: &dyn Contract) -> Sweep {
         let axes = self.axes.iter().map(RecordedAxis::axis).collect();
         Sweep { axes, omits: contract.sweep().omits }

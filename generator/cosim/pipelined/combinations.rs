@@ -28,7 +28,7 @@ struct Run {
     next: u64,
     end: u64,
     stages: Occupancy<Point>,
-    /// What differs at the first place where something does, and its clocks since it was taken.
+    /// The mismatch at the first place where there is one, and its clocks since the point was taken.
     differs: Option<(Mismatch, u64)>,
 }
 

@@ -36,9 +36,9 @@ pub(super) struct Lane {
     points: u64,
     random: Random,
     reference: Reference,
-    /// What is offered until it is taken.
+    /// The point that is offered until it is taken.
     offered: Option<Point>,
-    /// Of a stream that goes on with points of a list those that are left, bit patterns: it draws no others, withdraws
+    /// The remaining points of a stream that goes on with a list, bit patterns: it draws no others, withdraws
     /// none, and is not reset.
     listed: Option<VecDeque<Vec<u64>>>,
     pub(super) stages: Occupancy<Point>,

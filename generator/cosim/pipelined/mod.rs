@@ -36,7 +36,7 @@ pub(super) struct Pipelined<'a> {
     seed: u64,
 }
 
-/// What all streams share.
+/// The shared state of all streams.
 pub(super) struct Setup<'a> {
     pub design: &'a Design,
     pipeline: &'a Pipeline,
@@ -62,7 +62,7 @@ pub(super) struct Setup<'a> {
     out_valid: NetId,
     side_out: Option<NetId>,
     outputs: Vec<NetId>,
-    /// What is compared after a clock, the first to be told first: `out_valid`, and then what [`Columns`] says.
+    /// The nets that are compared after a clock, the first to be told first: `out_valid`, and then those of [`Columns`].
     compared: Vec<NetId>,
     columns: Columns,
 }
@@ -188,7 +188,7 @@ impl<'a> Pipelined<'a> {
         Ok(Self { setup, seed })
     }
 
-    /// The same with some operands held at raw values.
+    /// Holds some operands at raw values.
     pub(super) fn holding(mut self, held: &[(String, i64)]) -> Self {
         for (name, raw) in held {
             let drawn = self.setup.operands.iter_mut().filter(|it| it.name == *name);
@@ -225,7 +225,7 @@ impl<'a> Pipelined<'a> {
     /// As [`Pipelined::run`], in one stream.
     ///
     /// # Errors
-    /// Those of [`Pipelined::run`].
+    /// As of [`Pipelined::run`].
     pub(super) fn run_alone(&self, points: u64) -> Result<Outcome> {
         let mut alone = self.alone(points)?;
         while !alone.ended() {
@@ -275,7 +275,7 @@ impl<'a> Pipelined<'a> {
     /// As [`Pipelined::run`], in one stream, of which `file` takes the waveform from clock `from` on.
     ///
     /// # Errors
-    /// Those of [`Pipelined::run`]; the file cannot be written.
+    /// As of [`Pipelined::run`]; the file cannot be written.
     pub(super) fn trace(
         &self,
         points: u64,
@@ -297,7 +297,7 @@ impl<'a> Pipelined<'a> {
     /// See [`Lockstep::watch`](super::Lockstep::watch).
     ///
     /// # Errors
-    /// Those of [`Pipelined::run`].
+    /// As of [`Pipelined::run`].
     pub(super) fn watch<W: Send>(
         &self,
         points: u64,
@@ -348,7 +348,7 @@ struct Group<const L: usize> {
 
 /// For each net that is compared and each lane.
 struct Predicted<const L: usize> {
-    /// What is expected after the latest clock.
+    /// The expected values after the latest clock.
     expected: Vec<[u64; L]>,
     /// All ones where something is.
     known: Vec<[u64; L]>,

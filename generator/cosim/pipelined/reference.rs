@@ -1,4 +1,4 @@
-//! What the golden model says of one point: its results, and its registers along the microprogram.
+//! The golden model's values for one point: its results, and its registers along the microprogram.
 
 use anyhow::{Context, Result, anyhow};
 
@@ -28,7 +28,7 @@ pub(super) struct Reference {
     visits: Vec<usize>,
 }
 
-/// What is expected of a point.
+/// The expected values of a point.
 #[derive(Debug, Default)]
 pub(super) struct Expected {
     /// The results, bit patterns.

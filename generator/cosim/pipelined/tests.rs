@@ -30,7 +30,7 @@ fn every_device_is_what_its_golden_model_says() {
     }
 }
 
-/// Those of every key of `[pipeline]`: the side channel is compared too.
+/// Every key of `[pipeline]`: the side channel is compared too.
 #[test]
 fn a_pipeline_with_a_side_channel_or_without_stalls_is_what_its_golden_model_says() {
     let registry = Registry::catalogue();

@@ -10,7 +10,7 @@ use crate::golden::Model;
 /// The handshake's own signals, which stand before the device's.
 const HANDSHAKE: [&str; 5] = ["valid", "busy", "done", "run", "word_address"];
 
-/// What does not change.
+/// The constant part of a model.
 #[derive(Clone)]
 struct Fixed {
     program: Vec<Microinstruction>,
@@ -21,7 +21,7 @@ struct Fixed {
     edges: Vec<Does>,
     /// Results with the registers that take them.
     taken: Vec<(Slot, Slot)>,
-    /// What takes the writes of each operand; empty where the operand registers do.
+    /// The buffer of each operand; empty where the operand registers take the writes.
     buffers: Vec<Slot>,
     flags: Vec<Slot>,
     valid_delay: u32,
@@ -79,8 +79,8 @@ impl Frame {
 }
 
 impl Fixed {
-    /// What the buffers take of data and strobes, and at a start the operand registers of the buffers. Whether there was
-    /// anything to take.
+    /// Loads the buffers from data and strobes, and at a start the operand registers from the buffers. Returns whether
+    /// anything was loaded.
     fn write_buffers(&self, state: &mut State, ports: &[u64], starts: bool) -> bool {
         let mut taken = starts;
         let buffers = self.operands.iter().zip(&self.buffers);
@@ -96,7 +96,7 @@ impl Fixed {
         taken
     }
 
-    /// What the operand registers take. Whether there was anything to take.
+    /// Loads the operand registers. Returns whether anything was loaded.
     fn write_operands(&self, state: &mut State, ports: &[u64]) -> bool {
         let mut taken = false;
         for (operand, ports) in self.operands.iter().zip(ports.chunks_exact(2)) {
@@ -129,7 +129,7 @@ impl Clocked {
         self.values[0] == 1
     }
 
-    /// What is shown of the state, of which nothing that is shown has changed if it is `still`.
+    /// Updates the visible values; skips those that follow the registers if they are `still`.
     #[inline]
     fn settle(&mut self, still: bool) {
         let it = &*self.fixed;

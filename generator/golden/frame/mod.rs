@@ -64,7 +64,7 @@ type Does = Arc<dyn Fn(&mut State) + Send + Sync>;
 type Value = Arc<dyn Fn(&State) -> i64 + Send + Sync>;
 type Condition = Arc<dyn Fn(&State) -> bool + Send + Sync>;
 
-/// What follows a microinstruction.
+/// The successor of a microinstruction.
 #[derive(Clone)]
 enum Next {
     Following,
@@ -153,13 +153,13 @@ struct Operand {
 }
 
 impl Operand {
-    /// What the register takes of the bits on the port.
+    /// Returns the number that the register loads from the bits on the port.
     fn held(&self, bits: u64) -> i64 {
         (self.format.raw(bits) as i64).clamp(self.min, self.max)
     }
 }
 
-/// What is predicted, with the bits that its net has.
+/// A predicted signal, with the bits of its net.
 struct Shown {
     name: String,
     output: bool,
@@ -167,7 +167,7 @@ struct Shown {
     format: Format,
 }
 
-/// What a device's state is made of.
+/// The state of a device, and its operations.
 #[derive(Default)]
 pub struct Frame {
     operands: Vec<Operand>,
@@ -237,7 +237,7 @@ impl Frame {
         slot
     }
 
-    /// What every rising edge does, whatever microinstruction is in force: a synchronous ROM reads. It comes
+    /// Adds an operation of every rising edge, whatever microinstruction is in force: a synchronous ROM reads. It comes
     /// before the microinstruction and after what was stated earlier, and sees the values before the edge.
     pub fn every_edge(&mut self, does: impl Fn(&mut State) + Send + Sync + 'static) {
         self.edges.push(Arc::new(does));

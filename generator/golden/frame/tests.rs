@@ -105,7 +105,7 @@ fn results_in_registers() {
     assert_course(model.as_mut(), 2, &course);
 }
 
-/// What is skipped is as far as before where a microinstruction was put in between; the result holds from one
+/// A jump goes as far as before where a microinstruction was put in between; the result holds from one
 /// computation to the next.
 #[test]
 fn a_jump_beyond_a_result_in_a_register() {

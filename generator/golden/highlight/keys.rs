@@ -1,4 +1,4 @@
-//! What the keys of cos γ, n and colours mean for model and contract.
+//! The keys of cos γ, n and colours, for model and contract.
 
 use super::Products;
 use crate::golden::frame::{Frame, Slot};

@@ -1,4 +1,4 @@
-//! What highlights have in common: colours that are multiplied by a reflectance `f`.
+//! The contract of highlights: colours that are multiplied by a reflectance `f`.
 
 mod keys;
 mod multiplied;
@@ -13,7 +13,7 @@ use super::contract::{self, COSINE, ErrorShare};
 use super::{Bound, Contract, Operand, Output, Sweep, nearer};
 use crate::base::fixed::{Format, exp2};
 
-/// What a highlight's control operands determine: a number f in 0 … 1.
+/// The reflectance by a highlight's control operands: a number f in 0 … 1.
 pub trait Reflectance: Send + Sync {
     /// The raw f that the device computes from the raw control operands.
     fn f(&self, control: &[i64]) -> i64;
@@ -89,7 +89,7 @@ pub trait Reflectance: Send + Sync {
         Some(operand.format.to_f64(i128::from(*raw)).clamp(0.0, 1.0))
     }
 
-    /// What an exhaustive check of `f` goes through; none for every combination of the control operands.
+    /// The places of an exhaustive check of `f`; none for every combination of the control operands.
     fn sweep(&self) -> Option<Sweep> {
         None
     }
@@ -101,7 +101,7 @@ pub trait Reflectance: Send + Sync {
         None
     }
 
-    /// What the error of f is made of, each a proven upper limit; none where the bound is not known yet.
+    /// The terms of f's error, each a proven upper limit; none where the bound is not known yet.
     fn shares(&self) -> Vec<ErrorShare> {
         Vec::new()
     }
@@ -204,7 +204,7 @@ impl Highlight {
         self.f(point)
     }
 
-    /// What [`Contract::exact`] says at the control operands of one point.
+    /// Appends [`Contract::exact`] at the control operands of one point.
     fn exact_at(&self, point: &[i64], colours: &[i64], exact: &mut Vec<[f64; 2]>) {
         let f = self.references(point);
         let pairs = self.products.operands.iter().zip(colours);
@@ -263,7 +263,7 @@ impl Contract for Highlight {
         self.reflectance.length()
     }
 
-    /// Of f alone; every product is checked beside it.
+    /// The sweep of f alone; every product is checked beside it.
     fn sweep(&self) -> Sweep {
         let control = &self.operands[..self.control()];
         self.reflectance.sweep().unwrap_or_else(|| Sweep::all(control.iter()))

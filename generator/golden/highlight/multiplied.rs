@@ -1,14 +1,14 @@
-//! What a reflectance multiplies.
+//! The products with a reflectance.
 
 use crate::base::fixed::{Format, Rounding};
 use crate::golden::frame::{Clocked, Frame, Microinstruction, Slot, State, idle, step};
 use crate::golden::narrow::Narrow;
 use crate::golden::{Operand, Output};
 
-/// What is multiplied by f: three colours, or one amplitude.
+/// The operands that are multiplied by f: three colours, or one amplitude.
 #[derive(Clone, Debug)]
 pub struct Products {
-    /// Of f.
+    /// The format of f.
     pub(super) f: Format,
     pub(super) bits: u32,
     pub(super) rounding: Rounding,
@@ -77,13 +77,13 @@ impl Products {
         }
     }
 
-    /// The same made one after the other, a microinstruction each, if `in_turn`; each at once otherwise.
+    /// Makes the products one after the other, a microinstruction each, if `in_turn`; each at once otherwise.
     #[must_use]
     pub fn in_turn(self, in_turn: bool) -> Self {
         Self { made: if in_turn { Made::InTurn } else { Made::AtOnce }, ..self }
     }
 
-    /// The same made at every rising edge if `at_edges`; at once otherwise.
+    /// Makes the products at every rising edge if `at_edges`; at once otherwise.
     #[must_use]
     pub fn at_edges(self, at_edges: bool) -> Self {
         Self { made: if at_edges { Made::AtEdges } else { Made::AtOnce }, ..self }

@@ -92,7 +92,7 @@ impl Reflectance for Arithmetic {
         ])
     }
 
-    /// Of unit vectors at the distance D: 1 − D²/2.
+    /// The cosine of unit vectors at the distance D: 1 − D²/2.
     fn cosine(&self, _: &[Operand], control: &[i64]) -> Option<f64> {
         Some((1.0 - self.exact_distance(control) / 2.0).max(0.0))
     }
@@ -167,7 +167,7 @@ impl Reflectance for Arithmetic {
         }
     }
 
-    /// What a β that is a power of two costs: most where n is midway between two.
+    /// The cost of a β that is a power of two: largest where n is midway between two.
     fn remarks(&self) -> Vec<String> {
         let (keys, (first, last)) = (&self.keys, self.keys.domain.exponents());
         if keys.scale == Scale::Multiplier {

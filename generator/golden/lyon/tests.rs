@@ -101,7 +101,7 @@ fn a_point_clock_by_clock() {
     assert_eq!(model.value("dx_reg").unwrap(), 1);
 }
 
-/// The same point by one multiplier for all components: two microinstructions more.
+/// One multiplier for all components takes two microinstructions more for the same point.
 #[test]
 fn squares_in_turn_clock_by_clock() {
     let keys = Keys { distance_multipliers: 1, ..small(4, Scale::Shift) };

@@ -86,7 +86,7 @@ fn a_point_clock_by_clock() {
     assert_eq!(model.value("red_out").unwrap(), 7);
 }
 
-/// The same point by one multiplier for all colours: three microinstructions more, and outputs that hold.
+/// One multiplier for all colours takes three microinstructions more for the same point, and its outputs hold.
 #[test]
 fn colours_in_turn_clock_by_clock() {
     let mut model = clocked(small(Scheme::Taylor, 1));

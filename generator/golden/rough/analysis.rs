@@ -54,7 +54,7 @@ impl Errors {
     }
 }
 
-/// What an error counts when γ and dγ are a number of bins apart.
+/// The weight of an error when γ and dγ are a number of bins apart.
 pub struct Weight {
     /// The largest n·b.
     pub linear: f64,
@@ -158,7 +158,7 @@ impl Analysis {
         self.bound_of(i, j, negative, self.errors.product(i, j))
     }
 
-    /// The same where register 12 is off by `error` from the table.
+    /// Returns the bound where register 12 is off by `error` from the table.
     pub fn bound_of(&self, i: usize, j: usize, negative: bool, error: f64) -> f64 {
         let apart = if negative { i.abs_diff(j) } else { i + j };
         self.rounded(self.weights[apart].linear * (error + self.products))

@@ -26,7 +26,7 @@ use super::{Arithmetic, Keys, Kind, Scheme, pairs};
 use crate::base::fixed::exp2;
 use crate::golden::contract::ErrorShare;
 
-/// What the error of f is made of.
+/// Returns the terms of f's error.
 pub fn shares(it: &Arithmetic) -> Vec<ErrorShare> {
     match it.keys.arithmetic {
         Kind::Patent => {

@@ -22,7 +22,7 @@ const STEPS: u64 = 1 << 21;
 /// The part of the first bound below which nothing is looked for.
 const LEAST: f64 = 0.5;
 
-/// What f64 may add to the error of a sine.
+/// The rounding of f64 in the error of a sine.
 const F64: f64 = 1e-15;
 
 /// A raw cosine.

@@ -24,7 +24,7 @@ pub struct Colours<'d> {
 }
 
 struct Channel<'d> {
-    /// Of the output, without its `_out`.
+    /// The name of the output, without its `_out`.
     name: &'static str,
     operand: Operand<'d>,
     blocks: Option<ChannelBlocks>,
@@ -63,7 +63,7 @@ impl<'d> Colours<'d> {
         Self { designer, format, channels: vec![Channel { name: "intensity", operand, blocks }] }
     }
 
-    /// The same outputs by one multiplier, and the microinstructions in which it makes them, one after the other. Each is
+    /// Makes the outputs by one multiplier, one after the other, and returns the microinstructions that do so. Each output is
     /// a register, `<colour>_intensity`. `f` must hold meanwhile.
     #[must_use]
     #[track_caller]
@@ -96,7 +96,7 @@ impl<'d> Colours<'d> {
         self.outputs_of(f, rounding, false);
     }
 
-    /// The same with a register behind every multiplier, loaded on every clock.
+    /// Makes the outputs with a register behind every multiplier, loaded on every clock.
     #[track_caller]
     pub fn outputs_staged(&self, f: Signal<'d>, rounding: Rounding) {
         self.outputs_of(f, rounding, true);
@@ -124,7 +124,7 @@ impl<'d> Colours<'d> {
     }
 }
 
-/// What is on the output `<name>_out`, rounded.
+/// The name of the rounded product on the output `<name>_out`.
 fn intensity_name(name: &str) -> String {
     match name {
         "intensity" => "intensity_rounded".to_owned(),

@@ -72,7 +72,7 @@ pub fn halvings<'d>(
     )
 }
 
-/// What the tables hold: the line as it is wired, which lacks half an ulp of x, less 2^−x. The tables take x at
+/// The contents of the tables: the line as it is wired, which lacks half an ulp of x, less 2^−x. The tables take x at
 /// the middle of an ulp, where the wired line is a quarter of an ulp below 1 − x/2.
 fn bend(x: f64, bits: u32) -> f64 {
     1.0 - x / 2.0 - exp2(-(bits as i32) - 2) - libm::exp2(-x)

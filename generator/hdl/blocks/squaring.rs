@@ -10,7 +10,7 @@ use crate::hdl::dsl::{Counter, Designer, Mux, Register, Setting, Signal, Step, l
 pub struct Squarings<'d> {
     designer: &'d Designer,
     counter: Option<Counter<'d>>,
-    /// What the counter starts from, where it has a choice.
+    /// The start value of the counter, where it has a choice.
     start: Option<(Mux<'d>, Signal<'d>)>,
 }
 

@@ -32,7 +32,7 @@
 //! Mistakes are collected, not thrown: [`Designer::finish`] reports all of them, each with the names
 //! of the signals and the Rust source line.
 
-/// What a description says of a handle that is shown as a net, for those who compare it with the source's figure.
+/// Adds methods by which a description documents a handle that is shown as a net.
 macro_rules! described {
     ($handle:ident, $net:ident) => {
         impl $handle<'_> {
@@ -108,7 +108,7 @@ use crate::hdl::netlist::{
     Design, Driver, FieldId, NetId, Op, Partition, RegisterKind, Role, Rom as NetRom,
 };
 
-/// What a device with buffers says of writes and results.
+/// The note on writes and results of a device with buffers.
 const BUFFERED_NOTE: &str = "Operands have buffers: a write at any time is for the next computation, and start takes what \
                              was written, also in the clock of done. The outputs hold from valid at least until the next \
                              computation begins.";
@@ -142,13 +142,13 @@ pub(crate) struct Inner {
     picked: HashSet<FieldId>,
     /// Select lines of which no choice need be made.
     partly_used: HashSet<FieldId>,
-    /// What `valid` follows, and how many clocks later, when no microinstruction raises it.
+    /// The signal that `valid` follows, and how many clocks later, when no microinstruction raises it.
     valid: Option<(NetId, u32)>,
     /// Whether results that are logic get registers.
     registers_outputs: bool,
     /// Whether logic that depends on operands alone gets registers.
     registers_operand_logic: bool,
-    /// Of operands with buffers, what loads the operand registers from them.
+    /// The strobe that loads the operand registers from their buffers, if there are any.
     taken: Option<NetId>,
     /// The numbers of the lines of `valid_word` and of `go_on` in the source's figure.
     sequencer_lines: Option<[u16; 2]>,

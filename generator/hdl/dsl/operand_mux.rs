@@ -150,7 +150,7 @@ impl<'d> OperandMux<'d> {
     }
 }
 
-/// What a product of unsigned numbers is too large by, where an operand is negative.
+/// The excess of a product of unsigned numbers, where an operand is negative.
 #[derive(Clone, Copy)]
 struct Excess<'d> {
     /// The other operand, or 0.

@@ -10,7 +10,7 @@ use crate::hdl::netlist::{
     Driver, FieldId, FieldKind, Microinstruction, NetId, Op, Partition, Sequence,
 };
 
-/// What a microinstruction says of one field, or of its successor.
+/// The setting of one field, or of the successor, in a microinstruction.
 #[derive(Clone)]
 pub struct Setting {
     pub(super) kind: Kind,

@@ -221,7 +221,7 @@ pub struct Operand<'d> {
 }
 
 impl<'d> Operand<'d> {
-    /// What the register holds.
+    /// The register's output.
     pub fn q(self) -> Signal<'d> {
         self.q
     }
@@ -260,7 +260,7 @@ pub struct Register<'d> {
 described!(Register, q, "load": field);
 
 impl<'d> Register<'d> {
-    /// What the register holds.
+    /// The register's output.
     pub fn q(self) -> Signal<'d> {
         self.q
     }

@@ -20,11 +20,11 @@ pub struct SequenceFields {
     pub go_on: FieldId,
 }
 
-/// What a sequencer is made for.
+/// The inputs from which a sequencer is made.
 pub struct Sequencer {
     /// Its fields.
     pub fields: SequenceFields,
-    /// What loops ask for, each once.
+    /// The conditions of loops, each once.
     pub conditions: Vec<NetId>,
     /// Where they lead, each once.
     pub targets: Vec<usize>,

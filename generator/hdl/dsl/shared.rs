@@ -1,4 +1,4 @@
-//! What the parts of the DSL share: nets, registers, fields and mistakes of a designer.
+//! The shared state of the parts of the DSL: nets, registers, fields and mistakes of a designer.
 
 use std::panic::Location;
 
@@ -10,7 +10,7 @@ use crate::hdl::netlist::{
     Driver, Field, FieldId, FieldKind, Net, NetId, Partition, Port, RegisterKind, Role,
 };
 
-/// What the parts of the DSL share.
+/// Access to the shared state.
 impl Designer {
     pub(crate) fn signal(&self, id: NetId) -> Signal<'_> {
         Signal::new(self, id)
@@ -56,7 +56,7 @@ impl Designer {
         self.add_net(&name, format, range, driver, false)
     }
 
-    /// What `act` adds stands at `location`, wherever in the builder it is made: its names may be wrong.
+    /// Runs `act`, whose nets get the location `location`, wherever in the builder they are made: their names may be wrong.
     pub(crate) fn located<T>(&self, location: SourceLocation, act: impl FnOnce() -> T) -> T {
         let own = self.with(|inner| (inner.design.nets.len(), inner.design.roms.len()));
         let made = act();
@@ -178,7 +178,7 @@ impl Designer {
         self.signal(self.add_wiring(&signal.name(), signal.format(), signal.range(), driver))
     }
 
-    /// The same of several. (In a closure the caller would be this library.)
+    /// Checks several signals. (In a closure the caller would be this library.)
     #[track_caller]
     pub(crate) fn own_all(&self, signals: &[Signal<'_>]) -> Vec<Signal<'_>> {
         let mut own = Vec::with_capacity(signals.len());

@@ -74,7 +74,7 @@ impl<'d> Signal<'d> {
         self
     }
 
-    /// The same bits with the point `places` further left: the value divided by 2^places, by wiring.
+    /// Moves the point `places` to the left: the value divided by 2^places, by wiring.
     #[must_use]
     #[track_caller]
     pub fn shift_right(self, places: i32) -> Self {
@@ -84,14 +84,14 @@ impl<'d> Signal<'d> {
         self.relabelled(format)
     }
 
-    /// The same bits with the point `places` further right: the value times 2^places, by wiring.
+    /// Moves the point `places` to the right: the value times 2^places, by wiring.
     #[must_use]
     #[track_caller]
     pub fn shift_left(self, places: i32) -> Self {
         self.shift_right(places.saturating_neg())
     }
 
-    /// The same value with `frac` fraction bits: zeros are appended. Fewer than it has is an error.
+    /// Appends zeros up to `frac` fraction bits. Fewer than it has is an error.
     #[must_use]
     #[track_caller]
     pub fn with_fraction(self, frac: i32) -> Self {
@@ -185,7 +185,7 @@ impl<'d> Signal<'d> {
         self.designer.signal(self.designer.resized(self, signed))
     }
 
-    /// The same bits read in another format of the same width: what is written is not converted.
+    /// Reads the bits in another format of the same width: the bit pattern is not converted.
     #[must_use]
     #[track_caller]
     pub fn read_as(self, format: Format) -> Self {

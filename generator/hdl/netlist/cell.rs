@@ -59,7 +59,7 @@ pub enum Op<N = NetId> {
 }
 
 impl<N> Op<N> {
-    /// The same cell of other operands, which are asked for in order of writing.
+    /// Returns the cell with other operands, which are asked for in order of writing.
     pub fn map<M>(&self, mut of: impl FnMut(&N) -> M) -> Op<M> {
         match self {
             Self::Relabel(a) => Op::Relabel(of(a)),

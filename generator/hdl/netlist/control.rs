@@ -30,13 +30,13 @@ pub struct Field {
     pub name: String,
     /// The net that it drives in the datapath or the sequencer.
     pub net: NetId,
-    /// What it controls.
+    /// The kind of thing that it controls.
     pub kind: FieldKind,
     /// The numbers of its lines in the source's figure, most significant first, or empty.
     pub lines: Vec<u16>,
 }
 
-/// What a field of the control word controls.
+/// The kind of thing that a field of the control word controls.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FieldKind {
     /// Select lines of muxes; the names of the choices, by value.
@@ -52,7 +52,7 @@ pub enum FieldKind {
 /// A microinstruction of the microprogram.
 #[derive(Clone, Debug)]
 pub struct Microinstruction {
-    /// What it does.
+    /// The name of the operation.
     pub name: String,
     /// The value of each field, in the order of [`Control::fields`].
     pub values: Vec<u64>,

@@ -41,7 +41,7 @@ pub struct DelayLine {
 /// A value on its way.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Delayed {
-    /// What comes in.
+    /// The data input.
     pub data: NetId,
     /// The registers that it goes through, one for each stage. Only the last is read by anything but the next.
     pub registers: Vec<RegId>,
@@ -129,7 +129,7 @@ impl Design {
         }
     }
 
-    /// Of each net, who reads it.
+    /// Returns the readers of each net.
     fn readers(&self) -> Vec<Vec<Reader>> {
         let mut readers = vec![Vec::new(); self.nets.len()];
         for (at, register) in self.registers.iter().enumerate() {

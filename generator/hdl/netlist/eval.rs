@@ -1,4 +1,4 @@
-//! What a netlist computes: each cell as [`Op`] documents it, and a whole design clock by clock.
+//! Evaluates a netlist: each cell as [`Op`] documents it, and a whole design clock by clock.
 //!
 //! This is the meaning of a netlist, written for reading. The simulator, which is written for speed, shares
 //! nothing with it and is held against it.

@@ -72,11 +72,11 @@ struct Cell {
     net: NetId,
     /// In hundredths of a nanosecond.
     delay: u32,
-    /// What it reads, without constants.
+    /// Its operands, without constants.
     operands: Vec<NetId>,
 }
 
-/// What depends on operands alone, and who reads it.
+/// The nets that depend on operands alone, and their readers.
 struct Steady<'a> {
     design: &'a Design,
     /// All cells, each after those that it depends on within a clock.
@@ -370,7 +370,7 @@ mod tests {
         d.finish().unwrap_or_else(|mistakes| panic!("{mistakes}"))
     }
 
-    /// What the two products read.
+    /// Returns the factors of the two products.
     fn factors(design: &Design) -> [Vec<&str>; 2] {
         ["square", "cube"].map(|name| {
             let inputs = design.combinational_inputs(design.find(name).expect("a product"));

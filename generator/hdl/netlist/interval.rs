@@ -69,7 +69,7 @@ mod tests {
     use super::*;
     use crate::hdl::netlist::{NetId, eval};
 
-    /// Of operands of three bits, every interval, and every value in it.
+    /// Operands of three bits: every interval, and every value in it.
     #[test]
     fn what_a_cell_gives_is_in_its_interval() {
         let [a, b] = [NetId(0), NetId(1)];

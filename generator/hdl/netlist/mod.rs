@@ -75,7 +75,7 @@ id!(
     FieldId
 );
 
-/// Which of the two modules of the emitted Verilog a net belongs to.
+/// The module of the emitted Verilog to which a net belongs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Partition {
     /// The control unit: sequencer and control ROM.
@@ -93,13 +93,13 @@ pub struct Net {
     pub format: Format,
     /// The smallest and the largest raw value that the net can carry.
     pub range: Interval,
-    /// What drives it.
+    /// The driver of the net.
     pub driver: Driver,
     /// The number of the block in the source's figure whose output this is.
     pub block: Option<u16>,
     /// One line for the reader of the Verilog; may be empty.
     pub doc: String,
-    /// What that speaks of.
+    /// The topic of that comment.
     pub doc_topic: Topic,
     /// Named by the author of the description, so that waveforms and Verilog show it. The rest is
     /// wiring that the DSL adds (extensions, slices, rounding), named after what it serves.
@@ -110,7 +110,7 @@ pub struct Net {
     pub location: SourceLocation,
 }
 
-/// What drives a net.
+/// The driver of a net.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Driver {
     /// Nothing yet: an error that [`Design::verify`] reports.
@@ -134,26 +134,26 @@ pub enum Driver {
 pub struct Register {
     /// The net that it drives; the register has its name, format, block number and location.
     pub q: NetId,
-    /// What it takes; `None` is an error that [`Design::verify`] reports.
+    /// The data input; `None` is an error that [`Design::verify`] reports.
     pub data: Option<NetId>,
     /// One bit.
     pub enable: Option<NetId>,
     /// The bit pattern after a clock with `rst_n` low; without it reset leaves the register alone.
     pub reset: Option<u64>,
-    /// What it is for.
+    /// The purpose of the register.
     pub kind: RegisterKind,
 }
 
-/// What a register is for.
+/// The purpose of a register.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RegisterKind {
     /// Loaded from an input port by its write strobe, or from its buffer by `start`; stable while the device is busy.
     Operand,
     /// In front of such a register: takes writes at any time, for the next computation.
     Buffer,
-    /// Of the source's datapath; a golden model predicts it on every clock.
+    /// A register of the source's datapath; a golden model predicts it on every clock.
     Architectural,
-    /// Of the sequencer; a golden model predicts it too.
+    /// A register of the sequencer; a golden model predicts it too.
     Sequencer,
     /// A pipeline register inside a block (behind a synchronous ROM or a multiplier); only its effects
     /// are compared.
@@ -177,7 +177,7 @@ pub struct Rom {
     pub shares: Option<RomId>,
     /// Bit patterns.
     pub words: Vec<u64>,
-    /// What one entry means, in one or more lines.
+    /// The meaning of one entry, in one or more lines.
     pub doc: Vec<String>,
     /// A comment for each word, or empty.
     pub comments: Vec<String>,
@@ -192,7 +192,7 @@ pub struct Rom {
 pub struct Port {
     /// The port has the net's name, format, block number and comment.
     pub net: NetId,
-    /// What the environment does with it.
+    /// The role of the port.
     pub role: Role,
 }
 
@@ -251,14 +251,14 @@ impl Role {
     }
 }
 
-/// What the header of the emitted Verilog, the manifest and the documentation say of a device.
+/// The description of a device in the header of the emitted Verilog, the manifest and the documentation.
 #[derive(Clone, Debug, Default)]
 pub struct About {
     /// The device as the registry knows it, `rough`.
     pub device: String,
-    /// What it is, in one line.
+    /// The title, one line.
     pub title: String,
-    /// What it computes, as a formula.
+    /// The formula.
     pub formula: String,
     /// The document, and the part of it, that describes the device.
     pub source: String,
@@ -276,18 +276,18 @@ impl About {
 /// A paragraph about a device.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Note {
-    /// What it speaks of.
+    /// The topic of the note.
     pub topic: Topic,
     /// The paragraph.
     pub text: String,
 }
 
-/// What a note speaks of: a pipeline has none of these but the first.
+/// The topic of a note: a pipeline has none of these but the first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Topic {
     /// The device, whatever its architecture.
     Device,
-    /// What stands once and is used in turn: multipliers, the control ROM, the clocks of a loop.
+    /// Parts that stand once and are used in turn: multipliers, the control ROM, the clocks of a loop.
     Microprogram,
     /// Writes, and how long the outputs hold.
     Writes,
@@ -327,7 +327,7 @@ pub struct Design {
     pub control: Control,
     /// The stages, of a pipeline.
     pub pipeline: Option<Pipeline>,
-    /// What the description says and no output needs.
+    /// Parts of the description that no output needs.
     pub warnings: Vec<Diagnostic>,
 }
 

@@ -1,11 +1,11 @@
-//! What a design says of itself that is a pipeline.
+//! The facts of a design that is a pipeline.
 
 use super::{DelayMemory, Design, Driver, Net, NetId, Op, RegId};
 
-/// What a design is that takes a point every clock.
+/// The pipeline of a design that takes a point every clock.
 #[derive(Clone, Debug)]
 pub struct Pipeline {
-    /// Whose delays the stages keep, by the name of the target.
+    /// The name of the target whose delays the schedule assumes.
     pub target: String,
     /// The clock that they keep.
     pub clock_mhz: f64,
@@ -15,7 +15,7 @@ pub struct Pipeline {
     pub stall: bool,
     /// Bits that travel with a point.
     pub side: u32,
-    /// What takes the place of registers that nothing reads, where Verilog is emitted; none if they stay.
+    /// The memory in place of registers that nothing reads, where Verilog is emitted; none if they stay.
     pub delay_memory: Option<DelayMemory>,
     /// From the operands on. Results are behind the registers of the last: there are as many stages as
     /// clocks from a point to its results.
@@ -94,7 +94,7 @@ impl Pipeline {
 /// A multiplier with a register at its output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Multiplier {
-    /// What the register takes.
+    /// The product that the register takes.
     pub product: NetId,
     /// The factors.
     pub factors: [NetId; 2],

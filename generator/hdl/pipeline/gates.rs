@@ -9,7 +9,7 @@ use super::rebuild::rebuilt;
 use super::unroll::Unrolled;
 use crate::base::fixed::Format;
 
-/// The same computation without muxes of two inputs one of which has bits that are constants.
+/// Returns the computation without muxes of two inputs one of which has bits that are constants.
 pub fn gated(unrolled: &Unrolled) -> Unrolled {
     rebuilt(unrolled, |graph, op, node| match op {
         Op::Mux { select, inputs } => {
@@ -76,7 +76,7 @@ fn part(
     graph.op(op, format, label)
 }
 
-/// What wiring alone says of the bits of a node, from the lowest up.
+/// Returns the bits of a node that wiring alone determines, from the lowest up.
 fn known(graph: &Graph, id: NodeId) -> Vec<Option<bool>> {
     let node = graph.node(id);
     let width = graph.width(id) as usize;
@@ -107,7 +107,7 @@ mod tests {
     use super::*;
     use crate::hdl::netlist::{NetId, eval};
 
-    /// What a node is while the operands are these.
+    /// Evaluates a node at these operands.
     fn value(graph: &Graph, id: NodeId, operands: &[u64]) -> u64 {
         let node = graph.node(id);
         match &node.cell {

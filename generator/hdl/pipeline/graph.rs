@@ -24,13 +24,13 @@ pub type Op = netlist::Op<NodeId>;
 pub enum Cell {
     /// An operand, by its position among those of the design.
     Operand(usize),
-    /// What nothing has determined: a register before its first load, by its name.
+    /// An undetermined value: a register before its first load, by its name.
     Unknown(String),
     /// A bit pattern.
     Constant(u64),
     /// The word that a ROM has at an address.
     Read {
-        /// Of the sequential design.
+        /// The ROM of the sequential design.
         rom: RomId,
         /// The node with the address.
         address: NodeId,
@@ -50,7 +50,7 @@ pub struct Label {
     pub block: Option<u16>,
     /// Named by the author of the description.
     pub named: bool,
-    /// Of a part of a value, the name of the whole.
+    /// The name of the whole value, if this is a part of one.
     pub part_of: Option<String>,
     /// Where the description says so.
     pub location: &'static Location<'static>,
@@ -74,7 +74,7 @@ impl Label {
 /// A value.
 #[derive(Clone, Debug)]
 pub struct Node {
-    /// What makes it.
+    /// The cell that makes it.
     pub cell: Cell,
     /// Its width, sign and point.
     pub format: Format,

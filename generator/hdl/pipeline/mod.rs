@@ -30,7 +30,7 @@ pub use unroll::{
     Cycle, Held, Line, Unrolled, Walked, any_cycle, carried, unroll, unroll_in_powers, unroll_line,
 };
 
-/// What is asked of the schedule.
+/// The goal of the schedule.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Goal {
     /// The fewest registers for a clock.
@@ -39,7 +39,7 @@ pub enum Goal {
     Stages(usize),
 }
 
-/// What values are held in that nothing reads for several stages.
+/// The storage of values that nothing reads for several stages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Delays {
     /// A small memory, where the target has such.
@@ -48,12 +48,12 @@ pub enum Delays {
     Registers,
 }
 
-/// What a configuration says of its pipeline.
+/// The options of a configuration's pipeline.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
-    /// Whose delays and multipliers count.
+    /// The target whose delays and multipliers count.
     pub target: &'static Target,
-    /// What is asked of the schedule.
+    /// The goal of the schedule.
     pub goal: Goal,
     /// Products end in the register of a multiplier, where the target has a delay for it.
     pub registered: bool,
@@ -61,11 +61,11 @@ pub struct Options {
     pub stall: bool,
     /// Bits that travel with a point.
     pub side: u32,
-    /// What holds values on their way.
+    /// The storage of values on their way.
     pub delays: Delays,
 }
 
-/// What a configuration says; none if its architecture is sequential.
+/// Returns the options of a configuration; none if its architecture is sequential.
 pub fn options(config: &Config) -> Option<Options> {
     let keys = Shared::of(config);
     (keys.architecture == "pipelined").then(|| Options {

@@ -39,7 +39,7 @@ pub fn count(
     (cone.bits <= MOST_SELECTED).then(|| (leaf, (0..1 << cone.bits).map(of).collect()))
 }
 
-/// What conditions are made of.
+/// The nets on which conditions depend.
 struct Cone {
     leaves: Vec<NodeId>,
     /// The bits of all leaves.

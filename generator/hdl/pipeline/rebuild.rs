@@ -1,4 +1,4 @@
-//! The same computation in a new graph, with other nodes in place of some.
+//! Rebuilds a computation in a new graph, with other nodes in place of some.
 
 use super::graph::{Cell, Graph, Node, NodeId, Op};
 use super::unroll::Unrolled;

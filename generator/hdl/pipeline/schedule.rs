@@ -1,4 +1,4 @@
-//! Which stage computes what: a system of difference constraints, solved for the fewest register bits.
+//! Assigns nodes to stages: a system of difference constraints, solved for the fewest register bits.
 //!
 //! Every node has a number, its stage. It stands no earlier than its operands, a stage later where a block
 //! memory lies between, and a stage later than any node from which the way through logic takes longer than
@@ -36,7 +36,7 @@ pub enum Refusal {
     Unsolved(String, Option<NodeId>),
 }
 
-/// What a clock cannot be met for.
+/// The reason why a clock cannot be met.
 #[derive(Clone, Debug)]
 pub struct Unreachable {
     /// The node that takes the longest.
@@ -49,18 +49,18 @@ pub struct Unreachable {
 pub struct Problems<'a> {
     graph: &'a Graph,
     target: &'a Target,
-    /// What is scheduled, in order.
+    /// The nodes that are scheduled, in order.
     live: Vec<NodeId>,
     results: &'a [NodeId],
     /// For each node, the live ones that take it, without those that are constants.
     users: Vec<Vec<NodeId>>,
     delay: Vec<f64>,
-    /// What a register behind the node takes beyond any other.
+    /// The setup of a register behind each node, beyond any other's.
     setup: Vec<f64>,
-    /// What chooses between a value and a constant, where a register behind it does so by its reset.
+    /// The selection between a value and a constant, where a register behind it does so by its reset.
     reset_by: Vec<Option<NodeId>>,
-    /// Of what the clock makes, a word of a block memory or a product in the register of a multiplier: what it takes
-    /// from its operands to the clock, beyond the way to a register.
+    /// The time from the operands to the clock, beyond the way to a register, of nodes that the clock makes: a word of a block
+    /// memory, or a product in the register of a multiplier.
     clocked: Vec<Option<f64>>,
 }
 
@@ -418,7 +418,7 @@ impl<'a> Problems<'a> {
         Ok(Schedule { stage, latency, period, logic })
     }
 
-    /// What takes a node, through wires.
+    /// Returns the readers of a node, through wires.
     fn beyond_wiring(&self, id: NodeId) -> Vec<NodeId> {
         let (mut open, mut users) = (self.users[id.index()].clone(), Vec::new());
         while let Some(user) = open.pop() {
@@ -464,12 +464,12 @@ impl<'a> Problems<'a> {
         longest
     }
 
-    /// What registers take of a clock.
+    /// The part of a clock that registers take.
     pub fn register_ns(&self) -> f64 {
         self.target.register
     }
 
-    /// What is scheduled.
+    /// The nodes that are scheduled.
     pub fn live(&self) -> &[NodeId] {
         &self.live
     }

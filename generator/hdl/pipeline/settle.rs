@@ -6,7 +6,7 @@
 use super::graph::{Cell, Graph, Label, NodeId, Op};
 use crate::base::fixed::Format;
 
-/// The same value as one choice, where a choice between a constant and another such choice makes it.
+/// Returns the value as one choice, where a choice between a constant and another such choice makes it.
 pub fn settled(graph: &mut Graph, id: NodeId) -> NodeId {
     let node = graph.node(id).clone();
     let Some((over, rest, most)) = limit(graph, id) else { return id };
@@ -15,7 +15,7 @@ pub fn settled(graph: &mut Graph, id: NodeId) -> NodeId {
     graph.op(Op::Mux { select: over, inputs: vec![rest, most] }, node.format, &node.label)
 }
 
-/// Of `over ? most : rest` with a constant: `over`, `rest` and the constant.
+/// Matches `over ? most : rest` with a constant: `over`, `rest` and the constant.
 fn limit(graph: &Graph, id: NodeId) -> Option<(NodeId, NodeId, NodeId)> {
     let Cell::Op(Op::Mux { select, inputs }) = &graph.node(id).cell else { return None };
     match inputs[..] {

@@ -17,7 +17,7 @@ use crate::base::fixed::Format;
 /// The most bits of an operand that become rows in look-up tables.
 const MOST_ROWS: u32 = 4;
 
-/// The same computation with products that the target's multipliers take.
+/// Returns the computation with products that the target's multipliers take.
 pub fn split(unrolled: &Unrolled, target: &Target) -> Unrolled {
     rebuilt(unrolled, |graph, op, node| {
         Some(match op {
@@ -43,7 +43,7 @@ fn product(
     }
 }
 
-/// What `a·b` is the sum of.
+/// Returns the terms whose sum is `a·b`.
 fn parts(
     graph: &mut Graph,
     target: &Target,
@@ -104,7 +104,7 @@ fn below_the_highest(
     graph.op(Op::Extend(whole), format, label)
 }
 
-/// Of two signed factors the one that is never negative, and the other, which has bits below its sign.
+/// Returns, of two signed factors, the one that is never negative, and the other, which has bits below its sign.
 fn with_a_sign(graph: &Graph, [a, b]: [NodeId; 2]) -> Option<[NodeId; 2]> {
     let positive = |id: NodeId| graph.node(id).format.signed && graph.node(id).range.0 >= 0;
     let factors = if positive(a) { [a, b] } else { [b, a] };
@@ -180,7 +180,7 @@ fn in_ones(graph: &mut Graph, term: Term, width: u32, signed: bool, label: &Labe
     graph.resize(shifted, width, signed)
 }
 
-/// What a product is the sum of whose wider factor is cut into its `limit` upper bits and the rest.
+/// Returns the terms of a product whose wider factor is cut into its `limit` upper bits and the rest.
 fn cut(
     graph: &mut Graph,
     target: &Target,
@@ -299,7 +299,7 @@ mod tests {
         pipeline(&design, &options).expect("a pipeline")
     }
 
-    /// What comes out for the bit patterns of its operands, and the widths of the factors of its multipliers.
+    /// Returns the result for the bit patterns of its operands.
     fn result(design: &Design, operands: &[u64]) -> u64 {
         let mut device = Interpreter::new(design).expect("no loop");
         let mut operands = operands.iter();

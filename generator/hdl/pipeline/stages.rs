@@ -103,14 +103,14 @@ struct Builder<'a> {
     problems: &'a Problems<'a>,
     schedule: &'a Schedule,
     design: Design,
-    /// Of every net: the stage that it is in.
+    /// The stage of every net.
     stage_of: Vec<usize>,
-    /// Of every net: the name of its value.
+    /// The name of every net's value.
     value_of: Vec<String>,
     /// 1 when every point moves on by a stage; none if they always do.
     advance: Option<NetId>,
     taken: HashSet<String>,
-    /// Of every node: the name of its value, without a stage.
+    /// The name of every node's value, without a stage.
     names: HashMap<NodeId, String>,
     /// The net with the value of a node in a stage.
     values: HashMap<(NodeId, usize), NetId>,
@@ -118,7 +118,7 @@ struct Builder<'a> {
     flow: Vec<NetId>,
     /// Whether a stage has a point, from stage 1 on.
     valid: Vec<NetId>,
-    /// What travels with the point of a stage, from stage 1 on.
+    /// The side values of the points, from stage 1 on.
     side_values: Vec<NetId>,
     /// The registers inside multipliers.
     registered: Vec<RegId>,
@@ -312,7 +312,7 @@ impl Builder<'_> {
         }
     }
 
-    /// What a cell computes in a stage.
+    /// Makes a cell in a stage.
     fn cell(&mut self, id: NodeId, op: &graph::Op, stage: usize) -> NetId {
         let op = op.map(|&operand| self.value(operand, stage));
         let label = &self.graph.node(id).label;
@@ -354,7 +354,7 @@ impl Builder<'_> {
         net
     }
 
-    /// What an extension is in a stage, of what registers hold.
+    /// Makes an extension in a stage, from the bits that registers hold.
     fn extension(&mut self, id: NodeId, stage: usize) -> NetId {
         let node = self.graph.node(id);
         let Cell::Op(op) = &node.cell else {
@@ -412,7 +412,7 @@ impl Builder<'_> {
         }
     }
 
-    /// What each stage does.
+    /// Describes each stage.
     fn stages(&self, unrolled: &Unrolled) -> Vec<Stage> {
         let microprogram = &self.sequential.control.microprogram;
         (0..self.schedule.latency)

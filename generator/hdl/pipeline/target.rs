@@ -1,4 +1,4 @@
-//! What operations take on a target, and what its multipliers are.
+//! Delays of operations on a target, and its multipliers.
 //!
 //! The figures are nanoseconds, each with the way to the next cell. Those of ECP5 are of this table, which
 //! `benches/pipeline/delays.py` measures: the time from register to register through an operation, one seed,
@@ -25,7 +25,7 @@
 use super::graph::{Cell, Graph, Node, NodeId, Op};
 use crate::hdl::netlist::DelayMemory;
 
-/// What a multiplier takes that has a register at its output alone, beyond what a register takes.
+/// The delays of a multiplier that has a register at its output alone, beyond those of a register.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Registered {
     /// From its operands to the setup of its register.
@@ -39,7 +39,7 @@ pub struct Registered {
 pub struct Target {
     /// As the key `pipeline.target` names it.
     pub name: &'static str,
-    /// What it stands for, in one line.
+    /// A description, one line.
     pub about: &'static str,
     /// The widest operands of a multiplier, unsigned, the wider one first.
     pub multiplier: (u32, u32),
@@ -48,7 +48,7 @@ pub struct Target {
     pub row_bits: u32,
     /// From the clock to the output of a register, to the input of the next and its setup.
     pub register: f64,
-    /// What the environment takes of the clock before an operand is there.
+    /// The part of the clock that the environment takes before an operand is there.
     pub input: f64,
     /// A level of look-up tables, and the way to the next.
     pub logic: f64,

@@ -221,7 +221,7 @@ fn a_choice_that_a_reset_makes_is_held_before_a_sum() {
     assert!(stage(row) < stage(sum), "{} {}", stage(row), stage(sum));
 }
 
-/// What chooses between a sum and 0.
+/// The selection between a sum and 0.
 #[derive(Clone, Copy)]
 enum By {
     Nothing,

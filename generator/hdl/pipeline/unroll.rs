@@ -28,7 +28,7 @@ use crate::hdl::netlist::{Design, Net, NetId, RegId, RegisterKind, Role, Sequenc
 /// More clocks than any microprogram takes that is worth a pipeline.
 const MOST_CLOCKS: usize = 4096;
 
-/// What one computation of a design is.
+/// One computation of a design.
 #[derive(Debug)]
 pub struct Unrolled {
     /// All values.
@@ -48,7 +48,7 @@ pub struct Step {
     pub address: usize,
     /// How often it was executed before.
     pub visit: usize,
-    /// What the architectural registers hold while it is executed, as far as that is determined.
+    /// The contents of the architectural registers while it is executed, as far as they are determined.
     pub registers: Vec<(RegId, NodeId)>,
 }
 
@@ -76,10 +76,10 @@ pub fn unroll(design: &Design) -> Result<Unrolled, Diagnostics> {
     run(design, Iterations::OneByOne).map_err(|diagnostic| Diagnostics(vec![diagnostic]))
 }
 
-/// The same with fewer values, where iterations of a loop can be taken together.
+/// Unrolls into fewer values, where iterations of a loop can be taken together.
 ///
 /// # Errors
-/// Those of [`unroll`].
+/// As of [`unroll`].
 pub fn unroll_in_powers(design: &Design) -> Result<Unrolled, Diagnostics> {
     run(design, Iterations::InPowers).map_err(|diagnostic| Diagnostics(vec![diagnostic]))
 }

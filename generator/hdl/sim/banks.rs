@@ -247,7 +247,7 @@ impl Divider<'_> {
         }
     }
 
-    /// What happens at the edge, in the bank of what is written. Conversions are settled, so that they
+    /// Performs the edge, in the bank of the slots that are written. Conversions are settled, so that they
     /// hold the values from before the edge.
     fn edge(&mut self, reads: &[ReadEdge], registers: &[RegisterEdge]) {
         for edge in reads {

@@ -22,7 +22,7 @@ pub struct Circuit<const LANES: usize = 1> {
     /// Everything happens on its rising edge.
     pub clock: Signal<In, Clock>,
     pub(super) machine: Machine<LANES>,
-    /// What [`Circuit::inputs_mut`] was told last, for each input port.
+    /// The last inputs given to [`Circuit::inputs_mut`], for each port.
     inputs: Vec<[u64; LANES]>,
     /// The machine has yet to be told.
     input_set: bool,
@@ -46,7 +46,7 @@ struct Observed {
     id: usize,
 }
 
-/// What is needed to tell the name of the microinstruction that is executed.
+/// The names of microinstructions, and the nets that tell which one is executed.
 #[derive(Debug)]
 struct Microprogram {
     names: Arc<[String]>,
@@ -59,7 +59,7 @@ impl<const LANES: usize> Circuit<LANES> {
     /// Compiles a design and has rust_hdl check the result. It is at power-up, the clock low.
     ///
     /// # Errors
-    /// Those of [`Program::new`], and what rust_hdl's `check_all` finds.
+    /// As of [`Program::new`]; rust_hdl's `check_all` finds a fault.
     pub fn new(design: &Design) -> Result<Self> {
         let program = Arc::new(Program::new(design)?);
         let inputs = vec![[0; LANES]; program.inputs()];

@@ -1,4 +1,4 @@
-//! What the parts of the compiler share: slots, instructions, and what is known of them.
+//! The shared state of the compiler: slots, instructions, and facts about them.
 
 use std::collections::{BTreeMap, HashMap};
 use std::mem;
@@ -188,7 +188,7 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    /// What a slot is the placement of: base, slot, lowest bit, width as a `drop`, and shift. A slice is
+    /// Returns the placement of which a slot is the result: base, slot, lowest bit, width as a `drop`, and shift. A slice is
     /// one on `zero`.
     pub(super) fn placed(&self, slot: Slot, zero: Slot) -> Option<(Slot, Slot, u8, u8, u8)> {
         match *self.made_by.get(&slot)? {

@@ -227,7 +227,7 @@ impl<const LANES: usize> Machine<LANES> {
     }
 }
 
-/// Which vector instructions the processor has.
+/// The vector instructions of the processor.
 #[cfg(target_arch = "x86_64")]
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Vectors {
@@ -335,7 +335,7 @@ fn load<W: Word, const LANES: usize>(
     changed
 }
 
-/// What a slot takes at the edge: a new value in the lanes that are enabled.
+/// Returns the value of a slot after the edge: a new one in the lanes that are enabled.
 #[inline(always)]
 fn enabled<W: Word, const LANES: usize>(
     slots: &[[W; LANES]],
@@ -511,7 +511,7 @@ fn mux<W: Word, const LANES: usize>(
 /// The fewest lanes for which it pays to compare them all with each number of a mux.
 const VECTOR: usize = 8;
 
-/// Of a mux of more inputs than this, each lane is looked up.
+/// The most inputs of a mux whose lanes are compared; with more, each lane is looked up.
 const COMPARED: usize = 16;
 
 #[inline(always)]

@@ -71,7 +71,7 @@ impl<const LANES: usize> Simulator<LANES> {
     /// At power-up: all inputs, registers and outputs of synchronous ROMs are 0.
     ///
     /// # Errors
-    /// Those of [`Circuit::new`].
+    /// As of [`Circuit::new`].
     pub fn new(design: &Design) -> Result<Self> {
         let name = |net| design.net(net).name.clone();
         Ok(Self {
@@ -151,7 +151,7 @@ impl<const LANES: usize> Simulator<LANES> {
     /// From the next on, what was set before holds again.
     ///
     /// # Errors
-    /// Those of [`Simulator::clock`].
+    /// As of [`Simulator::clock`].
     ///
     /// # Panics
     /// When there are more or fewer than ports.
@@ -168,7 +168,7 @@ impl<const LANES: usize> Simulator<LANES> {
     /// The next clock does not depend on whether this was called.
     ///
     /// # Errors
-    /// Those of [`Simulator::clock`].
+    /// As of [`Simulator::clock`].
     pub fn settle(&mut self) -> Result<()> {
         self.half(false)
     }

@@ -198,7 +198,7 @@ pub(super) struct Bank {
     /// To be performed before `registers`; no operand of either is written by an earlier one of either.
     pub reads: Vec<ReadEdge>,
     pub registers: Vec<RegisterEdge>,
-    /// What the slots hold at power-up, before settling.
+    /// The contents of the slots at power-up, before settling.
     pub initial: Vec<u64>,
 }
 

@@ -1,4 +1,4 @@
-//! What a circuit shows to rust_hdl's probes: atoms with run-time widths.
+//! A circuit's wires for rust_hdl's probes: atoms with run-time widths.
 //!
 //! They are made when a probe comes by and hold nothing of their own but the id, which is the same
 //! every time; rust_hdl needs no more. Simulation without a trace never makes one.
@@ -9,7 +9,7 @@ use rust_hdl::core::constraint::PinConstraint;
 use rust_hdl::core::synth::VCDValue;
 use rust_hdl::core::type_descriptor::{TypeDescriptor, TypeKind};
 
-/// What a wire is to the circuit.
+/// The direction of a wire at the circuit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Direction {
     Input,
@@ -17,7 +17,7 @@ pub(super) enum Direction {
     Local,
 }
 
-/// What a probe sees.
+/// The view of a probe.
 #[derive(Debug)]
 pub(super) enum Seen<'a> {
     /// A net.

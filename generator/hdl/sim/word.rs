@@ -2,7 +2,7 @@
 
 use std::ops::{BitAnd, BitOr, BitXor, Shl, Shr};
 
-/// What a slot holds in a lane.
+/// The word of a slot in a lane.
 pub(super) trait Word:
     Copy
     + Default

@@ -6,7 +6,7 @@ use crate::base::fixed::Format;
 use crate::hdl::netlist::{Design, NetId, Partition, Pipeline, Role, Sequence};
 use crate::observation::Timing;
 
-/// What a file's header says beyond the design.
+/// The facts of a file's header beyond the design.
 #[derive(Clone, Copy)]
 pub struct Origin<'a> {
     /// The configuration by its [`crate::base::input::label`].
@@ -15,7 +15,7 @@ pub struct Origin<'a> {
     pub timing: &'a Timing,
 }
 
-/// Of the top module: what it computes and all that its user must know.
+/// Returns the header of the top module: its formula and all that its user must know.
 pub fn top(design: &Design, origin: &Origin) -> Vec<String> {
     let about = &design.about;
     let mut lines = comment(0, &format!("{}: {}", design.name, about.title));
@@ -40,7 +40,7 @@ pub fn top(design: &Design, origin: &Origin) -> Vec<String> {
     lines
 }
 
-/// Of a partition.
+/// Returns the header of a partition.
 pub fn partition(
     design: &Design,
     partition: Partition,
@@ -92,7 +92,7 @@ fn latency(timing: &Timing) -> Vec<String> {
     paragraph(&format!("Latency: {}.", facts.join(", ")))
 }
 
-/// What a pipeline's user has to know of it.
+/// Returns the paragraph on a pipeline's latency and stages for its user.
 fn stages(pipeline: &Pipeline) -> String {
     let (clocks, clock) = (pipeline.stages.len(), pipeline.clock_mhz);
     let stall = if pipeline.stall {
@@ -108,7 +108,7 @@ fn stages(pipeline: &Pipeline) -> String {
     )
 }
 
-/// What the formats say.
+/// Returns the paragraph on formats.
 fn formats(design: &Design) -> String {
     let mut text = "Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit apart) and F \
                     fraction bits; the value of a signal is its integer times 2^-F."

@@ -4,7 +4,7 @@ use super::plan::{NetForm, Plan};
 use crate::base::fixed::mask;
 use crate::hdl::netlist::{Driver, NetId, Partition, RomId};
 
-/// What crosses the boundary of a partition.
+/// The signals that cross the boundary of a partition.
 pub struct Interface {
     /// Something in it changes on the clock.
     pub clocked: bool,
@@ -17,7 +17,7 @@ pub struct Interface {
 }
 
 impl Interface {
-    /// Of one of the units.
+    /// The interface of one of the units.
     pub fn new(plan: &Plan, partition: Partition) -> Self {
         let design = plan.design;
         let other = match partition {

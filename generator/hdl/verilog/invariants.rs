@@ -1,4 +1,4 @@
-//! What a partition asserts of itself, for formal tools alone: the proof of the handshake stands on it.
+//! The assertions of a partition, for formal tools alone: the proof of the handshake stands on them.
 
 use super::naming::Naming;
 use super::text::literal;

@@ -373,7 +373,7 @@ impl<'a> Builder<'a> {
         blocks
     }
 
-    /// What registers take.
+    /// Returns the statements by which registers load.
     fn takes(&mut self, members: &[RegId], indent: usize) -> Vec<String> {
         let mut takes = Vec::new();
         for &member in members {

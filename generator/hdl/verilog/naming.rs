@@ -84,7 +84,7 @@ impl Naming {
         }
     }
 
-    /// The same, with memories and registers written like this.
+    /// Sets the style of memories and registers.
     pub fn styled(self, style: Style) -> Self {
         Self { style, ..self }
     }
@@ -132,7 +132,7 @@ pub fn is_control_rom(design: &Design, rom: RomId) -> bool {
     design.control.rom == rom
 }
 
-/// What to say of a net beside its declaration: `mux 8, s1.20: first operand`.
+/// Returns the comment beside a net's declaration: `mux 8, s1.20: first operand`.
 pub fn remark(design: &Design, id: NetId) -> String {
     let net = design.net(id);
     // The width already says all of an unsigned integer.
@@ -181,7 +181,7 @@ fn field_label(control: &Control, field: usize) -> String {
     }
 }
 
-/// What the source's figure would call the block behind a net.
+/// Returns the term of the source's figure for the block behind a net.
 fn kind(design: &Design, net: &Net) -> &'static str {
     match &net.driver {
         Driver::Register(_) => "register",

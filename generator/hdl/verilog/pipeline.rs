@@ -64,7 +64,7 @@ pub fn module(
     }
 }
 
-/// Which stages have points, and when they move: a shift register in place of the bits of the netlist.
+/// Returns the valid bits of the stages and their enables: a shift register in place of the bits of the netlist.
 fn handshake(plan: &Plan, naming: &Naming, pipeline: &Pipeline) -> StageSection {
     let design = plan.design;
     let port = |role: Role| {

@@ -1,4 +1,4 @@
-//! Which nets the Verilog declares, what the others stand for, and who reads which bits.
+//! Plans the Verilog of a module: the nets that are declared, the text of the others, and the readers of each bit.
 //!
 //! Wiring (slices, extensions, concatenations, relabelled nets, constants) that nobody named is
 //! written where it is used, as [`Bits`]. Other cells that nobody named are written into the one
@@ -42,13 +42,13 @@ pub enum Reader {
 
 /// The decisions about a design.
 pub struct Plan<'a> {
-    /// What is emitted.
+    /// The design that is emitted.
     pub design: &'a Design,
     /// How each net appears.
     pub forms: Vec<NetForm>,
-    /// What each net stands for.
+    /// The text of each net.
     pub bits: Vec<Bits>,
-    /// The same through declared wiring too, down to cells, state and inputs.
+    /// The text of each net through declared wiring too, down to cells, state and inputs.
     pub roots: Vec<Bits>,
     /// The nets whose cells are written at all, in an order in which operands come first.
     pub live: Vec<NetId>,
@@ -196,7 +196,7 @@ impl<'a> Plan<'a> {
         cells.map(Reader::Cell).chain(registers).chain(roms).collect()
     }
 
-    /// What a net is by wiring alone, if it is, with `known` in place of each operand.
+    /// Returns a net as wiring, if it is nothing else, with `known` in place of each operand.
     fn wired(&self, id: NetId, known: &[Bits]) -> Option<Bits> {
         let width = self.design.width(id);
         let of = |operand: &NetId| &known[operand.index()];
@@ -365,7 +365,7 @@ impl<'a> Plan<'a> {
         self.repeats = nets.into_iter().filter(repeated).collect();
     }
 
-    /// What to say of a net where it is declared.
+    /// Returns the comment of a net where it is declared.
     pub fn remark(&self, id: NetId) -> String {
         if self.repeats.contains(&id) { String::new() } else { remark(self.design, id) }
     }

@@ -13,7 +13,7 @@ pub fn separated(mut texts: Vec<String>) -> Vec<String> {
     texts
 }
 
-/// What connects an instance of a design to nets named as its ports, the clock first.
+/// Returns the connections of an instance of a design to nets named as its ports, the clock first.
 pub fn connections(design: &Design) -> Vec<String> {
     let ports = design.ports.iter().map(|port| design.net(port.net).name.as_str());
     separated(std::iter::once("clk").chain(ports).map(|name| format!(".{name}({name})")).collect())
@@ -75,7 +75,7 @@ impl Row {
         self
     }
 
-    /// The same rows with those together that have no comment and are declared alike.
+    /// Joins the rows that have no comment and are declared alike.
     pub fn together(rows: Vec<Self>) -> Vec<Self> {
         let (mut all, plain): (Vec<_>, Vec<_>) =
             rows.into_iter().partition(|row| !row.note.is_empty());

@@ -161,7 +161,7 @@ impl Names {
         Self(taken.into_iter().map(str::to_owned).collect())
     }
 
-    /// Those of the ports of a design and of its clock.
+    /// The names of the ports of a design and of its clock.
     pub fn of_ports(design: &Design) -> Self {
         let ports = design.ports.iter().map(|port| design.net(port.net).name.as_str());
         Self::new(ports.chain(["clk"]))

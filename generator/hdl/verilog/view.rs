@@ -1,4 +1,4 @@
-//! What the Verilog templates print: strings and lists of strings, every decision taken.
+//! The views that the Verilog templates print: strings and lists of strings, every decision taken.
 
 use askama::Template;
 
@@ -24,7 +24,7 @@ pub struct Module {
     pub ports: Vec<String>,
     /// Localparams, registers.
     pub declarations: Vec<Section>,
-    /// What registers are before the first clock: statements.
+    /// The values of registers before the first clock: statements.
     pub initial: Vec<String>,
     /// Combinational cells and ROMs, operands first.
     pub items: Vec<Spaced>,
@@ -65,7 +65,7 @@ pub enum Item {
     Rom(RomItem),
     /// An instance, and what it drives.
     Instance {
-        /// What it drives.
+        /// The nets that it drives.
         declaration: Vec<String>,
         /// The instance.
         instance: Instance,
@@ -92,7 +92,7 @@ pub struct RomItem {
     pub last: usize,
     /// Where its words are.
     pub contents: Contents,
-    /// What reads a word.
+    /// The statement that reads a word.
     pub read: Vec<String>,
 }
 

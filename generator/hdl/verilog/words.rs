@@ -5,7 +5,7 @@ use super::text::ascii;
 use crate::base::fixed::mask;
 use crate::hdl::netlist::{Design, RomId};
 
-/// What there is to say of a word.
+/// Returns the comment on a word.
 pub fn word_note(design: &Design, id: RomId, address: usize) -> Option<String> {
     let given = design.rom(id).comments.get(address);
     let name = || {

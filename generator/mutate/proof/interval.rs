@@ -14,7 +14,7 @@ pub(super) fn trusted(design: &Design, register: &Register) -> bool {
     register.kind != RegisterKind::Internal && low <= 0 && high >= 0
 }
 
-/// Of one net, when `of` has those of its operands, and `known` their bits.
+/// Returns the interval of one net, from the intervals (`of`) and the bits (`known`) of its operands.
 pub(super) fn of(
     design: &Design,
     id: NetId,

@@ -28,7 +28,7 @@ pub(super) struct Prover<'a> {
     nets: Vec<Vec<Pairs>>,
     /// For each microinstruction those that may follow it.
     following: Vec<Vec<usize>>,
-    /// Of each net, the bits that are compared in every clock.
+    /// The bits of each net that are compared in every clock.
     compared: Vec<u64>,
     windows: Windows<'a>,
 }
@@ -126,7 +126,7 @@ impl<'a> Prover<'a> {
     }
 }
 
-/// What either holds.
+/// Joins two states: each bit may be as in either.
 fn join(one: &State, other: &State) -> State {
     one.iter().zip(other).map(|(one, other)| one.or(*other)).collect()
 }

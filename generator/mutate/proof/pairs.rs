@@ -54,7 +54,7 @@ impl Pairs {
         Self(from_fn(|pair| sound[pair & 1] & mutant[pair >> 1]))
     }
 
-    /// Those of which the fault-free bit can be what it is in another.
+    /// Keeps the pairs of which the fault-free bit can be as it is in `sound`.
     pub(super) fn within(self, sound: Self) -> Self {
         let sound = sound.fault_free();
         Self(from_fn(|pair| self.0[pair] & sound[pair & 1]))
@@ -153,7 +153,7 @@ impl Pairs {
         self.rippled(other, width, carry, |a, b, c| (a ^ b ^ c, a & b | a & c | b & c)).0
     }
 
-    /// What comes out at the top.
+    /// Returns the bit at the top of the fold.
     fn folded(
         self,
         other: Self,
@@ -165,7 +165,7 @@ impl Pairs {
     }
 }
 
-/// What a cell gives; of an input of a mux `same` says which nets the fault-free design has alike.
+/// Returns the pairs of a cell's result; of an input of a mux `same` says which nets the fault-free design has alike.
 pub(super) fn cell(
     design: &Design,
     op: &Op,
@@ -215,7 +215,7 @@ pub(super) fn cell(
     }
 }
 
-/// What a mux gives, of whose inputs those with the same number are alike in the fault-free design.
+/// Returns the pairs of a mux, of whose inputs those with the same number are alike in the fault-free design.
 pub(super) fn chosen(select: Pairs, lines: u32, inputs: &[(Pairs, NetId)]) -> Pairs {
     let input = |number: u64| inputs[(number as usize).min(inputs.len() - 1)];
     let mut all = Pairs([0; 4]);
@@ -281,7 +281,7 @@ pub(super) fn square(design: &Design, a: NetId, b: NetId) -> bool {
     named(design, a) == named(design, b)
 }
 
-/// What a net is another name of, if it is one.
+/// Returns the net that this one is another name of, or itself.
 pub(super) fn named(design: &Design, mut net: NetId) -> NetId {
     while let Driver::Op(Op::Relabel(of)) = design.net(net).driver {
         net = of;

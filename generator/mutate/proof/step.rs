@@ -6,7 +6,7 @@ use super::pairs::{self, Pairs};
 use crate::hdl::netlist::{Design, Driver, NetId, Op, RegId, RomId};
 use crate::mutate::fault::Site;
 
-/// What registers and synchronous ROMs hold between two clocks.
+/// The contents of registers and synchronous ROMs between two clocks.
 pub(super) type State = Vec<Pairs>;
 
 /// A design as it is evaluated.
@@ -150,7 +150,7 @@ impl<'a> Order<'a> {
         sound.across(Pairs::same(width)).and(Pairs::same(width).or_any(differ))
     }
 
-    /// What is held after the clock.
+    /// Returns the state after the clock.
     pub(super) fn next(&self, nets: &[Pairs], fault: Option<Beside>) -> State {
         let design = self.design;
         let of = |net: NetId| nets[net.index()];

@@ -135,7 +135,7 @@ impl<'a> Windows<'a> {
         self.stays_within(net, site, false) || self.stays_within(net, site, true)
     }
 
-    /// The same of all that the net reaches within some number of cells, fewer before more; with multipliers or
+    /// Tries all nets that the net reaches within some number of cells, fewer before more; with multipliers or
     /// without.
     fn stays_within(&self, net: NetId, site: &Site, through: bool) -> bool {
         let mut affected = BTreeSet::from([net]);

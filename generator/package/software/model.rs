@@ -23,7 +23,7 @@ pub struct Field {
     constant: String,
     /// The type of the raw integer.
     pub kind: &'static str,
-    /// Of the port.
+    /// The format of the port.
     pub format: Format,
     doc: String,
 }
@@ -36,7 +36,7 @@ struct Header<'a> {
     title: String,
     formula: String,
     regenerate: &'a str,
-    /// Of a pipeline, the upper-case name of its latency, and the clocks.
+    /// The upper-case name of a pipeline's latency, and the clocks.
     latency: Option<(String, usize)>,
     operands: Vec<Field>,
     results: Vec<Field>,
@@ -66,7 +66,7 @@ struct Example<'a> {
 }
 
 impl Field {
-    /// Of a port.
+    /// The field of a port.
     pub fn new(design: &Design, port: &Port) -> Self {
         let net = design.net(port.net);
         Self {

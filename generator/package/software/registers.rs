@@ -34,7 +34,7 @@ impl Field<'_> {
         self.bits.low + self.bits.width - 1
     }
 
-    /// What software and hardware do with them, in SystemRDL.
+    /// Returns the access of software and hardware, in SystemRDL.
     fn rdl(&self) -> &'static str {
         match (self.bits.access, self.bits.name.as_str()) {
             (Access::Read, _) if self.bits.reset != 0 => "sw = r; hw = na;",
@@ -54,7 +54,7 @@ struct Operand {
 }
 
 impl Operand {
-    /// Of the raw integer as the registers hold it.
+    /// Returns the bits of the raw integer as the registers hold it.
     fn bits(&self) -> u32 {
         if self.format.width() <= 32 { 32 } else { 64 }
     }

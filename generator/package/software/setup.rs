@@ -13,7 +13,7 @@ use crate::package::{EmitInputs, render};
 /// The operands of a line, as far as a set-up knows them; `exponent` may be missing.
 const KNOWN: [&str; 5] = ["delta_zeta", "zeta_start", "exponent", "length", "amplitude"];
 
-/// What the three files say of a configuration.
+/// The view of a configuration in the three files.
 struct View<'a> {
     name: &'a str,
     prefix: String,

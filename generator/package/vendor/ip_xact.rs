@@ -62,7 +62,7 @@ impl Component<'_> {
 }
 
 impl Bits {
-    /// What a program can do with them.
+    /// Returns the access of a program.
     fn ip_xact_access(&self) -> &'static str {
         match self.access {
             Access::Read => "read-only",

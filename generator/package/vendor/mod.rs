@@ -1,4 +1,4 @@
-//! What vendors' tools want beside the Verilog: constraints, Tcl, IP-XACT.
+//! Files for vendors' tools beside the Verilog: constraints, Tcl, IP-XACT.
 
 mod constraints;
 mod ip_xact;

@@ -14,7 +14,7 @@ use crate::package::{EmitInputs, Vectors, render};
 /// Points that a bench writes to registers, at most: those between are left out.
 const ON_A_BUS: usize = 256;
 
-/// The same in Python.
+/// The view of the bench in Python.
 #[derive(Template)]
 #[template(path = "test_wrapper.py")]
 struct Python<'a> {
@@ -35,7 +35,7 @@ struct Stream<'a> {
     limit: usize,
     in_high: u32,
     out_high: u32,
-    /// Of a line's results, which say whether they are the last.
+    /// The highest bit of a line's result words, which say whether they are the last.
     word_high: u32,
     user_bits: u32,
     /// Words of 32 bits that tuser needs.

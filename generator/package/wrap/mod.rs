@@ -1,4 +1,4 @@
-//! What stands between a core and a system: wrappers in Verilog, and what is proved of them.
+//! Wrappers in Verilog between a core and a system, and the properties that are proved of them.
 
 mod bench;
 pub(super) mod fields;
@@ -23,7 +23,7 @@ use crate::hdl::verilog::text::range;
 pub struct Wrappers {
     /// Verilog.
     pub rtl: Vec<(String, String)>,
-    /// What is proved of it, for formal tools alone.
+    /// The properties that are proved of it, for formal tools alone.
     pub formal: Vec<(String, String)>,
     /// Benches and the points for them.
     pub benches: Vec<(String, String)>,
@@ -71,7 +71,7 @@ fn script(name: &str) -> Result<String> {
     render(&Script { name })
 }
 
-/// What the core is connected to, the clock first: where `to` says nothing, inputs to 0, and outputs to the wire of
+/// Returns the connections of the core, the clock first: where `to` says nothing, inputs to 0, and outputs to the wire of
 /// [`core_wire`].
 fn connected(
     design: &Design,

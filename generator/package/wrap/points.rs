@@ -138,7 +138,7 @@ fn streamed<'a>(rows: impl Iterator<Item = Row<'a>>) -> Option<Vec<Point>> {
     Some(done)
 }
 
-/// What is sent: the operands side by side in whole bytes, the bits above them of every other point set.
+/// Returns the stream's input: the operands side by side in whole bytes, the bits above them of every other point set.
 pub fn sent(points: &[Point], operands: &[Field]) -> String {
     let word = |(number, point): (usize, &Point)| {
         let above = |field: &Field| if number % 2 == 1 { !mask(field.width) } else { 0 };
@@ -147,7 +147,7 @@ pub fn sent(points: &[Point], operands: &[Field]) -> String {
     points.iter().enumerate().map(word).collect()
 }
 
-/// What is given back, a line a result: likewise, with copies of the sign, and above them whether it is the last of a line.
+/// Returns the stream's output, a line a result: likewise, with copies of the sign, and above them whether it is the last of a line.
 pub fn received(points: &[Point], results: &[Field], is_line: bool) -> String {
     let mut text = String::new();
     for point in points {

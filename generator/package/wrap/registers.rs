@@ -27,7 +27,7 @@ struct Lane {
     word: String,
     number: u32,
     byte: u32,
-    /// Of the operand, and of the data.
+    /// The bits of the operand, and of the data.
     bits: String,
     data: String,
 }
@@ -42,7 +42,7 @@ struct Registers<'a> {
     address_high: u32,
     word_high: u32,
     operands: Vec<Operand>,
-    /// What is read of the first registers, and of all others.
+    /// The words that reads of the first registers give, and of all others.
     constants: Vec<String>,
     words: Vec<Word>,
     last_number: u32,
@@ -243,7 +243,7 @@ fn operands(map: &Map) -> Vec<Operand> {
     map.operands.iter().map(operand).collect()
 }
 
-/// What is read of a register, by the map alone: its bits where they stand, and 0 between them.
+/// Returns the word that a read of a register gives, by the map alone: its bits where they stand, and 0 between them.
 fn read(map: &Map, register: &Register) -> Vec<String> {
     let mut parts = Vec::new();
     let mut above = 32;

@@ -10,7 +10,7 @@ use crate::hdl::verilog::rows::separated;
 use crate::hdl::verilog::text::literal;
 use crate::package::{EmitInputs, render};
 
-/// Of a core that walks lines: the operand that says how long one is, and the buffer.
+/// The line of a core that walks lines: the operand that says how long one is, and the buffer.
 struct Line {
     length: String,
     length_low: u32,
@@ -63,7 +63,7 @@ struct Wrapper<'a> {
     unused: Vec<String>,
     /// The core hears `start` in the clock of `done` too.
     overlaps: bool,
-    /// What drives the outputs: `reg `, or `wire` of the buffer.
+    /// The declaration of the outputs: `reg `, or `wire` of the buffer.
     output: &'static str,
 }
 
@@ -167,7 +167,7 @@ fn modules(design: &Design, inputs: &EmitInputs) -> Result<Vec<(String, String)>
     Ok(files)
 }
 
-/// What is proved of the wrapper.
+/// Returns the properties that are proved of the wrapper.
 fn formal(design: &Design, inputs: &EmitInputs) -> Result<Vec<(String, String)>> {
     let name = design.name.as_str();
     let (operands, results) = (operands(design), results(design));

@@ -9,7 +9,7 @@ use crate::package::map::{self, Map, Part, Placed, Register};
 pub struct Word {
     /// Its place, in words.
     pub number: u64,
-    /// The same, as a literal.
+    /// The index, as a literal.
     pub index: String,
     /// An expression of 32 bits.
     pub read: String,
@@ -49,7 +49,7 @@ pub fn select(width: u32, low: u32, high: u32) -> String {
     }
 }
 
-/// What is read of the registers that never change.
+/// Returns the words of the registers that never change.
 pub fn constants(map: &Map) -> Vec<String> {
     let value = |register: &Register| {
         let value = register.bits.iter().map(|bits| bits.reset << bits.low).sum::<u64>();
@@ -58,7 +58,7 @@ pub fn constants(map: &Map) -> Vec<String> {
     map.registers[..map::CONSTANTS as usize].iter().map(value).collect()
 }
 
-/// What is read of each other register.
+/// Returns the word of each other register.
 pub fn words(design: &Design, map: &Map) -> Vec<Word> {
     let word_bits = map.address_bits() - 2;
     let start_pad = literal(0, 24 - word_bits);

@@ -167,7 +167,7 @@ fn print_hardware(entries: &[Entry]) {
     }
 }
 
-/// What a device takes of all families, with `unknown` where that is not known.
+/// Returns the usage of all families, with `unknown` where it is not known.
 fn taken(entry: &Entry, unknown: &str) -> Vec<String> {
     let of = |at: usize| entry.usage.get(at).and_then(|usage| usage.as_ref().ok());
     let families = (0..FAMILIES.len()).flat_map(|at| match of(at) {
@@ -241,7 +241,7 @@ fn sizes(multipliers: &[Multiplier]) -> String {
     texts.join(", ")
 }
 
-/// What a design takes, with names.
+/// Returns the usage of a design, with names.
 fn numbers(usage: &Usage) -> [(&'static str, u64); 3] {
     [("luts", usage.luts), ("dsps", usage.dsps), ("block_rams", usage.block_rams)]
 }

@@ -18,7 +18,7 @@ const POINTS: u64 = 200;
 /// The most points for an external simulator, whose vectors are made in memory.
 const MOST_POINTS: u64 = 1_000_000;
 
-/// What came of a bench.
+/// The outcome of a bench.
 struct Run {
     clocks: usize,
     outcome: BenchOutcome,

@@ -16,7 +16,7 @@ pub fn print(histogram: &Histogram) {
     say!("  points{}", shares.concat());
 }
 
-/// The same as counts.
+/// Returns the counts of the histogram.
 pub fn as_json(histogram: &Histogram) -> Value {
     let classes = CLASSES.iter().zip(histogram.counts());
     let classes: Vec<Value> =

@@ -1,4 +1,4 @@
-//! What was measured before, beside the configuration.
+//! Measurements of earlier runs, beside the configuration.
 
 use std::fs;
 use std::path::{Path, PathBuf};

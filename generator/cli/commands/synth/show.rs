@@ -8,7 +8,7 @@ use crate::cli::say;
 use crate::cli::tables::{self, Column};
 use crate::synth::{Figures, Rate, tools};
 
-/// What stands where there is nothing to tell.
+/// The cell without a figure.
 const NONE: &str = "–";
 
 pub fn print(measured: &[Measured], notes: &[String]) {

@@ -7,7 +7,7 @@ use crate::evidence::chart::{Chart, ChartAxis, Series};
 use crate::pages::plots;
 use crate::tune::{Answer, Candidate, ErrorUnit};
 
-/// What the page's style sheet says elsewhere.
+/// The rules that a page's style sheet has elsewhere.
 const STYLE: &str = "<style>svg{background:#fcfcfb}text{fill:#1c1d1f;font-family:sans-serif}.ink{stroke:#5b5f66}text.ink{stroke:#fcfcfb;stroke-width:16;paint-order:stroke}\
                      .grid{stroke:#e6e8ea;stroke-width:4}.s1{stroke:#1b4fa8;stroke-width:8;stroke-linejoin:round}circle.s2{fill:#b3410b}\
                      @media(prefers-color-scheme:dark){svg{background:#16181b}text{fill:#e6e8ea}.ink{stroke:#9aa0a8}text.ink{stroke:#16181b}\

@@ -1,4 +1,4 @@
-//! What a description must be beyond a sound netlist.
+//! The rules of a description beyond a sound netlist.
 
 mod operands;
 mod products;

@@ -1,5 +1,4 @@
-//! What a description must be beyond a sound netlist: a register takes a product of a shared multiplier only
-//! under a selection that gives it.
+//! The rule of shared multipliers: a register takes a product only under a selection that gives it.
 
 use std::collections::{HashMap, HashSet};
 

@@ -1,5 +1,5 @@
-//! What a microprogram must not do: raise `valid` never, or before the result is there, leave a mux alone, and go round a
-//! loop for ever.
+//! The rules of microprograms: one raises `valid`, and not before the result is there, selects every mux, and ends every
+//! loop.
 
 use std::collections::HashSet;
 

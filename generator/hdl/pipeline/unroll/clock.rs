@@ -84,7 +84,7 @@ impl<'e, 'a> Clock<'e, 'a> {
         value
     }
 
-    /// What address counter and run flag hold while a microinstruction is executed.
+    /// Returns the contents of address counter and run flag while a microinstruction is executed.
     fn of_sequencer(&self, register: RegId) -> Option<u64> {
         let (control, address) = (&self.executor.design.control, self.address?);
         match register {

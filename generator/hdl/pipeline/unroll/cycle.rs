@@ -15,7 +15,7 @@ pub struct Cycle {
     pub held: Vec<Held>,
 }
 
-/// What a register or a synchronous ROM holds, by values.
+/// The contents of registers and synchronous ROMs, by values.
 #[derive(Clone, Copy, Debug)]
 pub struct Held {
     /// The net that it drives.

@@ -30,11 +30,11 @@ pub struct Line {
 /// A register of the walk, by values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Walked {
-    /// What the first point writes.
+    /// The value that the first point writes.
     pub first: NodeId,
-    /// What it holds before another point is written.
+    /// The value that it holds before another point is written.
     pub before: NodeId,
-    /// What that point writes, made of what the walk holds before.
+    /// The value that this point writes, in terms of the one before.
     pub next: NodeId,
 }
 
@@ -195,7 +195,7 @@ impl Points<'_> {
         Clock::new(&mut self.executor, state, Some(address), false).edge()
     }
 
-    /// What is asked in the clock of the last microinstruction, after those before it.
+    /// Asks in the clock of the last microinstruction, after those before it.
     fn at_end<T>(
         &mut self,
         state: &State,

@@ -81,7 +81,7 @@ fn widths(mut test: impl FnMut(&mut Random, u32)) {
     }
 }
 
-/// What a raw value looks like in a wire of the given width.
+/// Returns the bits of a raw value in a wire of the given width.
 fn wire(raw: i128, width: u32) -> i128 {
     raw.rem_euclid(1 << width)
 }

@@ -1,4 +1,4 @@
-//! What happens at the clock edge.
+//! Registers and memories at the clock edge.
 
 use rust_hdl::core::simulate::simulate;
 

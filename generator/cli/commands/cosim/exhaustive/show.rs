@@ -1,4 +1,4 @@
-//! What `cosim --exhaustive` and `merge` say.
+//! The output of `cosim --exhaustive` and `merge`.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use crate::cli::{Output, say};
 use crate::cosim::exhaustive::{Difference, Job, Proof, Shard, State};
 use crate::golden::Values;
 
-/// What is about to be done, and what is not.
+/// Announces the work ahead, and what it leaves out.
 pub fn announce(one: &Loaded, job: &Job<'_>, state: &State) {
     say!("{}: {} ({})", one.path, job.words(), job.f.sweep().words(),);
     if !job.f.sweep().omits.is_empty() {
