@@ -226,12 +226,8 @@ impl Streams {
         Ok((passes * self.clocks()) as f64 / seconds)
     }
 
-    /// Clocks per second of one thread with the golden model and the comparison; of a pipeline, whose golden model speaks of
-    /// points and not of inputs, no number.
+    /// Clocks per second of one thread with the golden model and the comparison.
     fn golden(&self, core: &Core) -> Result<f64> {
-        if core.design.pipeline.is_some() {
-            return Ok(f64::NAN);
-        }
         let clocks = self.passes() * self.inputs[0].len();
         on_one_thread(core, |lockstep| lockstep.replay(&self.inputs, clocks as u64))
     }

@@ -4,19 +4,15 @@
 //! Glint proves, and what makes it no matter which of them computes a picture.
 
 mod lanes;
-mod stream;
 mod verilog;
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Result, ensure};
 use rayon::prelude::*;
 
 pub use lanes::RustHdl;
 pub use verilog::Verilog;
 
-use crate::base::fixed::Format;
 use crate::golden::Contract;
-use crate::hdl::netlist::{Design, NetId};
-use crate::hdl::sim::Simulator;
 
 /// Instances that one thread clocks together.
 const LANES: usize = 32;
@@ -113,20 +109,4 @@ impl Engine for Golden<'_> {
             .collect();
         Ok(pieces.concat())
     }
-}
-
-/// The place of an input of a design.
-fn input(simulator: &Simulator<LANES>, design: &Design, name: &str) -> Result<usize> {
-    let place = simulator.input(name);
-    place.with_context(|| format!("`{}` has no input `{name}`", design.name))
-}
-
-/// The nets of the results, with their formats.
-fn results(design: &Design, contract: &dyn Contract) -> Result<Vec<(NetId, Format)>> {
-    let net = |name: &str| {
-        let net = design.find(name);
-        let net = net.with_context(|| format!("`{}` has no `{name}`", design.name))?;
-        Ok((net, design.net(net).format))
-    };
-    contract.outputs().iter().map(|output| net(&output.name)).collect()
 }

@@ -2,37 +2,40 @@
 
 use std::sync::Arc;
 
-use anyhow::{Context, Result, anyhow, ensure};
+use anyhow::Result;
 
-use super::combinations::{Combinations, Ports};
+use super::combinations::Space;
 use super::measure::Measure;
+use super::pipelined::Pipe;
 use super::points::Points;
-use super::stimulus::Stimulus;
+use super::ports::Ports;
+use super::sequential::{Core, registers};
 use crate::golden::{Contract, Model};
-use crate::hdl::netlist::{Design, NetId, RegisterKind};
+use crate::hdl::netlist::{Design, NetId};
+
+/// What predicts a device, whatever its architecture.
+#[derive(Clone)]
+pub(super) enum Host {
+    Core(Core),
+    Pipe(Pipe),
+}
 
 /// A design and its golden model, bound by the names of ports and registers.
 pub(super) struct Binding<'a> {
     pub(super) design: &'a Design,
     pub(super) measure: Measure<'a>,
-    /// At power-up; every stream runs a copy of it.
-    pub(super) model: Box<dyn Model>,
-    pub(super) outputs: Vec<NetId>,
-    /// For each input of the model its position among the design's; none if the orders are the same.
-    pub(super) order: Option<Vec<usize>>,
-    /// The nets that the model predicts, in its order.
-    pub(super) compared: Vec<NetId>,
-    /// The positions of the outputs `busy` and `valid` among these.
-    pub(super) busy: usize,
-    pub(super) valid: usize,
-    /// That of `done`, where `start` is heard while it is high.
-    overlaps: Option<usize>,
-    /// The address of the microprogram.
-    pub(super) address: NetId,
     pub(super) ports: Arc<Ports>,
+    /// At power-up; every stream runs a copy of it.
+    pub(super) host: Host,
+    pub(super) outputs: Vec<NetId>,
+    /// The nets that the host predicts, in its order.
+    pub(super) compared: Vec<NetId>,
+    /// How many of them are registers of the golden model.
+    pub(super) registers: usize,
+    /// The address of the microprogram.
+    pub(super) address: Option<NetId>,
+    pub(super) space: Arc<Space>,
     pub(super) points: Points<'a>,
-    /// Inputs from power-up on; every stream runs a copy of them with a seed of its own.
-    pub(super) stimulus: Stimulus,
 }
 
 impl<'a> Binding<'a> {
@@ -45,55 +48,34 @@ impl<'a> Binding<'a> {
         model: Box<dyn Model>,
         contract: &'a dyn Contract,
     ) -> Result<Self> {
-        let find = |name: &str| {
-            design.find(name).ok_or_else(|| {
-                anyhow!("the golden model speaks of `{name}`, which the design does not have")
-            })
+        let ports = Arc::new(Ports::new(design, contract)?);
+        let (host, compared, measure, registers) = if let Some(pipeline) = &design.pipeline {
+            let (pipe, compared, results) = Pipe::new(design, pipeline, model, &ports)?;
+            let measure = Measure::new(design, contract, &results)?;
+            (Host::Pipe(pipe), compared, measure, pipeline.checkpoints.len())
+        } else {
+            let (core, compared) = Core::new(design, model, &ports)?;
+            let measure = Measure::new(design, contract, &compared)?;
+            (Host::Core(core), compared, measure, registers(design).count())
         };
-        let inputs: Vec<NetId> = design.inputs().map(|port| port.net).collect();
-        let outputs: Vec<NetId> = design.outputs().map(|port| port.net).collect();
-        let order = model
-            .inputs()
-            .iter()
-            .map(|name| {
-                let id = find(name)?;
-                let at = inputs.iter().position(|&input| input == id);
-                at.with_context(|| format!("the golden model takes `{name}` for an input"))
-            })
-            .collect::<Result<Vec<_>>>()?;
-        let compared = model.signals().iter().map(|name| find(name)).collect::<Result<Vec<_>>>()?;
-        for id in outputs.iter().chain(&registers(design)) {
-            let name = &design.net(*id).name;
-            ensure!(compared.contains(id), "the golden model does not predict `{name}`");
-        }
-        let order = (!order.iter().copied().eq(0..inputs.len())).then_some(order);
-        let points = Points::new(contract);
-        let stimulus = Stimulus::new(design, &points, 0)?;
-        let position = |net: NetId| compared.iter().position(|&other| other == net);
-        let handshake = design.handshake()?;
-        let predicted = |net: NetId| {
-            position(net).with_context(|| {
-                format!("the golden model does not predict `{}`", design.net(net).name)
-            })
-        };
-        let (busy, valid) = (predicted(handshake.busy)?, predicted(handshake.valid)?);
-        let done = predicted(handshake.done)?;
-        let measure = Measure::new(design, contract, |name| position(design.find(name)?))?;
+        let address = || design.register(design.control.address).q;
         Ok(Self {
+            outputs: design.outputs().map(|port| port.net).collect(),
+            address: design.pipeline.is_none().then(address),
+            space: Arc::new(Space::new(&ports)),
+            points: Points::new(contract),
             design,
-            model,
-            outputs,
-            order,
-            compared,
-            busy,
-            valid,
-            overlaps: design.control.overlaps.then_some(done),
-            ports: Arc::new(Ports::new(design)?),
-            address: design.register(design.control.address).q,
-            points,
-            stimulus,
             measure,
+            ports,
+            host,
+            compared,
+            registers,
         })
+    }
+
+    /// Whether the design is a pipeline.
+    pub(super) fn is_pipeline(&self) -> bool {
+        self.address.is_none()
     }
 
     /// Holds operands at raw values: combinations are of the others alone, and the stimulus seldom draws
@@ -102,56 +84,20 @@ impl<'a> Binding<'a> {
         for (name, raw) in held {
             self.points.hold(name, *raw);
         }
-        Arc::make_mut(&mut self.ports).hold(held);
+        Arc::make_mut(&mut self.space).hold(held);
         self
     }
 
     /// Draws lines of at most `results` results.
     pub(super) fn shorten(&mut self, results: i64) {
-        if let Some(length) = self.measure.contract.length() {
-            self.points.limit(length, results - 1);
-        }
-    }
-
-    /// Computations with these raw operands, in the order of the contract.
-    pub(super) fn listed(&self, computations: &[Vec<i64>]) -> Combinations {
-        let mut ports = Ports::clone(&self.ports);
-        let names = self.measure.contract.operands().iter().map(|operand| operand.name.as_str());
-        ports.list(names, computations);
-        Combinations::new(Arc::new(ports), 0, computations.len() as u64)
-    }
-
-    /// The combinations of operands at `count` places, from the first on.
-    pub(super) fn combinations(&self, first: u64, count: u64) -> Combinations {
-        Combinations::new(self.ports.clone(), first, count)
+        self.points.shorten(results - 1);
     }
 
     /// A bound on the results of one computation.
     pub(super) fn longest(&self) -> u64 {
-        let length = self.measure.contract.length();
-        let operands = self.measure.contract.operands().iter();
-        let operand = operands.filter(|operand| Some(operand.name.as_str()) == length);
+        let operands = self.measure.contract.operands();
         // A length of 0 is a result too.
-        operand.map(|it| it.domain.1.unsigned_abs() + 1).max().unwrap_or(1)
+        let results = |at: usize| operands[at].domain.1.unsigned_abs() + 1;
+        self.points.length().map_or(1, results)
     }
-
-    /// Whether `start` is not heard in the clock that shows these values.
-    pub(super) fn is_deaf(&self, values: &[u64]) -> bool {
-        values[self.busy] == 1 && self.overlaps.is_none_or(|done| values[done] == 0)
-    }
-
-    /// How many registers a golden model must predict.
-    pub(super) fn registers(&self) -> usize {
-        registers(self.design).len()
-    }
-}
-
-/// The registers that a golden model must predict.
-fn registers(design: &Design) -> Vec<NetId> {
-    design
-        .registers
-        .iter()
-        .filter(|register| register.kind != RegisterKind::Internal)
-        .map(|register| register.q)
-        .collect()
 }

@@ -5,7 +5,7 @@ use anyhow::{Context, Result, ensure};
 use super::outcome::{Seen, Worst};
 use crate::base::fixed::{Format, MAX_WIDTH, exp2};
 use crate::golden::{Contract, Output, nearer};
-use crate::hdl::netlist::Design;
+use crate::hdl::netlist::{Design, NetId};
 
 /// The outputs of a contract among values that are compared.
 pub(super) struct Measure<'a> {
@@ -36,19 +36,15 @@ impl Quantity {
 }
 
 impl<'a> Measure<'a> {
-    /// Values are where `position` says of an output's name.
+    /// Values are those of these nets.
     ///
     /// # Errors
     /// An output that is not there, or has another format in the design.
-    pub(super) fn new(
-        design: &Design,
-        contract: &'a dyn Contract,
-        position: impl Fn(&str) -> Option<usize>,
-    ) -> Result<Self> {
+    pub(super) fn new(design: &Design, contract: &'a dyn Contract, nets: &[NetId]) -> Result<Self> {
         let quantity = |Output { name, format }: &Output| {
-            let at = position(name).zip(design.find(name));
-            let (at, net) =
-                at.with_context(|| format!("the contract takes `{name}` for an output"))?;
+            let at = |net| Some((nets.iter().position(|&it| it == net)?, net));
+            let (at, net) = (design.find(name).and_then(at))
+                .with_context(|| format!("the contract takes `{name}` for an output"))?;
             let real = design.net(net).format;
             ensure!(real == *format, "the contract takes `{name}` for {format}, and it is {real}");
             Ok(Quantity { at, format: real, unit: exp2(-real.frac), per_unit: exp2(real.frac) })

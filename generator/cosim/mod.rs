@@ -1,30 +1,33 @@
 //! Co-simulation: stimulus, and golden model against built-in simulator, clock by clock and exhaustively.
 
-mod alone;
-mod architecture;
 pub mod batch;
 mod binding;
 mod combinations;
 pub mod directed;
+mod driven;
 pub mod exhaustive;
 mod histogram;
+mod instances;
 mod lockstep;
 mod measure;
+mod offers;
 mod outcome;
 mod pipelined;
 mod points;
+mod ports;
 mod random;
 mod recorded;
+mod runner;
 pub mod search;
+mod sequential;
 mod stimulus;
 mod stream;
 mod through;
-mod together;
 pub mod trial;
 
-pub use architecture::Lockstep;
+pub use driven::Driven;
 pub use histogram::{CLASSES, Histogram};
+pub use lockstep::Lockstep;
 pub use outcome::{Mismatch, Outcome, Worst};
 pub use points::Points;
 pub use random::Random;
-pub use stimulus::Stimulus;

@@ -66,8 +66,7 @@ impl<'a> Points<'a> {
     pub fn new(contract: &'a dyn Contract) -> Self {
         let highlight = contract.highlight();
         let operands = contract.operands().to_vec();
-        let length = contract.length();
-        let length = operands.iter().position(|operand| Some(operand.name.as_str()) == length);
+        let length = length(contract);
         let control = operands.iter().filter(|operand| !operand.colour).count();
         let mut points =
             Self { contract, highlight, control, length, peak: vec![None; control], operands };
@@ -83,10 +82,11 @@ impl<'a> Points<'a> {
         held.for_each(|operand| operand.domain = (raw, raw));
     }
 
-    /// Draws no more than `most` for an operand.
-    pub fn limit(&mut self, name: &str, most: i64) {
-        for operand in self.operands.iter_mut().filter(|operand| operand.name == name) {
-            operand.domain.1 = operand.domain.1.min(most).max(operand.domain.0);
+    /// Draws no more than `most` for the length of a line.
+    pub fn shorten(&mut self, most: i64) {
+        if let Some(at) = self.length {
+            let (low, high) = self.operands[at].domain;
+            self.operands[at].domain.1 = high.min(most).max(low);
         }
     }
 
@@ -331,6 +331,12 @@ impl<'a> Points<'a> {
         moved.into_iter().zip(best.1).for_each(|(at, raw)| found[at] = Some(raw));
         found
     }
+}
+
+/// The position of the operand that says how many results a computation has.
+pub(super) fn length(contract: &dyn Contract) -> Option<usize> {
+    let length = contract.length();
+    contract.operands().iter().position(|operand| Some(operand.name.as_str()) == length)
 }
 
 /// A straight way along which the formula falls.

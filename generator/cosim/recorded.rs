@@ -19,16 +19,14 @@ impl Recording {
 
 /// A stream of recorded inputs.
 pub(super) struct Recorded {
-    pub(super) recording: Arc<Recording>,
-    /// How many clocks it has.
-    pub(super) clocks: u64,
+    recording: Arc<Recording>,
     /// Where those of the next clock begin.
     next: usize,
 }
 
 impl Recorded {
-    pub(super) fn new(recording: Arc<Recording>, clocks: u64) -> Self {
-        Self { recording, clocks, next: 0 }
+    pub(super) fn new(recording: &Arc<Recording>) -> Self {
+        Self { recording: Arc::clone(recording), next: 0 }
     }
 
     /// The inputs of the next clock.
@@ -57,11 +55,16 @@ mod tests {
     /// The streams begin at power-up, and come to what a computation left when they begin again.
     #[test]
     fn replayed_inputs_show_what_drawn_ones_do() {
+        ["sequential", "pipelined"].into_iter().for_each(replayed);
+    }
+
+    fn replayed(architecture: &str) {
         let registry = Registry::catalogue();
         let device = *registry.device("threshold").expect("a device");
         let config = |rounding: &str| {
-            let rounding = ("output.rounding".to_owned(), Value::Text(rounding.to_owned()));
-            Config::from_values(&(device.schema)(), "device", vec![rounding]).expect("its keys")
+            let keys = [("output.rounding", rounding), ("architecture", architecture)];
+            let keys = keys.map(|(key, text)| (key.to_owned(), Value::Text(text.to_owned())));
+            Config::from_values(&(device.schema)(), "device", keys.into()).expect("its keys")
         };
         let core = Core::new(device, config("nearest")).unwrap();
         // More than there are lanes.

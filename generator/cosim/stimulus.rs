@@ -9,27 +9,16 @@
 //! resets come often in the middle of a computation of ten clocks, and still let most of one of thousands
 //! come to its end.
 
-use anyhow::{Result, ensure};
+use std::sync::Arc;
 
 use super::points::Points;
+use super::ports::{OperandPort, Ports};
 use super::random::Random;
-use crate::base::fixed::{Format, mask};
-use crate::hdl::netlist::{Design, Role};
+use crate::base::fixed::mask;
 
 /// Resets come within 2⁰, 2¹, … clocks after a start, in equal parts up to this many powers: as long as
 /// the longest line.
 const RESET_MAGNITUDES: u64 = 13;
-
-/// An operand as the stimulus drives it.
-#[derive(Clone, Copy)]
-struct Driven {
-    /// Positions of data and strobe among the inputs.
-    data: usize,
-    strobe: usize,
-    format: Format,
-    /// Its position among those of the points; one that they do not have takes any bit pattern.
-    at: Option<usize>,
-}
 
 #[derive(Clone, Copy, PartialEq)]
 enum Phase {
@@ -44,12 +33,9 @@ enum Phase {
 }
 
 /// The inputs of a device, clock by clock.
-#[derive(Clone)]
-pub struct Stimulus {
+pub(super) struct Stimulus {
+    ports: Arc<Ports>,
     random: Random,
-    operands: Vec<Driven>,
-    reset: usize,
-    start: usize,
     phase: Phase,
     inputs: Vec<u64>,
     /// Nothing is driven but `rst_n`, high.
@@ -64,67 +50,38 @@ pub struct Stimulus {
 }
 
 impl Stimulus {
-    /// The inputs of `design` in the order of its ports; the operands are those of `points`.
-    ///
-    /// # Errors
-    /// An operand of `points` that the design does not have; a design without a handshake, or with a strobe that is no input.
-    pub fn new(design: &Design, points: &Points, seed: u64) -> Result<Self> {
-        let handshake = design.handshake()?;
-        let mut driven = Vec::new();
-        for (data, port) in design.inputs().enumerate() {
-            if let Role::Operand { strobe } = port.role {
-                let net = design.net(port.net);
-                let mut known = points.operands().iter();
-                driven.push(Driven {
-                    data,
-                    strobe: design.input_position(strobe)?,
-                    format: net.format,
-                    at: known.position(|operand| operand.name == net.name),
-                });
-            }
-        }
-        for (at, operand) in points.operands().iter().enumerate() {
-            let found = driven.iter().any(|driven| driven.at == Some(at));
-            ensure!(found, "the contract speaks of operand `{}`", operand.name);
-        }
-        Ok(Self {
+    /// From power-up on.
+    pub(super) fn new(ports: &Arc<Ports>, seed: u64) -> Self {
+        let nothing = vec![0; ports.operands.len()];
+        Self {
             random: Random::new(seed),
-            operands: driven,
-            reset: design.input_position(handshake.reset)?,
-            start: design.input_position(handshake.start)?,
             phase: Phase::Reset(2),
-            inputs: vec![0; design.inputs().count()],
+            inputs: vec![0; ports.inputs],
             idle: false,
-            next: vec![0; points.operands().len()],
-            written: vec![0; points.operands().len()],
-            taken: design.control.overlaps.then(|| vec![0; points.operands().len()]),
+            next: nothing.clone(),
+            written: nothing.clone(),
+            taken: ports.overlaps.then_some(nothing),
             first: true,
-        })
-    }
-
-    /// From power-up under another seed.
-    #[must_use]
-    pub fn seeded(mut self, seed: u64) -> Self {
-        self.random = Random::new(seed);
-        self
+            ports: ports.clone(),
+        }
     }
 
     /// The raw values of the latest computation, in the order of the points.
-    pub fn accepted(&self) -> &[i64] {
+    pub(super) fn accepted(&self) -> &[i64] {
         self.taken.as_ref().unwrap_or(&self.written)
     }
 
     /// The inputs of the next clock; `busy`: a `start` that stands before the edge is not heard.
-    pub fn next(&mut self, busy: bool, points: &Points) -> &[u64] {
+    pub(super) fn next(&mut self, busy: bool, points: &Points) -> &[u64] {
         if !self.idle {
             self.inputs.fill(0);
-            self.inputs[self.reset] = 1;
+            self.inputs[self.ports.reset] = 1;
             self.idle = true;
         }
         match self.phase {
             Phase::Reset(left) => {
                 self.idle = false;
-                self.inputs[self.reset] = 0;
+                self.inputs[self.ports.reset] = 0;
                 if !self.first {
                     self.noise(busy, points);
                 }
@@ -147,19 +104,19 @@ impl Stimulus {
 
     /// Whether the latest inputs are those of any clock in which nothing is driven.
     #[inline]
-    pub fn is_idle(&self) -> bool {
+    pub(super) fn is_idle(&self) -> bool {
         self.idle
     }
 
     /// The latest inputs.
     #[inline]
-    pub fn inputs(&self) -> &[u64] {
+    pub(super) fn inputs(&self) -> &[u64] {
         &self.inputs
     }
 
     fn begin(&mut self) {
         self.idle = false;
-        self.inputs[self.start] = 1;
+        self.inputs[self.ports.start] = 1;
         self.first = false;
         let reset = self.random.once_in(16).then(|| {
             let magnitude = self.random.below(RESET_MAGNITUDES);
@@ -178,7 +135,7 @@ impl Stimulus {
             self.phase = Phase::Running(reset.map(|clocks| clocks.saturating_sub(1)));
             if reset == Some(0) {
                 self.idle = false;
-                self.inputs[self.reset] = 0;
+                self.inputs[self.ports.reset] = 0;
                 self.phase = Phase::Reset(self.random.below(3) as u32);
             }
             return;
@@ -195,7 +152,7 @@ impl Stimulus {
 
     /// Returns the first phase of the next point.
     fn next_point(&mut self, points: &Points) -> Phase {
-        let all = (1u64 << self.operands.len()) - 1;
+        let all = (1u64 << self.ports.operands.len()) - 1;
         let written = if self.first {
             all
         } else {
@@ -207,14 +164,14 @@ impl Stimulus {
                 _ => all,
             }
         };
-        let places = self.operands.iter().enumerate();
+        let places = self.ports.operands.iter().enumerate();
         let drawn = places.filter(|(at, _)| written >> at & 1 == 1);
-        let free = drawn.filter_map(|(_, driven)| driven.at).fold(0, |free, at| free | 1 << at);
+        let free = drawn.fold(0, |free, (_, port)| free | 1 << port.at);
         self.next.copy_from_slice(&self.written);
         points.draw(&mut self.random, &mut self.next, free);
         // What leads to the peak is written too.
-        let moved = |driven: &Driven| driven.at.is_some_and(|at| self.next[at] != self.written[at]);
-        let moved = self.operands.iter().enumerate().filter(|(_, driven)| moved(driven));
+        let moved = |port: &OperandPort| self.next[port.at] != self.written[port.at];
+        let moved = self.ports.operands.iter().enumerate().filter(|(_, port)| moved(port));
         Phase::Writing(moved.fold(written, |written, (at, _)| written | 1 << at))
     }
 
@@ -226,14 +183,10 @@ impl Stimulus {
             1 => left & self.random.bits(),
             _ => left,
         };
-        for (at, driven) in self.operands.iter().enumerate() {
+        for (at, port) in self.ports.operands.iter().enumerate() {
             if now >> at & 1 == 1 {
-                let bits = match driven.at {
-                    Some(at) => self.next[at] as u64,
-                    None => self.random.bits(),
-                };
-                self.inputs[driven.data] = bits & mask(driven.format.width());
-                self.inputs[driven.strobe] = 1;
+                self.inputs[port.data] = port.pattern(&self.next);
+                self.inputs[port.strobe] = 1;
             }
         }
         let left = left & !now;
@@ -255,17 +208,14 @@ impl Stimulus {
     fn noise(&mut self, busy: bool, points: &Points) {
         self.idle = false;
         let random = &mut self.random;
-        for driven in &self.operands {
-            let bits = match driven.at {
-                Some(at) if random.once_in(8) => points.any(random, at) as u64,
-                Some(at) => points.one(random, at) as u64,
-                None => random.bits(),
-            };
-            self.inputs[driven.data] = bits & mask(driven.format.width());
-            self.inputs[driven.strobe] = u64::from(random.once_in(3));
+        for port in &self.ports.operands {
+            let any = random.once_in(8);
+            let raw = if any { points.any(random, port.at) } else { points.one(random, port.at) };
+            self.inputs[port.data] = raw as u64 & mask(port.format.width());
+            self.inputs[port.strobe] = u64::from(random.once_in(3));
         }
         if busy {
-            self.inputs[self.start] = u64::from(self.random.once_in(2));
+            self.inputs[self.ports.start] = u64::from(self.random.once_in(2));
         }
     }
 
@@ -274,16 +224,14 @@ impl Stimulus {
         if self.idle || busy && self.taken.is_none() {
             return;
         }
-        for driven in &self.operands {
-            if let Some(at) = driven.at
-                && self.inputs[driven.strobe] == 1
-            {
-                self.written[at] = driven.format.raw(self.inputs[driven.data]) as i64;
+        for port in &self.ports.operands {
+            if self.inputs[port.strobe] == 1 {
+                self.written[port.at] = port.raw(&self.inputs);
             }
         }
         if let Some(taken) = &mut self.taken
             && !busy
-            && self.inputs[self.start] == 1
+            && self.inputs[self.ports.start] == 1
         {
             taken.copy_from_slice(&self.written);
         }
@@ -296,6 +244,7 @@ mod tests {
     use super::*;
     use crate::base::fixed::Format;
     use crate::hdl::dsl::{Designer, end, step, valid};
+    use crate::hdl::netlist::{Design, Role};
 
     /// A design with one operand; how long a computation takes is for the tests to say.
     fn design() -> Design {
@@ -322,8 +271,9 @@ mod tests {
     fn events(length: u32, clocks: u32) -> Events {
         let pulse = Pulse::single(false);
         let points = Points::new(&pulse);
-        let mut stimulus = Stimulus::new(&design(), &points, 1).unwrap();
-        let (reset, start, strobe) = (stimulus.reset, stimulus.start, stimulus.operands[0].strobe);
+        let ports = Arc::new(Ports::new(&design(), &pulse).unwrap());
+        let mut stimulus = Stimulus::new(&ports, 1);
+        let (reset, start, strobe) = (ports.reset, ports.start, ports.operands[0].strobe);
         let mut left = 0;
         let mut events = Events::default();
         for _ in 0..clocks {
@@ -354,9 +304,7 @@ mod tests {
         let operand = |role: Role| matches!(role, Role::Operand { .. });
         let port = design.ports.iter_mut().find(|port| operand(port.role)).unwrap();
         port.role = Role::Operand { strobe: busy };
-        let error = Stimulus::new(&design, &Points::new(&pulse), 1).err().unwrap();
-        assert_eq!(error.to_string(), "`busy` is no input of `device`");
-        let error = super::super::combinations::Ports::new(&design).err().unwrap();
+        let error = Ports::new(&design, &pulse).err().unwrap();
         assert_eq!(error.to_string(), "`busy` is no input of `device`");
     }
 

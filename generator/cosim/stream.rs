@@ -1,201 +1,244 @@
 //! A stream: inputs from power-up on, and the golden model under them.
 
-use std::mem;
+use anyhow::Result;
 
-use super::binding::Binding;
-use super::combinations::Combinations;
+use super::binding::{Binding, Host};
+use super::combinations::{Combinations, Space};
+use super::offers::Offers;
 use super::outcome::{Course, Mismatch, Seen};
 use super::recorded::Recorded;
 use super::stimulus::Stimulus;
-use crate::golden::Model;
 use crate::hdl::netlist::NetId;
 
-/// The source of the inputs.
+/// Where the inputs come from.
 enum Source {
-    Random { stimulus: Stimulus, seed: u64, points: u64 },
+    /// At random, for a core.
+    Stimulus(Stimulus),
+    /// At random, for a pipeline.
+    Offers(Offers),
     Combinations(Combinations),
     Recorded(Recorded),
+}
+
+impl Source {
+    /// The latest inputs.
+    #[inline]
+    fn inputs(&self) -> &[u64] {
+        match self {
+            Self::Stimulus(stimulus) => stimulus.inputs(),
+            Self::Offers(offers) => offers.inputs(),
+            Self::Combinations(combinations) => combinations.inputs(),
+            Self::Recorded(recorded) => recorded.inputs(),
+        }
+    }
+
+    /// Whether no computation is left to start.
+    fn is_over(&self) -> bool {
+        match self {
+            Self::Combinations(combinations) => combinations.all_started(),
+            Self::Offers(offers) => offers.is_over(),
+            Self::Stimulus(_) | Self::Recorded(_) => false,
+        }
+    }
+
+    /// The place of the combination that was started last.
+    fn place(&self) -> Option<u64> {
+        match self {
+            Self::Combinations(combinations) => Some(combinations.place()),
+            _ => None,
+        }
+    }
 }
 
 /// A stream. What the simulated hardware makes of it is for others to say.
 pub(super) struct Stream {
     pub(super) seen: Seen,
+    /// What it goes through, for another to go the same way.
+    pub(super) course: Course,
     source: Source,
-    model: Box<dyn Model>,
-    /// Whether it does not hear `start`.
-    deaf: bool,
-    /// Results since the latest start.
-    index: u64,
-    /// The model's inputs, where it has an order of its own.
-    reordered: Vec<u64>,
-    /// The operands of the computation that shows results, and whether they are in the domain.
-    operands: Vec<i64>,
-    inside: bool,
+    host: Host,
+    /// Clocks from the start of the combination that differs to the difference.
+    pub(super) since_start: u64,
 }
 
 impl Stream {
     /// At power-up, when the device shows `busy`.
     pub(super) fn new(binding: &Binding, course: Course, busy: bool) -> Self {
-        let source = match course {
-            Course::Random { seed, points } => {
-                Source::Random { stimulus: binding.stimulus.clone().seeded(seed), seed, points }
+        let mut host = binding.host.clone();
+        if let Host::Core(core) = &mut host {
+            core.deaf = busy;
+        }
+        let source = match &course {
+            Course::Random { seed, .. } if binding.is_pipeline() => {
+                Source::Offers(Offers::new(&binding.ports, *seed))
             }
+            Course::Random { seed, .. } => Source::Stimulus(Stimulus::new(&binding.ports, *seed)),
             Course::Combinations { first, count } => {
-                Source::Combinations(binding.combinations(first, count))
+                Source::Combinations(Combinations::new(binding.space.clone(), *first, *count))
             }
-            Course::Recorded { recording, clocks } => {
-                Source::Recorded(Recorded::new(recording, clocks))
-            }
+            Course::Recorded { recording, .. } => Source::Recorded(Recorded::new(recording)),
         };
-        Self {
-            seen: Seen::default(),
-            source,
-            model: binding.model.boxed_clone(),
-            deaf: busy,
-            index: 0,
-            reordered: Vec::new(),
-            operands: Vec::new(),
-            inside: false,
-        }
+        Self { seen: Seen::default(), course, source, host, since_start: 0 }
     }
 
+    /// Whether it has come to the end of its course, or something differs. Of combinations in a pipeline those before the
+    /// one that differs are still gone through.
     pub(super) fn ended(&self) -> bool {
-        self.seen.mismatch.is_some()
-            || match &self.source {
-                Source::Random { points, .. } => self.seen.points >= *points,
-                Source::Combinations(combinations) => !self.deaf && combinations.all_started(),
-                Source::Recorded(recorded) => self.seen.clocks >= recorded.clocks,
+        match (&self.course, &self.seen.mismatch) {
+            (Course::Combinations { .. }, Some(found)) => {
+                !matches!(&self.host, Host::Pipe(pipe) if pipe.has_before(found.seed))
             }
-    }
-
-    /// Goes on with combinations, as the device stands.
-    pub(super) fn follow(&mut self, combinations: Combinations) {
-        self.source = Source::Combinations(combinations);
-    }
-
-    /// Returns the course of the stream, for another to go the same way.
-    pub(super) fn course(&self) -> Course {
-        match &self.source {
-            &Source::Random { seed, points, .. } => Course::Random { seed, points },
-            Source::Combinations(combinations) => combinations.course(),
-            Source::Recorded(Recorded { recording, clocks, .. }) => {
-                Course::Recorded { recording: recording.clone(), clocks: *clocks }
+            (_, Some(_)) => true,
+            (Course::Random { points, .. }, _) => self.seen.points >= *points,
+            (Course::Combinations { .. }, _) => {
+                let idle = match &self.host {
+                    Host::Core(core) => !core.deaf,
+                    Host::Pipe(pipe) => !pipe.has_before(u64::MAX),
+                };
+                idle && self.source.is_over()
             }
+            (Course::Recorded { clocks, .. }, _) => self.seen.clocks >= *clocks,
         }
     }
 
-    /// Returns the number from which the inputs can be made again: the seed, or the place of the combination that runs; 0 for recorded ones.
-    pub(super) fn seed(&self) -> u64 {
-        match &self.source {
-            Source::Random { seed, .. } => *seed,
-            Source::Combinations(combinations) => combinations.place(),
-            Source::Recorded(_) => 0,
-        }
-    }
-
-    /// Clocks since the latest start, where combinations are gone through: 0 for the one that takes it.
-    pub(super) fn since_start(&self) -> u64 {
-        match &self.source {
-            Source::Combinations(combinations) => combinations.since_start(),
-            Source::Random { .. } | Source::Recorded(_) => 0,
+    /// Goes on with computations of these raw operands, in the order of the contract, as the device stands.
+    pub(super) fn follow(&mut self, binding: &Binding, computations: &[Vec<i64>]) {
+        let count = computations.len() as u64;
+        self.course = Course::Combinations { first: 0, count };
+        if let Source::Offers(offers) = &mut self.source {
+            offers.follow(computations);
+        } else {
+            let space = Space::listed(&binding.ports, computations);
+            self.source = Source::Combinations(Combinations::new(space.into(), 0, count));
         }
     }
 
     /// Clocks the model.
     #[inline]
-    pub(super) fn clock(&mut self, binding: &Binding) {
+    pub(super) fn clock(&mut self, binding: &Binding) -> Result<()> {
+        let (deaf, taken) = match &self.host {
+            Host::Core(core) => (core.deaf, !core.deaf),
+            Host::Pipe(pipe) => (false, pipe.taken),
+        };
         let inputs = match &mut self.source {
-            Source::Random { stimulus, .. } => stimulus.next(self.deaf, &binding.points),
-            Source::Combinations(combinations) => combinations.next(self.deaf),
+            Source::Stimulus(stimulus) => stimulus.next(deaf, &binding.points),
+            Source::Offers(offers) => offers.next(taken, &binding.points),
+            Source::Combinations(combinations) => combinations.next(taken),
             Source::Recorded(recorded) => recorded.next(),
         };
-        match &binding.order {
-            None => self.model.clock(inputs),
-            Some(order) => {
-                self.reordered.clear();
-                self.reordered.extend(order.iter().map(|&at| inputs[at]));
-                self.model.clock(&self.reordered);
+        self.seen.clocks += 1;
+        match &mut self.host {
+            Host::Core(core) => core.clock(inputs),
+            Host::Pipe(pipe) => {
+                let inputs = self.source.inputs();
+                let drawn = matches!(self.source, Source::Offers(_));
+                let measure = drawn.then_some(&binding.measure);
+                let place = self.source.place().unwrap_or(0);
+                pipe.clock(&binding.ports, inputs, place, measure, &mut self.seen)?;
             }
         }
-        self.seen.clocks += 1;
+        Ok(())
     }
 
     /// The inputs of the latest clock.
     #[inline]
     pub(super) fn inputs(&self) -> &[u64] {
-        match &self.source {
-            Source::Random { stimulus, .. } => stimulus.inputs(),
-            Source::Combinations(combinations) => combinations.inputs(),
-            Source::Recorded(recorded) => recorded.inputs(),
-        }
+        self.source.inputs()
     }
 
     /// Whether the latest inputs are those of any clock in which the stream drives nothing.
     #[inline]
     pub(super) fn is_idle(&self) -> bool {
-        match &self.source {
-            Source::Random { stimulus, .. } => stimulus.is_idle(),
-            Source::Combinations(_) | Source::Recorded(_) => false,
+        matches!(&self.source, Source::Stimulus(stimulus) if stimulus.is_idle())
+    }
+
+    /// Writes what is predicted after the latest clock into a lane of `expected`, and all ones into `known` where
+    /// something is predicted at all: of a core that is everything.
+    #[inline]
+    pub(super) fn predict<const L: usize>(
+        &self,
+        expected: &mut [[u64; L]],
+        known: &mut [[u64; L]],
+        lane: usize,
+    ) {
+        match &self.host {
+            Host::Core(core) => {
+                for (column, &bits) in expected.iter_mut().zip(core.predicted()) {
+                    column[lane] = bits;
+                }
+            }
+            Host::Pipe(pipe) => {
+                for (at, (expected, known)) in expected.iter_mut().zip(known).enumerate() {
+                    let predicted = pipe.expected(at);
+                    expected[lane] = predicted.unwrap_or(0);
+                    known[lane] = if predicted.is_some() { u64::MAX } else { 0 };
+                }
+            }
         }
     }
 
-    /// Returns the model's predictions after the latest clock.
-    #[inline]
-    pub(super) fn predicted(&self) -> &[u64] {
-        self.model.values()
-    }
-
-    /// The first signal on which simulation and model differ after the latest clock if they
-    /// do. The microinstruction at `address` was executed at the edge.
-    pub(super) fn mismatch(
-        &self,
+    /// Takes note of the first signal on which simulation and model differ after the latest clock, if they do. The
+    /// microinstruction at `address` was executed at the edge.
+    pub(super) fn compare(
+        &mut self,
         binding: &Binding,
         address: u64,
         simulated: impl Fn(NetId) -> u64,
-    ) -> Option<Mismatch> {
-        let pairs = binding.compared.iter().zip(self.predicted());
-        let differs = |(&net, &golden): (&NetId, &u64)| simulated(net) != golden;
-        let at = pairs.clone().position(differs)?;
-        let microprogram = &binding.design.control.microprogram;
-        let executed = usize::try_from(address).ok().and_then(|at| microprogram.get(at));
-        Some(Mismatch {
-            seed: self.seed(),
-            clock: self.seen.clocks,
-            signal: binding.model.signals()[at].clone(),
-            golden: self.predicted()[at],
-            simulated: simulated(binding.compared[at]),
-            during: executed
-                .map_or_else(String::new, |it| format!("microinstruction `{}`", it.name)),
-        })
-    }
-
-    /// Takes note of a result, if there is one, as predicted.
-    #[inline]
-    pub(super) fn note(&mut self, binding: &Binding) {
-        let values = self.model.values();
-        let was_deaf = mem::replace(&mut self.deaf, binding.is_deaf(values));
-        if self.deaf && !was_deaf {
-            self.index = 0;
-        }
-        if values[binding.valid] != 1 {
-            return;
-        }
-        self.seen.points += 1;
-        // All combinations against the formula: that is the proof of the contract. Of recorded inputs nobody says which
-        // operands a result is of.
-        let Source::Random { stimulus, .. } = &self.source else {
+    ) {
+        let place = match &self.course {
+            Course::Random { seed, .. } => *seed,
+            _ => self.source.place().unwrap_or(0),
+        };
+        let since = match &self.source {
+            Source::Combinations(combinations) => combinations.since_start(),
+            _ => 0,
+        };
+        let differences = binding.compared.iter().enumerate().filter_map(|(at, &net)| {
+            let (golden, from) = match &self.host {
+                Host::Core(core) => (core.predicted()[at], None),
+                Host::Pipe(pipe) => (pipe.expected(at)?, pipe.point(at)),
+            };
+            let from = from.filter(|_| self.source.place().is_some());
+            let from = from.map(|(place, taken)| (place, self.seen.clocks - taken));
+            (simulated(net) != golden).then(|| (at, golden, from.unwrap_or((place, since))))
+        });
+        // Of several points in a pipeline the first is told.
+        let Some((at, golden, (seed, since))) = differences.min_by_key(|(.., (seed, _))| *seed)
+        else {
             return;
         };
-        if self.index == 0 {
-            self.operands.clear();
-            self.operands.extend(stimulus.accepted());
-            self.inside = binding.measure.inside(&self.operands);
+        if self.seen.mismatch.as_ref().is_some_and(|found| found.seed <= seed) {
+            return;
         }
-        if self.inside {
-            binding.measure.note(&mut self.seen, &self.operands, self.index, values);
-        } else {
-            self.seen.histogram.add_outside();
+        let net = binding.compared[at];
+        let during = match &binding.design.pipeline {
+            Some(pipeline) => format!("stage {}", pipeline.stage_of[net.index()]),
+            None => {
+                let microprogram = &binding.design.control.microprogram;
+                let executed = usize::try_from(address).ok().and_then(|at| microprogram.get(at));
+                executed.map_or_else(String::new, |it| format!("microinstruction `{}`", it.name))
+            }
+        };
+        self.since_start = since;
+        self.seen.mismatch = Some(Mismatch {
+            seed,
+            clock: self.seen.clocks,
+            signal: binding.design.net(net).name.clone(),
+            golden,
+            simulated: simulated(net),
+            during,
+        });
+    }
+
+    /// Takes note of a result of a core, if there is one, as predicted.
+    #[inline]
+    pub(super) fn note(&mut self, binding: &Binding) {
+        if let Host::Core(core) = &mut self.host {
+            let accepted = match &self.source {
+                Source::Stimulus(stimulus) => Some(stimulus.accepted()),
+                _ => None,
+            };
+            core.note(&binding.measure, &mut self.seen, accepted);
         }
-        self.index += 1;
     }
 }

@@ -3,11 +3,13 @@
 
 use anyhow::{Context, Result, ensure};
 
-use super::through::Through;
-use super::{Points, Random};
+use super::instances::Instances;
+use super::points::length;
+use super::ports::Ports;
+use super::{Points, Random, through};
 use crate::base::fixed::Format;
 use crate::golden::{Contract, Highlight, Operand};
-use crate::hdl::netlist::{self, Design, Handshake, NetId};
+use crate::hdl::netlist::{self, Design, NetId};
 use crate::hdl::sim::Simulator;
 use crate::package::{Computation, LineClocks, Linear, Quantity, Shown, Timing, WorkedExample};
 
@@ -35,8 +37,8 @@ const TRIES: u32 = 256;
 /// The record of one computation.
 struct Trial {
     timing: Timing,
-    /// The result outputs whenever `valid` is high.
-    results: Vec<(u32, Vec<u64>)>,
+    /// The raw results whenever `valid` is high.
+    results: Vec<(u32, Vec<i64>)>,
     /// The first clock with a microinstruction whose successor an operand decides.
     decision: Option<u32>,
 }
@@ -58,7 +60,8 @@ impl Trial {
 /// # Errors
 /// A device that never ends, or never raises `valid`.
 pub fn timing(design: &Design, contract: &dyn Contract) -> Result<Timing> {
-    let trials: Vec<Trial> = port_corners(contract)
+    let ports = |it: &Operand| (it.format.min_raw(), it.format.max_raw());
+    let trials: Vec<Trial> = corners(contract, ports)
         .iter()
         .map(|operands| run(design, contract, operands, &mut |_| Ok(())))
         .collect::<Result<_>>()?;
@@ -84,26 +87,13 @@ pub fn timing(design: &Design, contract: &dyn Contract) -> Result<Timing> {
     })
 }
 
-/// The lowest operands that the ports take, the highest, and those in the middle.
-fn port_corners(contract: &dyn Contract) -> [Vec<i64>; 3] {
+/// The lowest operands within these ends, the highest, and those in the middle.
+fn corners(contract: &dyn Contract, ends: fn(&Operand) -> (i128, i128)) -> [Vec<i64>; 3] {
     let corner = |pick: fn(i128, i128) -> i128| {
-        let operands = contract.operands().iter();
-        let raw =
-            |operand: &Operand| pick(operand.format.min_raw(), operand.format.max_raw()) as i64;
-        operands.map(raw).collect::<Vec<_>>()
+        let raw = |(low, high)| pick(low, high) as i64;
+        contract.operands().iter().map(|operand| raw(ends(operand))).collect()
     };
     [corner(|low, _| low), corner(|_, high| high), corner(i128::midpoint)]
-}
-
-/// The lowest operands of the domain, the highest, and those in the middle.
-fn corners(contract: &dyn Contract) -> [Vec<i64>; 3] {
-    let corner =
-        |pick: fn(&Operand) -> i64| contract.operands().iter().map(pick).collect::<Vec<_>>();
-    [
-        corner(|operand| operand.domain.0),
-        corner(|operand| operand.domain.1),
-        corner(|operand| operand.domain.0.midpoint(operand.domain.1)),
-    ]
 }
 
 /// Computations with all that they show, over the domain: its corners, and points at random. The golden
@@ -114,10 +104,9 @@ fn corners(contract: &dyn Contract) -> [Vec<i64>; 3] {
 pub fn computations(design: &Design, contract: &dyn Contract) -> Result<Vec<Computation>> {
     let mut random = Random::new(1);
     let mut points = Points::new(contract);
-    if let Some(length) = contract.length() {
-        points.limit(length, SHORT);
-    }
-    let mut list = Vec::from(corners(contract).map(|corner| points.clamped(corner)));
+    points.shorten(SHORT);
+    let domain = |it: &Operand| (it.domain.0.into(), it.domain.1.into());
+    let mut list = Vec::from(corners(contract, domain).map(|corner| points.clamped(corner)));
     list.resize_with(COMPUTATIONS, || points.of_domain(&mut random));
     list.into_iter().map(|operands| computation(design, contract, operands)).collect()
 }
@@ -128,20 +117,17 @@ fn computation(
     operands: Vec<i64>,
 ) -> Result<Computation> {
     let trial = run(design, contract, &operands, &mut |_| Ok(()))?;
-    let nets = results(design, contract);
     let mut shown = Vec::with_capacity(trial.results.len());
-    for (index, (clock, bits)) in trial.results.iter().enumerate() {
+    for (index, (clock, simulated)) in trial.results.iter().enumerate() {
         let mut right = Vec::new();
         contract.results(&operands, index as u64, &mut right);
-        let raw = |(&net, &bits): (&NetId, &u64)| design.net(net).format.raw(bits) as i64;
-        let simulated: Vec<i64> = nets.iter().zip(bits).map(raw).collect();
         ensure!(
-            right == simulated,
+            right == *simulated,
             "golden model and simulation of `{}` do not agree on result {index} of {}: {} and {}",
             design.name,
             listed(contract.operands().iter().map(|it| it.name.as_str()), &operands),
             listed(contract.outputs().iter().map(|output| output.name.as_str()), &right),
-            listed(contract.outputs().iter().map(|output| output.name.as_str()), &simulated),
+            listed(contract.outputs().iter().map(|output| output.name.as_str()), simulated),
         );
         shown.push(Shown { clock: *clock, outputs: right });
     }
@@ -179,10 +165,8 @@ pub fn throughput(
 /// As of [`timing`].
 pub fn line(design: &Design, contract: &dyn Contract) -> Result<Option<LineClocks>> {
     let mut operands = typical(contract, &[]);
-    let name = contract.length();
-    let place = contract.operands().iter().position(|operand| name == Some(operand.name.as_str()));
-    let (Some(name), Some(at)) = (name, place) else { return Ok(None) };
-    let (low, high) = contract.operands()[at].domain;
+    let Some(at) = length(contract) else { return Ok(None) };
+    let Operand { name, domain: (low, high), .. } = contract.operands()[at].clone();
     let mut seen: Vec<(i64, [i64; 3])> = Vec::new();
     for length in [low, low + 1, low + 2, low + 3, high.min(low + LONG)] {
         operands[at] = length.min(high);
@@ -201,7 +185,7 @@ pub fn line(design: &Design, contract: &dyn Contract) -> Result<Option<LineClock
     let (Some(last_valid), Some(done), Some(next_start)) = (valid, done, next) else {
         return Ok(None);
     };
-    Ok(Some(LineClocks { length: name.to_owned(), last_valid, done, next_start }))
+    Ok(Some(LineClocks { length: name, last_valid, done, next_start }))
 }
 
 /// A computation with all its numbers: operands of the domain for which f, if there is one, is neither 0 nor 1. Of several
@@ -217,17 +201,11 @@ pub fn example(design: &Design, contract: &dyn Contract) -> Result<WorkedExample
         raw: i128::from(raw),
         value: format.to_f64(i128::from(raw)),
     };
-    let nets = results(design, contract);
-    let outputs = |bits: &[u64]| -> Vec<Quantity> {
-        let pairs = nets.iter().zip(bits);
-        pairs
-            .map(|(&net, &bits)| {
-                let net = design.net(net);
-                quantity(&net.name, net.format, net.format.raw(bits) as i64)
-            })
-            .collect()
+    let outputs = |(_, raw): &(u32, Vec<i64>)| -> Vec<Quantity> {
+        let pairs = contract.outputs().iter().zip(raw);
+        pairs.map(|(output, &raw)| quantity(&output.name, output.format, raw)).collect()
     };
-    let results: Vec<Vec<Quantity>> = trial.results.iter().map(|(_, bits)| outputs(bits)).collect();
+    let results: Vec<Vec<Quantity>> = trial.results.iter().map(outputs).collect();
     Ok(WorkedExample {
         operands: contract
             .operands()
@@ -298,9 +276,7 @@ fn slow_down(
     values: &mut [i64],
     movable: &dyn Fn(&usize) -> bool,
 ) {
-    let length =
-        contract.operands().iter().position(|it| contract.length() == Some(it.name.as_str()));
-    let Some(middle) = length.map(|at| values[at] as u64 / 2) else { return };
+    let Some(middle) = length(contract).map(|at| values[at] as u64 / 2) else { return };
     let control = highlight.control();
     let f =
         |values: &[i64], index| highlight.reference(&highlight.point(&values[..control], index));
@@ -330,11 +306,7 @@ fn hinted(contract: &dyn Contract) -> Option<Vec<i64>> {
     (0..TRIES).map_while(|_| points.hint(&mut random)).find(inside)
 }
 
-fn results(design: &Design, contract: &dyn Contract) -> Vec<NetId> {
-    contract.outputs().iter().filter_map(|output| design.find(&output.name)).collect()
-}
-
-/// Records nets in each clock of the computation of [`example`], from clock 0, in which `start` is high, to the
+/// What nets carry in each clock of the computation of [`example`], from clock 0, in which `start` is high, to the
 /// first in which the device is idle again: the bit patterns just before the clock's rising edge, in the order of
 /// `nets`, all of which are named.
 ///
@@ -363,78 +335,52 @@ pub fn record_points(
     let (mut random, points) = (Random::new(1), Points::new(contract));
     let mut list = vec![typical(contract, &[])];
     list.resize_with(POINTS, || points.of_domain(&mut random));
-    Through::new(design, contract)?.record(&list, PAUSE, nets, LIMIT)
+    through::record(design, contract, (&list, PAUSE), nets, LIMIT)
 }
 
 /// Sees the simulator in each clock, before its rising edge.
 type Watch<'a> = &'a mut dyn FnMut(&mut Simulator) -> Result<()>;
 
-/// Resets, writes the operands, starts, and waits for the end.
+/// Resets, writes the operands, starts, and waits for the end: of a pipeline, for the results.
 fn run(
     design: &Design,
     contract: &dyn Contract,
     operands: &[i64],
     watch: Watch<'_>,
 ) -> Result<Trial> {
-    if design.pipeline.is_some() {
-        let nets = results(design, contract);
-        let (clock, outputs) = Through::new(design, contract)?.one(operands, &nets, LIMIT)?;
-        return Ok(Trial {
-            timing: Timing {
-                start_to_valid: Some(clock),
-                start_to_done: Some(clock),
-                start_to_start: Some(1),
-                ..Timing::default()
-            },
-            results: vec![(clock, outputs)],
-            decision: None,
-        });
-    }
-    let mut simulator: Simulator = Simulator::new(design)?;
-    let Handshake { valid, done, busy, .. } = design.handshake()?;
-    let input = |name: &str| {
-        let at = design.inputs().position(|port| design.net(port.net).name == name);
-        at.with_context(|| format!("no input `{name}`"))
-    };
-    let (reset, start) = (input("rst_n")?, input("start")?);
-    simulator.clock()?;
-    simulator.set(reset, 1);
-    for (operand, &raw) in contract.operands().iter().zip(operands) {
-        simulator.set(input(&operand.name)?, operand.format.bits(i128::from(raw)));
-        simulator.set(input(&format!("{}_write", operand.name))?, 1);
-    }
-    simulator.set(start, 1);
-    watch(&mut simulator)?;
-    simulator.clock()?;
-    for operand in contract.operands() {
-        simulator.set(input(&format!("{}_write", operand.name))?, 0);
-    }
-    simulator.set(start, 0);
-    let decided = netlist::decided_by_data(design);
-    let address = design.register(design.control.address).q;
+    let mut instance = Instances::<1>::new(design, contract)?;
+    instance.offer([Some(operands)]);
+    watch(&mut instance.simulator)?;
+    instance.simulator.clock()?;
+    instance.release();
+    let Ports { valid, busy, done, overlaps, .. } = instance.ports;
+    let address = |_| (design.register(design.control.address).q, netlist::decided_by_data(design));
+    let decided = busy.map(address);
     let mut trial = Trial { timing: Timing::default(), results: Vec::new(), decision: None };
-    let nets = results(design, contract);
     // Clock 0 was the one that took `start`.
     for clock in 1..LIMIT {
-        watch(&mut simulator)?;
-        if decided.contains(&(simulator.value(address) as usize)) {
+        watch(&mut instance.simulator)?;
+        let high = |net| instance.simulator.value(net) == 1;
+        let address = |net| instance.simulator.value(net) as usize;
+        if decided.as_ref().is_some_and(|(net, decided)| decided.contains(&address(*net))) {
             trial.decision.get_or_insert(clock);
         }
-        if simulator.value(valid) == 1 {
+        let shows = high(valid);
+        if shows {
             trial.timing.start_to_valid.get_or_insert(clock);
-            let outputs = nets.iter().map(|&net| simulator.value(net));
-            trial.results.push((clock, outputs.collect()));
+            trial.results.push((clock, instance.results(0).collect()));
         }
-        if simulator.value(done) == 1 {
+        if done.map_or(shows, high) {
             trial.timing.start_to_done = Some(clock);
-            trial.timing.start_to_start = design.control.overlaps.then_some(clock);
+            trial.timing.start_to_start = overlaps.then_some(clock);
         }
-        if simulator.value(busy) == 0 {
-            trial.timing.start_to_start.get_or_insert(clock);
+        if busy.map_or(shows, |busy| !high(busy)) {
+            let next = if busy.is_some() { clock } else { 1 };
+            trial.timing.start_to_start.get_or_insert(next);
             ensure!(trial.timing.start_to_valid.is_some(), "`{}` never raises valid", design.name);
             return Ok(trial);
         }
-        simulator.clock()?;
+        instance.simulator.clock()?;
     }
     anyhow::bail!("`{}` does not end within {LIMIT} clocks", design.name)
 }

@@ -93,6 +93,12 @@ impl<M: Model + Clone + 'static> CloneModel for M {
     }
 }
 
+impl Clone for Box<dyn Model> {
+    fn clone(&self) -> Self {
+        self.as_ref().boxed_clone()
+    }
+}
+
 /// An operand of a device as its accuracy contract sees it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Operand {

@@ -5,8 +5,9 @@ mod operands;
 
 use std::path::PathBuf;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Result, bail};
 use clap::Args;
+use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::{Loaded, load_one};
@@ -14,6 +15,7 @@ use crate::base::fixed::Format;
 use crate::cli::failure::WrongUsage;
 use crate::cli::tables::Column;
 use crate::cli::{Output, say, tables, wrong_usage};
+use crate::cosim::Driven;
 use crate::golden::{self, Contract, Model, Operand};
 use crate::registry::Registry;
 
@@ -88,8 +90,8 @@ fn point(output: Output, one: &Loaded, given: &[Option<i64>]) -> Result<bool> {
     let contract = one.core.contract.as_ref();
     let operands = contract.operands();
     let raw = operands::completed(contract, given);
-    let mut model = one.core.device.golden(&one.core.config);
-    let mut signals = signals(model.as_mut(), operands, &raw)?;
+    let model = one.core.device.golden(&one.core.config);
+    let mut signals = signals(model, operands, &raw)?;
     let outside = outside(operands, &raw);
     let results = results(contract, &raw);
     // The golden model of a pipeline is that of its sequential core: formats are those of its nets, and of the rest of it
@@ -103,29 +105,17 @@ fn point(output: Output, one: &Loaded, given: &[Option<i64>]) -> Result<bool> {
         });
     }
     let design = sequential.as_ref().unwrap_or(&one.core.design);
-    let value_of = |name: &str, bits: u64| {
-        let net = design.find(name).map(|id| design.net(id));
-        net.map_or((i128::from(bits), bits as f64, String::new()), |net| {
-            let raw = net.format.raw(bits);
-            (raw, net.format.to_f64(raw), net.format.to_string())
+    let signals: Vec<Signal> = signals
+        .into_iter()
+        .map(|(name, bits)| match design.find(&name).map(|id| design.net(id).format) {
+            Some(format) => Signal::new(name, format, format.raw(bits)),
+            None => Signal { name, format: String::new(), raw: bits.into(), value: bits as f64 },
         })
-    };
+        .collect();
+    let operands = operands.iter().zip(&raw);
+    let operands: Vec<Signal> =
+        operands.map(|(it, &raw)| Signal::new(it.name.clone(), it.format, raw.into())).collect();
     if output.json {
-        let signals: Vec<Value> = signals
-            .iter()
-            .map(|(name, bits)| {
-                let (raw, value, format) = value_of(name, *bits);
-                json!({ "name": name, "raw": raw as i64, "value": value, "format": format })
-            })
-            .collect();
-        let operands: Vec<Value> = operands
-            .iter()
-            .zip(&raw)
-            .map(|(operand, &raw)| {
-                let value = operand.format.to_f64(i128::from(raw));
-                json!({ "name": operand.name, "raw": raw, "value": value, "format": operand.format.to_string() })
-            })
-            .collect();
         tables::print_json(&json!({
             "config": one.path,
             "operands": operands,
@@ -138,20 +128,8 @@ fn point(output: Output, one: &Loaded, given: &[Option<i64>]) -> Result<bool> {
     if !outside.is_empty() {
         say!("Outside the domain for which the contract is stated: {}.", outside.join("; "));
     }
-    let rows = operands.iter().zip(&raw).map(|(operand, &raw)| {
-        vec![
-            operand.name.clone(),
-            operand.format.to_string(),
-            raw.to_string(),
-            operand.format.to_f64(i128::from(raw)).to_string(),
-        ]
-    });
-    print_values("operand", rows);
-    let rows = signals.iter().map(|(name, bits)| {
-        let (raw, value, format) = value_of(name, *bits);
-        vec![name.clone(), format, raw.to_string(), value.to_string()]
-    });
-    print_values("golden, when valid", rows);
+    print_values("operand", operands);
+    print_values("golden, when valid", signals);
     let columns = [
         Column::words("result"),
         Column::numbers("value"),
@@ -208,46 +186,43 @@ fn as_json(results: &[Computed]) -> Value {
     }
 }
 
-fn print_values(what: &str, rows: impl Iterator<Item = Vec<String>>) {
+/// A number of a device.
+#[derive(Serialize)]
+struct Signal {
+    name: String,
+    raw: i128,
+    value: f64,
+    /// Nothing of a signal that is no net.
+    format: String,
+}
+
+impl Signal {
+    fn new(name: String, format: Format, raw: i128) -> Self {
+        Self { name, raw, value: format.to_f64(raw), format: format.to_string() }
+    }
+}
+
+fn print_values(what: &str, values: Vec<Signal>) {
     let columns = [
         Column::words(what),
         Column::words("format"),
         Column::numbers("raw"),
         Column::numbers("value"),
     ];
-    tables::print(&columns, rows);
+    let row = |it: Signal| vec![it.name, it.format, it.raw.to_string(), it.value.to_string()];
+    tables::print(&columns, values.into_iter().map(row));
 }
 
-/// Writes the operands, starts, and returns all signals in the clock in which `valid` is high.
-fn signals(model: &mut dyn Model, operands: &[Operand], raw: &[i64]) -> Result<Vec<(String, u64)>> {
-    let mut inputs = vec![0; model.inputs().len()];
-    let names = model.inputs().to_vec();
-    let set = |inputs: &mut Vec<u64>, name: &str, bits: u64| {
-        if let Some(at) = names.iter().position(|other| other == name) {
-            inputs[at] = bits;
-        }
-    };
-    model.clock(&inputs);
-    set(&mut inputs, "rst_n", 1);
-    for (operand, &raw) in operands.iter().zip(raw) {
-        set(&mut inputs, &operand.name, operand.format.bits(i128::from(raw)));
-        set(&mut inputs, &format!("{}_write", operand.name), 1);
-    }
-    set(&mut inputs, "start", 1);
-    model.clock(&inputs);
-    inputs.fill(0);
-    set(&mut inputs, "rst_n", 1);
-    let valid = model
-        .signals()
-        .iter()
-        .position(|name| name == "valid")
-        .context("the golden model does not predict `valid`")?;
+/// All signals in the clock in which `valid` is high.
+fn signals(model: Box<dyn Model>, operands: &[Operand], raw: &[i64]) -> Result<Vec<(String, u64)>> {
+    let mut model = Driven::new(model, operands.iter().map(|operand| operand.name.as_str()))?;
+    let pairs = operands.iter().zip(raw);
+    model.start(pairs.map(|(operand, &raw)| operand.format.bits(i128::from(raw))));
     for _ in 0..LIMIT {
-        if model.values()[valid] == 1 {
-            let values = model.values().to_vec();
-            return Ok(model.signals().iter().cloned().zip(values).collect());
+        if model.is_valid() {
+            return Ok(model.names().iter().cloned().zip(model.values().iter().copied()).collect());
         }
-        model.clock(&inputs);
+        model.clock();
     }
     bail!("the device does not raise `valid` within {LIMIT} clocks")
 }

@@ -48,9 +48,7 @@ pub struct Pool {
 pub fn pool(contract: &dyn Contract) -> Pool {
     let mut random = Random::new(1);
     let mut points = Points::new(contract);
-    if let Some(length) = contract.length() {
-        points.limit(length, LONGEST);
-    }
+    points.shorten(LONGEST);
     let count = points.operands().len();
     let mut drawn = vec![vec![0; count]; DRAWN];
     let mut readers = Vec::new();

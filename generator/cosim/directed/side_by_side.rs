@@ -4,8 +4,9 @@ use anyhow::{Context, Result, bail};
 
 use super::memories::Memories;
 use crate::base::fixed::mask;
+use crate::cosim::ports::Ports;
 use crate::golden::Contract;
-use crate::hdl::netlist::{Design, NetId, Role};
+use crate::hdl::netlist::{Design, NetId};
 use crate::hdl::sim::Machine;
 
 /// Computations that run together.
@@ -44,14 +45,10 @@ impl Shown {
 /// while it runs their ports show the complement.
 pub struct SideBySide {
     pub machine: Machine<LANES>,
-    inputs: Vec<[u64; LANES]>,
-    start: usize,
-    /// Data, strobe and width of each operand, in the order of the contract.
-    operands: Vec<(usize, usize, u64)>,
-    valid: NetId,
+    ports: Ports,
     busy: NetId,
-    results: Vec<NetId>,
-    /// The memories of a design whose lanes have tables of their own.
+    inputs: Vec<[u64; LANES]>,
+    /// Of a design whose lanes have tables of their own.
     copies: Option<Memories>,
 }
 
@@ -65,38 +62,13 @@ impl SideBySide {
         contract: &dyn Contract,
         mut machine: Machine<LANES>,
     ) -> Result<Self> {
-        let ports: Vec<NetId> = design.inputs().map(|port| port.net).collect();
-        let position =
-            |net: NetId| ports.iter().position(|&port| port == net).context("no such input");
-        let named = |name: &str| design.find(name).with_context(|| format!("no port `{name}`"));
-        let one = |wanted: Role| {
-            design.port(|role| role == wanted).map(|port| port.net).context("no handshake")
-        };
-        let operand = |name: &str| {
-            let port = design.inputs().find(|port| design.net(port.net).name == name);
-            let port = port.with_context(|| format!("no operand `{name}`"))?;
-            let Role::Operand { strobe } = port.role else {
-                bail!("`{name}` is no operand");
-            };
-            Ok((position(port.net)?, position(strobe)?, mask(design.width(port.net))))
-        };
-        let operands: Vec<_> =
-            contract.operands().iter().map(|it| operand(&it.name)).collect::<Result<_>>()?;
-        let (reset, start) = (position(one(Role::Reset)?)?, position(one(Role::Start)?)?);
-        let mut inputs = vec![[0; LANES]; ports.len()];
+        let ports = Ports::new(design, contract)?;
+        let mut inputs = vec![[0; LANES]; ports.inputs];
         machine.update(false, Some(&inputs));
         machine.update(true, None);
-        inputs[reset] = [1; LANES];
-        Ok(Self {
-            machine,
-            inputs,
-            start,
-            operands,
-            valid: one(Role::Valid)?,
-            busy: one(Role::Busy)?,
-            results: contract.outputs().iter().map(|it| named(&it.name)).collect::<Result<_>>()?,
-            copies: None,
-        })
+        inputs[ports.reset] = [1; LANES];
+        let busy = ports.busy.context("a pipeline runs no computations one by one")?;
+        Ok(Self { machine, ports, busy, inputs, copies: None })
     }
 
     /// With tables for each lane, which are in the design.
@@ -104,8 +76,7 @@ impl SideBySide {
     /// # Errors
     /// They are those of another design.
     pub fn with_copies(mut self, design: &Design, copies: Memories) -> Result<Self> {
-        let port = design.inputs().position(|port| port.net == copies.lane);
-        let port = port.context("no port for the lane")?;
+        let port = design.input_position(copies.lane)?;
         (0..LANES).for_each(|lane| self.inputs[port][lane] = lane as u64);
         self.copies = Some(copies);
         Ok(self)
@@ -146,30 +117,32 @@ impl SideBySide {
     ) -> Result<Vec<Shown>> {
         let mut shown = Vec::new();
         for (lane, computation) in computations.into_iter().enumerate() {
-            for (&(data, strobe, mask), &raw) in self.operands.iter().zip(computation) {
-                self.inputs[data][lane] = raw as u64 & mask;
-                self.inputs[strobe][lane] = 1;
+            for port in &self.ports.operands {
+                self.inputs[port.data][lane] = port.pattern(computation);
+                self.inputs[port.strobe][lane] = 1;
             }
-            self.inputs[self.start][lane] = 1;
+            self.inputs[self.ports.start][lane] = 1;
             shown.push(Shown::default());
         }
         self.clock();
-        for &(data, strobe, mask) in &self.operands {
-            self.inputs[data].iter_mut().for_each(|bits| *bits ^= mask);
-            self.inputs[strobe] = [0; LANES];
+        for port in &self.ports.operands {
+            let mask = mask(port.format.width());
+            self.inputs[port.data].iter_mut().for_each(|bits| *bits ^= mask);
+            self.inputs[port.strobe] = [0; LANES];
         }
-        self.inputs[self.start] = [0; LANES];
+        self.inputs[self.ports.start] = [0; LANES];
         for clock in 1..LIMIT {
             self.machine.update(false, Some(&self.inputs));
             let bits = |net| lanes(self.machine.lanes(net));
-            let (busy, valid) = (bits(self.busy), bits(self.valid));
+            let (busy, valid) = (bits(self.busy), bits(self.ports.valid));
             let ended = |(lane, shown): (usize, &Shown)| shown.clocks > 0 || busy >> lane & 1 == 0;
             for (lane, shown) in shown.iter_mut().enumerate().filter(|(_, shown)| shown.clocks == 0)
             {
                 if busy >> lane & 1 == 0 {
                     shown.clocks = clock;
                 } else if valid >> lane & 1 == 1 {
-                    let outputs = self.results.iter().map(|&net| self.machine.lane(net, lane));
+                    let results = self.ports.results.iter();
+                    let outputs = results.map(|&(net, _)| self.machine.lane(net, lane));
                     shown.results.push((clock, outputs.collect()));
                 }
             }

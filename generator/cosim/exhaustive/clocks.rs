@@ -8,20 +8,16 @@
 use std::fmt;
 use std::io::Write;
 use std::ops::Range;
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, ensure};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::cosim::alone::Alone;
 use crate::cosim::binding::Binding;
-use crate::cosim::combinations::Ports;
 use crate::cosim::lockstep::LANES;
 use crate::cosim::outcome::{Course, Mismatch};
-use crate::cosim::pipelined::Pipelined;
-use crate::cosim::together::Together;
+use crate::cosim::runner::Runner;
 use crate::golden::{Contract, Model};
 use crate::hdl::netlist::Design;
 
@@ -72,18 +68,10 @@ impl fmt::Display for Difference {
     }
 }
 
-/// All combinations of the operands of a design, against its golden model.
+/// All combinations of the operands of a design, against its golden model: one computation after another in a core, a point
+/// every clock in a pipeline.
 pub struct Clocks<'a> {
-    ports: Arc<Ports>,
-    architecture: Architecture<'a>,
-}
-
-/// How combinations go through a design.
-enum Architecture<'a> {
-    /// One computation after another.
-    Sequential(Binding<'a>),
-    /// A point every clock.
-    Pipelined(Pipelined<'a>),
+    binding: Binding<'a>,
 }
 
 impl<'a> Clocks<'a> {
@@ -96,41 +84,18 @@ impl<'a> Clocks<'a> {
         model: Box<dyn Model>,
         contract: &'a dyn Contract,
     ) -> Result<Self> {
-        Ok(match &design.pipeline {
-            None => {
-                let binding = Binding::new(design, model, contract)?;
-                let ports = Arc::clone(&binding.ports);
-                Self { ports, architecture: Architecture::Sequential(binding) }
-            }
-            Some(pipeline) => Self {
-                ports: Arc::new(Ports::new(design)?),
-                architecture: Architecture::Pipelined(Pipelined::new(
-                    design, pipeline, model, contract, 0,
-                )?),
-            },
-        })
+        Ok(Self { binding: Binding::new(design, model, contract)? })
     }
 
     /// Holds some operands at raw values: the combinations are those of the others.
     #[must_use]
-    pub fn holding(mut self, held: &[(String, i64)]) -> Self {
-        match self.architecture {
-            Architecture::Sequential(binding) => {
-                let binding = binding.holding(held);
-                let ports = Arc::clone(&binding.ports);
-                Self { ports, architecture: Architecture::Sequential(binding) }
-            }
-            Architecture::Pipelined(pipelined) => {
-                Arc::make_mut(&mut self.ports).hold(held);
-                let architecture = Architecture::Pipelined(pipelined.holding(held));
-                Self { ports: self.ports, architecture }
-            }
-        }
+    pub fn holding(self, held: &[(String, i64)]) -> Self {
+        Self { binding: self.binding.holding(held) }
     }
 
     /// The bits of all operands together.
     pub fn bits(&self) -> u32 {
-        self.ports.bits()
+        self.binding.space.bits()
     }
 
     /// How many combinations there are; 0 if they are too many to go through.
@@ -149,7 +114,7 @@ impl<'a> Clocks<'a> {
                 "registers at every clock: the operands have {} bits, and all combinations are gone through for up to {MOST_BITS}, of a narrower configuration of the device",
                 self.bits()
             ),
-            _ if matches!(self.architecture, Architecture::Pipelined(_)) => {
+            _ if self.binding.is_pipeline() => {
                 "pauses between points, results that wait, resets with points on their way; `glint cosim` draws these at \
                  random"
                     .to_owned()
@@ -200,25 +165,13 @@ impl<'a> Clocks<'a> {
     }
 
     fn first_of(&self, runs: impl Iterator<Item = (u64, u64)>) -> Result<Option<u64>> {
-        match &self.architecture {
-            Architecture::Sequential(binding) => {
-                let courses = runs.map(|(first, count)| Course::Combinations { first, count });
-                let mut lanes = Together::<LANES>::new(binding, courses)?;
-                while !lanes.ended() {
-                    lanes.run()?;
-                }
-                let seen = lanes.into_seen()?;
-                let mismatch = seen.into_iter().find_map(|seen| seen.mismatch);
-                Ok(mismatch.map(|mismatch| mismatch.seed))
-            }
-            Architecture::Pipelined(pipelined) => {
-                let mut lanes = pipelined.walk::<LANES>(&self.ports, runs)?;
-                while !lanes.ended() {
-                    lanes.clock()?;
-                }
-                Ok(lanes.first().map(|(mismatch, _)| mismatch.seed))
-            }
+        let courses = runs.map(|(first, count)| Course::Combinations { first, count });
+        let mut lanes = Runner::<LANES>::new(&self.binding, courses)?;
+        while !lanes.ended() {
+            lanes.run()?;
         }
+        let mismatch = lanes.into_seen()?.into_iter().find_map(|seen| seen.mismatch);
+        Ok(mismatch.map(|mismatch| mismatch.seed))
     }
 
     /// Returns the difference at a place that [`Clocks::check`] found.
@@ -226,28 +179,14 @@ impl<'a> Clocks<'a> {
     /// # Errors
     /// Nothing differs there; those of [`Clocks::check`].
     pub fn difference(&self, place: u64) -> Result<Difference> {
-        let (mismatch, clock) = match &self.architecture {
-            Architecture::Sequential(binding) => {
-                let mut alone = self.alone(binding, place)?;
-                while !alone.ended() {
-                    alone.clock()?;
-                }
-                (alone.seen().mismatch.clone(), alone.since_start())
-            }
-            Architecture::Pipelined(pipelined) => {
-                let mut alone = pipelined.walk::<1>(&self.ports, [self.run_to(place)?])?;
-                while !alone.ended() {
-                    alone.clock()?;
-                }
-                let found = alone.first();
-                (found.map(|it| it.0.clone()), found.map_or(0, |it| it.1))
-            }
-        };
-        let mismatch = mismatch.filter(|mismatch| mismatch.seed == place);
+        let mut alone = self.alone(place)?;
+        alone.go_on(u64::MAX)?;
+        let found = alone.first();
+        let mismatch = found.seen.mismatch.clone().filter(|mismatch| mismatch.seed == place);
         Ok(Difference {
             place,
-            clock,
-            operands: self.ports.named(place),
+            clock: found.since_start,
+            operands: self.binding.space.named(place),
             mismatch: mismatch
                 .with_context(|| format!("nothing differs at combination {place}"))?,
         })
@@ -258,43 +197,15 @@ impl<'a> Clocks<'a> {
     /// # Errors
     /// As of [`Clocks::difference`]; the file cannot be written.
     pub fn trace(&self, place: u64, from: u64, file: impl Write + Send + 'static) -> Result<()> {
-        match &self.architecture {
-            Architecture::Sequential(binding) => {
-                let mut alone = self.alone(binding, place)?;
-                while !alone.ended() && alone.seen().clocks < from {
-                    alone.clock()?;
-                }
-                alone.simulator.trace(file)?;
-                while !alone.ended() {
-                    alone.clock()?;
-                }
-                alone.simulator.end_trace()
-            }
-            Architecture::Pipelined(pipelined) => {
-                let mut alone = pipelined.walk::<1>(&self.ports, [self.run_to(place)?])?;
-                while !alone.ended() && alone.clocks < from {
-                    alone.clock()?;
-                }
-                alone.simulator.trace(file)?;
-                while !alone.ended() {
-                    alone.clock()?;
-                }
-                alone.simulator.end_trace()
-            }
-        }
+        self.alone(place)?.trace(from, file)
     }
 
-    /// The run that has a place, up to it: its first place, and how many there are.
-    fn run_to(&self, place: u64) -> Result<(u64, u64)> {
+    /// The run that has a place, up to it, in a simulator of its own.
+    fn alone(&self, place: u64) -> Result<Runner<'_, 1>> {
         ensure!(place < self.count(), "there is no combination {place}");
         let first = place - place % RUN;
-        Ok((first, place - first + 1))
-    }
-
-    /// Runs the combination in a simulator of its own.
-    fn alone<'p>(&self, binding: &'p Binding<'a>, place: u64) -> Result<Alone<'p>> {
-        let (first, count) = self.run_to(place)?;
-        Alone::new(binding, Course::Combinations { first, count })
+        let course = Course::Combinations { first, count: place - first + 1 };
+        Runner::new(&self.binding, [course])
     }
 
     /// How long one combination takes on one thread.

@@ -1,23 +1,19 @@
 //! The golden model's values for one point: its results, and its registers along the microprogram.
 
-use anyhow::{Context, Result, anyhow};
+use anyhow::{Result, bail};
 
+use crate::cosim::driven::{Driven, signal};
+use crate::cosim::ports::Ports;
 use crate::golden::Model;
-use crate::hdl::netlist::{Design, NetId, Pipeline, Role};
+use crate::hdl::netlist::{Design, NetId, Pipeline};
 
 /// The most clocks of a computation.
 const MOST_CLOCKS: usize = 8192;
 
 /// The golden model of the sequential core, run a point at a time.
+#[derive(Clone)]
 pub(super) struct Reference {
-    model: Box<dyn Model>,
-    inputs: Vec<u64>,
-    reset: usize,
-    start: usize,
-    /// For each operand of the pipeline, data and strobe among the model's inputs.
-    operands: Vec<(usize, usize)>,
-    busy: usize,
-    valid: usize,
+    model: Driven,
     address: usize,
     /// The signals of the results.
     results: Vec<usize>,
@@ -28,8 +24,8 @@ pub(super) struct Reference {
     visits: Vec<usize>,
 }
 
-/// The expected values of a point.
-#[derive(Debug, Default)]
+/// What is expected of a point.
+#[derive(Clone, Debug, Default)]
 pub(super) struct Expected {
     /// The results, bit patterns.
     pub results: Vec<u64>,
@@ -43,72 +39,41 @@ impl Reference {
     pub(super) fn new(
         design: &Design,
         pipeline: &Pipeline,
-        model: &dyn Model,
+        model: Box<dyn Model>,
+        ports: &Ports,
         results: &[NetId],
     ) -> Result<Self> {
-        let input = |name: &str| {
-            let at = model.inputs().iter().position(|other| other == name);
-            at.with_context(|| format!("the golden model has no input `{name}`"))
-        };
-        let signal = |name: &str| {
-            let at = model.signals().iter().position(|other| other == name);
-            at.with_context(|| format!("the golden model does not predict `{name}`"))
-        };
-        let name = |net: NetId| design.net(net).name.as_str();
-        let operands = design
-            .ports
-            .iter()
-            .filter(|port| port.role == Role::Point)
-            .map(|port| {
-                let name = name(port.net);
-                Ok((input(name)?, input(&format!("{name}_write"))?))
-            })
-            .collect::<Result<_>>()?;
+        let signal = |name: &str| signal(model.as_ref(), name);
         let checkpoints = &pipeline.checkpoints;
-        let registers =
-            checkpoints.iter().map(|it| signal(&it.register)).collect::<Result<Vec<_>>>()?;
         let length = checkpoints.iter().map(|it| it.address + 1).max().unwrap_or(0);
         let mut due = vec![Vec::new(); length];
         for (at, checkpoint) in checkpoints.iter().enumerate() {
             due[checkpoint.address].push((checkpoint.visit, at));
         }
+        let results = results.iter().map(|&net| signal(&design.net(net).name));
+        let registers = checkpoints.iter().map(|it| signal(&it.register));
         Ok(Self {
-            inputs: vec![0; model.inputs().len()],
-            reset: input("rst_n")?,
-            start: input("start")?,
-            operands,
-            busy: signal("busy")?,
-            valid: signal("valid")?,
             address: signal("word_address")?,
-            results: results.iter().map(|&net| signal(name(net))).collect::<Result<_>>()?,
-            registers,
+            results: results.collect::<Result<_>>()?,
+            registers: registers.collect::<Result<_>>()?,
             visits: vec![0; length],
             due,
-            model: model.boxed_clone(),
+            model: Driven::new(model, ports.operands.iter().map(|port| port.name.as_str()))?,
         })
     }
 
-    /// One computation, of these bit patterns.
+    /// One computation, of these bit patterns in the order of the ports.
     ///
     /// # Errors
     /// A model that does not come to an end.
-    pub(super) fn point(&mut self, operands: &[u64]) -> Result<Expected> {
-        self.inputs.fill(0);
-        self.inputs[self.reset] = 1;
-        self.inputs[self.start] = 1;
-        for (&bits, &(data, strobe)) in operands.iter().zip(&self.operands) {
-            self.inputs[data] = bits;
-            self.inputs[strobe] = 1;
-        }
-        self.model.clock(&self.inputs);
-        self.inputs.fill(0);
-        self.inputs[self.reset] = 1;
+    pub(super) fn point(&mut self, patterns: impl Iterator<Item = u64>) -> Result<Expected> {
+        self.model.start(patterns);
         self.visits.fill(0);
         let mut expected =
             Expected { results: Vec::new(), registers: vec![None; self.registers.len()] };
         for _ in 0..MOST_CLOCKS {
             let values = self.model.values();
-            if values[self.busy] == 0 {
+            if values[self.model.busy] == 0 {
                 return Ok(expected);
             }
             let address = values[self.address] as usize;
@@ -120,11 +85,11 @@ impl Reference {
                 }
                 self.visits[address] += 1;
             }
-            if values[self.valid] == 1 && expected.results.is_empty() {
+            if values[self.model.valid] == 1 && expected.results.is_empty() {
                 expected.results.extend(self.results.iter().map(|&at| values[at]));
             }
-            self.model.clock(&self.inputs);
+            self.model.clock();
         }
-        Err(anyhow!("the golden model does not end"))
+        bail!("the golden model does not end")
     }
 }

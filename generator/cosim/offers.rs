@@ -1,0 +1,122 @@
+//! Points that are offered to a pipeline at random, clock by clock.
+//!
+//! Points come with bubbles between them, now and then one is withdrawn, results are held back, and resets drop what is on
+//! its way. How eager each side is changes from time to time. All of it is a function of the seed.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+use super::points::Points;
+use super::ports::Ports;
+use super::random::Random;
+
+/// How eager a side of the handshake is: it is ready once in this number of clocks.
+const PACES: [u64; 4] = [1, 1, 2, 5];
+
+/// Clocks for which a pace is kept.
+const PACE_CLOCKS: u64 = 24;
+
+/// A reset comes once in this number of clocks.
+const RESET_CLOCKS: u64 = 1024;
+
+/// The inputs of a pipeline, clock by clock.
+pub(super) struct Offers {
+    ports: Arc<Ports>,
+    random: Random,
+    /// What is offered until it is taken: the bit patterns of the operands in the order of the ports, and the side value.
+    offered: Option<(Vec<u64>, u64)>,
+    /// Of offers that go on with points of a list those that are left, raw operands in the order of the contract: no others
+    /// are drawn, none is withdrawn, and there is no reset.
+    listed: Option<VecDeque<Vec<i64>>>,
+    reset_left: u64,
+    pace: (u64, u64),
+    pace_left: u64,
+    /// Those of the latest clock.
+    inputs: Vec<u64>,
+}
+
+impl Offers {
+    /// From power-up on.
+    pub(super) fn new(ports: &Arc<Ports>, seed: u64) -> Self {
+        Self {
+            random: Random::new(seed),
+            offered: None,
+            listed: None,
+            reset_left: 2,
+            pace: (1, 1),
+            pace_left: 0,
+            inputs: vec![0; ports.inputs],
+            ports: ports.clone(),
+        }
+    }
+
+    /// Goes on with these points, raw operands in the order of the contract, and then with none.
+    pub(super) fn follow(&mut self, points: &[Vec<i64>]) {
+        self.listed = Some(points.iter().cloned().collect());
+    }
+
+    /// Whether a list is at its end.
+    pub(super) fn is_over(&self) -> bool {
+        self.offered.is_none() && self.listed.as_ref().is_some_and(VecDeque::is_empty)
+    }
+
+    /// The latest inputs.
+    pub(super) fn inputs(&self) -> &[u64] {
+        &self.inputs
+    }
+
+    /// The inputs of the next clock; `taken`: what was offered in the latest one was taken.
+    pub(super) fn next(&mut self, taken: bool, points: &Points<'_>) -> &[u64] {
+        let Self { ports, random, offered, listed, inputs, .. } = self;
+        if taken {
+            *offered = None;
+        }
+        if self.pace_left == 0 {
+            let mut pace = || PACES[random.below(PACES.len() as u64) as usize];
+            self.pace = (pace(), pace());
+            self.pace_left = PACE_CLOCKS;
+        }
+        self.pace_left -= 1;
+        let drawn = listed.is_none();
+        if drawn && self.reset_left == 0 && random.once_in(RESET_CLOCKS) {
+            self.reset_left = 1 + random.below(3);
+        }
+        let rst_n = self.reset_left == 0;
+        self.reset_left = self.reset_left.saturating_sub(1);
+        // What is offered stays until it is taken; now and then it is withdrawn.
+        if drawn && offered.is_some() && random.once_in(64) {
+            *offered = None;
+        }
+        // Of a list nothing is lost to the end of a reset.
+        if offered.is_none() && (drawn || rst_n) && random.once_in(self.pace.0) {
+            let next = match listed {
+                Some(listed) => listed.pop_front(),
+                None => {
+                    let mut raw = vec![0; points.operands().len()];
+                    points.draw(random, &mut raw, u64::MAX);
+                    Some(raw)
+                }
+            };
+            *offered = next.map(|raw| {
+                let patterns = ports.operands.iter().map(|port| port.pattern(&raw)).collect();
+                (patterns, random.bits() & ports.side_in.map_or(0, |(_, mask)| mask))
+            });
+        }
+        if let Some(at) = ports.out_ready {
+            inputs[at] = u64::from(random.once_in(self.pace.1));
+        }
+        inputs[ports.reset] = u64::from(rst_n);
+        inputs[ports.start] = u64::from(offered.is_some());
+        for (at, port) in ports.operands.iter().enumerate() {
+            inputs[port.data] = match offered {
+                Some((patterns, _)) => patterns[at],
+                None => random.pattern(&points.operands()[port.at]),
+            };
+        }
+        if let Some((at, mask)) = ports.side_in {
+            let noise = random.bits() & mask;
+            inputs[at] = offered.as_ref().map_or(noise, |(_, side)| *side);
+        }
+        inputs
+    }
+}
