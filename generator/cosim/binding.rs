@@ -13,7 +13,7 @@ use super::sequential::{Core, registers};
 use crate::golden::{Contract, Model};
 use crate::hdl::netlist::{Design, NetId};
 
-/// What predicts a device, whatever its architecture.
+/// The prediction of a device, whatever its architecture.
 #[derive(Clone)]
 pub(super) enum Host {
     Core(Core),

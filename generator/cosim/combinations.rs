@@ -90,7 +90,7 @@ pub(super) struct Combinations {
 }
 
 impl Combinations {
-    /// Those at `count` places, from the first on.
+    /// The combinations at `count` places, from the first on.
     pub(super) fn new(space: Arc<Space>, first: u64, count: u64) -> Self {
         let mut inputs = vec![0; space.ports.inputs];
         space.ports.out_ready.into_iter().for_each(|at| inputs[at] = 1);

@@ -15,7 +15,7 @@ pub(super) struct Instances<const LANES: usize> {
 
 impl<const LANES: usize> Instances<LANES> {
     /// # Errors
-    /// Those of [`Ports::new`] and [`Simulator::new`].
+    /// As of [`Ports::new`] and [`Simulator::new`].
     pub(super) fn new(design: &Design, contract: &dyn Contract) -> Result<Self> {
         let ports = Ports::new(design, contract)?;
         let mut simulator = Simulator::<LANES>::new(design)?;

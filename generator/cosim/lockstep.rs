@@ -68,13 +68,13 @@ impl<'a> Lockstep<'a> {
         Ok(Self { binding: Binding::new(design, model, contract)?, seed })
     }
 
-    /// The same with some operands held at raw values: the stimulus seldom draws others for them.
+    /// Holds some operands at raw values: the stimulus seldom draws others for them.
     #[must_use]
     pub fn holding(self, held: &[(String, i64)]) -> Self {
         Self { binding: self.binding.holding(held), ..self }
     }
 
-    /// The same with lines of at most `results` results.
+    /// Limits lines to at most `results` results.
     #[must_use]
     pub fn with_lines_of(mut self, results: i64) -> Self {
         self.binding.shorten(results);
@@ -137,7 +137,7 @@ impl<'a> Lockstep<'a> {
     /// As [`Lockstep::run`], in one stream.
     ///
     /// # Errors
-    /// Those of [`Lockstep::run`].
+    /// As of [`Lockstep::run`].
     pub fn run_alone(&self, points: u64) -> Result<Outcome> {
         let mut alone = self.alone(points)?;
         alone.go_on(u64::MAX)?;
@@ -149,7 +149,7 @@ impl<'a> Lockstep<'a> {
     /// in the order of the streams.
     ///
     /// # Errors
-    /// Those of [`Lockstep::run`].
+    /// As of [`Lockstep::run`].
     pub fn watch<W: Send>(
         &self,
         points: u64,
@@ -223,7 +223,7 @@ impl<'a> Lockstep<'a> {
     /// end. Results are compared with the golden model, and not with the formula.
     ///
     /// # Errors
-    /// Those of [`Lockstep::run`]; a stream without a clock, or a clock with more or fewer inputs than the design.
+    /// As of [`Lockstep::run`]; a stream without a clock, or a clock with more or fewer inputs than the design.
     pub fn replay(&self, streams: &[Vec<Vec<u64>>], clocks: u64) -> Result<Outcome> {
         let inputs = self.binding.ports.inputs;
         for (number, stream) in streams.iter().enumerate() {
@@ -251,7 +251,7 @@ impl<'a> Lockstep<'a> {
     /// As [`Lockstep::run`], in one stream, of which `file` takes the waveform from clock `from` on.
     ///
     /// # Errors
-    /// Those of [`Lockstep::run`]; the file cannot be written.
+    /// As of [`Lockstep::run`]; the file cannot be written.
     pub fn trace(
         &self,
         points: u64,

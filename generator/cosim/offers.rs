@@ -23,15 +23,15 @@ const RESET_CLOCKS: u64 = 1024;
 pub(super) struct Offers {
     ports: Arc<Ports>,
     random: Random,
-    /// What is offered until it is taken: the bit patterns of the operands in the order of the ports, and the side value.
+    /// The offer until it is taken: the bit patterns of the operands in the order of the ports, and the side value.
     offered: Option<(Vec<u64>, u64)>,
-    /// Of offers that go on with points of a list those that are left, raw operands in the order of the contract: no others
+    /// The rest of a list of points, raw operands in the order of the contract, where offers go on with one: no others
     /// are drawn, none is withdrawn, and there is no reset.
     listed: Option<VecDeque<Vec<i64>>>,
     reset_left: u64,
     pace: (u64, u64),
     pace_left: u64,
-    /// Those of the latest clock.
+    /// The inputs of the latest clock.
     inputs: Vec<u64>,
 }
 

@@ -17,10 +17,10 @@ pub(super) struct Ports {
     pub(super) out_ready: Option<usize>,
     /// With the mask of its bits.
     pub(super) side_in: Option<(usize, u64)>,
-    /// Those of the contract, in the order of the design.
+    /// The operands of the contract, in the order of the design.
     pub(super) operands: Vec<OperandPort>,
     pub(super) valid: NetId,
-    /// Of a core.
+    /// The outputs `busy` and `done` of a core.
     pub(super) busy: Option<NetId>,
     pub(super) done: Option<NetId>,
     /// Whether `start` is heard while `done` is high.

@@ -23,7 +23,7 @@ pub(super) struct Runner<'a, const LANES: usize> {
     pub(super) simulator: Simulator<LANES>,
     /// The first are in the first lanes.
     streams: Vec<Stream>,
-    /// Those that were ahead of the simulator when something differed.
+    /// The streams that were ahead of the simulator when something differed.
     differ: [bool; LANES],
     /// The clocks to come.
     ahead: Vec<Clock<LANES>>,
@@ -31,7 +31,7 @@ pub(super) struct Runner<'a, const LANES: usize> {
 
 /// The inputs of a clock and what is predicted after it, for each lane.
 struct Clock<const LANES: usize> {
-    /// Of a single clock they are those of the simulator.
+    /// The inputs; those of a single clock are the simulator's own.
     inputs: Vec<[u64; LANES]>,
     /// Lanes whose inputs are those of a clock in which nothing is driven.
     idle: [bool; LANES],
@@ -170,10 +170,10 @@ impl<'a, const LANES: usize> Runner<'a, LANES> {
         Ok(())
     }
 
-    /// What each showed, up to the first that differs.
+    /// Returns the record of each, up to the first that differs.
     ///
     /// # Errors
-    /// Those of [`Runner::run`].
+    /// As of [`Runner::run`].
     pub(super) fn into_seen(self) -> Result<Vec<Seen>> {
         let mut all = Vec::new();
         for (stream, differs) in self.streams.into_iter().zip(self.differ) {
@@ -193,7 +193,7 @@ impl Runner<'_, 1> {
     /// Goes on to the end, or until so many clocks are done.
     ///
     /// # Errors
-    /// Those of [`Runner::run`].
+    /// As of [`Runner::run`].
     pub(super) fn go_on(&mut self, clocks: u64) -> Result<()> {
         while !self.ended() && self.first().seen.clocks < clocks {
             self.run()?;
@@ -204,7 +204,7 @@ impl Runner<'_, 1> {
     /// Goes to the end; `file` takes the waveform from clock `from` on.
     ///
     /// # Errors
-    /// Those of [`Runner::run`].
+    /// As of [`Runner::run`].
     pub(super) fn trace(&mut self, from: u64, file: impl Write + Send + 'static) -> Result<()> {
         self.go_on(from)?;
         self.simulator.trace(file)?;

@@ -1,4 +1,4 @@
-//! What the golden model predicts of a core, clock by clock.
+//! The golden model's prediction of a core, clock by clock.
 
 use std::mem;
 
@@ -88,7 +88,7 @@ impl Core {
         }
     }
 
-    /// What the model predicts after the latest clock.
+    /// Returns the prediction of the model after the latest clock.
     #[inline]
     pub(super) fn predicted(&self) -> &[u64] {
         self.model.values()

@@ -53,7 +53,7 @@ impl Source {
 /// A stream. What the simulated hardware makes of it is for others to say.
 pub(super) struct Stream {
     pub(super) seen: Seen,
-    /// What it goes through, for another to go the same way.
+    /// Its course, for another to go the same way.
     pub(super) course: Course,
     source: Source,
     host: Host,

@@ -6,7 +6,7 @@ use super::instances::Instances;
 use crate::golden::Contract;
 use crate::hdl::netlist::{Design, NetId};
 
-/// What `nets` carry in each clock, just before its rising edge: the points are offered one a clock, but for a bubble
+/// Records what `nets` carry in each clock, just before its rising edge: the points are offered one a clock, but for a bubble
 /// before the last; the first result waits for `pause` clocks, where it can. The recording ends with the last result.
 ///
 /// # Errors

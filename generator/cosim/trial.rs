@@ -306,7 +306,7 @@ fn hinted(contract: &dyn Contract) -> Option<Vec<i64>> {
     (0..TRIES).map_while(|_| points.hint(&mut random)).find(inside)
 }
 
-/// What nets carry in each clock of the computation of [`example`], from clock 0, in which `start` is high, to the
+/// Records what nets carry in each clock of the computation of [`example`], from clock 0, in which `start` is high, to the
 /// first in which the device is idle again: the bit patterns just before the clock's rising edge, in the order of
 /// `nets`, all of which are named.
 ///

@@ -25,7 +25,7 @@ impl RustHdl {
     /// Simulators of a design, at power-up and reset.
     ///
     /// # Errors
-    /// Those of [`crate::hdl::sim::Simulator::new`], and a contract that speaks of ports that the design does not have.
+    /// As of [`crate::hdl::sim::Simulator::new`], and a contract that speaks of ports that the design does not have.
     pub fn new(design: &Design, contract: &dyn Contract) -> Result<Self> {
         let latency = design.pipeline.as_ref().map(|pipeline| pipeline.stages.len() as u64);
         let team = |_| Ok(Team { instances: Instances::new(design, contract)?, latency });
@@ -47,7 +47,7 @@ impl Engine for RustHdl {
 /// The instances of one thread.
 struct Team {
     instances: Instances<LANES>,
-    /// Of a pipeline, the clocks from a point to its results.
+    /// The clocks from a point to its results, of a pipeline.
     latency: Option<u64>,
 }
 

@@ -48,7 +48,7 @@ pub struct SideBySide {
     ports: Ports,
     busy: NetId,
     inputs: Vec<[u64; LANES]>,
-    /// Of a design whose lanes have tables of their own.
+    /// The memories of a design whose lanes have tables of their own.
     copies: Option<Memories>,
 }
 

@@ -1,4 +1,4 @@
-//! What the golden model predicts of a pipeline, clock by clock.
+//! The golden model's prediction of a pipeline, clock by clock.
 //!
 //! The model of the sequential core runs each point on its own. After every clock the handshake is predicted, the results
 //! and the side channel where there are any, and, for the point in each stage, every value that a register of the
@@ -27,7 +27,7 @@ struct Point {
     operands: Vec<i64>,
     side: u64,
     expected: Expected,
-    /// Of a combination its place, and the clock that took it.
+    /// The place of a combination, and the clock that took it.
     place: u64,
     taken: u64,
 }
@@ -39,7 +39,7 @@ pub(super) struct Pipe {
     reference: Reference,
     stages: Occupancy<Point>,
     out_ready: bool,
-    /// What was offered in the latest clock was taken.
+    /// Whether the offer of the latest clock was taken.
     pub(super) taken: bool,
 }
 
@@ -93,7 +93,7 @@ impl Pipe {
         Ok((pipe, nets, results))
     }
 
-    /// What the inputs of a clock make of the points; one that is taken has this place. The error of a result is taken
+    /// Moves the points by the inputs of a clock; one that is taken has this place. The error of a result is taken
     /// by `measure`, if there is one.
     ///
     /// # Errors
@@ -130,7 +130,7 @@ impl Pipe {
         Ok(())
     }
 
-    /// What is expected after the latest clock of the net at this position among those that are compared.
+    /// Returns the value expected after the latest clock of the net at this position among those that are compared.
     #[inline]
     pub(super) fn expected(&self, at: usize) -> Option<u64> {
         let (column, stage) = self.columns[at];
@@ -144,7 +144,7 @@ impl Pipe {
         }
     }
 
-    /// Of the point that the net at this position speaks of, its place and the clock that took it.
+    /// Returns the place of the point that the net at this position speaks of, and the clock that took it.
     pub(super) fn point(&self, at: usize) -> Option<(u64, u64)> {
         self.stages.stage(self.columns[at].1).map(|point| (point.place, point.taken))
     }

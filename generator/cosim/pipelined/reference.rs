@@ -24,7 +24,7 @@ pub(super) struct Reference {
     visits: Vec<usize>,
 }
 
-/// What is expected of a point.
+/// The values that are expected of a point.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Expected {
     /// The results, bit patterns.
