@@ -1,5 +1,5 @@
-//! The pages of the devices, `docs/devices/`: one for the default configuration of each, as Glint
-//! writes it today.
+//! Pages: those of the devices, `docs/devices/`, are as Glint writes them today; those that people write have links that lead
+//! somewhere.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -8,6 +8,10 @@ use std::path::Path;
 use crate::common::cores::{configuration, configurations};
 use glint::cosim::exhaustive::PROOFS;
 use glint::registry::Registry;
+
+fn read(path: &str) -> String {
+    fs::read_to_string(path).unwrap_or_else(|error| panic!("{path}: {error}"))
+}
 
 /// The modules of the default configurations, and of their pipelines.
 fn names() -> Vec<String> {
@@ -29,7 +33,7 @@ fn notes_have_no_runs_of_blanks() {
 
 #[test]
 fn every_device_has_its_page() {
-    let readme = fs::read_to_string("README.md").expect("README.md");
+    let readme = read("README.md");
     for name in names() {
         let (config, file) = (format!("configs/{name}.toml"), format!("docs/devices/{name}.md"));
         let today = configuration(&config)
@@ -104,4 +108,53 @@ fn a_line_has_all_its_points_and_clocks_in_its_length() {
         let points = page.matches("`intensity_out`, point ").count();
         assert_eq!(points, 21, "{path}");
     }
+}
+
+#[test]
+fn the_readme_is_a_path_and_no_reference() {
+    let words = read("README.md").split_whitespace().count();
+    assert!(words <= 1500, "README.md has {words} words; figures stand in docs/measurements.md");
+}
+
+/// Paths and anchors in the pages that people write.
+#[test]
+fn links_lead_somewhere() {
+    let anchors = |page: &str| -> BTreeSet<String> {
+        let headings = read(page);
+        let headings = headings.lines().filter_map(|line| line.strip_prefix('#'));
+        let anchor = |heading: &str| {
+            let heading = heading.trim_start_matches('#').trim().to_lowercase();
+            let kept = heading.chars().filter(|it| it.is_alphanumeric() || " -_".contains(*it));
+            kept.collect::<String>().replace(' ', "-")
+        };
+        headings.map(anchor).collect()
+    };
+    let docs = fs::read_dir("docs").expect("docs/").map(|entry| entry.expect("an entry").path());
+    let docs = docs.filter(|path| path.extension().is_some_and(|it| it == "md"));
+    let docs = docs.map(|path| path.display().to_string());
+    for page in ["README.md", "CONTRIBUTING.md"].map(String::from).into_iter().chain(docs) {
+        let text = read(&page);
+        for link in text.split("](").skip(1) {
+            let link = link.split(')').next().unwrap_or_default();
+            if link.contains("://") {
+                continue;
+            }
+            let (path, anchor) = link.split_once('#').unwrap_or((link, ""));
+            let folder = Path::new(&page).parent().expect("a folder");
+            let path = if path.is_empty() { Path::new(&page).into() } else { folder.join(path) };
+            assert!(path.exists(), "{page}: {link}");
+            let there = || anchors(&path.display().to_string());
+            assert!(anchor.is_empty() || there().contains(anchor), "{page}: {link}");
+        }
+    }
+}
+
+#[test]
+fn every_device_stands_in_the_readme() {
+    let text = read("README.md");
+    let rows = text.split("| device | computes |").nth(1).expect("a table").lines().skip(2);
+    let rows = rows.take_while(|line| line.starts_with("| `"));
+    let listed: BTreeSet<&str> = rows.filter_map(|row| row.split('`').nth(1)).collect();
+    let catalogue = Registry::catalogue();
+    assert_eq!(listed, catalogue.devices().iter().map(|it| it.name).collect());
 }
