@@ -1,4 +1,4 @@
-# ${ top.module }$: ${ top.what() }$, for Platform Designer
+# ${ top.module }$: ${ top.what }$, for Platform Designer
 #
 # Platform Designer finds the module where this directory is among its search paths for IP.
 #
@@ -45,7 +45,7 @@ set_interface_property ${ interface.name }$ associatedReset reset
 add_interface_port ${ interface.name }$ ${ port.name }$ ${ role }$ ${ port.direction() }$ ${ port.width }$
 <%- endfor %>
 <%- endfor %>
-<%- if interrupt %>
+<%- if top.interrupts() && !top.protocols.is_empty() %>
 
 add_interface irq interrupt end
 set_interface_property irq associatedClock clock

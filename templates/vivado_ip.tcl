@@ -23,13 +23,8 @@ dict set modules ${ top.module }$ {
 <%- for file in top.verilog %>
         ${ file }$
 <%- endfor %>
-    } ${ top.clock }$ ${ top.reset }$ <% if top.reset_level == 0 %>ACTIVE_LOW<% else %>ACTIVE_HIGH<% endif %>
-<%- match top.face %>
-<%- when Face::Stream %> {s_axis m_axis} {}
-<%- when Face::Registers(Bus::AxiLite) %> {s_axil} {irq interrupt}
-<%- when Face::Registers(Bus::Wishbone) %> {} {irq interrupt}
-<%- when Face::Core %> {} {}
-<%- endmatch %>
+    } ${ top.clock }$ ${ top.reset }$ <% if top.reset_level == 0 %>ACTIVE_LOW<% else %>ACTIVE_HIGH<% endif %> {
+<%- for protocol in top.protocols %><% if !loop.first %> <% endif %>${ protocol.name }$<% endfor %>} {<% if top.interrupts() %>irq interrupt<% endif %>}
 }
 <%- endfor %>
 

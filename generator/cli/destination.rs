@@ -1,11 +1,15 @@
 //! A single file that is written whole or not at all, and that is known to be writable before the work for it.
 
 use std::fs::{self, File, OpenOptions};
+use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use super::staged;
-use crate::base::transient;
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, anyhow};
+
+use crate::base::transient::{Directory, left_beside};
+
+/// The file while it is written, in a directory of its own.
+const UNFINISHED: &str = "unfinished";
 
 /// Where a file goes: written beside its place and moved there when it is whole. A pipe or a device is
 /// written itself.
@@ -16,22 +20,47 @@ pub struct Destination {
 
 enum Sink {
     Itself(File),
-    Beside(transient::File),
+    Beside(Directory),
 }
 
 impl Destination {
-    /// Makes sure that `path` can be written, before any work is done for it.
+    /// Makes sure that `path` can be written, before any work is done for it. What a symbolic link leads to is replaced, and
+    /// not the link.
     ///
     /// # Errors
-    /// It cannot.
+    /// It cannot; a link leads nowhere; the directory is missing.
     pub fn open(path: &Path) -> Result<Self> {
         if fs::metadata(path).is_ok_and(|found| !found.is_file()) {
             let file = OpenOptions::new().write(true).open(path);
             let sink = Sink::Itself(file.with_context(|| cannot(path))?);
             return Ok(Self { path: path.to_owned(), sink });
         }
-        let path = staged::place(path)?;
-        let sink = Sink::Beside(staged::beside(&path)?);
+        let path = match path.is_symlink() {
+            true => fs::canonicalize(path).with_context(|| {
+                format!("{}: it is a symbolic link that leads nowhere", cannot(path))
+            })?,
+            false => path.to_owned(),
+        };
+        let directory = match path.parent() {
+            Some(parent) if parent != Path::new("") => parent,
+            _ => Path::new("."),
+        };
+        for left in left_beside(directory).iter().filter(|left| left.stated == [UNFINISHED]) {
+            let _ = fs::remove_dir_all(&left.path);
+        }
+        let missing = |error: io::Error| match error.kind() {
+            ErrorKind::NotFound => {
+                anyhow!("there is no directory `{}`; make it", directory.display())
+            }
+            _ => error.into(),
+        };
+        let made = || -> Result<Directory> {
+            let mut beside = Directory::beside(directory).map_err(missing)?;
+            beside.state(UNFINISHED)?;
+            File::create(beside.path().join(UNFINISHED))?;
+            Ok(beside)
+        };
+        let sink = Sink::Beside(made().with_context(|| cannot(&path))?);
         Ok(Self { path, sink })
     }
 
@@ -42,7 +71,9 @@ impl Destination {
     pub fn file(&self) -> Result<File> {
         let file = match &self.sink {
             Sink::Itself(file) => file.try_clone(),
-            Sink::Beside(staged) => staged.reopen(),
+            Sink::Beside(staged) => {
+                OpenOptions::new().read(true).write(true).open(staged.path().join(UNFINISHED))
+            }
         };
         file.with_context(|| cannot(&self.path))
     }
@@ -54,9 +85,27 @@ impl Destination {
     pub fn commit(self) -> Result<()> {
         match self.sink {
             Sink::Itself(_) => Ok(()),
-            Sink::Beside(staged) => staged.persist(&self.path).with_context(|| cannot(&self.path)),
+            Sink::Beside(staged) => fs::rename(staged.path().join(UNFINISHED), &self.path)
+                .with_context(|| cannot(&self.path)),
         }
     }
+
+    /// Writes the whole file and moves it into its place.
+    ///
+    /// # Errors
+    /// It cannot be written or moved; then nothing was changed.
+    pub fn write(self, contents: impl AsRef<[u8]>) -> Result<()> {
+        self.file()?.write_all(contents.as_ref()).with_context(|| cannot(&self.path))?;
+        self.commit()
+    }
+}
+
+/// Replaces the file `path` as a whole, or leaves it as it was.
+///
+/// # Errors
+/// It cannot be written.
+pub fn replace(path: &Path, contents: impl AsRef<[u8]>) -> Result<()> {
+    Destination::open(path)?.write(contents)
 }
 
 /// The message when it cannot be written.

@@ -6,7 +6,6 @@ mod failure;
 mod interrupt;
 mod own_file;
 mod progress;
-mod staged;
 mod store;
 mod tables;
 

@@ -1,7 +1,6 @@
 //! Single files that Glint writes again and again: what is not one of them is not overwritten.
 
 use std::fs;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
@@ -58,9 +57,7 @@ impl OwnFile {
     /// It cannot be written.
     pub fn write(self, contents: &str) -> Result<String> {
         let name = self.path.display().to_string().replace('\\', "/");
-        let mut file = self.destination.file()?;
-        file.write_all(contents.as_bytes()).with_context(|| format!("cannot write `{name}`"))?;
-        self.destination.commit()?;
+        self.destination.write(contents)?;
         Ok(name)
     }
 

@@ -1,9 +1,8 @@
 //! Writing what was generated, without ever costing the user a file.
 //!
-//! The directories of a configuration are replaced as a whole: everything is written beside them
-//! first and moved into place when it is complete. What stands there already is replaced only when
-//! the manifest's digests say that Glint wrote it and nobody edited it since. What is not Glint's and
-//! not in the way (an editor's swap file, a note) stays.
+//! Everything is written beside the directories of a configuration first, and moved into place, file by file, when it is
+//! complete. What stands there already is replaced only when the manifest's digests say that Glint wrote it and nobody
+//! edited it since. What is not Glint's and not in the way (an editor's swap file, a note) is not touched.
 
 mod staging;
 mod survey;
@@ -18,7 +17,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 
-use super::staged;
+use super::destination;
 use crate::package::{OutputFile, Seal, is_sealed};
 use staging::Staging;
 use survey::Survey;
@@ -46,8 +45,7 @@ impl fmt::Display for Written {
 ///
 /// # Errors
 /// Files of Glint's that were edited, or others that would be overwritten, unless `force` (which still keeps
-/// those that are not in the way); a directory that cannot be written. Whatever fails, what was there before is
-/// there after.
+/// those that are not in the way); a directory that cannot be written. Nothing of the user's is changed then.
 pub fn write(out: &Path, name: &str, files: &[OutputFile], force: bool) -> Result<Written> {
     staging::recover(out)?;
     let found = Survey::new(out, name, files)?;
@@ -64,8 +62,7 @@ pub fn write(out: &Path, name: &str, files: &[OutputFile], force: bool) -> Resul
         );
     }
     create_directory(out)?;
-    let staging = Staging::new(out, files)?;
-    staging.swap(out, name, &[found.edited, found.foreign].concat())?;
+    Staging::new(out, files)?.place(out, &found.stale)?;
     Ok(Written::Replaced)
 }
 
@@ -88,7 +85,7 @@ pub fn write_sealed(path: &Path, text: &str, seal: Seal, force: bool) -> Result<
         return Ok(Written::Unchanged);
     }
     create_parent(path)?;
-    staged::replace(path, text.as_bytes())?;
+    destination::replace(path, text)?;
     Ok(Written::Replaced)
 }
 
@@ -131,13 +128,6 @@ pub fn differs(out: &Path, file: &OutputFile) -> Result<bool> {
 /// The directories of a configuration.
 fn directories(out: &Path, name: &str) -> [PathBuf; 3] {
     ["rtl_out", "testbench", "software"].map(|top| out.join(top).join(name))
-}
-
-/// The path below `out`, with `/`, as [`OutputFile::path`] has it.
-fn relative_name(out: &Path, path: &Path) -> String {
-    let relative = path.strip_prefix(out).unwrap_or(path);
-    let parts: Vec<_> = relative.iter().map(|part| part.to_string_lossy()).collect();
-    parts.join("/")
 }
 
 fn create_parent(path: &Path) -> Result<()> {

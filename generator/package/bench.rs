@@ -1,42 +1,13 @@
 //! The self-checking test bench and its vectors.
 
 use anyhow::{Result, ensure};
-use askama::Template;
 
 use super::Vectors;
+use super::artifact::{Artifacts, Job, Kind};
 use crate::base::fixed::mask;
 use crate::hdl::netlist::{Design, Port, Role};
-use crate::hdl::verilog::naming::Naming;
 use crate::hdl::verilog::rows::{connections, variables};
-use crate::hdl::verilog::text::{Names, ascii, literal, statement};
-
-#[derive(Template)]
-#[template(path = "bench.v")]
-struct Bench {
-    name: String,
-    module: String,
-    names: Variables,
-    stimulus_file: String,
-    expected_file: String,
-    stimulus_last: u32,
-    expected_last: u32,
-    clocks: usize,
-    known_from: usize,
-    declarations: Vec<String>,
-    /// The assignment of a word of stimulus to the inputs.
-    stimulus: Vec<String>,
-    connections: Vec<String>,
-    reset: Option<String>,
-    /// The initial value of `was_reset`.
-    reset_seen: &'static str,
-    handshake: Vec<Output>,
-    results: Vec<Output>,
-    /// The signal of a pipeline by which the expected word says that results are those of a point: in a bubble they mean nothing.
-    shown: Option<String>,
-    /// None without a microprogram.
-    address: Option<String>,
-    microprogram: Vec<Microinstruction>,
-}
+use crate::hdl::verilog::text::{Names, ascii, comment, literal, statement};
 
 fresh_names!(Variables {
     stimulus,
@@ -62,19 +33,12 @@ struct Microinstruction {
     name: String,
 }
 
-#[derive(Template)]
-#[template(path = "vectors.mem")]
-struct VectorFile {
-    title: String,
-    columns: Vec<String>,
-    words: Vec<String>,
-}
-
-/// The bench, the stimulus and the expected outputs, as names and texts.
+/// Adds the bench, the stimulus and the expected outputs.
 ///
 /// # Errors
 /// Vectors that do not fit the ports.
-pub fn files(design: &Design, naming: &Naming, vectors: &Vectors) -> Result<Vec<(String, String)>> {
+pub fn files(job: &Job, vectors: &Vectors, files: &mut Artifacts) -> Result<()> {
+    let design = job.design;
     let inputs: Vec<_> = design.inputs().collect();
     let outputs: Vec<_> = design.outputs().collect();
     ensure!(!inputs.is_empty() && !outputs.is_empty(), "a bench needs inputs and outputs");
@@ -91,18 +55,17 @@ pub fn files(design: &Design, naming: &Naming, vectors: &Vectors) -> Result<Vec<
         vectors.known_from,
         vectors.inputs.len()
     );
-    let name = &design.name;
     let stimulus = vector_file(design, "stimulus", &inputs, &vectors.inputs)?;
     let expected = vector_file(design, "expected outputs", &outputs, &vectors.expected)?;
-    let bench = super::render(&view(design, naming, vectors))?;
-    Ok(vec![
-        (format!("{name}_tb.v"), bench),
-        (format!("{name}_stimulus.mem"), stimulus),
-        (format!("{name}_expected.mem"), expected),
-    ])
+    let name = job.name();
+    files.add(Kind::Bench, format!("{name}_tb.v"), bench(job, vectors)?);
+    files.add(Kind::Bench, format!("{name}_stimulus.mem"), stimulus);
+    files.add(Kind::Bench, format!("{name}_expected.mem"), expected);
+    Ok(())
 }
 
-fn view(design: &Design, naming: &Naming, vectors: &Vectors) -> Bench {
+fn bench(job: &Job, vectors: &Vectors) -> Result<String> {
+    let design = job.design;
     let port_name = |port: &Port| design.net(port.net).name.clone();
     let mut names = Names::of_ports(design);
     let own = Variables::new(&mut names);
@@ -143,34 +106,35 @@ fn view(design: &Design, naming: &Naming, vectors: &Vectors) -> Bench {
         .collect();
     let reset = design.port(|role| role == Role::Reset).map(port_name);
     let stimulus: Vec<_> = inputs.iter().map(|port| port_name(port)).collect();
-    Bench {
-        name: format!("{}_tb", design.name),
-        module: design.name.clone(),
-        stimulus_file: format!("{}_stimulus.mem", design.name),
-        expected_file: format!("{}_expected.mem", design.name),
-        stimulus_last: total(&inputs) - 1,
-        expected_last: total(&outputs) - 1,
-        clocks: vectors.inputs.len(),
-        known_from: vectors.known_from,
-        declarations: variables(design, true),
-        stimulus: statement(
-            12,
-            &format!("{{{}}} = {}[{}];", stimulus.join(", "), own.stimulus, own.clock),
-        ),
-        connections: connections(design),
-        // Without a reset there is nothing to wait for.
-        reset_seen: if reset.is_some() { "1'b0" } else { "1'b1" },
-        reset,
-        handshake,
-        results,
-        shown,
-        address: address.map(|address| {
+    let stimulus = format!("{{{}}} = {}[{}];", stimulus.join(", "), own.stimulus, own.clock);
+    fill!("bench.v" {
+        name: String = format!("{}_tb", design.name),
+        module: &'a str = job.name(),
+        stimulus_file: String = format!("{}_stimulus.mem", design.name),
+        expected_file: String = format!("{}_expected.mem", design.name),
+        stimulus_last: u32 = total(&inputs) - 1,
+        expected_last: u32 = total(&outputs) - 1,
+        clocks: usize = vectors.inputs.len(),
+        known_from: usize = vectors.known_from,
+        declarations: Vec<String> = variables(design, true),
+        // The assignment of a word of stimulus to the inputs.
+        stimulus: Vec<String> = statement(12, &stimulus),
+        connections: Vec<String> = connections(design),
+        // What `was_reset` begins with: without a reset there is nothing to wait for.
+        reset_seen: &'a str = if reset.is_some() { "1'b0" } else { "1'b1" },
+        reset: Option<String>,
+        handshake: Vec<Output>,
+        results: Vec<Output>,
+        // Of a pipeline, where the expected word says that results are those of a point: in a bubble they mean nothing.
+        shown: Option<String>,
+        // None without a microprogram.
+        address: Option<String> = address.map(|address| {
             let address = &design.net(address).name;
-            format!("{}.{}.{address}", own.dut, naming.control_instance)
+            format!("{}.{}.{address}", own.dut, job.naming.control_instance)
         }),
-        microprogram,
-        names: own,
-    }
+        microprogram: Vec<Microinstruction>,
+        names: Variables = own,
+    })
 }
 
 fn vector_file(design: &Design, title: &str, ports: &[&Port], rows: &[Vec<u64>]) -> Result<String> {
@@ -196,12 +160,11 @@ fn vector_file(design: &Design, title: &str, ports: &[&Port], rows: &[Vec<u64>])
         let net = design.net(port.net);
         format!("{} [{}]", net.name, net.format.width())
     });
-    let columns = crate::hdl::verilog::text::comment(
-        0,
-        &format!("From the top bit, with widths: {}", columns.collect::<Vec<_>>().join(", ")),
-    );
-    let title = format!("{}: {title}, a word a clock", design.name);
-    super::render(&VectorFile { title, columns, words })
+    let columns = columns.collect::<Vec<_>>().join(", ");
+    let mut lines = vec![format!("// {}: {title}, a word a clock", design.name)];
+    lines.extend(comment(0, &format!("From the top bit, with widths: {columns}")));
+    lines.extend(words);
+    Ok(lines.join("\n") + "\n")
 }
 
 /// The values side by side, the first on top, in hexadecimal digits.

@@ -1,24 +1,10 @@
 //! The bench in Python, for cocotb, and the driver that those of all configurations share.
 
 use anyhow::Result;
-use askama::Template;
 
+use super::artifact::{Artifacts, Job, Kind};
 use super::seal::{Seal, sealed};
 use super::{ContractFacts, OutputFile, Quantity, WorkedExample};
-use crate::hdl::netlist::Design;
-
-#[derive(Template)]
-#[template(path = "test.py")]
-struct Bench<'a> {
-    name: &'a str,
-    operands: Vec<String>,
-    outputs: Vec<String>,
-    /// The names that are imported from the driver, sorted.
-    tests: Vec<&'static str>,
-    pipeline: bool,
-    /// The results of the example.
-    shown: &'static str,
-}
 
 /// The tests of the driver for a core with a microprogram; the first needs a formula.
 const SEQUENTIAL: [&str; 5] = [
@@ -40,15 +26,17 @@ const PIPELINE: [&str; 4] = [
     "reset_drops_every_point",
 ];
 
-/// The bench of a design, as name and text.
+/// Adds the bench of a design.
 ///
 /// # Errors
 /// A template that fails.
-pub fn bench(
-    design: &Design,
+pub fn file(
+    job: &Job,
     example: &WorkedExample,
     accuracy: &ContractFacts,
-) -> Result<(String, String)> {
+    files: &mut Artifacts,
+) -> Result<()> {
+    let (name, design) = (job.name(), job.design);
     let pipeline = design.pipeline.is_some();
     let all = if pipeline { &PIPELINE[..] } else { &SEQUENTIAL[..] };
     let mut tests = all[usize::from(accuracy.f.is_empty())..].to_vec();
@@ -57,15 +45,18 @@ pub fn bench(
         tests.push(BUFFERED);
     }
     tests.sort_unstable();
-    let bench = Bench {
-        name: &design.name,
-        operands: lines(&example.operands, |name, raw| format!("{name}={raw},")),
-        outputs: lines(&example.outputs, |name, raw| format!("\"{name}\": {raw},")),
-        tests,
-        pipeline,
-        shown: if pipeline { "shown" } else { "shown.results[0]" },
-    };
-    Ok((format!("test_{}.py", design.name), super::render(&bench)?))
+    let text = fill!("test.py" {
+        name: &'a str,
+        operands: Vec<String> = lines(&example.operands, |name, raw| format!("{name}={raw},")),
+        outputs: Vec<String> = lines(&example.outputs, |name, raw| format!("\"{name}\": {raw},")),
+        // What is imported of the driver, sorted.
+        tests: Vec<&'static str>,
+        pipeline: bool,
+        // The results of the example.
+        shown: &'a str = if pipeline { "shown" } else { "shown.results[0]" },
+    })?;
+    files.add(Kind::Python, format!("test_{name}.py"), text);
+    Ok(())
 }
 
 /// A line a number; where it has a fraction, with what the integer stands for.

@@ -5,9 +5,9 @@
 //! `yosys-smtbmc`: products and the datapath's ROMs are cut out, since no property depends on them.
 
 use anyhow::Result;
-use askama::Template;
 
-use super::{Computation, EmitInputs, Timing};
+use super::artifact::{Artifacts, Job, Kind};
+use super::{Computation, Timing};
 use crate::hdl::netlist::termination::{self, Left};
 use crate::hdl::netlist::{Design, Driver, NetId, Op, Partition, Port, RegId, Role, Sequence};
 use crate::hdl::verilog::naming::Naming;
@@ -16,28 +16,6 @@ use crate::hdl::verilog::text::{Names, literal, range};
 
 /// Steps of an induction where the clocks depend on the data: more than a result takes through a pipeline.
 const UNROLLED: u32 = 8;
-
-#[derive(Template)]
-#[template(path = "formal.sv")]
-struct Wrapper {
-    name: String,
-    module: String,
-    depth: u32,
-    /// The solver, as the command line of yosys-smtbmc has it.
-    solver: &'static str,
-    instance: String,
-    age: Option<AgeView>,
-    /// Ports with their commas.
-    ports: Vec<String>,
-    outputs: Vec<String>,
-    connections: Vec<String>,
-    /// The program never waits for a second `start`: busy from start to done.
-    straight: bool,
-    /// `start` is heard in the clock of `done` too.
-    overlaps: bool,
-    exact: Option<Exact>,
-    bounded: Option<Bounded>,
-}
 
 /// The register that counts clocks since start.
 struct Age {
@@ -85,56 +63,37 @@ struct Latest {
     end: String,
 }
 
-/// Commands of Yosys that make the problem, alone or for SymbiYosys.
-#[derive(Template)]
-#[template(path = "formal.ys")]
+/// What the commands of Yosys that make the problem depend on, alone or for SymbiYosys.
 pub(super) struct Script<'a> {
     pub(super) name: &'a str,
     /// The cells whose memories are cut out, as Yosys selects them.
     pub(super) within: &'a str,
-    pub(super) rtl: &'a [String],
     /// Registers have initial values.
     pub(super) initial: bool,
 }
 
 impl Script<'_> {
-    /// The wrapper, this script, and the task of SymbiYosys: names and texts.
+    /// Adds the wrapper, the script, and the task of SymbiYosys.
     pub(super) fn files(
         &self,
-        wrapper: &impl Template,
+        wrapper: String,
         depth: u32,
         engine: &str,
-        memories: &[String],
-    ) -> Result<Vec<(String, String)>> {
-        let Self { name, within, rtl, .. } = *self;
-        let task = Task { name, within, depth, engine, rtl, memories };
-        Ok(vec![
-            (format!("{name}.sv"), super::render(wrapper)?),
-            (format!("{name}.ys"), super::render(self)?),
-            (format!("{name}.sby"), super::render(&task)?),
-        ])
+        files: &mut Artifacts,
+    ) -> Result<()> {
+        let Self { name, within, initial } = *self;
+        let (rtl, memories) = (files.names(&[Kind::Rtl]), files.names(&[Kind::Memory]));
+        let script = fill!("formal.ys" {
+            name: &'a str, within: &'a str, rtl: &'a [String] = &rtl, initial: bool,
+        })?;
+        let task = fill!("formal.sby" {
+            name: &'a str, within: &'a str, depth: u32, engine: &'a str, rtl: Vec<String>, memories: Vec<String>,
+        })?;
+        for (ending, text) in [("sv", wrapper), ("ys", script), ("sby", task)] {
+            files.add(Kind::Proof, format!("{name}.{ending}"), text);
+        }
+        Ok(())
     }
-}
-
-#[derive(Template)]
-#[template(path = "formal.sby")]
-struct Task<'a> {
-    name: &'a str,
-    /// As in [`Script`].
-    within: &'a str,
-    depth: u32,
-    engine: &'a str,
-    rtl: &'a [String],
-    memories: &'a [String],
-}
-
-/// The files of the device that a proof reads.
-#[derive(Clone, Copy)]
-pub struct Sources<'a> {
-    /// Verilog.
-    pub rtl: &'a [String],
-    /// ROM contents.
-    pub memories: &'a [String],
 }
 
 /// The clocks by which `valid` follows what sets it, none in a design without it.
@@ -155,18 +114,13 @@ fn valid_delay(design: &Design) -> u32 {
     clocks
 }
 
-/// Wrapper and script, as names and texts.
+/// Adds the wrapper and its scripts.
 ///
 /// # Errors
 /// A template that fails.
-pub fn files(
-    design: &Design,
-    naming: &Naming,
-    inputs: &EmitInputs,
-    sources: Sources,
-) -> Result<Vec<(String, String)>> {
-    let timing = &inputs.timing;
-    let module = &design.name;
+pub fn files(job: &Job, files: &mut Artifacts) -> Result<()> {
+    let Job { design, inputs, naming, .. } = *job;
+    let (timing, module) = (&inputs.timing, job.name());
     let name = format!("{module}_formal");
     let mut names = Names::of_ports(design);
     let instance = names.fresh("dut");
@@ -195,43 +149,47 @@ pub fn files(
     // A few steps with much state between them z3 solves at once when they are unrolled, and those of a device that
     // begins a computation as another ends; many it solves faster when they are not.
     let unroll = exact.is_none() || design.control.overlaps;
-    let wrapper = Wrapper {
-        name: name.clone(),
-        module: module.clone(),
-        depth,
-        solver: if unroll { "--unroll -s z3" } else { "-s z3" },
-        instance: instance.clone(),
-        ports: separated(inputs_of(design)),
-        outputs: outputs_of(design),
-        connections: connections(design),
-        straight: !waits,
-        overlaps: design.control.overlaps,
-        exact: exact.zip(age.as_ref()).map(|((clocks, start), age)| Exact {
-            valid: age.literal(clocks[0]),
-            done: age.literal(clocks[1]),
-            last: age.literal(start - 1),
-        }),
-        bounded: bounded.zip(age.as_ref()).map(|((left, most), age)| Bounded {
-            // Results follow one another without a pause, once the first is there.
-            first: match timing.valid_to_valid {
-                Some(1) => timing.start_to_valid.map(|first| age.literal(first)),
-                _ => None,
-            },
-            ends_with_result: !inputs.computations.is_empty()
-                && inputs.computations.iter().all(Computation::ends_with_result),
-            ..bounded_view(design, naming, &instance, &mut names, (&left, most), age)
-        }),
-        age: age.as_ref().map(|age| AgeView {
+    let exact = exact.zip(age.as_ref()).map(|((clocks, start), age)| Exact {
+        valid: age.literal(clocks[0]),
+        done: age.literal(clocks[1]),
+        last: age.literal(start - 1),
+    });
+    let bounded = bounded.zip(age.as_ref()).map(|((left, most), age)| Bounded {
+        // Results follow one another without a pause, once the first is there.
+        first: match timing.valid_to_valid {
+            Some(1) => timing.start_to_valid.map(|first| age.literal(first)),
+            _ => None,
+        },
+        ends_with_result: !inputs.computations.is_empty()
+            && inputs.computations.iter().all(Computation::ends_with_result),
+        ..bounded_view(design, naming, &instance, &mut names, (&left, most), age)
+    });
+    let within = format!("{instance}.{}.*", naming.instance(Partition::Datapath));
+    let wrapper = fill!("formal.sv" {
+        name: &'a str = &name,
+        module: &'a str,
+        depth: u32,
+        // The solver, as the command line of yosys-smtbmc has it.
+        solver: &'a str = if unroll { "--unroll -s z3" } else { "-s z3" },
+        instance: String,
+        // Ports with their commas.
+        ports: Vec<String> = separated(inputs_of(design)),
+        outputs: Vec<String> = outputs_of(design),
+        connections: Vec<String> = connections(design),
+        // The program never waits for a second `start`: busy from start to done.
+        straight: bool = !waits,
+        // `start` is heard in the clock of `done` too.
+        overlaps: bool = design.control.overlaps,
+        exact: Option<Exact>,
+        bounded: Option<Bounded>,
+        age: Option<AgeView> = age.as_ref().map(|age| AgeView {
             range: range(age.width),
             one: age.literal(1),
             name: age.name.clone(),
         }),
-    };
-    let within = format!("{instance}.{}.*", naming.instance(Partition::Datapath));
-    let initial = naming.style.initial;
-    let script = Script { name: &name, within: &within, rtl: sources.rtl, initial };
-    let engine = if unroll { "smtbmc --unroll z3" } else { "smtbmc z3" };
-    script.files(&wrapper, depth, engine, sources.memories)
+    })?;
+    let script = Script { name: &name, within: &within, initial: naming.style.initial };
+    script.files(wrapper, depth, if unroll { "smtbmc --unroll z3" } else { "smtbmc z3" }, files)
 }
 
 /// The ports of a wrapper for the clock and the inputs of a design: what a solver chooses.

@@ -5,49 +5,16 @@
 //! with it. No property depends on a product or a ROM, which are cut out.
 
 use anyhow::Result;
-use askama::Template;
 
-use super::formal::{Script, Sources, inputs_of, outputs_of};
-use crate::hdl::netlist::{Design, NetId, Pipeline, Role};
+use super::artifact::{Artifacts, Job};
+use super::formal::{Script, inputs_of, outputs_of};
+use crate::hdl::netlist::{NetId, Pipeline, Role};
 use crate::hdl::verilog::naming::Naming;
 use crate::hdl::verilog::rows::{connections, separated};
 use crate::hdl::verilog::text::{Names, literal, range};
 
 /// Steps of the induction: every property follows from the clock before.
 const DEPTH: u32 = 2;
-
-#[derive(Template)]
-#[template(path = "pipeline_formal.sv")]
-struct Wrapper {
-    name: String,
-    module: String,
-    depth: u32,
-    instance: String,
-    /// Ports with their commas.
-    ports: Vec<String>,
-    outputs: Vec<String>,
-    connections: Vec<String>,
-    /// The declarations of the proof's view of the inside.
-    inside: Vec<String>,
-    stages: usize,
-    /// One bit a stage, under its path.
-    valid: String,
-    stall: bool,
-    moves_when: &'static str,
-    /// No point in any stage.
-    empty: String,
-    results: Vec<String>,
-    /// Names of the wrapper.
-    present: String,
-    moves: String,
-    queue: String,
-    queue_next: String,
-    chosen: String,
-    begins: String,
-    followed: String,
-    followed_next: String,
-    side: Option<Side>,
-}
 
 /// The side channel.
 struct Side {
@@ -62,16 +29,12 @@ struct SideStage {
     value: String,
 }
 
-/// Wrapper and scripts, as names and texts.
+/// Adds the wrapper and its scripts.
 ///
 /// # Errors
 /// A template that fails.
-pub fn files(
-    design: &Design,
-    pipeline: &Pipeline,
-    sources: Sources<'_>,
-) -> Result<Vec<(String, String)>> {
-    let module = &design.name;
+pub fn files(job: &Job, pipeline: &Pipeline, files: &mut Artifacts) -> Result<()> {
+    let (module, design) = (job.name(), job.design);
     let name = format!("{module}_formal");
     let port_name = |net: NetId| design.net(net).name.clone();
     let mut names = Names::of_ports(design);
@@ -110,32 +73,36 @@ pub fn files(
     };
     let result = |role: Role| matches!(role, Role::Result | Role::Status | Role::SideOut);
     let results = design.outputs().filter(|port| result(port.role));
-    let wrapper = Wrapper {
-        name: name.clone(),
-        module: module.clone(),
-        depth: DEPTH,
-        instance: instance.clone(),
-        ports: separated(ports),
-        outputs: outputs_of(design),
-        connections: connections(design),
-        stages: latency,
-        valid,
-        stall: pipeline.stall,
-        moves_when: if pipeline.stall { "out_ready | ~out_valid" } else { "1'b1" },
-        empty: literal(0, latency as u32),
-        results: results.map(|port| port_name(port.net)).collect(),
-        present: names.fresh("present"),
-        moves: names.fresh("moves"),
-        queue_next: shifted(&queue, "in_valid"),
-        followed_next: shifted(&followed, &begins),
-        queue,
-        chosen,
-        begins,
-        followed,
-        side,
-        inside,
-    };
     let within = format!("{instance}.*");
-    let script = Script { name: &name, within: &within, rtl: sources.rtl, initial: false };
-    script.files(&wrapper, DEPTH, "smtbmc --unroll z3", sources.memories)
+    let wrapper = fill!("pipeline_formal.sv" {
+        name: &'a str = &name,
+        module: &'a str,
+        depth: u32 = DEPTH,
+        instance: String,
+        // Ports with their commas.
+        ports: Vec<String> = separated(ports),
+        outputs: Vec<String> = outputs_of(design),
+        connections: Vec<String> = connections(design),
+        // What the proof sees of the inside: declarations.
+        inside: Vec<String>,
+        stages: usize = latency,
+        // One bit a stage, under its path.
+        valid: String,
+        stall: bool = pipeline.stall,
+        moves_when: &'a str = if pipeline.stall { "out_ready | ~out_valid" } else { "1'b1" },
+        // No point in any stage.
+        empty: String = literal(0, latency as u32),
+        results: Vec<String> = results.map(|port| port_name(port.net)).collect(),
+        present: String = names.fresh("present"),
+        moves: String = names.fresh("moves"),
+        queue_next: String = shifted(&queue, "in_valid"),
+        followed_next: String = shifted(&followed, &begins),
+        queue: String,
+        chosen: String,
+        begins: String,
+        followed: String,
+        side: Option<Side>,
+    })?;
+    let script = Script { name: &name, within: &within, initial: false };
+    script.files(wrapper, DEPTH, "smtbmc --unroll z3", files)
 }

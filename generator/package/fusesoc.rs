@@ -2,97 +2,52 @@
 //! list files beside it.
 
 use anyhow::Result;
-use askama::Template;
 
-use super::EmitInputs;
-use crate::hdl::netlist::Design;
+use super::artifact::{Artifacts, Job, Kind};
 use crate::hdl::verilog::text::ascii;
 
-/// The core of the device.
-#[derive(Template)]
-#[template(path = "device.core")]
-struct DeviceCore<'a> {
-    name: &'a str,
-    description: String,
-    sources: Sources<'a>,
-    /// The benches beside the core's own, without `_tb`; none without it.
-    benches: Option<&'a [String]>,
-    /// That of `<name>.xdc` and `<name>.sdc`, if there are any.
-    clock_mhz: Option<f64>,
-    version: &'a str,
-    licence: &'a str,
-}
-
-/// The files of a device beside its core; all but Verilog may be none.
-#[derive(Clone, Copy)]
-pub struct Sources<'a> {
-    /// Verilog, the top module first.
-    pub rtl: &'a [String],
-    /// Verilog of a target, `<target>/<file>`, in place of the file of that name in `rtl`.
-    pub primitives: &'a [String],
-    /// Verilog around it.
-    pub wrappers: &'a [String],
-    /// ROM contents.
-    pub memories: &'a [String],
-}
-
-impl Sources<'_> {
-    /// The Verilog of the core for all targets: none that a target has its own of.
-    fn common(&self) -> impl Iterator<Item = &String> {
-        self.rtl.iter().filter(|file| !self.replaced().any(|it| it == *file))
-    }
-
-    /// The portable files that a target has its own of.
-    fn replaced(&self) -> impl Iterator<Item = &str> {
-        self.primitives.iter().filter_map(|file| Some(file.split_once('/')?.1))
-    }
-}
-
-/// The core of the bench.
-#[derive(Template)]
-#[template(path = "testbench.core")]
-struct BenchCore<'a> {
-    name: &'a str,
-    version: &'a str,
-    licence: &'a str,
-    bench: &'a str,
-    /// Its vectors, and the benches of wrappers with theirs.
-    others: &'a [String],
-}
-
-/// `<name>.core`; with a simulation target if there is a bench. File names are relative to it.
+/// Adds `<name>.core`, with a simulation target if there is a bench, and then `<name>_tb.core`. File names are relative to them.
 ///
 /// # Errors
 /// A template that fails to print.
-pub fn device(
-    design: &Design,
-    inputs: &EmitInputs,
-    sources: Sources,
-    benches: Option<&[String]>,
-) -> Result<String> {
-    // A YAML string in single quotes; a quote in it is doubled.
-    let description = ascii(&design.about.title).replace('\'', "''");
-    super::render(&DeviceCore {
-        name: &design.name,
-        description,
-        sources,
-        benches,
-        clock_mhz: inputs.around.clock_mhz,
-        version: &inputs.around.version,
-        licence: &inputs.around.licence,
-    })
-}
-
-/// `<name>_tb.core`. File names are relative to it.
-///
-/// # Errors
-/// A template that fails to print.
-pub fn bench(
-    design: &Design,
-    inputs: &EmitInputs,
-    bench: &str,
-    others: &[String],
-) -> Result<String> {
-    let (version, licence) = (&inputs.around.version, &inputs.around.licence);
-    super::render(&BenchCore { name: &design.name, version, licence, bench, others })
+pub fn files(job: &Job, files: &mut Artifacts) -> Result<()> {
+    let (name, around) = (job.name(), &job.inputs.around);
+    let (version, licence) = (around.version.as_str(), around.licence.as_str());
+    let of = |kind: Kind| files.names(&[kind]);
+    let (rtl, primitives, benches) = (of(Kind::Rtl), of(Kind::Primitive), of(Kind::Bench));
+    let named = primitives.iter().filter_map(|file| Some(file.split_once('/')?.1.to_owned()));
+    let replaced: Vec<String> = named.collect();
+    let wrapper = |file: &String| {
+        let bench = file.strip_prefix(name)?.strip_prefix('_')?.strip_suffix("_tb.v")?;
+        Some(bench.to_owned())
+    };
+    let core = fill!("device.core" {
+        name: &'a str,
+        // A YAML string in single quotes; a quote in it is doubled.
+        description: String = ascii(&job.design.about.title).replace('\'', "''"),
+        // The Verilog of the core for all targets: none that a target has its own of.
+        common: Vec<&'a String> = rtl.iter().filter(|file| !replaced.contains(file)).collect(),
+        // The portable files that a target has its own of.
+        replaced: &'a [String] = &replaced,
+        primitives: &'a [String] = &primitives,
+        wrappers: Vec<String> = of(Kind::Wrapper),
+        memories: Vec<String> = of(Kind::Memory),
+        // The benches beside the core's own, without `_tb`; none without it.
+        benches: Option<Vec<String>> =
+            (!benches.is_empty()).then(|| benches.iter().filter_map(wrapper).collect()),
+        // That of `<name>.xdc` and `<name>.sdc`, if there are any.
+        clock_mhz: Option<f64> = around.clock_mhz,
+        version: &'a str,
+        licence: &'a str,
+    })?;
+    files.add(Kind::Core, format!("{name}.core"), core);
+    if let Some((bench, others)) = benches.split_first() {
+        let text = fill!("testbench.core" {
+            name: &'a str, version: &'a str, licence: &'a str, bench: &'a str,
+            // Its vectors, and the benches of wrappers with theirs.
+            others: &'a [String],
+        })?;
+        files.add(Kind::BenchCore, format!("{name}_tb.core"), text);
+    }
+    Ok(())
 }

@@ -5,12 +5,11 @@ use serde::Serialize;
 use serde_json::value::{RawValue, to_raw_value};
 use serde_json::{Value, json};
 
+use super::artifact::{Artifacts, Job, Kind};
 use super::facts::{self, Port, Rom};
-use super::fusesoc::Sources;
-use super::map::{Map, Register};
+use super::map::Register;
 use super::{Computation, ContractFacts, EmitInputs, OutputFile, Quantity, Timing, digest};
 use crate::hdl::netlist::{Design, Pipeline, RegId};
-use crate::hdl::verilog::naming::Naming;
 
 /// The version of the manifest's structure, for programs that read it: of what names mean and where they stand. It grows
 /// when something is renamed, moved, or means something else; not when something is added.
@@ -36,7 +35,7 @@ struct Manifest<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     pipeline: Option<Value>,
     roms: Vec<Rom<'a>>,
-    files: Value,
+    files: &'a serde_json::Map<String, Value>,
     sha256: serde_json::Map<String, Value>,
     #[serde(skip_serializing_if = "Option::is_none")]
     example: Option<Value>,
@@ -59,35 +58,37 @@ struct Computations<'a> {
     points: Vec<Box<RawValue>>,
 }
 
-/// The files that the manifest lists.
-pub struct Files<'a> {
-    /// The sources of the core.
-    pub sources: Sources<'a>,
-    /// FuseSoC cores.
-    pub cores: &'a [String],
-    /// The bench and its vectors, or nothing.
-    pub testbench: &'a [String],
-    /// The model in C, or nothing.
-    pub software: &'a [String],
-    /// Timing constraints, or nothing.
-    pub constraints: &'a [String],
-    /// Scripts and descriptions for vendors' tools, or nothing.
-    pub scripts: &'a [String],
-    /// The registers on a bus, or nothing.
-    pub map: Option<&'a Map>,
+/// The names of the files that the manifest lists, by what they are for.
+pub struct Names(serde_json::Map<String, Value>);
+
+impl Names {
+    /// All files but the manifest itself.
+    pub fn new(files: &Artifacts) -> Self {
+        use Kind::{Bench, BenchCore, Core, Primitive, Proof, Python, Wrapper, WrapperProof};
+        let lists: [(&str, &[Kind]); 9] = [
+            ("rtl", &[Kind::Rtl]),
+            ("memories", &[Kind::Memory]),
+            ("cores", &[Core, BenchCore]),
+            ("testbench", &[Python, WrapperProof, Proof, Bench]),
+            ("primitives", &[Primitive]),
+            ("wrappers", &[Wrapper]),
+            ("software", &[Kind::Software]),
+            ("constraints", &[Kind::Constraint]),
+            ("scripts", &[Kind::Script]),
+        ];
+        let named = lists.into_iter().map(|(list, kinds)| (list, files.names(kinds))).enumerate();
+        // The first four are there even if they are empty.
+        let shown = named.filter(|(at, (_, names))| *at < 4 || !names.is_empty());
+        Self(shown.map(|(_, (list, names))| (list.to_owned(), json!(names))).collect())
+    }
 }
 
 /// The manifest as text, with the digests of all `others`.
 ///
 /// # Errors
 /// A number that JSON cannot carry (a value that is not finite).
-pub fn contents(
-    design: &Design,
-    inputs: &EmitInputs,
-    naming: &Naming,
-    files: &Files,
-    others: &[OutputFile],
-) -> Result<String> {
+pub fn contents(job: &Job, names: &Names, others: &[OutputFile]) -> Result<String> {
+    let Job { design, inputs, naming, .. } = *job;
     let about = &design.about;
     let manifest = Manifest {
         schema: SCHEMA,
@@ -105,7 +106,7 @@ pub fn contents(
         control: design.pipeline.is_none().then(|| control(design)),
         pipeline: design.pipeline.as_ref().map(pipeline),
         roms: facts::roms(design, naming),
-        files: listed(files),
+        files: &names.0,
         sha256: others
             .iter()
             .map(|file| (file.path.clone(), json!(digest(file.contents.as_bytes()))))
@@ -122,7 +123,10 @@ pub fn contents(
         }),
         accuracy: inputs.accuracy.as_ref().map(accuracy),
         computations: computations(design, inputs)?,
-        registers: files.map.map(|map| map.registers.iter().map(register).collect()),
+        registers: job
+            .registers
+            .as_ref()
+            .map(|(_, map)| map.registers.iter().map(register).collect()),
     };
     Ok(serde_json::to_string_pretty(&manifest)? + "\n")
 }
@@ -135,27 +139,6 @@ fn register(register: &Register) -> Value {
         "offset": register.offset(),
         "bits": bits.collect::<Vec<Value>>(),
     })
-}
-
-fn listed(files: &Files) -> Value {
-    let mut listed = json!({
-        "rtl": files.sources.rtl,
-        "memories": files.sources.memories,
-        "cores": files.cores,
-        "testbench": files.testbench,
-    });
-    for (kind, names) in [
-        ("primitives", files.sources.primitives),
-        ("wrappers", files.sources.wrappers),
-        ("software", files.software),
-        ("constraints", files.constraints),
-        ("scripts", files.scripts),
-    ] {
-        if !names.is_empty() {
-            listed[kind] = json!(names);
-        }
-    }
-    listed
 }
 
 fn accuracy(accuracy: &ContractFacts) -> Value {

@@ -1,20 +1,12 @@
 //! ROM contents as `$readmem` files.
 
 use anyhow::{Result, ensure};
-use askama::Template;
 
 use crate::base::fixed::mask;
 use crate::hdl::netlist::{Design, RomId};
 use crate::hdl::verilog::naming::{is_control_rom, rom_label};
 use crate::hdl::verilog::text::comment;
 use crate::hdl::verilog::words::{in_fields, in_hex, word_note};
-
-#[derive(Template)]
-#[template(path = "rom.mem")]
-struct Memory {
-    header: Vec<String>,
-    words: Vec<String>,
-}
 
 /// The `.mem` file of a ROM.
 ///
@@ -31,29 +23,23 @@ pub fn contents(design: &Design, id: RomId) -> Result<String> {
         );
     }
     let control = is_control_rom(design, id);
-    let mut header = comment(
+    let mut lines = comment(
         0,
         &format!("{}, {}: {} words of {width} bits", design.name, rom_label(rom), rom.words.len()),
     );
     if control {
-        header.extend(fields(design, width)?);
+        lines.extend(fields(design, width)?);
     } else {
-        header.extend(rom.doc.iter().flat_map(|line| comment(0, line)));
+        lines.extend(rom.doc.iter().flat_map(|line| comment(0, line)));
     }
-    let texts: Vec<_> = rom
-        .words
-        .iter()
-        .map(|word| if control { in_fields(design, *word) } else { in_hex(*word, width) })
-        .collect();
-    let words = texts
-        .into_iter()
-        .enumerate()
-        .map(|(address, text)| match word_note(design, id, address) {
+    for (address, word) in rom.words.iter().enumerate() {
+        let text = if control { in_fields(design, *word) } else { in_hex(*word, width) };
+        lines.push(match word_note(design, id, address) {
             Some(note) => format!("{text} // {address} {note}").trim_end().to_owned(),
             None => text,
-        })
-        .collect();
-    super::render(&Memory { header, words })
+        });
+    }
+    Ok(lines.join("\n") + "\n")
 }
 
 /// The names of the fields, in the order of the digits below.

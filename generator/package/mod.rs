@@ -20,7 +20,28 @@ macro_rules! fresh_names {
     };
 }
 
+/// The text of a template: its fields with their types and, where no variable has the name of the field, their values.
+macro_rules! fill {
+    ($path:tt { $($field:ident: $kind:ty $(= $value:expr)?),* $(,)? }) => {{
+        #[derive(askama::Template)]
+        #[template(path = $path)]
+        struct View<'a> {
+            $($field: $kind,)*
+            lifetime: std::marker::PhantomData<&'a ()>,
+        }
+        $crate::package::render(&View {
+            $($field: $crate::package::fill!(@value $field $($value)?),)*
+            lifetime: std::marker::PhantomData,
+        })
+    }};
+    (@value $field:ident) => { $field };
+    (@value $field:ident $value:expr) => { $value };
+}
+pub(crate) use fill;
+
+mod artifact;
 mod bench;
+mod bus;
 mod cocotb;
 pub(crate) mod facts;
 pub(crate) mod formal;
@@ -52,6 +73,7 @@ use crate::hdl::verilog::interface::Interface;
 use crate::hdl::verilog::naming::Naming;
 use crate::hdl::verilog::plan::Plan;
 use crate::hdl::verilog::{module, pipeline, top};
+use artifact::{Artifacts, Job, Kind};
 
 pub use crate::observation::{
     Computation, ContractFacts, LineClocks, Linear, Quantity, Shown, Timing, Vectors, WorkedExample,
@@ -159,152 +181,68 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
     ensure!(design.find("clk").is_none(), "`clk` is the clock; no other net can have that name");
     let plan = Plan::new(design)?;
     let naming = Naming::new(design).styled(inputs.around.style);
-    let name = &design.name;
-    let mut rtl = match &design.pipeline {
-        Some(pipeline) => {
-            let module = pipeline::module(&plan, &naming, pipeline, &inputs.origin());
-            vec![(format!("{name}.v"), render(&module)?)]
-        }
-        None => units(&plan, &naming, inputs)?,
-    };
-    let mut primitives = Vec::new();
-    if let Some(multiplier) = multiplier::multiplier(design, &naming, inputs)? {
-        rtl.push(multiplier.portable);
-        primitives = multiplier.primitives;
-    }
-    let mut memories = Vec::new();
-    for (at, file) in naming.files.iter().enumerate() {
-        let id = RomId(at as u32);
-        if !naming.style.inline && !naming.second.contains(&id) {
-            memories.push((file.clone(), memory::contents(design, id)?));
-        }
-    }
-    let map = match inputs.around.registers {
+    let registers = match inputs.around.registers {
         Some(bus) => Some((bus, map::Map::new(design, inputs)?)),
         None => None,
     };
-    let registers = map.as_ref().map(|(bus, map)| (*bus, map));
-    let wrap::Wrappers { rtl: wrappers, formal, benches } =
-        wrap::wrappers(design, inputs, registers)?;
-    let mut testbench = Vec::new();
-    if let Some(vectors) = &inputs.vectors {
-        testbench = bench::files(design, &naming, vectors)?;
-        let (python, benches): (Vec<_>, Vec<_>) =
-            benches.into_iter().partition(|(file, _)| file.ends_with(".py"));
-        testbench.extend(benches);
-        let names = names_of(&testbench);
-        testbench.push((
-            format!("{name}_tb.core"),
-            fusesoc::bench(design, inputs, &names[0], &names[1..])?,
-        ));
-        let sources = formal::Sources { rtl: &names_of(&rtl), memories: &names_of(&memories) };
-        testbench.splice(
-            0..0,
-            match &design.pipeline {
-                None => formal::files(design, &naming, inputs, sources)?,
-                Some(pipeline) => formal_pipeline::files(design, pipeline, sources)?,
-            },
-        );
-        testbench.splice(0..0, formal);
-        if let (Some(example), Some(accuracy)) = (&inputs.example, &inputs.accuracy) {
-            testbench.insert(0, cocotb::bench(design, example, accuracy)?);
-            testbench.splice(1..1, python);
+    let job = Job { design, inputs, naming: &naming, registers };
+    let mut files = Artifacts::default();
+    verilog(&job, &plan, &mut files)?;
+    multiplier::files(&job, &mut files)?;
+    for (at, file) in naming.files.iter().enumerate() {
+        let id = RomId(at as u32);
+        if !naming.style.inline && !naming.second.contains(&id) {
+            files.add(Kind::Memory, file, memory::contents(design, id)?);
         }
     }
-
-    let (rtl_names, memory_names) = (names_of(&rtl), names_of(&memories));
-    let wrapper_names = names_of(&wrappers);
-    let tops = tops::tops(design, inputs, registers, &rtl_names, &wrapper_names)?;
-    let map = map.as_ref();
-    let vendor::Vendor { constraints, scripts } =
-        vendor::files(design, inputs, &tops, map.map(|(_, map)| map), &memory_names)?;
-    let mut software = if inputs.around.software {
-        let latency = design.pipeline.as_ref().map(|pipeline| pipeline.stages.len());
-        let sequential = inputs.sequential.as_ref().unwrap_or(design);
-        let mut files = software::files(sequential, inputs, latency)?;
-        files.extend(software::of_lines(sequential, inputs)?);
-        files
-    } else {
-        Vec::new()
-    };
-    if let Some((bus, map)) = map {
-        software.extend(software::of_registers(design, inputs, *bus, map)?);
+    if let (Some(_), Some(example), Some(accuracy)) =
+        (&inputs.vectors, &inputs.example, &inputs.accuracy)
+    {
+        cocotb::file(&job, example, accuracy, &mut files)?;
     }
-    if inputs.around.litex {
-        software.push(software::of_litex(design, inputs, &tops)?);
+    if let Some(vectors) = &inputs.vectors {
+        bench::files(&job, vectors, &mut files)?;
+        match &design.pipeline {
+            None => formal::files(&job, &mut files)?,
+            Some(pipeline) => formal_pipeline::files(&job, pipeline, &mut files)?,
+        }
     }
-
-    let mut cores = vec![format!("{name}.core")];
-    let mut bench_names = names_of(&testbench);
-    cores.extend(bench_names.pop());
-    let primitive_names = names_of(&primitives);
-    let sources = fusesoc::Sources {
-        rtl: &rtl_names,
-        primitives: &primitive_names,
-        wrappers: &wrapper_names,
-        memories: &memory_names,
-    };
-    let files = manifest::Files {
-        sources,
-        cores: &cores,
-        testbench: &bench_names,
-        software: &names_of(&software),
-        constraints: &names_of(&constraints),
-        scripts: &names_of(&scripts),
-        map: map.map(|(_, map)| map),
-    };
-    let wrapper_bench = |file: &String| {
-        let bench = file.strip_prefix(name)?.strip_prefix('_')?.strip_suffix("_tb.v")?;
-        Some(bench.to_owned())
-    };
-    let wrapper_benches: Vec<String> = bench_names.iter().filter_map(wrapper_bench).collect();
-    let benches = (!testbench.is_empty()).then_some(&wrapper_benches[..]);
-    let core = fusesoc::device(design, inputs, sources, benches)?;
-    let mut all: Vec<OutputFile> = rtl
-        .into_iter()
-        .chain(primitives)
-        .chain(wrappers)
-        .chain(memories)
-        .chain([(format!("{name}.core"), core)])
-        .chain(constraints)
-        .chain(scripts)
-        .map(|(file, contents)| OutputFile { path: format!("rtl_out/{name}/{file}"), contents })
-        .collect();
-    for (folder, files) in [("testbench", testbench), ("software", software)] {
-        all.extend(files.into_iter().map(|(file, contents)| OutputFile {
-            path: format!("{folder}/{name}/{file}"),
-            contents,
-        }));
-    }
-    module_names::check(&all)?;
+    wrap::files(&job, &mut files)?;
+    let tops = tops::tops(&job, &files)?;
+    vendor::files(&job, &tops, &mut files)?;
+    software::files(&job, &tops, &mut files)?;
+    fusesoc::files(&job, &mut files)?;
+    let names = manifest::Names::new(&files);
+    let mut files = files.files(&design.name);
+    module_names::check(&files)?;
     // The manifest vouches for every other file.
-    let contents = manifest::contents(design, inputs, &naming, &files, &all)?;
-    all.push(OutputFile { path: format!("rtl_out/{name}/{name}.json"), contents });
-    Ok(all)
+    let contents = manifest::contents(&job, &names, &files)?;
+    files.push(OutputFile { path: format!("rtl_out/{0}/{0}.json", design.name), contents });
+    Ok(files)
 }
 
-/// The top module, the control unit and the datapath.
-fn units(plan: &Plan, naming: &Naming, inputs: &EmitInputs) -> Result<Vec<(String, String)>> {
+/// The Verilog of the core: of a pipeline a module, else the top module, the control unit and the datapath.
+fn verilog(job: &Job, plan: &Plan, files: &mut Artifacts) -> Result<()> {
+    let (naming, origin, top_file) = (job.naming, job.inputs.origin(), format!("{}.v", job.name()));
+    if let Some(pipeline) = &job.design.pipeline {
+        let module = pipeline::module(plan, naming, pipeline, &origin);
+        files.add(Kind::Rtl, top_file, render(&module)?);
+        return Ok(());
+    }
     let control = Interface::new(plan, Partition::Control);
     let datapath = Interface::new(plan, Partition::Datapath);
     let units = [(Partition::Control, &control), (Partition::Datapath, &datapath)];
-    let origin = inputs.origin();
-    let top = render(&top::module(plan, naming, units, &origin))?;
-    let mut rtl = vec![(format!("{}.v", plan.design.name), top)];
+    files.add(Kind::Rtl, top_file, render(&top::module(plan, naming, units, &origin))?);
     for (partition, interface) in units {
         let module = module::Builder::new(plan, naming, interface, partition).module(&origin);
-        rtl.push((format!("{}.v", naming.module(partition)), render(&module)?));
+        files.add(Kind::Rtl, format!("{}.v", naming.module(partition)), render(&module)?);
     }
-    Ok(rtl)
+    Ok(())
 }
 
 /// The digest of a file, as the manifest holds it: SHA-256 in hexadecimal.
 pub fn digest(contents: &[u8]) -> String {
     Sha256::digest(contents).iter().map(|byte| format!("{byte:02x}")).collect()
-}
-
-fn names_of(files: &[(String, String)]) -> Vec<String> {
-    files.iter().map(|(name, _)| name.clone()).collect()
 }
 
 /// A template's text. Askama drops the newline that ends a template.

@@ -4,12 +4,9 @@
 //! under the same name, and takes the place of the portable one in its flow alone.
 
 use anyhow::Result;
-use askama::Template;
 
-use super::EmitInputs;
-use crate::hdl::netlist::Design;
+use super::artifact::{Artifacts, Job, Kind};
 use crate::hdl::verilog::header;
-use crate::hdl::verilog::naming::Naming;
 use crate::hdl::verilog::rows::separated;
 use crate::hdl::verilog::text::comment;
 
@@ -22,58 +19,30 @@ const PORTABLE: &str = "The portable form, for simulators and synthesis alike. O
 const ECP5: &str = "For ECP5: a DSP block with its output register and no other. nextpnr-ecp5 times the ways into the \
                     block, which end in that register, and those from it. The portable form is in the directory above.";
 
-#[derive(Template)]
-#[template(path = "multiplier.v")]
-struct Portable {
-    /// Comment lines.
-    header: Vec<String>,
-    name: String,
-}
-
-#[derive(Template)]
-#[template(path = "multiplier_ecp5.v")]
-struct Ecp5 {
-    /// Comment lines.
-    header: Vec<String>,
-    name: String,
-    /// Connections of factors and product, some a line.
-    pins: Vec<String>,
-}
-
-/// The module in its forms.
-pub struct Multiplier {
-    /// For all tools: a plain name and its text.
-    pub portable: (String, String),
-    /// In the directory of a target: `ecp5/<name>_multiplier.v`.
-    pub primitives: Vec<(String, String)>,
-}
-
-/// The module of a design's products, if any of its registers is inside a multiplier.
+/// Adds the module of a design's products, if any of its registers is inside a multiplier: the portable form, and that of the
+/// target.
 ///
 /// # Errors
 /// A template that fails to print.
-pub fn multiplier(
-    design: &Design,
-    naming: &Naming,
-    inputs: &EmitInputs,
-) -> Result<Option<Multiplier>> {
-    let Some(pipeline) = design.pipeline.as_ref().filter(|it| !it.registered.is_empty()) else {
-        return Ok(None);
+pub fn files(job: &Job, files: &mut Artifacts) -> Result<()> {
+    let Some(pipeline) = job.design.pipeline.as_ref().filter(|it| !it.registered.is_empty()) else {
+        return Ok(());
     };
-    let name = naming.multiplier();
-    let file = format!("{name}.v");
+    let name = job.naming.multiplier();
     let title = format!("{name}: a product, and the register that takes it while `enable` is high");
-    let header = |form: &str| {
+    let header = |form: &str| -> Vec<String> {
         let separate = || ["//".to_owned()];
         let lines = comment(0, &title).into_iter().chain(separate()).chain(comment(0, form));
-        lines.chain(header::regenerated(&inputs.origin())).collect()
+        lines.chain(header::regenerated(&job.inputs.origin())).collect()
     };
-    let portable = super::render(&Portable { header: header(PORTABLE), name: name.clone() })?;
-    let own = super::render(&Ecp5 { header: header(ECP5), name, pins: pins() })?;
-    Ok(Some(Multiplier {
-        primitives: vec![(format!("{}/{file}", pipeline.target), own)],
-        portable: (file, portable),
-    }))
+    let portable =
+        fill!("multiplier.v" { header: Vec<String> = header(PORTABLE), name: &'a str = &name })?;
+    let own = fill!("multiplier_ecp5.v" {
+        header: Vec<String> = header(ECP5), name: &'a str = &name, pins: Vec<String> = pins(),
+    })?;
+    files.add(Kind::Rtl, format!("{name}.v"), portable);
+    files.add(Kind::Primitive, format!("{}/{name}.v", pipeline.target), own);
+    Ok(())
 }
 
 /// Every pin of factors, the unused one between them, and product, five a line.

@@ -3,7 +3,6 @@
 pub(super) mod pipeline;
 
 use anyhow::Result;
-use askama::Template;
 
 use crate::hdl::netlist::{Design, NetId, Port, Role};
 use crate::hdl::verilog::rows::{connections, variables};
@@ -86,16 +85,6 @@ impl List {
     }
 }
 
-#[derive(Template)]
-#[template(path = "points.v")]
-struct View<'a> {
-    list: &'a List,
-    names: Variables,
-    start: String,
-    busy: String,
-    strobes: Vec<String>,
-}
-
 fresh_names!(Variables { points, results, read, clocks, total, tick, dut });
 
 /// The bench of a design with a microprogram, whose computations take less than `limit` clocks each.
@@ -111,12 +100,12 @@ pub fn points_bench(design: &Design, limit: u32) -> Result<PointsBench> {
         Role::Operand { strobe } => Some(name_of(strobe)),
         _ => None,
     };
-    let text = super::render(&View {
-        list: &list,
-        names: Variables::new(&mut Names::of_ports(design)),
-        start: name_of(handshake.start),
-        busy: name_of(handshake.busy),
-        strobes: design.inputs().filter_map(strobe).collect(),
+    let text = fill!("points.v" {
+        list: &'a List = &list,
+        names: Variables = Variables::new(&mut Names::of_ports(design)),
+        start: String = name_of(handshake.start),
+        busy: String = name_of(handshake.busy),
+        strobes: Vec<String> = design.inputs().filter_map(strobe).collect(),
     })?;
     Ok(list.bench(text))
 }

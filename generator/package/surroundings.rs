@@ -1,6 +1,7 @@
 //! The surroundings of a core that a configuration asks for.
 
 use super::Unfit;
+use super::bus::{BUSES, Bus};
 use crate::config::{Config, Schema, Shared};
 use crate::hdl::netlist::{Design, Pipeline};
 use crate::hdl::verilog::naming::Style;
@@ -58,25 +59,6 @@ pub fn check_rom_style(config: &Config, design: &Design) -> Result<(), Unfit> {
     ))
 }
 
-/// A bus on which registers are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Bus {
-    /// AXI4-Lite.
-    AxiLite,
-    /// Wishbone B4, classic cycles.
-    Wishbone,
-}
-
-impl Bus {
-    /// The end of the name of a module on it.
-    pub fn suffix(self) -> &'static str {
-        match self {
-            Self::AxiLite => "axil",
-            Self::Wishbone => "wb",
-        }
-    }
-}
-
 /// The surroundings of a core.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surroundings {
@@ -85,7 +67,7 @@ pub struct Surroundings {
     /// The width of their `tuser`.
     pub user_bits: u32,
     /// The core behind registers.
-    pub registers: Option<Bus>,
+    pub registers: Option<&'static Bus>,
     /// A model in C, in `software/<name>/`.
     pub software: bool,
     /// How memories and registers are written.
@@ -123,11 +105,7 @@ impl Surroundings {
         Self {
             stream: keys.stream,
             user_bits: keys.user_bits,
-            registers: match keys.registers.as_str() {
-                "axi-lite" => Some(Bus::AxiLite),
-                "wishbone" => Some(Bus::Wishbone),
-                _ => None,
-            },
+            registers: BUSES.iter().find(|bus| bus.key == keys.registers),
             software: keys.software,
             style: Style {
                 inline: keys.memories != "files",

@@ -2,22 +2,21 @@
 
 use anyhow::Result;
 
-use super::EmitInputs;
-use super::map::Map;
-use super::surroundings::Bus;
+use super::artifact::{Artifacts, Job, Kind};
+use super::bus::{Bus, Protocol, STREAMS};
 use super::wrap::fields::{bits, operands, results};
-use crate::hdl::netlist::Design;
+use crate::hdl::netlist::{Design, Role};
 use crate::hdl::verilog::text::ascii;
 
 /// The interface of a module to a system.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Face {
     /// The core itself.
     Core,
     /// Two AXI4-Streams.
     Stream,
     /// Registers on a bus.
-    Registers(Bus),
+    Registers(&'static Bus),
 }
 
 /// A port of such a module.
@@ -31,6 +30,8 @@ pub struct TopPort {
     pub width: u32,
     /// Declared with a range.
     pub vector: bool,
+    /// The signal of a bus in LiteX, or nothing.
+    pub signal: String,
     /// One line, or nothing.
     pub doc: String,
 }
@@ -42,29 +43,23 @@ pub struct Top {
     pub module: String,
     /// The interface.
     pub face: Face,
+    /// What it is, in a few words.
+    pub what: String,
     /// The clock, the first port.
-    pub clock: &'static str,
+    pub clock: String,
     /// The reset, synchronous.
     pub reset: String,
     /// The level of the reset that resets.
     pub reset_level: u8,
     /// All ports, as the Verilog has them.
     pub ports: Vec<TopPort>,
+    /// The interfaces that its ports make.
+    pub protocols: &'static [Protocol],
     /// The Verilog that it is made of, its own file first.
     pub verilog: Vec<String>,
 }
 
 impl Top {
-    /// Returns a description in a few words.
-    pub fn what(&self) -> &'static str {
-        match self.face {
-            Face::Core => "the core",
-            Face::Stream => "the core between two AXI4-Streams",
-            Face::Registers(Bus::AxiLite) => "the core behind registers on AXI4-Lite",
-            Face::Registers(Bus::Wishbone) => "the core behind registers on Wishbone",
-        }
-    }
-
     /// The bits of a port; 0 of none.
     pub fn width(&self, name: &str) -> u32 {
         self.ports.iter().find(|port| port.name == name).map_or(0, |port| port.width)
@@ -74,67 +69,69 @@ impl Top {
     pub fn signals(&self) -> impl Iterator<Item = &TopPort> {
         self.ports.iter().filter(|port| port.name != self.clock && port.name != self.reset)
     }
+
+    /// The ports of an interface, each with its name there.
+    pub fn ports_of(&self, protocol: &Protocol) -> Vec<(&TopPort, String)> {
+        let named = |port: &TopPort| {
+            Some(port.name.strip_prefix(protocol.name)?.strip_prefix('_')?.to_owned())
+        };
+        self.signals().filter_map(|port| Some((port, named(port)?))).collect()
+    }
+
+    /// Returns whether it has an interrupt, a level.
+    pub fn interrupts(&self) -> bool {
+        matches!(self.face, Face::Registers(_))
+    }
 }
 
-/// The modules of a configuration, the core first; `rtl` and `wrappers` are the names of their files.
+/// The modules of a configuration, the core first.
 ///
 /// # Errors
 /// A stream around a core without operands or results.
-pub fn tops(
-    design: &Design,
-    inputs: &EmitInputs,
-    map: Option<(Bus, &Map)>,
-    rtl: &[String],
-    wrappers: &[String],
-) -> Result<Vec<Top>> {
-    let name = design.name.as_str();
+pub fn tops(job: &Job, files: &Artifacts) -> Result<Vec<Top>> {
+    let (name, design) = (job.name(), job.design);
+    let reset = design.port(|role| role == Role::Reset);
     let mut tops = vec![Top {
         module: name.to_owned(),
         face: Face::Core,
-        clock: "clk",
-        reset: reset(design),
+        what: "the core".to_owned(),
+        clock: "clk".to_owned(),
+        reset: reset.map(|port| design.net(port.net).name.clone()).unwrap_or_default(),
         reset_level: 0,
         ports: core_ports(design),
-        verilog: rtl.to_vec(),
+        protocols: &[],
+        verilog: files.names(&[Kind::Rtl]),
     }];
-    let streamed = format!("{name}_axis");
-    let with_core = |of_stream: bool| {
-        let own = wrappers.iter().filter(|file| file.starts_with(&streamed) == of_stream);
-        own.chain(rtl).cloned().collect::<Vec<String>>()
-    };
-    if inputs.around.stream {
+    let mut add = |suffix: &str, face: Face, what: String, level: u8, ports: Vec<TopPort>| {
+        // The files of the stream, with that of its buffer, or those of the registers and their bus.
+        let streamed = format!("{name}_axis");
+        let of_core = |file: &String| file.starts_with(&streamed) == (face == Face::Stream);
+        let own = files.names(&[Kind::Wrapper]).into_iter().filter(of_core);
         tops.push(Top {
-            module: streamed.clone(),
-            face: Face::Stream,
-            clock: "aclk",
-            reset: "aresetn".to_owned(),
-            reset_level: 0,
-            ports: stream_ports(design, inputs)?,
-            verilog: with_core(true),
-        });
-    }
-    if let Some((bus, map)) = map {
-        let (clock, reset, reset_level, ports) = match bus {
-            Bus::AxiLite => ("aclk", "aresetn", 0, axi_lite_ports(map.address_bits())),
-            Bus::Wishbone => ("wb_clk_i", "wb_rst_i", 1, wishbone_ports(map.address_bits())),
-        };
-        tops.push(Top {
-            module: format!("{name}_{}", bus.suffix()),
-            face: Face::Registers(bus),
-            clock,
-            reset: reset.to_owned(),
-            reset_level,
+            module: format!("{name}_{suffix}"),
+            face,
+            what: format!("the core {what}"),
+            clock: ports[0].name.clone(),
+            reset: ports[1].name.clone(),
+            reset_level: level,
             ports,
-            verilog: with_core(false),
+            protocols: match face {
+                Face::Core => &[],
+                Face::Stream => &STREAMS,
+                Face::Registers(bus) => bus.protocol,
+            },
+            verilog: own.chain(files.names(&[Kind::Rtl])).collect(),
         });
+    };
+    if job.inputs.around.stream {
+        add("axis", Face::Stream, "between two AXI4-Streams".to_owned(), 0, stream_ports(job)?);
+    }
+    if let Some((bus, map)) = &job.registers {
+        let ports = listed(&bus.ports.replace('#', &map.address_bits().to_string()));
+        let what = format!("behind registers on {}", bus.title);
+        add(bus.suffix, Face::Registers(bus), what, bus.reset_level, ports);
     }
     Ok(tops)
-}
-
-/// The name of the core's reset.
-fn reset(design: &Design) -> String {
-    let port = design.port(|role| role == crate::hdl::netlist::Role::Reset);
-    port.map(|port| design.net(port.net).name.clone()).unwrap_or_default()
 }
 
 fn core_ports(design: &Design) -> Vec<TopPort> {
@@ -146,18 +143,18 @@ fn core_ports(design: &Design) -> Vec<TopPort> {
             input: port.role.is_input(),
             width,
             vector: width > 1,
+            signal: String::new(),
             doc: ascii(&net.doc),
         }
     };
     listed("in clk").into_iter().chain(design.ports.iter().map(port)).collect()
 }
 
-fn stream_ports(design: &Design, inputs: &EmitInputs) -> Result<Vec<TopPort>> {
-    let (input, output) = (bits(&operands(design))?, bits(&results(design))?);
-    let user = inputs.around.user_bits;
+fn stream_ports(job: &Job) -> Result<Vec<TopPort>> {
+    let (input, output) = (bits(&operands(job.design))?, bits(&results(job.design))?);
+    let user = job.inputs.around.user_bits;
     // A line has its end in its length.
-    let is_line = inputs.accuracy.as_ref().is_some_and(|accuracy| accuracy.length.is_some());
-    let last = if is_line { "" } else { "in s_axis_tlast, " };
+    let last = if job.is_line() { "" } else { "in s_axis_tlast, " };
     Ok(listed(&format!(
         "in aclk, in aresetn, in s_axis_tdata {input}, in s_axis_tuser {user}, {last}\
          in s_axis_tvalid, out s_axis_tready, out m_axis_tdata {output}, out m_axis_tuser {user}, \
@@ -165,32 +162,16 @@ fn stream_ports(design: &Design, inputs: &EmitInputs) -> Result<Vec<TopPort>> {
     )))
 }
 
-fn axi_lite_ports(address: u32) -> Vec<TopPort> {
-    listed(&format!(
-        "in aclk, in aresetn, in s_axil_awaddr {address}, in s_axil_awprot 3, in s_axil_awvalid, \
-         out s_axil_awready, in s_axil_wdata 32, in s_axil_wstrb 4, in s_axil_wvalid, \
-         out s_axil_wready, out s_axil_bresp 2, out s_axil_bvalid, in s_axil_bready, \
-         in s_axil_araddr {address}, in s_axil_arprot 3, in s_axil_arvalid, out s_axil_arready, \
-         out s_axil_rdata 32, out s_axil_rresp 2, out s_axil_rvalid, in s_axil_rready, out irq"
-    ))
-}
-
-fn wishbone_ports(address: u32) -> Vec<TopPort> {
-    listed(&format!(
-        "in wb_clk_i, in wb_rst_i, in wb_cyc_i, in wb_stb_i, in wb_we_i, in wb_adr_i {address}, \
-         in wb_dat_i 32, in wb_sel_i 4, out wb_dat_o 32, out wb_ack_o, out wb_err_o, out irq"
-    ))
-}
-
-/// Ports as text: directions and names, and the widths of vectors.
+/// Ports as text: directions and names, the widths of vectors, and signals of LiteX.
 fn listed(ports: &str) -> Vec<TopPort> {
     let port = |port: &str| {
         let mut words = port.split(' ');
         let input = words.next() == Some("in");
-        let name = words.next().unwrap_or_default();
+        let name = words.next().unwrap_or_default().to_owned();
         let width = words.next().and_then(|width| width.parse().ok());
+        let signal = words.next().unwrap_or_default().to_owned();
         let (vector, width) = (width.is_some(), width.unwrap_or(1));
-        TopPort { name: name.to_owned(), input, width, vector, doc: String::new() }
+        TopPort { name, input, width, vector, signal, doc: String::new() }
     };
     ports.split(", ").map(port).collect()
 }

@@ -1,25 +1,12 @@
 //! A module around a bench that writes the waveform of some of its clocks.
 
-use anyhow::{Context, Result};
-use askama::Template;
+use anyhow::Result;
 
 /// The file to which the module writes.
 pub const WINDOW_FILE: &str = "window.vcd";
 
 /// Units of time in which the bench has a clock.
 const CLOCK: u64 = 10;
-
-#[derive(Template)]
-#[template(path = "window.v")]
-struct View<'a> {
-    name: &'a str,
-    bench: &'a str,
-    file: &'static str,
-    from: u64,
-    to: u64,
-    begin: u64,
-    length: u64,
-}
 
 /// The Verilog of a module `name` around the module `bench`, which [`crate::package::emit`] made: it writes the
 /// waveform of clocks `from` to `to` to [`WINDOW_FILE`], and ends the run as one that fails.
@@ -29,7 +16,8 @@ struct View<'a> {
 pub fn window(name: &str, bench: &str, from: u64, to: u64) -> Result<String> {
     // Not at the very beginning: the bench has set its variables then.
     let begin = from * CLOCK + 1;
-    let view =
-        View { name, bench, file: WINDOW_FILE, from, to, begin, length: (to + 1) * CLOCK - begin };
-    view.render().context("the window of a bench")
+    let length = (to + 1) * CLOCK - begin;
+    fill!("window.v" {
+        name: &'a str, bench: &'a str, file: &'a str = WINDOW_FILE, from: u64, to: u64, begin: u64, length: u64,
+    })
 }

@@ -16,6 +16,7 @@ use super::workspace::{self, HARNESS, Workspace};
 use super::{Subject, Target};
 use crate::tools::Tool;
 use crate::tools::gates::cells::{LOAD, MAPPING};
+use crate::tools::sources::Sources;
 
 const DEVICE: &str = "OSU 0.18 µm, typical corner, before layout";
 const NETLIST: &str = "cells.v";
@@ -50,16 +51,13 @@ pub fn measure(
     let gate = gate(&text).with_context(|| {
         format!("`{}` tells no area of the cell {GATE}, the unit of gates", liberty.display())
     })?;
-    let workspace = Workspace::new(subject)?;
-    let library = "cells.lib";
-    fs::write(workspace.path().join(library), text)
-        .context("cannot write the library for synthesis")?;
-    fs::write(workspace.path().join(CONSTRAINTS), LOAD)
-        .context("cannot write the constraints for synthesis")?;
+    let workspace = Workspace::new(yosys, subject)?;
+    let (sources, library) = (&workspace.sources, "cells.lib");
+    sources.write(library, &text)?;
+    sources.write(CONSTRAINTS, LOAD)?;
     let map = |top: &str| format!("synth -flatten -top {top}; {MAPPING}");
     let name = &subject.design.name;
     let commands = [
-        workspace.read_core(),
         "design -save source".to_owned(),
         map(name),
         format!("tee -q -o {STATISTICS} stat -liberty {library}"),
@@ -71,13 +69,12 @@ pub fn measure(
         format!("write_json {}", workspace::NETLIST),
         format!("write_verilog -noattr -noexpr -simple-lhs {NETLIST}"),
     ];
-    workspace.yosys(yosys, &commands.join("; "))?;
+    sources.run(&commands.join("; "))?;
     done();
-    let statistics = fs::read_to_string(workspace.path().join(STATISTICS))
-        .context("`yosys` wrote no statistics")?;
-    let area = area(&statistics, gate).context("`yosys` does not tell the area of the cells")?;
+    let area = area(&sources.text(STATISTICS)?, gate)
+        .context("`yosys` does not tell the area of the cells")?;
     let netlist = workspace.netlist()?;
-    let (period, path) = timing(sta, subject, &workspace, &netlist)?;
+    let (period, path) = timing(sta, subject, sources, &netlist)?;
     done();
     Ok(Figures::new(Target::Osu018, DEVICE, area).with_runs(vec![(1000.0 / period, path)]))
 }
@@ -111,7 +108,7 @@ fn area(statistics: &str, gate: f64) -> Option<Area> {
 fn timing(
     sta: &Tool,
     subject: &Subject,
-    workspace: &Workspace,
+    sources: &Sources,
     netlist: &Netlist,
 ) -> Result<(f64, Vec<Step>)> {
     // Longer than any path: what is left of it is the slack.
@@ -122,10 +119,9 @@ fn timing(
          create_clock -name clk -period {PERIOD} [get_ports clk]\n\
          report_checks -path_delay max -fields {{net}} -digits 4\nexit\n"
     );
-    fs::write(workspace.path().join(SCRIPT), script)
-        .context("cannot write the script of OpenSTA")?;
+    sources.write(SCRIPT, &script)?;
     let said =
-        sta.run_to_success(["-no_splash", "-exit", SCRIPT], workspace.path(), subject.limit)?;
+        sta.run_to_success(["-no_splash", "-exit", SCRIPT], sources.path(), subject.limit)?;
     if let Some(error) = said.lines().find(|line| line.starts_with("Error")) {
         bail!("`sta` failed: {error}");
     }

@@ -6,42 +6,11 @@ use serde_json::Value;
 use super::figures::{Figures, Step};
 use super::netlist::{self, Netlist};
 use super::workspace::Workspace;
-use super::{Subject, Target};
+use super::{Chip, Subject, Target};
 use crate::tools::Tool;
-use crate::tools::synthesis::{FAMILIES, Usage};
 
 /// Out of reach, so that the placer tries hardest, in MHz.
 const GOAL: &str = "200";
-
-/// A chip of the family, in speed grade 6.
-struct Chip {
-    flag: &'static str,
-    package: &'static str,
-    name: &'static str,
-    luts: u64,
-    dsps: u64,
-    block_rams: u64,
-}
-
-/// From the smallest; all are as fast.
-const CHIPS: [Chip; 2] = [
-    Chip {
-        flag: "--25k",
-        package: "CABGA381",
-        name: "ECP5 LFE5U-25F, speed grade 6",
-        luts: 24_288,
-        dsps: 28,
-        block_rams: 56,
-    },
-    Chip {
-        flag: "--85k",
-        package: "CABGA756",
-        name: "ECP5 LFE5U-85F, speed grade 6",
-        luts: 83_640,
-        dsps: 156,
-        block_rams: 208,
-    },
-];
 
 pub fn measure(
     yosys: &Tool,
@@ -49,21 +18,18 @@ pub fn measure(
     subject: &Subject,
     done: &(dyn Fn() + Sync),
 ) -> Result<Figures> {
-    let workspace = Workspace::new(subject)?;
-    let (usage, netlist) = workspace.synthesise(yosys, &FAMILIES[1])?;
+    let workspace = Workspace::new(yosys, subject)?;
+    let (usage, netlist) = workspace.synthesise(Target::Ecp5)?;
     no_registers_in_blocks(&netlist)?;
     done();
-    let fitting = CHIPS.iter().find(|chip| chip.holds(usage));
-    let chip = fitting.unwrap_or(&CHIPS[1]);
-    let mut figures = Figures::new(Target::Ecp5, chip.name, usage.into());
+    // All are as fast.
+    let chips = Target::Ecp5.chips();
+    let fitting = chips.iter().find(|chip| chip.lack(usage.taken()).is_empty());
+    let chip = fitting.unwrap_or(&chips[chips.len() - 1]);
+    let name = format!("ECP5 {}, speed grade 6", chip.name);
+    let mut figures = Figures::new(Target::Ecp5, &name, usage.into());
     figures.untimed = fitting.is_none().then(|| "does not fit".to_owned());
     figures.routed(subject, done, |seed| route(nextpnr, &workspace, &netlist, chip, seed))
-}
-
-impl Chip {
-    fn holds(&self, usage: Usage) -> bool {
-        usage.luts <= self.luts && usage.dsps <= self.dsps && usage.block_rams <= self.block_rams
-    }
 }
 
 /// Makes sure that no delay is left out: nextpnr-ecp5 does not time the inside of a multiplier with a register before its
@@ -92,12 +58,12 @@ fn route(
     seed: u32,
 ) -> Result<(f64, Vec<Step>)> {
     let report = format!("seed{seed}.json");
-    let (flag, package) = (chip.flag, chip.package);
     let options = format!(
-        "--lpf-allow-unconstrained {flag} --speed 6 --package {package} --freq {GOAL} --report {report}"
+        "--lpf-allow-unconstrained {} --speed 6 --freq {GOAL} --report {report}",
+        chip.options
     );
     workspace.nextpnr(nextpnr, seed, &options)?;
-    let report = workspace.json(&report)?;
+    let report = workspace.sources.json(&report)?;
     // Clock pins of DSP blocks that are tied to ground are listed as a clock too.
     let clocks = report["fmax"].as_object().into_iter().flatten();
     let clock = clocks

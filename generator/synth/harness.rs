@@ -1,7 +1,6 @@
 //! Registers around a core.
 
 use anyhow::Result;
-use askama::Template;
 
 use crate::hdl::netlist::{Design, Port};
 use crate::package;
@@ -10,20 +9,6 @@ use crate::package;
 pub const TOP: &str = "glint_harness";
 pub const CORE: &str = "core";
 
-/// A shift register feeds every input, and every output is captured in a register of its own, which is shifted out: four
-/// pins, whatever the ports of the core.
-#[derive(Template)]
-#[template(path = "harness.v")]
-struct Harness<'a> {
-    top: &'static str,
-    core: &'static str,
-    name: &'a str,
-    inputs: Vec<Slice<'a>>,
-    outputs: Vec<Slice<'a>>,
-    fed: u32,
-    captured: u32,
-}
-
 /// A port's bits in the register beside it.
 struct Slice<'a> {
     port: &'a str,
@@ -31,12 +16,20 @@ struct Slice<'a> {
     low: u32,
 }
 
-/// The Verilog of the harness.
+/// The Verilog of the harness: a shift register feeds every input, and every output is captured in a register of its own,
+/// which is shifted out: four pins, whatever the ports of the core.
 pub fn harness(design: &Design) -> Result<String> {
     let (inputs, fed) = slices(design, design.inputs());
     let (outputs, captured) = slices(design, design.outputs());
-    let text = Harness { top: TOP, core: CORE, name: &design.name, inputs, outputs, fed, captured };
-    package::render(&text)
+    package::fill!("harness.v" {
+        top: &'a str = TOP,
+        core: &'a str = CORE,
+        name: &'a str = &design.name,
+        inputs: Vec<Slice<'a>>,
+        outputs: Vec<Slice<'a>>,
+        fed: u32,
+        captured: u32,
+    })
 }
 
 fn slices<'a>(design: &'a Design, ports: impl Iterator<Item = &'a Port>) -> (Vec<Slice<'a>>, u32) {

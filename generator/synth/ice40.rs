@@ -11,14 +11,13 @@ use serde_json::Value;
 use super::figures::{Figures, Step};
 use super::netlist::{self, Netlist};
 use super::workspace::Workspace;
-use super::{Subject, Target};
+use super::{Chip, Subject, Target};
 use crate::tools::Tool;
-use crate::tools::synthesis::{FAMILIES, Usage};
 
 const DEVICE: &str = "iCE40 UP5K, SG48";
 
-/// The largest core of the family that has DSP blocks.
-const CAPACITY: [(&str, u64); 3] = [("LUTs", 5280), ("DSP blocks", 8), ("block RAMs", 30)];
+/// The largest of the family that has DSP blocks.
+const CHIP: &Chip = &Target::Ice40.chips()[0];
 
 /// Out of reach, so that the placer tries hardest, in MHz.
 const GOAL: &str = "60";
@@ -30,24 +29,19 @@ pub fn measure(
     subject: &Subject,
     done: &(dyn Fn() + Sync),
 ) -> Result<Figures> {
-    let workspace = Workspace::new(subject)?;
-    let (usage, netlist) = workspace.synthesise(yosys, &FAMILIES[0])?;
+    let workspace = Workspace::new(yosys, subject)?;
+    let (usage, netlist) = workspace.synthesise(Target::Ice40)?;
     only_multipliers(&netlist)?;
     done();
     let mut figures = Figures::new(Target::Ice40, DEVICE, usage.into());
-    figures.untimed = lack(usage);
+    let lack = CHIP.lack(usage.taken()).into_iter().map(|(at, wanted, there)| {
+        let what = ["LUTs", "DSP blocks", "block RAMs"][at];
+        format!("{wanted} {what}, UP5K has {there}")
+    });
+    let lack: Vec<String> = lack.collect();
+    figures.untimed = (!lack.is_empty()).then(|| format!("does not fit: {}", lack.join("; ")));
     figures
         .routed(subject, done, |seed| route(nextpnr, icetime, subject, &workspace, &netlist, seed))
-}
-
-/// Returns the resources of which the chip has too little.
-fn lack(usage: Usage) -> Option<String> {
-    let wanted = [usage.luts, usage.dsps, usage.block_rams];
-    let pairs = CAPACITY.iter().zip(wanted);
-    let short = pairs.filter(|((_, there), wanted)| wanted > there);
-    let short: Vec<String> =
-        short.map(|((what, there), wanted)| format!("{wanted} {what}, UP5K has {there}")).collect();
-    (!short.is_empty()).then(|| format!("does not fit: {}", short.join("; ")))
 }
 
 /// Makes sure that the delay of no DSP block is left out.
@@ -82,16 +76,17 @@ fn route(
     let (bits, timing) = (format!("seed{seed}.asc"), format!("seed{seed}.json"));
     let placed = format!("placed{seed}.json");
     let options = format!(
-        "--up5k --package sg48 --pcf-allow-unconstrained --freq {GOAL} --asc {bits} --write {placed}"
+        "{} --pcf-allow-unconstrained --freq {GOAL} --asc {bits} --write {placed}",
+        CHIP.options
     );
     workspace.nextpnr(nextpnr, seed, &options)?;
     let arguments = ["-d", "up5k", "-P", "sg48", "-i", "-t", "-j", &timing, &bits];
-    let said = icetime.run_to_success(arguments, workspace.path(), subject.limit)?;
+    let said = icetime.run_to_success(arguments, workspace.sources.path(), subject.limit)?;
     let nanoseconds = said.lines().find_map(|line| {
         line.strip_prefix("Total path delay: ")?.split(' ').next()?.parse::<f64>().ok()
     });
     let nanoseconds = nanoseconds.context("`icetime` does not tell the longest path")?;
-    let (path, placed) = (workspace.json(&timing)?, workspace.json(&placed)?);
+    let (path, placed) = (workspace.sources.json(&timing)?, workspace.sources.json(&placed)?);
     Ok((1000.0 / nanoseconds, steps(netlist, &path, &placed)))
 }
 

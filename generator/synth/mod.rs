@@ -25,10 +25,9 @@ use crate::hdl::netlist::Design;
 use crate::package;
 use crate::tools::Tool;
 use crate::tools::gates::cells::MAPPING;
-use crate::tools::synthesis::FAMILIES;
+use crate::tools::synthesis::{FAMILIES, Family, synthesise};
 pub use figures::{Area, Figures, Frequency, Step};
 pub use record::{DIRECTORY, Rate, Record, tools};
-use workspace::Workspace;
 
 /// A family or library for which a core is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -47,6 +46,28 @@ pub enum Target {
 /// All targets.
 pub const TARGETS: [Target; 4] = [Target::Ice40, Target::Ecp5, Target::Xilinx7, Target::Osu018];
 
+/// What a chip has.
+#[derive(Debug)]
+pub struct Chip {
+    /// For people.
+    pub name: &'static str,
+    /// How nextpnr names it, with its package.
+    pub options: &'static str,
+    /// What it has of each resource, in the order of [`Chip::lack`].
+    pub has: [u64; 3],
+}
+
+impl Chip {
+    /// What is wanted and what is there, of the resources of which the chip has too little: by their place among look-up
+    /// tables, DSP blocks and block RAMs.
+    pub fn lack(&self, wanted: [u64; 3]) -> Vec<(usize, u64, u64)> {
+        let all = wanted.into_iter().zip(self.has).enumerate();
+        all.filter(|(_, (wanted, has))| wanted > has)
+            .map(|(at, (wanted, has))| (at, wanted, has))
+            .collect()
+    }
+}
+
 impl Target {
     /// For scripts: `ice40`.
     pub fn name(self) -> &'static str {
@@ -60,11 +81,34 @@ impl Target {
 
     /// For people.
     pub fn title(self) -> &'static str {
+        self.family().map_or("0.18 µm cells", |family| family.title)
+    }
+
+    /// The family as Yosys knows it; none of standard cells.
+    pub fn family(self) -> Option<&'static Family> {
+        FAMILIES.iter().find(|family| family.name == self.name())
+    }
+
+    /// Chips of the family, from the smallest, which is a usual one.
+    pub const fn chips(self) -> &'static [Chip] {
         match self {
-            Self::Ice40 => "iCE40",
-            Self::Ecp5 => "ECP5",
-            Self::Xilinx7 => "Xilinx 7",
-            Self::Osu018 => "0.18 µm cells",
+            Self::Ice40 => {
+                &[Chip { name: "iCE40 UP5K", options: "--up5k --package sg48", has: [5280, 8, 30] }]
+            }
+            Self::Ecp5 => &[
+                Chip {
+                    name: "LFE5U-25F",
+                    options: "--25k --package CABGA381",
+                    has: [24_288, 28, 56],
+                },
+                Chip {
+                    name: "LFE5U-85F",
+                    options: "--85k --package CABGA756",
+                    has: [83_640, 156, 208],
+                },
+            ],
+            Self::Xilinx7 => &[Chip { name: "XC7A35T", options: "", has: [20_800, 90, 100] }],
+            Self::Osu018 => &[],
         }
     }
 }
@@ -164,7 +208,7 @@ impl Flow {
             (Target::Osu018, [sta]) => {
                 cells::measure(&self.yosys, sta, &self.liberty, subject, done)
             }
-            _ => area(&self.yosys, subject, done),
+            (target, _) => area(target, &self.yosys, subject, done),
         };
         let mut figures = measured
             .with_context(|| format!("`{}` for {}", subject.design.name, self.target.title()))?;
@@ -183,13 +227,12 @@ fn version(tool: &Tool) -> Result<String> {
     })
 }
 
-/// The area for Xilinx 7.
-fn area(yosys: &Tool, subject: &Subject, done: &dyn Fn()) -> Result<Figures> {
-    let family = &FAMILIES[2];
-    let workspace = Workspace::new(subject)?;
-    let usage = workspace.area(yosys, family)?;
+/// The area alone.
+fn area(target: Target, yosys: &Tool, subject: &Subject, done: &dyn Fn()) -> Result<Figures> {
+    let family = target.family().context("Yosys knows no such family")?;
+    let usage = synthesise(yosys, subject.files, &subject.design.name, family, subject.limit)?;
     done();
-    let mut figures = Figures::new(Target::Xilinx7, family.title, usage.into());
+    let mut figures = Figures::new(target, family.title, usage.into());
     figures.untimed = Some("Yosys gives areas; there is no open place and route".to_owned());
     Ok(figures)
 }

@@ -24,6 +24,7 @@ mod elaborate;
 pub mod gates;
 mod lint;
 mod proof;
+pub mod sources;
 pub mod synthesis;
 mod trial;
 

@@ -1,14 +1,12 @@
 //! Synthesis by Yosys: what a design takes of an FPGA.
 
-use std::fs;
-use std::path::Path;
 use std::time::Duration;
 
 use anyhow::{Context, Result};
 use serde_json::Value;
 
-use crate::base::transient::Directory;
-use crate::tools::Tool;
+use super::Tool;
+use super::sources::Sources;
 
 /// Kinds of cells, each with what one of them counts for.
 pub type Kinds = &'static [(&'static str, u64)];
@@ -116,6 +114,13 @@ pub struct Usage {
     pub flip_flops: u64,
 }
 
+impl Usage {
+    /// Look-up tables, DSP blocks and block RAMs.
+    pub fn taken(&self) -> [u64; 3] {
+        [self.luts, self.dsps, self.block_rams]
+    }
+}
+
 /// Synthesises the module `top` of Verilog and memory files, pairs of a plain name and contents.
 ///
 /// # Errors
@@ -128,50 +133,21 @@ pub fn synthesise(
     family: &Family,
     limit: Duration,
 ) -> Result<Usage> {
-    const STATISTICS: &str = "statistics.json";
-    let command = format!("tee -q -o {STATISTICS} stat -json");
-    let dir = run(yosys, files, top, family, &command, limit)?;
-    usage(&dir.path().join(STATISTICS), top, family)
+    let sources = Sources::new(yosys, files, limit)?;
+    let used = sources.run(&format!("{}; {STATISTICS_COMMAND}", family.script(top)));
+    used.and_then(|()| usage(&sources, top, family))
         .with_context(|| format!("`{}` for {}", family.command, family.title))
 }
 
-/// Synthesises, has Yosys run `command` on the netlist, and returns the directory in which it did.
-pub(super) fn run(
-    yosys: &Tool,
-    files: &[(String, String)],
-    top: &str,
-    family: &Family,
-    command: &str,
-    limit: Duration,
-) -> Result<Directory> {
-    commanded(yosys, files, &format!("{}; {command}", family.script(top)), limit)
-}
+/// The command of Yosys whose result [`usage`] reads.
+pub const STATISTICS_COMMAND: &str = "tee -q -o statistics.json stat -json";
 
-/// Has Yosys read Verilog and run commands, and returns the directory in which it did.
-pub(super) fn commanded(
-    yosys: &Tool,
-    files: &[(String, String)],
-    commands: &str,
-    limit: Duration,
-) -> Result<Directory> {
-    let dir = Directory::new().context("cannot make a directory for synthesis")?;
-    for (name, contents) in files {
-        fs::write(dir.path().join(name), contents)
-            .with_context(|| format!("cannot write `{name}` for synthesis"))?;
-    }
-    let sources: Vec<&str> =
-        files.iter().map(|(name, _)| name.as_str()).filter(|name| name.ends_with(".v")).collect();
-    let script = format!("read_verilog {}; {commands}", sources.join(" "));
-    yosys.run_to_success(["-q", "-p", &script], dir.path(), limit)?;
-    Ok(dir)
-}
-
-/// Reads what `stat -json` has written.
+/// Reads what [`STATISTICS_COMMAND`] has written.
 ///
 /// # Errors
 /// It is not there, or does not tell the cells of the module `top`.
-pub fn usage(path: &Path, top: &str, family: &Family) -> Result<Usage> {
-    let text = fs::read_to_string(path).context("`yosys` wrote no statistics")?;
+pub fn usage(sources: &Sources, top: &str, family: &Family) -> Result<Usage> {
+    let text = sources.text("statistics.json").context("`yosys` wrote no statistics")?;
     let statistics: Value =
         serde_json::from_str(&text).context("the statistics of `yosys` are no JSON")?;
     // The netlist is flat: the top module is all of it.

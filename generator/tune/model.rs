@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::hdl::netlist::{Design, Driver, NetId, Op, RegId};
 use crate::hdl::pipeline::{self, TARGETS};
-use crate::synth::Target;
+use crate::synth::{self, Target};
 
 /// The composition of a netlist, as far as look-up tables are concerned.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -46,12 +46,9 @@ struct Chip {
     target: Target,
     /// The weights of [`Features`], and what every core takes.
     weights: [f64; 6],
-    /// The target of pipelines with its delays.
-    delays: &'static str,
     /// The ratio of the measured clock to that of the delays.
     scale: f64,
-    /// The widest unsigned operands of a DSP block, the wider one first, and by how many bits signed ones may be wider.
-    multiplier: (u32, u32),
+    /// By how many bits signed operands of a DSP block may be wider than unsigned ones.
     sign: u32,
     /// Partial products of fewer bits are look-up tables.
     least_product: u32,
@@ -59,50 +56,35 @@ struct Chip {
     block: (u64, u64),
     /// Synchronous ROMs of fewer bits are look-up tables.
     least_block: u64,
-    /// A usual chip, and the look-up tables, DSP blocks and block RAMs that it has.
-    name: &'static str,
-    has: [u32; 3],
 }
 
 const CHIPS: [Chip; 3] = [
     Chip {
         target: Target::Ice40,
         weights: ICE40,
-        delays: "ice40",
         scale: 0.9,
-        multiplier: (16, 16),
         sign: 0,
         least_product: 11,
         block: (4096, 16),
         least_block: 128,
-        name: "iCE40 UP5K",
-        has: [5280, 8, 30],
     },
     Chip {
         target: Target::Ecp5,
         weights: ECP5,
-        delays: "ecp5",
         scale: 0.95,
-        multiplier: (18, 18),
         sign: 0,
         least_product: 9,
         block: (18_432, 36),
         least_block: 2048,
-        name: "LFE5U-25F",
-        has: [24_288, 28, 56],
     },
     Chip {
         target: Target::Xilinx7,
         weights: XILINX7,
-        delays: "xilinx7",
         scale: 1.0,
-        multiplier: (24, 17),
         sign: 1,
         least_product: 9,
         block: (18_432, 36),
         least_block: 8192,
-        name: "XC7A35T",
-        has: [20_800, 90, 100],
     },
 ];
 
@@ -118,6 +100,18 @@ const XILINX7: [f64; 6] = [0.49, 0.26, 1.18, 0.65, 0.0, 8.75];
 fn chip(target: Target) -> &'static Chip {
     // Cells have no model of their own: of the FPGAs ECP5 is nearest, where a product is not split.
     CHIPS.iter().find(|chip| chip.target == target).unwrap_or(&CHIPS[1])
+}
+
+/// A usual chip of a target that the model knows, or of the nearest.
+fn usual(target: Target) -> &'static synth::Chip {
+    &chip(target).target.chips()[0]
+}
+
+impl Chip {
+    /// The delays of the target, and the widest unsigned operands of a DSP block.
+    fn delays(&self) -> &'static pipeline::Target {
+        pipeline::Target::named(self.target.name()).unwrap_or(&TARGETS[0])
+    }
 }
 
 /// Whether the model knows a target.
@@ -145,19 +139,19 @@ impl Cost {
 
     /// Everything in look-up tables.
     pub fn area(&self, target: Target) -> f64 {
-        let [luts, dsps, blocks] = chip(target).has.map(f64::from);
+        let [luts, dsps, blocks] = usual(target).has.map(|has| has as f64);
         let (dsp, block) = ((luts / dsps).round(), (luts / blocks).round());
         self.luts + dsp * self.dsps as f64 + block * self.block_rams as f64
     }
 
     /// Returns the resources that a usual chip of the target lacks, in words; empty where the core fits.
     pub fn excess(&self, target: Target) -> String {
-        let chip = chip(target);
+        let chip = usual(target);
         let wanted = [self.luts.ceil() as u64, self.dsps, self.block_rams];
-        let kinds = ["look-up tables", "DSP blocks", "block RAMs"].into_iter().zip(chip.has);
-        let short = kinds.zip(wanted).filter(|((_, has), wanted)| u64::from(*has) < *wanted);
-        let short: Vec<String> =
-            short.map(|((kind, has), wanted)| format!("{wanted} of {has} {kind}")).collect();
+        let short = chip.lack(wanted).into_iter().map(|(at, wanted, has)| {
+            format!("{wanted} of {has} {}", ["look-up tables", "DSP blocks", "block RAMs"][at])
+        });
+        let short: Vec<String> = short.collect();
         if short.is_empty() {
             return String::new();
         }
@@ -212,7 +206,7 @@ fn dsps(design: &Design, chip: &Chip, a: NetId, b: NetId) -> u64 {
         let sign = if design.net(net).format.signed { chip.sign } else { 0 };
         design.width(net) - sign
     });
-    let (wide, narrow) = chip.multiplier;
+    let (wide, narrow) = chip.delays().multiplier;
     let slices = |operand: u32, block: u32| {
         let whole = std::iter::repeat_n(block, (operand / block) as usize);
         let rest = Some(operand % block).filter(|rest| *rest > 1 || operand < block);
@@ -228,7 +222,7 @@ fn dsps(design: &Design, chip: &Chip, a: NetId, b: NetId) -> u64 {
 
 /// Partial products of a product, the better way round.
 fn blocks(chip: &Chip, a: u32, b: u32) -> u64 {
-    let (wide, narrow) = chip.multiplier;
+    let (wide, narrow) = chip.delays().multiplier;
     let slices = |operand: u32, block: u32| {
         if operand <= block { 1 } else { u64::from(operand.div_ceil(block)) }
     };
@@ -257,7 +251,7 @@ fn block_rams(design: &Design, chip: &Chip) -> u64 {
 
 /// The longest path between registers in nanoseconds, by the delays of the pipelines' target.
 fn period(design: &Design, chip: &Chip) -> f64 {
-    let delays = pipeline::Target::named(chip.delays).unwrap_or(&TARGETS[0]);
+    let delays = chip.delays();
     let order = design.levelise().unwrap_or_default();
     let mut arrival = vec![0.0_f64; design.nets.len()];
     let levels = |inputs: u32| f64::from(inputs.max(2).ilog2().div_ceil(2).max(1));
@@ -285,14 +279,20 @@ fn period(design: &Design, chip: &Chip) -> f64 {
                 Op::Equal(a, _) => delays.logic * levels(2 * design.width(*a)),
                 Op::Any(a) | Op::All(a) => delays.logic * levels(design.width(*a)),
                 Op::Mux { inputs, .. } => delays.logic * levels(inputs.len() as u32),
-                _ => 0.0,
+                Op::Relabel(_) | Op::Extend(_) | Op::Slice { .. } | Op::Concat(_) | Op::Not(_) => {
+                    0.0
+                }
             },
             Driver::Rom(rom) => {
                 let rom = design.rom(*rom);
                 let address = design.width(rom.address).saturating_sub(2).max(1);
                 if rom.synchronous { delays.block } else { delays.logic * levels(2 * address) }
             }
-            _ => 0.0,
+            Driver::Undriven
+            | Driver::Input
+            | Driver::Constant(_)
+            | Driver::Register(_)
+            | Driver::Field(_) => 0.0,
         };
         arrival[id.index()] = before + own;
         longest = longest.max(before + own);

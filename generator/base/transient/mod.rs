@@ -1,8 +1,9 @@
-//! Child processes, and temporary files and directories: things that exist only while Glint runs.
+//! Child processes and temporary directories: things that exist only while Glint runs.
 //!
-//! Each stands on a list, under whose lock it is made, until it is gone; [`clear`] ends and deletes all of them, for a process that is
-//! interrupted. Of a process that is killed, a guard ends the children, and the next process deletes the temporary paths, which are locked
-//! while they are in use.
+//! Each stands on a list until it is gone. [`clear`] ends and deletes all of them, for a process that is
+//! interrupted. A child is started, and a temporary path made, under the list's lock: nothing can appear
+//! between the end of the listing and the end of the process. Of a process that is killed, a guard ends the children, and
+//! the next one deletes the temporary directories, which are locked while they are in use.
 
 mod child;
 #[cfg(unix)]
@@ -21,7 +22,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 pub use child::{Child, adopt_orphans};
-pub use scratch::{Directory, File, delete_left_files};
+pub use scratch::{Directory, files_below, left_beside, relative_name};
 
 /// How long [`clear`] waits for killed processes, and for a directory that something still writes to.
 const CLEARING_LIMIT: Duration = Duration::from_secs(5);
@@ -41,7 +42,7 @@ struct List {
     children: BTreeSet<u32>,
     #[cfg(unix)]
     guard: guard::Guard,
-    /// Temporary files and directories.
+    /// Temporary directories.
     paths: BTreeSet<PathBuf>,
 }
 
@@ -63,8 +64,7 @@ fn list() -> MutexGuard<'static, List> {
     LIST.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Does `work` as a whole: an interruption waits for its end. For renames of which only all or none
-/// leave the user's files in order.
+/// Does `work` as a whole: an interruption waits for its end. For renames that belong together.
 pub fn undivided<T>(work: impl FnOnce() -> T) -> T {
     let _guard = UNDIVIDED.lock().unwrap_or_else(PoisonError::into_inner);
     work()
@@ -76,7 +76,7 @@ pub struct Cleared {
     _list: MutexGuard<'static, List>,
 }
 
-/// Kills all children with everything that they have started, and deletes all temporary files and
+/// Kills all children with everything that they have started, and deletes all temporary
 /// directories. Other threads stop at their next child or temporary path until the result is dropped,
 /// which is meant for the end of the process.
 pub fn clear() -> Cleared {

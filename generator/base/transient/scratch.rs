@@ -1,28 +1,20 @@
-//! Temporary files and directories.
+//! Temporary directories, each with a file in it that says whose it is and is locked while the directory is in use.
 
-use std::ffi::OsStr;
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Once;
-use std::time::Duration;
 
-use tempfile::{NamedTempFile, TempDir};
+use tempfile::TempDir;
 
 use super::list;
 
-/// The prefix of the names of temporary directories for tools.
-const PREFIX: &str = "glint-";
+/// The prefixes of the names of directories for tools, and of those beside files that they are made for.
+const FOR_TOOLS: &str = "glint-";
+const BESIDE: &str = ".glint-";
 
-/// The file in such a directory that says whose it is, and is locked while the directory is in use.
+/// The file that says whose the directory is.
 const LOCK: &str = "glint.lock";
-
-/// The prefix of the names of temporary files; [`RANDOM`] characters follow.
-const FILE_PREFIX: &str = ".glint-unfinished-";
-const RANDOM: usize = 12;
-
-/// How old a file without a lock is at least when it is deleted: it may have been made a moment ago.
-const UNLOCKED: Duration = Duration::from_secs(60);
 
 static SWEEP: Once = Once::new();
 
@@ -40,31 +32,46 @@ impl Directory {
     /// # Errors
     /// It cannot be made.
     pub fn new() -> io::Result<Self> {
-        SWEEP.call_once(|| delete_left_directories(&std::env::temp_dir()));
-        let mut directory = Self::made(|| tempfile::Builder::new().prefix(PREFIX).tempdir())?;
-        let mut lock = fs::File::create(directory.path().join(LOCK))?;
-        // Before it says anything: what is empty is nobody's. A system without locks goes without.
-        let _ = lock.try_lock();
-        lock.write_all(statement(directory.path().file_name()).as_bytes())?;
-        directory.lock = Some(lock);
-        Ok(directory)
+        let place = std::env::temp_dir();
+        SWEEP.call_once(|| {
+            left(&place, FOR_TOOLS).iter().for_each(|left| drop(fs::remove_dir_all(&left.path)));
+        });
+        Self::made(&place, FOR_TOOLS)
     }
 
-    /// One in `parent`, with a name that begins with `prefix`.
+    /// One in `parent`, for files that are moved into their places beside it. The files that are made in it are stated by
+    /// [`Directory::state`].
     ///
     /// # Errors
     /// It cannot be made.
-    pub fn beside(parent: &Path, prefix: &str) -> io::Result<Self> {
+    pub fn beside(parent: &Path) -> io::Result<Self> {
         // The path stays right when the process changes its directory.
-        let parent = std::path::absolute(parent)?;
-        Self::made(|| tempfile::Builder::new().prefix(prefix).tempdir_in(&parent))
+        Self::made(&std::path::absolute(parent)?, BESIDE)
     }
 
-    fn made(make: impl FnOnce() -> io::Result<TempDir>) -> io::Result<Self> {
-        let mut list = list();
-        let made = make().map_err(without_path)?;
-        list.paths.insert(made.path().to_owned());
-        Ok(Self { made: Some(made), lock: None })
+    fn made(parent: &Path, prefix: &str) -> io::Result<Self> {
+        let made = {
+            let mut list = list();
+            let made = tempfile::Builder::new().prefix(prefix).tempdir_in(parent);
+            let made = made.map_err(without_path)?;
+            list.paths.insert(made.path().to_owned());
+            made
+        };
+        let mut directory = Self { made: Some(made), lock: None };
+        let lock = fs::File::create(directory.path().join(LOCK))?;
+        // Before it says anything: what is empty is nobody's. A system without locks goes without.
+        let _ = lock.try_lock();
+        directory.lock = Some(lock);
+        directory.state(&title(directory.path()))?;
+        Ok(directory)
+    }
+
+    /// Adds a line to the file that says whose the directory is.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn state(&mut self, line: &str) -> io::Result<()> {
+        self.lock.as_mut().map_or(Ok(()), |lock| writeln!(lock, "{line}"))
     }
 
     /// Where it is.
@@ -72,7 +79,7 @@ impl Directory {
         self.made.as_ref().map_or(Path::new(""), TempDir::path)
     }
 
-    /// Keeps the directory, which is the user's from now on.
+    /// Keeps the directory, as a process does that is killed.
     pub fn keep(mut self) -> PathBuf {
         let path = self.path().to_owned();
         list().paths.remove(&path);
@@ -97,120 +104,80 @@ impl Drop for Directory {
     }
 }
 
-/// A temporary file that is to be moved to its place; it goes when it is dropped before, or when the process is
-/// interrupted.
-#[derive(Debug)]
-pub struct File(Option<NamedTempFile>);
+/// A directory that a killed process has left. It is locked while this lives.
+pub struct Left {
+    /// Where it is.
+    pub path: PathBuf,
+    /// What was stated of it, line by line.
+    pub stated: Vec<String>,
+    _lock: fs::File,
+}
 
-impl File {
-    /// One in `directory`, with the permissions of any new file.
-    ///
-    /// # Errors
-    /// It cannot be made.
-    pub fn beside(directory: &Path) -> io::Result<Self> {
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(FILE_PREFIX).rand_bytes(RANDOM);
-        // The umask takes away from it.
-        #[cfg(unix)]
-        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        let mut list = list();
-        let made = builder.tempfile_in(directory).map_err(without_path)?;
-        // Elsewhere nobody else could write what is locked. A system without locks goes without.
-        #[cfg(unix)]
-        let _ = made.as_file().try_lock();
-        list.paths.insert(std::path::absolute(made.path())?);
-        Ok(Self(Some(made)))
-    }
+/// The directories that killed processes have left in `parent` beside files, and in which nothing stands but what was
+/// stated: what else is there may be somebody's.
+pub fn left_beside(parent: &Path) -> Vec<Left> {
+    let mut all = left(parent, BESIDE);
+    all.retain(|left| {
+        files_below(&left.path).is_ok_and(|files| {
+            let mut names = files.iter().map(|file| relative_name(&left.path, file));
+            names.all(|name| name == LOCK || left.stated.contains(&name))
+        })
+    });
+    all
+}
 
-    /// Another handle of the file.
-    ///
-    /// # Errors
-    /// The system has no more files.
-    pub fn reopen(&self) -> io::Result<std::fs::File> {
-        match &self.0 {
-            Some(made) => made.reopen(),
-            None => Err(io::ErrorKind::NotFound.into()),
+/// The directories that killed processes have left in `parent`: those that say that they are, under their own name, and
+/// that nobody has locked.
+fn left(parent: &Path, prefix: &str) -> Vec<Left> {
+    let of_entry = |entry: fs::DirEntry| {
+        let (path, name) = (entry.path(), entry.file_name());
+        let lock = path.join(LOCK);
+        let is_named = name.to_string_lossy().starts_with(prefix);
+        if !is_named || !fs::symlink_metadata(&lock).is_ok_and(|found| found.is_file()) {
+            return None;
+        }
+        let text = fs::read_to_string(&lock).ok()?;
+        let mut lines = text.lines().map(str::to_owned);
+        let lock = fs::File::open(&lock).ok()?;
+        let is_left = lines.next()? == title(&path) && lock.try_lock().is_ok();
+        is_left.then(|| Left { path, stated: lines.collect(), _lock: lock })
+    };
+    let entries = fs::read_dir(parent).into_iter().flatten().flatten();
+    entries.filter_map(of_entry).collect()
+}
+
+/// The first line of the file in a directory.
+fn title(directory: &Path) -> String {
+    let name = directory.file_name().unwrap_or_default().to_string_lossy();
+    format!("Glint works in {name}. The next run deletes what a killed one has left.")
+}
+
+/// Everything below a directory that is none, sorted; links are not followed.
+///
+/// # Errors
+/// A directory that cannot be read.
+pub fn files_below(directory: &Path) -> io::Result<Vec<PathBuf>> {
+    let mut found = Vec::new();
+    let mut pending = vec![directory.to_owned()];
+    while let Some(directory) = pending.pop() {
+        for entry in fs::read_dir(&directory)? {
+            let entry = entry?;
+            if entry.file_type()?.is_dir() { &mut pending } else { &mut found }.push(entry.path());
         }
     }
-
-    /// Moves the file to `path`, in place of what is there.
-    ///
-    /// # Errors
-    /// It cannot be moved; then it is deleted.
-    pub fn persist(mut self, path: &Path) -> io::Result<()> {
-        let Some(made) = self.0.take() else {
-            return Err(io::ErrorKind::NotFound.into());
-        };
-        let listed = std::path::absolute(made.path());
-        let done = made.persist(path).map(drop).map_err(|error| error.error);
-        forget(listed);
-        done
-    }
+    found.sort();
+    Ok(found)
 }
 
-impl Drop for File {
-    fn drop(&mut self) {
-        if let Some(made) = self.0.take() {
-            let listed = std::path::absolute(made.path());
-            drop(made);
-            forget(listed);
-        }
-    }
-}
-
-/// Deletes the temporary files in `directory` that killed processes have left.
-pub fn delete_left_files(directory: &Path) {
-    for entry in fs::read_dir(directory).into_iter().flatten().flatten() {
-        let name = entry.file_name();
-        let random = name.to_str().and_then(|name| name.strip_prefix(FILE_PREFIX));
-        let path = entry.path();
-        let is_left = random.is_some_and(|random| random.len() == RANDOM)
-            && entry.metadata().is_ok_and(|found| {
-                let age = found.modified().ok().and_then(|time| time.elapsed().ok());
-                found.is_file() && age.is_some_and(|age| age > UNLOCKED)
-            })
-            && is_unlocked(&path);
-        if is_left {
-            // Another process has deleted it, or it is not this user's.
-            let _ = fs::remove_file(&path);
-        }
-    }
-}
-
-/// Deletes the temporary directories in `place` that killed processes have left: those that say that they are, under their own
-/// name, and that nobody has locked.
-pub fn delete_left_directories(place: &Path) {
-    for entry in fs::read_dir(place).into_iter().flatten().flatten() {
-        let name = entry.file_name();
-        let lock = entry.path().join(LOCK);
-        let is_left = name.to_string_lossy().starts_with(PREFIX)
-            && fs::symlink_metadata(&lock).is_ok_and(|found| found.is_file())
-            && fs::read_to_string(&lock).is_ok_and(|text| text == statement(Some(&name)))
-            && is_unlocked(&lock);
-        if is_left {
-            let _ = fs::remove_dir_all(entry.path());
-        }
-    }
-}
-
-fn is_unlocked(path: &Path) -> bool {
-    fs::File::open(path).is_ok_and(|file| file.try_lock().is_ok())
-}
-
-/// Returns the contents of the file in a directory of this name.
-fn statement(name: Option<&OsStr>) -> String {
-    let name = name.unwrap_or_default().to_string_lossy();
-    format!("Glint works in {name}. The next run deletes what a killed one has left.\n")
+/// The path below `root`, with `/`.
+pub fn relative_name(root: &Path, path: &Path) -> String {
+    let relative = path.strip_prefix(root).unwrap_or(path);
+    let parts: Vec<_> = relative.iter().map(|part| part.to_string_lossy()).collect();
+    parts.join("/")
 }
 
 /// An error of a temporary path without its name, which says nothing to anybody.
 fn without_path(error: io::Error) -> io::Error {
     let text = error.to_string();
     io::Error::new(error.kind(), text.split(" at path ").next().unwrap_or_default())
-}
-
-fn forget(listed: io::Result<PathBuf>) {
-    if let Ok(path) = listed {
-        list().paths.remove(&path);
-    }
 }

@@ -46,68 +46,39 @@ fn a_killed_child_takes_a_session_of_its_child_along() {
 #[test]
 fn what_is_dropped_is_gone_and_off_the_list() {
     let dir = Directory::new().unwrap();
-    let inner = Directory::beside(dir.path(), ".glint-").unwrap();
+    let inner = Directory::beside(dir.path()).unwrap();
     let path = inner.path().to_owned();
     assert!(path.is_dir() && list().paths.contains(&path));
     drop(inner);
     assert!(!path.exists() && !list().paths.contains(&path));
-
-    let file = File::beside(dir.path()).unwrap();
-    assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 2, "lock and file");
-    file.persist(&dir.path().join("kept")).unwrap();
-    assert!(dir.path().join("kept").is_file());
-    assert!(!list().paths.iter().any(|path| path.parent() == Some(dir.path())));
-
-    let kept = Directory::beside(dir.path(), "k").unwrap().keep();
+    let kept = Directory::beside(dir.path()).unwrap().keep();
     assert!(kept.is_dir() && !list().paths.contains(&kept));
 }
 
-/// Paths in use, paths of others, and paths so young that their lock may be still to come, stay.
+/// What is in use stays, and what is somebody's.
 #[test]
-fn what_killed_processes_have_left_is_deleted() {
+fn what_killed_processes_have_left_is_found() {
     let place = tempfile::tempdir().unwrap();
     let at = |name: &str| place.path().join(name);
     let says = |name: &str| {
         format!("Glint works in {name}. The next run deletes what a killed one has left.\n")
     };
     for (name, text) in [
-        ("glint-left", says("glint-left")),
-        ("glint-used", says("glint-used")),
-        ("glint-copy", says("glint-left")),
-        ("glint-mine", "mine".to_owned()),
+        (".glint-left", says(".glint-left") + "made.v\n"),
+        (".glint-used", says(".glint-used")),
+        (".glint-noted", says(".glint-noted") + "made.v\n"),
+        (".glint-copy", says(".glint-left")),
+        (".glint-mine", "mine".to_owned()),
         ("other", says("other")),
     ] {
         fs::create_dir(at(name)).unwrap();
         fs::write(at(name).join("glint.lock"), text).unwrap();
     }
-    let used = fs::File::open(at("glint-used/glint.lock")).unwrap();
+    fs::write(at(".glint-left/made.v"), "").unwrap();
+    fs::write(at(".glint-noted/note"), "mine").unwrap();
+    let used = fs::File::open(at(".glint-used/glint.lock")).unwrap();
     used.try_lock().unwrap();
-    scratch::delete_left_directories(place.path());
-    assert_eq!(names(place.path()), ["glint-copy", "glint-mine", "glint-used", "other"]);
-
-    let place = tempfile::tempdir().unwrap();
-    let old = std::time::SystemTime::now() - Duration::from_secs(3600);
-    let file = |suffix: &str| {
-        let path = place.path().join(format!(".glint-unfinished-{suffix}"));
-        let file = fs::File::create(path).unwrap();
-        file.set_modified(old).unwrap();
-        file
-    };
-    file("abcdefghijkl");
-    file("mine");
-    file("youngyoungyo").set_modified(std::time::SystemTime::now()).unwrap();
-    let used = file("usedusedused");
-    used.try_lock().unwrap();
-    delete_left_files(place.path());
-    let kept = ["mine", "usedusedused", "youngyoungyo"].map(|it| format!(".glint-unfinished-{it}"));
-    assert_eq!(names(place.path()), kept);
-}
-
-/// The names in a directory, sorted.
-fn names(directory: &Path) -> Vec<String> {
-    let entries = fs::read_dir(directory).unwrap();
-    let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
-    let mut names: Vec<String> = names.collect();
-    names.sort();
-    names
+    let found = left_beside(place.path());
+    let found: Vec<_> = found.iter().map(|left| (left.path.clone(), &left.stated[..])).collect();
+    assert_eq!(found, [(at(".glint-left"), &["made.v".to_owned()][..])]);
 }

@@ -16,8 +16,8 @@ use crate::registry::Registry;
 /// Write Verilog, ROM contents, manifest, FuseSoC core and test bench
 ///
 /// Each configuration gets the directories `rtl_out/<name>/` and `testbench/<name>/`, and with
-/// `package.software` also `software/<name>/`. They are replaced as a whole or not at all. Files that Glint did not
-/// write, or that were edited since, are left alone unless --force is given.
+/// `package.software` also `software/<name>/`. Their files are replaced when all are made, each as a whole. Files
+/// that Glint did not write, or that were edited since, are left alone unless --force is given.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:

@@ -1,6 +1,6 @@
 //! `render`.
 
-use std::io::{Read, Write};
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, anyhow, bail};
@@ -170,11 +170,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
         bar.set_position(rows);
     })?;
     bar.finish_and_clear();
-    let picture = rendered.whole(core.device.name).png()?;
-    let cannot = || format!("cannot write `{}`", arguments.out.display());
-    let mut file = destination.file()?;
-    file.write_all(&picture).with_context(cannot)?;
-    destination.commit()?;
+    destination.write(rendered.whole(core.device.name).png()?)?;
     tell(output, arguments, &name, &core, &scene, &settings, &rendered);
     Ok(true)
 }

@@ -2,10 +2,9 @@
 
 mod plot;
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Result, bail};
 use clap::{Args, ValueEnum};
 use indicatif::ProgressBar;
 use serde_json::{Value as Json, json};
@@ -146,13 +145,10 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     let answer = answer?;
     let text = toml(&device, &answer.best, arguments);
     if let Some(drawing) = drawing {
-        let svg = plot::plot(&answer, arguments)?;
-        drawing.file()?.write_all(svg.as_bytes()).context("cannot write the plot")?;
-        drawing.commit()?;
+        drawing.write(plot::plot(&answer, arguments)?)?;
     }
     if let Some(file) = file {
-        file.file()?.write_all(text.as_bytes()).context("cannot write the configuration")?;
-        file.commit()?;
+        file.write(&text)?;
     }
     if output.json {
         tables::print_json(&as_json(&answer, arguments, &text));

@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result};
 use serde_json::Value;
 
-use super::{differs, directories, relative_name};
+use super::{differs, directories};
+use crate::base::transient::{files_below, relative_name};
 use crate::package::{OutputFile, digest};
 
 /// The files that are there, held against those that are to be there. All lists are sorted.
@@ -17,8 +18,8 @@ pub struct Survey {
     pub different: Vec<String>,
     /// Files of Glint's that somebody edited, and files that would be overwritten.
     pub edited: Vec<PathBuf>,
-    /// Other files that are not Glint's.
-    pub foreign: Vec<PathBuf>,
+    /// Files of Glint's that are to be deleted.
+    pub stale: Vec<PathBuf>,
 }
 
 impl Survey {
@@ -29,7 +30,7 @@ impl Survey {
     pub fn new(out: &Path, name: &str, files: &[OutputFile]) -> Result<Self> {
         let manifest = out.join("rtl_out").join(name).join(format!("{name}.json"));
         let digests = Digests::read(&manifest, out);
-        let mut survey = Self { different: Vec::new(), edited: Vec::new(), foreign: Vec::new() };
+        let mut survey = Self { different: Vec::new(), edited: Vec::new(), stale: Vec::new() };
         for file in files {
             if differs(out, file)? {
                 survey.different.push(file.path.clone());
@@ -46,7 +47,10 @@ impl Survey {
             }
             match digests.owner(&relative, &path) {
                 Owner::Glint if wanted => {}
-                Owner::Glint => survey.different.push(relative),
+                Owner::Glint => {
+                    survey.different.push(relative);
+                    survey.stale.push(path);
+                }
                 Owner::Editor => {
                     survey.edited.push(path);
                     if !wanted {
@@ -54,7 +58,7 @@ impl Survey {
                     }
                 }
                 Owner::Other if wanted || in_the_way => survey.edited.push(path),
-                Owner::Other => survey.foreign.push(path),
+                Owner::Other => {}
             }
         }
         // A directory where a file is to be.
@@ -68,7 +72,7 @@ impl Survey {
 }
 
 /// The owner of a file.
-pub enum Owner {
+enum Owner {
     /// As Glint wrote it.
     Glint,
     /// Glint wrote it, and somebody edited it.
@@ -78,19 +82,19 @@ pub enum Owner {
 }
 
 /// The digests that a manifest holds; none when it is no manifest of Glint's.
-pub struct Digests {
+struct Digests {
     manifest: String,
     digests: Option<BTreeMap<String, String>>,
 }
 
 impl Digests {
     /// Reads a manifest below `out`.
-    pub fn read(manifest: &Path, out: &Path) -> Self {
+    fn read(manifest: &Path, out: &Path) -> Self {
         Self { manifest: relative_name(out, manifest), digests: parsed(manifest) }
     }
 
     /// Returns the owner of the file `relative`, which stands at `path`.
-    pub fn owner(&self, relative: &str, path: &Path) -> Owner {
+    fn owner(&self, relative: &str, path: &Path) -> Owner {
         let Some(digests) = &self.digests else {
             return Owner::Other;
         };
@@ -121,31 +125,15 @@ fn present(out: &Path, name: &str) -> Result<Vec<PathBuf>> {
     let mut found = Vec::new();
     for directory in directories(out, name) {
         match fs::read_dir(&directory) {
-            Ok(_) => found.extend(files_below(&directory)?),
+            Ok(_) => {
+                found.extend(files_below(&directory).with_context(|| cannot_read(&directory))?);
+            }
             Err(error) if error.kind() == ErrorKind::NotFound => {}
             // A file where the directory should be, unless it is one above that is no directory.
             Err(error) if error.kind() == ErrorKind::NotADirectory => {
                 found.extend(fs::symlink_metadata(&directory).is_ok().then_some(directory));
             }
             Err(error) => return Err(error).with_context(|| cannot_read(&directory)),
-        }
-    }
-    found.sort();
-    Ok(found)
-}
-
-/// Everything below a directory that is none; links are not followed.
-///
-/// # Errors
-/// A directory that cannot be read.
-pub fn files_below(directory: &Path) -> Result<Vec<PathBuf>> {
-    let mut found = Vec::new();
-    let mut pending = vec![directory.to_owned()];
-    while let Some(directory) = pending.pop() {
-        for entry in fs::read_dir(&directory).with_context(|| cannot_read(&directory))? {
-            let entry = entry.with_context(|| cannot_read(&directory))?;
-            let kind = entry.file_type().with_context(|| cannot_read(&entry.path()))?;
-            if kind.is_dir() { &mut pending } else { &mut found }.push(entry.path());
         }
     }
     found.sort();

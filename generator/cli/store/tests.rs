@@ -38,15 +38,10 @@ fn assert_renewed(out: &Path) {
     assert_eq!(entries, ["rtl_out", "testbench"]);
 }
 
-/// The staging directory as a process leaves it that is killed: nothing is dropped, but the lock is gone.
-fn killed(staging: Staging) -> PathBuf {
-    staging.abandon()
-}
-
 #[test]
 fn one_that_was_killed_before_the_moves() {
     let dir = written("old");
-    let staging = killed(Staging::new(dir.path(), &files("half")).unwrap());
+    let staging = Staging::new(dir.path(), &files("half")).unwrap().abandon(false);
     fs::remove_file(staging.join("testbench/core/core_tb.v")).unwrap();
     write(dir.path(), "core", &files("new"), false).unwrap();
     assert_renewed(dir.path());
@@ -54,44 +49,42 @@ fn one_that_was_killed_before_the_moves() {
 
 #[test]
 fn one_that_was_killed_between_the_moves() {
-    let out = |dir: &tempfile::TempDir, path: &str| dir.path().join(path);
-    for moves in 1..=3 {
+    for moves in 0..=3 {
         let dir = written("old");
-        let staging = killed(Staging::new(dir.path(), &files("new")).unwrap());
-        let aside = staging.join("old/rtl_out");
-        fs::create_dir_all(&aside).unwrap();
-        fs::rename(out(&dir, "rtl_out/core"), aside.join("core")).unwrap();
-        if moves > 1 {
-            fs::rename(staging.join("rtl_out/core"), out(&dir, "rtl_out/core")).unwrap();
-        }
-        if moves > 2 {
-            fs::create_dir_all(staging.join("old/testbench")).unwrap();
-            fs::rename(out(&dir, "testbench/core"), staging.join("old/testbench/core")).unwrap();
+        let staging = Staging::new(dir.path(), &files("new")).unwrap().abandon(true);
+        for file in &files("new")[..moves] {
+            fs::rename(staging.join(&file.path), dir.path().join(&file.path)).unwrap();
         }
         staging::recover(dir.path()).unwrap();
         assert_renewed(dir.path());
     }
 }
 
+/// A file that is no longer asked for goes; with `force` so does what is in the way, and nothing else.
+#[test]
+fn what_is_stale_goes_and_what_is_foreign_stays() {
+    let dir = written("old");
+    let at = |path: &str| dir.path().join(path);
+    let mut less = files("new");
+    less.retain(|file| file.path.starts_with("rtl_out"));
+    fs::remove_file(at("rtl_out/core/core.v")).unwrap();
+    fs::create_dir(at("rtl_out/core/core.v")).unwrap();
+    assert!(write(dir.path(), "core", &less, false).is_err() && at("testbench/core").is_dir());
+    write(dir.path(), "core", &less, true).unwrap();
+    assert!(at("rtl_out/core/core.v").is_file() && !at("testbench/core").exists());
+    assert_eq!(fs::read_to_string(at("rtl_out/core/.DS_Store")).unwrap(), "mine");
+    assert_eq!(differences(dir.path(), "core", &less).unwrap(), Vec::<String>::new());
+}
+
 #[test]
 fn what_is_not_provably_glints_stays() {
     let dir = written("old");
-    // One in use, one with a note in it, and two that only look like one.
+    // One in use, and one with a note in it.
     let used = Staging::new(dir.path(), &files("half")).unwrap();
-    let noted = killed(Staging::new(dir.path(), &files("half")).unwrap());
+    let noted = Staging::new(dir.path(), &files("half")).unwrap().abandon(true);
     fs::write(noted.join("rtl_out/core/note"), "mine").unwrap();
-    for (name, lock) in [(".glint-a", None), (".glint-b", Some("my own lock\n"))] {
-        fs::create_dir(dir.path().join(name)).unwrap();
-        fs::write(dir.path().join(name).join("file"), "mine").unwrap();
-        if let Some(text) = lock {
-            fs::write(dir.path().join(name).join("glint.lock"), text).unwrap();
-        }
-    }
     write(dir.path(), "core", &files("new"), false).unwrap();
     assert_eq!(fs::read_to_string(noted.join("rtl_out/core/note")).unwrap(), "mine");
-    for name in [".glint-a/file", ".glint-b/file"] {
-        assert_eq!(fs::read_to_string(dir.path().join(name)).unwrap(), "mine");
-    }
-    let used = killed(used);
+    let used = used.abandon(false);
     assert!(used.join("rtl_out/core/core.v").exists());
 }

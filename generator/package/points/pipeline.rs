@@ -1,21 +1,10 @@
 //! The bench that sends a list of points through a pipeline: operands from a file, results to a file.
 
 use anyhow::{Context, Result};
-use askama::Template;
 
 use super::{List, PointsBench};
 use crate::hdl::netlist::{Design, Port, Role};
 use crate::hdl::verilog::text::{Names, literal};
-
-#[derive(Template)]
-#[template(path = "points_pipeline.v")]
-struct View<'a> {
-    list: &'a List,
-    names: Variables,
-    in_valid: String,
-    /// Inputs that never change, with their values.
-    held: Vec<(String, String)>,
-}
 
 fresh_names!(Variables { points, results, read, clocks, offered, total, tick, dut });
 
@@ -36,11 +25,12 @@ pub fn points_bench(design: &Design, limit: u32) -> Result<PointsBench> {
     });
     let ends = [of_role(Role::Reset)?.net, of_role(Role::Valid)?.net];
     let list = List::new(design, limit, |role| role == Role::Point, ends);
-    let text = crate::package::render(&View {
-        list: &list,
-        names: Variables::new(&mut Names::of_ports(design)),
-        in_valid: port_name(of_role(Role::InValid)?),
-        held: held.collect(),
+    let text = fill!("points_pipeline.v" {
+        list: &'a List = &list,
+        names: Variables = Variables::new(&mut Names::of_ports(design)),
+        in_valid: String = port_name(of_role(Role::InValid)?),
+        // Inputs that never change, with their values.
+        held: Vec<(String, String)> = held.collect(),
     })?;
     Ok(list.bench(text))
 }

@@ -1,26 +1,13 @@
 //! `<name>_litex.py`: the core for LiteX, with CSRs, between streams, or with its own registers on a bus.
 
 use anyhow::{Result, bail};
-use askama::Template;
 
 use crate::hdl::netlist::{Design, Role};
 use crate::hdl::verilog::text::ascii;
-use crate::package::surroundings::Bus;
+use crate::package::Unfit;
+use crate::package::artifact::{Artifacts, Job, Kind};
+use crate::package::bus::Bus;
 use crate::package::tops::{Face, Top, TopPort};
-use crate::package::{EmitInputs, Unfit, render};
-
-#[derive(Template)]
-#[template(path = "litex.py")]
-struct Module<'a> {
-    name: &'a str,
-    title: String,
-    regenerate: &'a str,
-    /// The names of the classes begin with it.
-    class: String,
-    core: Option<Core<'a>>,
-    stream: Option<Stream<'a>>,
-    registers: Option<(&'a Top, Bus)>,
-}
 
 /// A core that CSRs can drive: one computation of operands to results.
 struct Core<'a> {
@@ -47,15 +34,14 @@ struct Stream<'a> {
     last: bool,
 }
 
-/// The module, a pair of a plain name and its text.
+/// Adds the module.
 ///
 /// # Errors
 /// A core that CSRs cannot drive, and that has no stream.
-pub fn file(design: &Design, inputs: &EmitInputs, tops: &[Top]) -> Result<(String, String)> {
-    let name = design.name.as_str();
+pub fn file(job: &Job, tops: &[Top], files: &mut Artifacts) -> Result<()> {
+    let (name, design, is_line) = (job.name(), job.design, job.is_line());
     let find = |face: fn(Face) -> bool| tops.iter().find(|top| face(top.face));
     let stream = find(|face| face == Face::Stream).map(streamed);
-    let is_line = inputs.accuracy.as_ref().is_some_and(|accuracy| accuracy.length.is_some());
     let core = if is_line || design.pipeline.is_some() {
         None
     } else {
@@ -75,16 +61,18 @@ pub fn file(design: &Design, inputs: &EmitInputs, tops: &[Top]) -> Result<(Strin
         Face::Registers(bus) => Some((top, bus)),
         Face::Core | Face::Stream => None,
     });
-    let module = Module {
-        name,
-        title: ascii(&design.about.title).replace('\\', "/").replace('"', "'"),
-        regenerate: &inputs.config,
-        class: camel(name),
-        core,
-        stream,
-        registers,
-    };
-    Ok((format!("{name}_litex.py"), render(&module)?))
+    let text = fill!("litex.py" {
+        name: &'a str,
+        title: String = ascii(&design.about.title).replace('\\', "/").replace('"', "'"),
+        regenerate: &'a str = job.regenerate(),
+        // The names of the classes begin with it.
+        class: String = camel(name),
+        core: Option<Core<'a>>,
+        stream: Option<Stream<'a>>,
+        registers: Option<(&'a Top, &'a Bus)>,
+    })?;
+    files.add(Kind::Software, format!("{name}_litex.py"), text);
+    Ok(())
 }
 
 fn driven<'a>(design: &Design, top: &'a Top) -> Core<'a> {

@@ -9,7 +9,25 @@ mod print;
 mod registers;
 mod setup;
 
-pub use litex::file as of_litex;
-pub use model::files;
-pub use registers::files as of_registers;
-pub use setup::files as of_lines;
+use anyhow::Result;
+
+use super::artifact::{Artifacts, Job};
+use super::tops::Top;
+
+/// Adds what the configuration asks for.
+///
+/// # Errors
+/// A core that does not fit.
+pub fn files(job: &Job, tops: &[Top], files: &mut Artifacts) -> Result<()> {
+    if job.inputs.around.software {
+        model::files(job, files)?;
+        setup::files(job, files)?;
+    }
+    if let Some((bus, map)) = &job.registers {
+        registers::files(job, bus, map, files)?;
+    }
+    if job.inputs.around.litex {
+        litex::file(job, tops, files)?;
+    }
+    Ok(())
+}

@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 
 use anyhow::{Context, Result};
-use askama::Template;
 
 use super::print::{Line, Printer, comment, field, literal, pattern_type, taken};
 use crate::base::fixed::{Format, mask};
@@ -12,7 +11,8 @@ use crate::hdl::pipeline::{
     Cell, Cycle, Graph, Held, NodeId, Unrolled, any_cycle, unroll_in_powers,
 };
 use crate::hdl::verilog::text::{Names, ascii, constant_name, statement};
-use crate::package::{EmitInputs, Unfit, WorkedExample, render};
+use crate::package::artifact::{Artifacts, Job, Kind};
+use crate::package::{Unfit, WorkedExample};
 
 /// An operand or a result in C.
 #[derive(Clone)]
@@ -26,43 +26,6 @@ pub struct Field {
     /// The format of the port.
     pub format: Format,
     doc: String,
-}
-
-#[derive(Template)]
-#[template(path = "model.h")]
-struct Header<'a> {
-    name: &'a str,
-    guard: String,
-    title: String,
-    formula: String,
-    regenerate: &'a str,
-    /// The upper-case name of a pipeline's latency, and the clocks.
-    latency: Option<(String, usize)>,
-    operands: Vec<Field>,
-    results: Vec<Field>,
-    line: bool,
-}
-
-#[derive(Template)]
-#[template(path = "model.c")]
-struct Source<'a> {
-    name: &'a str,
-    title: String,
-    regenerate: &'a str,
-    tables: Vec<String>,
-    body: Vec<String>,
-    line: bool,
-}
-
-#[derive(Template)]
-#[template(path = "model.py")]
-struct Example<'a> {
-    name: &'a str,
-    regenerate: &'a str,
-    operands: Vec<Field>,
-    results: Vec<Field>,
-    values: Vec<String>,
-    line: bool,
 }
 
 impl Field {
@@ -144,19 +107,14 @@ impl Field {
     }
 }
 
-/// The files of `software/<name>/`, pairs of a plain name and contents. The design has the microprogram; `latency` is that
-/// of the pipeline in its place.
+/// Adds the model. It is made of the design with the microprogram.
 ///
 /// # Errors
 /// A core of which no function can be made: one that waits for `start` in the middle, has a loop without a bound, or
 /// whose results depend on what it did before.
-pub fn files(
-    design: &Design,
-    inputs: &EmitInputs,
-    latency: Option<usize>,
-) -> Result<Vec<(String, String)>> {
-    let name = design.name.as_str();
-    let line = inputs.accuracy.as_ref().is_some_and(|accuracy| accuracy.length.is_some());
+pub fn files(job: &Job, files: &mut Artifacts) -> Result<()> {
+    let (name, inputs, line) = (job.name(), job.inputs, job.is_line());
+    let design = inputs.sequential.as_ref().unwrap_or(job.design);
     let about = &design.about;
     let operands = || {
         design
@@ -172,42 +130,44 @@ pub fn files(
             let message = format!("`{name}` has no model in C: {error:#}");
             Unfit::new("package.software", message, "remove it")
         })?;
-    let regenerate = inputs.config.as_str();
-    let header = Header {
-        name,
-        guard: format!("{}_MODEL_H", constant_name(name)),
-        title: ascii(&about.title).replace("*/", "* /"),
-        formula: ascii(&about.formula).replace("*/", "* /"),
-        regenerate,
-        latency: latency.map(|clocks| (format!("{}_LATENCY", constant_name(name)), clocks)),
-        operands: operands(),
-        results: results(),
-        line,
-    };
-    let source = Source {
-        name,
-        title: ascii(&about.title).replace("*/", "* /"),
-        regenerate,
-        tables: tables(design, &names, &read),
-        body,
-        line,
-    };
-    let mut files = vec![
-        (format!("{name}_model.h"), render(&header)?),
-        (format!("{name}_model.c"), render(&source)?),
-    ];
+    let regenerate = job.regenerate();
+    let outside_comments = |text: &str| ascii(text).replace("*/", "* /");
+    let latency = job.design.pipeline.as_ref().map(|pipeline| pipeline.stages.len());
+    let header = fill!("model.h" {
+        name: &'a str,
+        guard: String = format!("{}_MODEL_H", constant_name(name)),
+        title: String = outside_comments(&about.title),
+        formula: String = outside_comments(&about.formula),
+        regenerate: &'a str,
+        // Of a pipeline, the upper-case name of its latency, and the clocks.
+        latency: Option<(String, usize)> =
+            latency.map(|clocks| (format!("{}_LATENCY", constant_name(name)), clocks)),
+        operands: Vec<Field> = operands(),
+        results: Vec<Field> = results(),
+        line: bool,
+    })?;
+    let source = fill!("model.c" {
+        name: &'a str,
+        title: String = outside_comments(&about.title),
+        regenerate: &'a str,
+        tables: Vec<String> = tables(design, &names, &read),
+        body: Vec<String>,
+        line: bool,
+    })?;
+    files.add(Kind::Software, format!("{name}_model.h"), header);
+    files.add(Kind::Software, format!("{name}_model.c"), source);
     if let Some(example) = &inputs.example {
-        let example = Example {
-            name,
-            regenerate,
-            operands: operands(),
-            results: results(),
-            values: example_values(design, example),
-            line,
-        };
-        files.push((format!("{name}_model.py"), render(&example)?));
+        let python = fill!("model.py" {
+            name: &'a str,
+            regenerate: &'a str,
+            operands: Vec<Field> = operands(),
+            results: Vec<Field> = results(),
+            values: Vec<String> = example_values(design, example),
+            line: bool,
+        })?;
+        files.add(Kind::Software, format!("{name}_model.py"), python);
     }
-    Ok(files)
+    Ok(())
 }
 
 /// The worked example's raw operands in the order of the ports, which need not be its own.

@@ -1,17 +1,15 @@
 //! The registers for software: a C header, a Rust module without `std`, and SystemRDL.
 
 use anyhow::Result;
-use askama::Template;
 
 use crate::base::fixed::Format;
-use crate::hdl::netlist::Design;
 use crate::hdl::verilog::text::{ascii, constant_name};
+use crate::package::artifact::{Artifacts, Job, Kind};
+use crate::package::bus::Bus;
 use crate::package::map::{Access, Bits, Map, Register};
-use crate::package::surroundings::Bus;
-use crate::package::{EmitInputs, render};
 
 /// A register as the templates print it.
-struct View<'a> {
+struct Printed<'a> {
     register: &'a Register,
     /// In upper case.
     constant: String,
@@ -74,56 +72,15 @@ impl Operand {
     }
 }
 
-#[derive(Template)]
-#[template(path = "registers.h")]
-struct Header<'a> {
-    name: &'a str,
-    title: &'a str,
-    regenerate: &'a str,
-    guard: &'a str,
-    prefix: &'a str,
-    bus: &'a str,
-    registers: &'a [View<'a>],
-    operands: &'a [Operand],
-}
-
-#[derive(Template)]
-#[template(path = "registers.rs")]
-struct Module<'a> {
-    name: &'a str,
-    title: &'a str,
-    regenerate: &'a str,
-    bus: &'a str,
-    registers: &'a [View<'a>],
-    operands: &'a [Operand],
-}
-
-#[derive(Template)]
-#[template(path = "registers.rdl")]
-struct Rdl<'a> {
-    name: &'a str,
-    title: &'a str,
-    regenerate: &'a str,
-    registers: &'a [View<'a>],
-}
-
-/// The files, pairs of a plain name and contents.
+/// Adds the files.
 ///
 /// # Errors
 /// A template that fails.
-pub fn files(
-    design: &Design,
-    inputs: &EmitInputs,
-    bus: Bus,
-    map: &Map,
-) -> Result<Vec<(String, String)>> {
-    let name = design.name.as_str();
-    let title = ascii(&design.about.title).replace("*/", "* /").replace('"', "'");
-    let bus = match bus {
-        Bus::AxiLite => "AXI4-Lite",
-        Bus::Wishbone => "Wishbone",
-    };
-    let registers: Vec<View> = map.registers.iter().map(view).collect();
+pub fn files(job: &Job, bus: &Bus, map: &Map, files: &mut Artifacts) -> Result<()> {
+    let (name, regenerate, bus) = (job.name(), job.regenerate(), bus.title);
+    let title = ascii(&job.design.about.title).replace("*/", "* /").replace('"', "'");
+    let title = title.as_str();
+    let registers: Vec<Printed> = map.registers.iter().map(view).collect();
     let operands: Vec<Operand> = map
         .operands
         .iter()
@@ -133,30 +90,29 @@ pub fn files(
             format: operand.format,
         })
         .collect();
-    let (regenerate, prefix) = (inputs.config.as_str(), constant_name(name));
-    let header = Header {
-        name,
-        title: &title,
-        regenerate,
-        guard: &format!("{prefix}_REGISTERS_H"),
-        prefix: &prefix,
-        bus,
-        registers: &registers,
-        operands: &operands,
-    };
-    let module =
-        Module { name, title: &title, regenerate, bus, registers: &registers, operands: &operands };
-    let rdl = Rdl { name, title: &title, regenerate, registers: &registers };
-    Ok(vec![
-        (format!("{name}_registers.h"), render(&header)?),
-        (format!("{name}_registers.rs"), render(&module)?),
-        (format!("{name}.rdl"), render(&rdl)?),
-    ])
+    let prefix = constant_name(name);
+    let header = fill!("registers.h" {
+        name: &'a str, title: &'a str, regenerate: &'a str,
+        guard: String = format!("{prefix}_REGISTERS_H"),
+        prefix: &'a str = &prefix,
+        bus: &'a str, registers: &'a [Printed<'a>] = &registers, operands: &'a [Operand] = &operands,
+    })?;
+    let module = fill!("registers.rs" {
+        name: &'a str, title: &'a str, regenerate: &'a str, bus: &'a str,
+        registers: &'a [Printed<'a>] = &registers, operands: &'a [Operand] = &operands,
+    })?;
+    let rdl = fill!("registers.rdl" {
+        name: &'a str, title: &'a str, regenerate: &'a str, registers: &'a [Printed<'a>] = &registers,
+    })?;
+    files.add(Kind::Software, format!("{name}_registers.h"), header);
+    files.add(Kind::Software, format!("{name}_registers.rs"), module);
+    files.add(Kind::Software, format!("{name}.rdl"), rdl);
+    Ok(())
 }
 
-fn view(register: &Register) -> View<'_> {
+fn view(register: &Register) -> Printed<'_> {
     let field = |bits| Field { bits, constant: constant_name(&bits.name) };
-    View {
+    Printed {
         register,
         constant: constant_name(&register.name),
         fields: register.bits.iter().map(field).collect(),

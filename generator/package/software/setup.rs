@@ -2,19 +2,18 @@
 //! line. The formulas are those of `render::setup`, against which tests hold these.
 
 use anyhow::Result;
-use askama::Template;
 
 use super::model::Field;
 use crate::base::fixed::exp2;
-use crate::hdl::netlist::{Design, Role};
+use crate::hdl::netlist::Role;
 use crate::hdl::verilog::text::constant_name;
-use crate::package::{EmitInputs, render};
+use crate::package::artifact::{Artifacts, Job, Kind};
 
 /// The operands of a line, as far as a set-up knows them; `exponent` may be missing.
 const KNOWN: [&str; 5] = ["delta_zeta", "zeta_start", "exponent", "length", "amplitude"];
 
-/// The view of a configuration in the three files.
-struct View<'a> {
+/// What the three files say of a configuration.
+struct Line<'a> {
     name: &'a str,
     prefix: String,
     regenerate: &'a str,
@@ -32,41 +31,25 @@ struct View<'a> {
     order: Vec<String>,
 }
 
-impl View<'_> {
+impl Line<'_> {
     /// Raw angles of a turn.
     fn turn(&self, angle: &Field) -> String {
         exp2(angle.format.width() as i32).to_string()
     }
 }
 
-#[derive(Template)]
-#[template(path = "setup.h")]
-struct Header<'a> {
-    line: View<'a>,
-}
-
-#[derive(Template)]
-#[template(path = "setup.c")]
-struct Source<'a> {
-    line: View<'a>,
-}
-
-#[derive(Template)]
-#[template(path = "setup.py")]
-struct Module<'a> {
-    line: View<'a>,
-}
-
-/// The files, pairs of a plain name and contents: none of a device that walks no line, or takes other operands.
+/// Adds the files: none of a device that walks no line, or takes other operands.
 ///
 /// # Errors
 /// A template that fails.
-pub fn files(design: &Design, inputs: &EmitInputs) -> Result<Vec<(String, String)>> {
+pub fn files(job: &Job, files: &mut Artifacts) -> Result<()> {
+    let (name, inputs) = (job.name(), job.inputs);
+    let design = inputs.sequential.as_ref().unwrap_or(job.design);
     let ports = design.inputs().filter(|port| matches!(port.role, Role::Operand { .. }));
     let fields: Vec<Field> = ports.map(|port| Field::new(design, port)).collect();
     let accuracy = inputs.accuracy.as_ref().filter(|accuracy| accuracy.length.is_some());
     let Some(accuracy) = accuracy else {
-        return Ok(Vec::new());
+        return Ok(());
     };
     let field = |name: &str| fields.iter().find(|field| field.name == name);
     let domain = |name: &str| {
@@ -78,13 +61,12 @@ pub fn files(design: &Design, inputs: &EmitInputs) -> Result<Vec<(String, String
     let ([Some(start), Some(delta), Some(amplitude)], Some((_, longest)), Some((_, full)), true) =
         (all, domain("length"), domain("amplitude"), known)
     else {
-        return Ok(Vec::new());
+        return Ok(());
     };
-    let name = design.name.as_str();
-    let view = || View {
+    let line = &Line {
         name,
         prefix: constant_name(name),
-        regenerate: &inputs.config,
+        regenerate: job.regenerate(),
         angles: vec![start.clone(), delta.clone()],
         exponent: domain("exponent"),
         longest,
@@ -93,9 +75,12 @@ pub fn files(design: &Design, inputs: &EmitInputs) -> Result<Vec<(String, String
         room: exp2(start.format.int) - 1.0,
         order: fields.iter().map(|field| field.name.clone()).collect(),
     };
-    Ok(vec![
-        (format!("{name}_setup.h"), render(&Header { line: view() })?),
-        (format!("{name}_setup.c"), render(&Source { line: view() })?),
-        (format!("{name}_setup.py"), render(&Module { line: view() })?),
-    ])
+    for (ending, text) in [
+        ("h", fill!("setup.h" { line: &'a Line<'a> })?),
+        ("c", fill!("setup.c" { line: &'a Line<'a> })?),
+        ("py", fill!("setup.py" { line: &'a Line<'a> })?),
+    ] {
+        files.add(Kind::Software, format!("{name}_setup.{ending}"), text);
+    }
+    Ok(())
 }

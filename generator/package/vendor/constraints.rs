@@ -1,45 +1,31 @@
 //! `<top>.sdc` and `<top>.xdc`: the clock, and nothing that is not known of the system around.
 
 use anyhow::Result;
-use askama::Template;
 
+use crate::package::artifact::{Artifacts, Job, Kind};
 use crate::package::tops::Top;
-use crate::package::{EmitInputs, render};
 
-#[derive(Template)]
-#[template(path = "constraints.sdc")]
-struct Constraints<'a> {
-    top: &'a Top,
-    regenerate: &'a str,
-    clock_mhz: f64,
-    /// In nanoseconds.
-    period: String,
-    /// Who reads the file, and how.
-    reader: &'static str,
-}
-
-/// Both files of each module.
+/// Adds both files of each module.
 ///
 /// # Errors
 /// A template that fails.
-pub fn files(inputs: &EmitInputs, tops: &[Top], clock_mhz: f64) -> Result<Vec<(String, String)>> {
-    let mut files = Vec::new();
+pub fn files(job: &Job, tops: &[Top], clock_mhz: f64, files: &mut Artifacts) -> Result<()> {
     for top in tops {
         for (ending, reader) in [
             ("sdc", "For Quartus, nextpnr, OpenSTA and all that read SDC."),
             ("xdc", "For Vivado: read_xdc -mode out_of_context."),
         ] {
-            let constraints = Constraints {
-                top,
-                regenerate: &inputs.config,
-                clock_mhz,
-                period: period(clock_mhz),
-                reader,
-            };
-            files.push((format!("{}.{ending}", top.module), render(&constraints)?));
+            let text = fill!("constraints.sdc" {
+                top: &'a Top, regenerate: &'a str = job.regenerate(), clock_mhz: f64,
+                // In nanoseconds.
+                period: String = period(clock_mhz),
+                // Who reads the file, and how.
+                reader: &'a str,
+            })?;
+            files.add(Kind::Constraint, format!("{}.{ending}", top.module), text);
         }
     }
-    Ok(files)
+    Ok(())
 }
 
 /// In nanoseconds, with picoseconds. What is rounded off makes the clock faster, never slower.

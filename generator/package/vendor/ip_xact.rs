@@ -3,26 +3,25 @@
 use anyhow::Result;
 use askama::Template;
 
-use crate::hdl::netlist::Design;
 use crate::hdl::verilog::text::ascii;
-use crate::package::map::{Access, Bits, Map, Register};
-use crate::package::surroundings::Bus;
+use crate::package::artifact::{Artifacts, Job, Kind};
+use crate::package::map::{Access, Bits, Register};
+use crate::package::render;
 use crate::package::tops::{Face, Top};
-use crate::package::{EmitInputs, render};
 
 #[derive(Template)]
 #[template(path = "component.xml")]
 struct Component<'a> {
     top: &'a Top,
-    title: &'a str,
-    regenerate: &'a str,
+    title: String,
+    regenerate: String,
     vendor: &'a str,
     version: &'a str,
     buses: Vec<BusInterface>,
     registers: &'a [Register],
     /// Bytes that the registers take.
-    range: u32,
-    memories: &'a [String],
+    range: usize,
+    memories: Vec<String>,
 }
 
 /// A bus interface, of a bus definition that ARM has published, or of an interrupt AMD.
@@ -81,42 +80,52 @@ impl Bits {
     }
 }
 
-/// A component of each module.
+/// Adds a component of each module.
 ///
 /// # Errors
 /// A template that fails.
-pub fn files(
-    design: &Design,
-    inputs: &EmitInputs,
-    tops: &[Top],
-    map: Option<&Map>,
-    memories: &[String],
-) -> Result<Vec<(String, String)>> {
-    let title = escaped(&design.about.title);
-    let component = |top: &Top| {
-        let registers = match top.face {
-            Face::Registers(_) => map.map_or(&[][..], |map| &map.registers[..]),
-            Face::Core | Face::Stream => &[],
+pub fn files(job: &Job, tops: &[Top], files: &mut Artifacts) -> Result<()> {
+    for top in tops {
+        let registers: &[Register] = match (top.face, &job.registers) {
+            (Face::Registers(_), Some((_, map))) => &map.registers,
+            _ => &[],
         };
         let component = Component {
             top,
-            title: &title,
-            regenerate: &comment(&inputs.config),
-            vendor: &inputs.around.vendor,
-            version: &inputs.around.version,
+            title: escaped(&job.design.about.title),
+            regenerate: comment(job.regenerate()),
+            vendor: &job.inputs.around.vendor,
+            version: &job.inputs.around.version,
             buses: buses(top),
             registers,
-            range: 4 * registers.len() as u32,
-            memories,
+            range: 4 * registers.len(),
+            memories: files.names(&[Kind::Memory]),
         };
-        Ok((format!("{}.xml", top.module), render(&component)?))
-    };
-    tops.iter().map(component).collect()
+        let text = render(&component)?;
+        files.add(Kind::Script, format!("{}.xml", top.module), text);
+    }
+    Ok(())
 }
 
-/// The interrupt, a level. IEEE 1685-2014 has none of its own, and Vivado's is known to other tools too.
-fn interrupt() -> BusInterface {
-    BusInterface {
+/// The buses of a module, and its interrupt. IEEE 1685-2014 has none of its own, and Vivado's is known to other tools too.
+fn buses(top: &Top) -> Vec<BusInterface> {
+    let mut buses = Vec::new();
+    for protocol in top.protocols {
+        let common = [("ACLK", &top.clock), ("ARESETN", &top.reset)];
+        let common = common.map(|(logical, port)| (logical.to_owned(), port.clone()));
+        let own = top.ports_of(protocol).into_iter();
+        let own = own.map(|(port, name)| (name.to_ascii_uppercase(), port.name.clone()));
+        buses.push(BusInterface {
+            name: protocol.name,
+            definition: AMBA,
+            bus: protocol.amba,
+            version: protocol.version,
+            is_slave: protocol.is_slave,
+            mapped: top.interrupts(),
+            ports: common.into_iter().chain(own).collect(),
+        });
+    }
+    buses.extend(top.interrupts().then(|| BusInterface {
         name: "irq",
         definition: INTERRUPT,
         bus: "interrupt",
@@ -124,46 +133,8 @@ fn interrupt() -> BusInterface {
         is_slave: false,
         mapped: false,
         ports: vec![("INTERRUPT".to_owned(), "irq".to_owned())],
-    }
-}
-
-/// The buses of a module. Wishbone has no definition that its makers have published.
-fn buses(top: &Top) -> Vec<BusInterface> {
-    let ports = |name: &str| -> Vec<(String, String)> {
-        let prefix = format!("{name}_");
-        let logical = |port: &str| port.strip_prefix(&prefix).map(str::to_ascii_uppercase);
-        let common = [("ACLK", top.clock), ("ARESETN", top.reset.as_str())];
-        let common = common.map(|(logical, port)| (logical.to_owned(), port.to_owned()));
-        let own =
-            top.ports.iter().filter_map(|port| Some((logical(&port.name)?, port.name.clone())));
-        common.into_iter().chain(own).collect()
-    };
-    let stream = |name, is_slave| BusInterface {
-        name,
-        definition: AMBA,
-        bus: "AXI4Stream",
-        version: "r0p0_1",
-        is_slave,
-        mapped: false,
-        ports: ports(name),
-    };
-    match top.face {
-        Face::Stream => vec![stream("s_axis", true), stream("m_axis", false)],
-        Face::Registers(Bus::AxiLite) => {
-            let registers = BusInterface {
-                name: "s_axil",
-                definition: AMBA,
-                bus: "AXI4-Lite",
-                version: "r0p0_0",
-                is_slave: true,
-                mapped: true,
-                ports: ports("s_axil"),
-            };
-            vec![registers, interrupt()]
-        }
-        Face::Registers(Bus::Wishbone) => vec![interrupt()],
-        Face::Core => Vec::new(),
-    }
+    }));
+    buses
 }
 
 /// Text of XML.

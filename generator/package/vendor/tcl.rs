@@ -1,65 +1,16 @@
 //! Tcl for Vivado and Quartus: builds of a module alone, and descriptions of it as IP.
 
 use anyhow::Result;
-use askama::Template;
 
-use crate::hdl::netlist::Design;
 use crate::hdl::verilog::text::ascii;
-use crate::package::surroundings::Bus;
-use crate::package::tops::{Face, Top, TopPort};
-use crate::package::{EmitInputs, render};
+use crate::package::artifact::{Artifacts, Job, Kind};
+use crate::package::bus::Protocol;
+use crate::package::tops::{Top, TopPort};
 
 /// The device that a build is for, unless its user names one: small and common.
 const VIVADO_PART: &str = "xc7a35tcsg324-1";
 const QUARTUS_FAMILY: &str = "Cyclone V";
 const QUARTUS_DEVICE: &str = "5CEBA4F23C7";
-
-#[derive(Template)]
-#[template(path = "vivado.tcl")]
-struct Vivado<'a> {
-    name: &'a str,
-    part: &'a str,
-    regenerate: &'a str,
-    tops: &'a [Top],
-    memories: &'a [String],
-}
-
-#[derive(Template)]
-#[template(path = "vivado_ip.tcl")]
-struct VivadoIp<'a> {
-    name: &'a str,
-    part: &'a str,
-    title: &'a str,
-    regenerate: &'a str,
-    vendor: &'a str,
-    /// Major and minor, all that Vivado takes.
-    version: &'a str,
-    tops: &'a [Top],
-    memories: &'a [String],
-}
-
-#[derive(Template)]
-#[template(path = "quartus.tcl")]
-struct Quartus<'a> {
-    name: &'a str,
-    family: &'a str,
-    device: &'a str,
-    regenerate: &'a str,
-    tops: &'a [Top],
-}
-
-#[derive(Template)]
-#[template(path = "hw.tcl")]
-struct PlatformDesigner<'a> {
-    top: &'a Top,
-    title: &'a str,
-    regenerate: &'a str,
-    vendor: &'a str,
-    version: &'a str,
-    memories: &'a [String],
-    interfaces: Vec<Interface<'a>>,
-    interrupt: bool,
-}
 
 /// An interface of Platform Designer.
 struct Interface<'a> {
@@ -77,84 +28,80 @@ impl TopPort {
     }
 }
 
-/// `<name>_vivado.tcl` and `<name>_vivado_ip.tcl`.
+/// Adds `<name>_vivado.tcl` and `<name>_vivado_ip.tcl`.
 ///
 /// # Errors
 /// A template that fails.
-pub fn vivado(
-    design: &Design,
-    inputs: &EmitInputs,
-    tops: &[Top],
-    memories: &[String],
-) -> Result<Vec<(String, String)>> {
-    let (name, regenerate) = (design.name.as_str(), inputs.config.as_str());
-    let version = &inputs.around.version;
-    let build = Vivado { name, part: VIVADO_PART, regenerate, tops, memories };
-    let ip = VivadoIp {
-        name,
-        part: VIVADO_PART,
-        title: &quoted(&design.about.title),
-        regenerate,
-        vendor: &inputs.around.vendor,
-        version: version.rsplit_once('.').map_or(version, |(two, _)| two),
-        tops,
-        memories,
-    };
-    Ok(vec![
-        (format!("{name}_vivado.tcl"), render(&build)?),
-        (format!("{name}_vivado_ip.tcl"), render(&ip)?),
-    ])
+pub fn vivado(job: &Job, tops: &[Top], files: &mut Artifacts) -> Result<()> {
+    let (name, around) = (job.name(), &job.inputs.around);
+    let version = around.version.as_str();
+    let memories = files.names(&[Kind::Memory]);
+    let build = fill!("vivado.tcl" {
+        name: &'a str,
+        part: &'a str = VIVADO_PART,
+        regenerate: &'a str = job.regenerate(),
+        tops: &'a [Top],
+        memories: &'a [String] = &memories,
+    })?;
+    let ip = fill!("vivado_ip.tcl" {
+        name: &'a str,
+        part: &'a str = VIVADO_PART,
+        title: String = quoted(&job.design.about.title),
+        regenerate: &'a str = job.regenerate(),
+        vendor: &'a str = &around.vendor,
+        // Major and minor, all that Vivado takes.
+        version: &'a str = version.rsplit_once('.').map_or(version, |(two, _)| two),
+        tops: &'a [Top],
+        memories: &'a [String] = &memories,
+    })?;
+    files.add(Kind::Script, format!("{name}_vivado.tcl"), build);
+    files.add(Kind::Script, format!("{name}_vivado_ip.tcl"), ip);
+    Ok(())
 }
 
-/// `<name>_quartus.tcl`, and `<top>_hw.tcl` of each module.
+/// Adds `<name>_quartus.tcl`, and `<top>_hw.tcl` of each module.
 ///
 /// # Errors
 /// A template that fails.
-pub fn quartus(
-    design: &Design,
-    inputs: &EmitInputs,
-    tops: &[Top],
-    memories: &[String],
-) -> Result<Vec<(String, String)>> {
-    let (name, regenerate) = (design.name.as_str(), inputs.config.as_str());
-    let (family, device) = (QUARTUS_FAMILY, QUARTUS_DEVICE);
-    let build = Quartus { name, family, device, regenerate, tops };
-    let mut files = vec![(format!("{name}_quartus.tcl"), render(&build)?)];
+pub fn quartus(job: &Job, tops: &[Top], files: &mut Artifacts) -> Result<()> {
+    let (name, around) = (job.name(), &job.inputs.around);
+    let build = fill!("quartus.tcl" {
+        name: &'a str,
+        family: &'a str = QUARTUS_FAMILY,
+        device: &'a str = QUARTUS_DEVICE,
+        regenerate: &'a str = job.regenerate(),
+        tops: &'a [Top],
+    })?;
+    files.add(Kind::Script, format!("{name}_quartus.tcl"), build);
     for top in tops {
-        let description = PlatformDesigner {
-            top,
-            title: &quoted(&design.about.title),
-            regenerate,
-            vendor: &inputs.around.vendor,
-            version: &inputs.around.version,
-            memories,
-            interfaces: interfaces(top),
-            interrupt: top.face == Face::Registers(Bus::AxiLite),
-        };
-        files.push((format!("{}_hw.tcl", top.module), render(&description)?));
+        let text = fill!("hw.tcl" {
+            top: &'a Top,
+            title: String = quoted(&job.design.about.title),
+            regenerate: &'a str = job.regenerate(),
+            vendor: &'a str = &around.vendor,
+            version: &'a str = &around.version,
+            memories: Vec<String> = files.names(&[Kind::Memory]),
+            interfaces: Vec<Interface<'a>> = interfaces(top),
+        })?;
+        files.add(Kind::Script, format!("{}_hw.tcl", top.module), text);
     }
-    Ok(files)
+    Ok(())
 }
 
 /// The interfaces of a module but for clock, reset and interrupt.
 fn interfaces(top: &Top) -> Vec<Interface<'_>> {
-    let named = |name: &'static str, kind, side| {
-        let prefix = format!("{name}_");
-        let role = |port: &TopPort| port.name.strip_prefix(&prefix).map(str::to_owned);
-        let ports = top.signals().filter_map(|port| Some((port, role(port)?))).collect();
-        Interface { name, kind, side, ports }
-    };
-    match top.face {
-        Face::Stream => {
-            vec![named("s_axis", "axi4stream", "end"), named("m_axis", "axi4stream", "start")]
-        }
-        Face::Registers(Bus::AxiLite) => vec![named("s_axil", "axi4lite", "end")],
-        // Neither has a type of interface there.
-        Face::Core | Face::Registers(Bus::Wishbone) => {
-            let ports = top.signals().map(|port| (port, port.name.clone())).collect();
-            vec![Interface { name: "signals", kind: "conduit", side: "end", ports }]
-        }
+    if top.protocols.is_empty() {
+        // The type of interface for all that has none.
+        let ports = top.signals().map(|port| (port, port.name.clone())).collect();
+        return vec![Interface { name: "signals", kind: "conduit", side: "end", ports }];
     }
+    let interface = |protocol: &'static Protocol| Interface {
+        name: protocol.name,
+        kind: protocol.platform,
+        side: if protocol.is_slave { "end" } else { "start" },
+        ports: top.ports_of(protocol),
+    };
+    top.protocols.iter().map(interface).collect()
 }
 
 /// As it stands between the quotation marks of a Tcl word.

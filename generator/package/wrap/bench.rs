@@ -1,69 +1,16 @@
 //! `<name>_axis_tb.v`, and `<name>_axil_tb.v` or `<name>_wb_tb.v`: benches of the wrappers, with the points of the core's.
 
 use anyhow::Result;
-use askama::Template;
 
 use super::fields::{Field, bits, operands, results};
 use super::points::{points, received, sent};
 use crate::base::fixed::mask;
-use crate::hdl::netlist::Design;
+use crate::package::Vectors;
+use crate::package::artifact::{Artifacts, Job, Kind};
 use crate::package::map::{INTERRUPT_PENDING, Map, Part, Placed, Register};
-use crate::package::surroundings::Bus;
-use crate::package::{EmitInputs, Vectors, render};
 
 /// Points that a bench writes to registers, at most: those between are left out.
 const ON_A_BUS: usize = 256;
-
-/// The view of the bench in Python.
-#[derive(Template)]
-#[template(path = "test_wrapper.py")]
-struct Python<'a> {
-    name: &'a str,
-    wrapper: &'a str,
-    tests: &'a [&'a str],
-}
-
-#[derive(Template)]
-#[template(path = "stream_tb.v")]
-struct Stream<'a> {
-    name: &'a str,
-    is_line: bool,
-    sent: usize,
-    received: usize,
-    passes: usize,
-    pause: usize,
-    limit: usize,
-    in_high: u32,
-    out_high: u32,
-    /// The highest bit of a line's result words, which say whether they are the last.
-    word_high: u32,
-    user_bits: u32,
-    /// Words of 32 bits that tuser needs.
-    user_words: u32,
-    offer_high: u32,
-}
-
-#[derive(Template)]
-#[template(path = "registers_tb.v")]
-struct Registers<'a> {
-    name: &'a str,
-    top: String,
-    wishbone: bool,
-    points: usize,
-    every: usize,
-    words: u32,
-    /// Registers that addresses have room for.
-    places: u32,
-    limit: usize,
-    in_high: u32,
-    out_high: u32,
-    address_high: u32,
-    parts: Vec<Access>,
-    results: Vec<Access>,
-    /// Addresses of registers that are neither operands nor results, and what is read there after a reset.
-    constants: Vec<(String, String)>,
-    read_only: Vec<String>,
-}
 
 /// A register of an operand or of results, as a bench accesses it.
 struct Access {
@@ -72,81 +19,86 @@ struct Access {
     mask: String,
 }
 
-/// The benches of a core's wrappers and their files, pairs of a plain name and its text; none without a computation in the
-/// vectors.
+/// Adds the benches of a core's wrappers and their files; none without a computation in the vectors.
 ///
 /// # Errors
 /// A core without its handshake.
-pub fn benches(
-    design: &Design,
-    inputs: &EmitInputs,
-    map: Option<(Bus, &Map)>,
-    vectors: &Vectors,
-) -> Result<Vec<(String, String)>> {
+pub fn files(job: &Job, vectors: &Vectors, files: &mut Artifacts) -> Result<()> {
+    let (design, name) = (job.design, job.name());
     let points = points(design, vectors)?;
-    if points.is_empty() || !inputs.around.stream && map.is_none() {
-        return Ok(Vec::new());
+    if points.is_empty() {
+        return Ok(());
     }
-    let name = design.name.as_str();
     let (operands, results) = (operands(design), results(design));
-    let is_line = inputs.accuracy.as_ref().is_some_and(|accuracy| accuracy.length.is_some());
-    let count: usize = points.iter().map(|point| point.results.len()).sum();
     let (in_high, out_high) = (bits(&operands)? - 1, bits(&results)? - 1);
     let clocks = vectors.inputs.len();
-    let mut files = Vec::new();
-    if inputs.around.stream {
-        let user_bits = inputs.around.user_bits;
+    if job.inputs.around.stream {
+        let user_bits = job.inputs.around.user_bits;
         // As long as three points, so that places behind the core fill up.
         let pause = 3 * clocks / points.len() + 16;
-        let bench = Stream {
-            name,
-            is_line,
-            sent: points.len(),
-            received: count,
+        let text = fill!("stream_tb.v" {
+            name: &'a str,
+            is_line: bool = job.is_line(),
+            sent: usize = points.len(),
+            received: usize = points.iter().map(|point| point.results.len()).sum(),
             // Each of the four turns is there twice, of six pauses each.
-            passes: (8 * 6 * pause).div_ceil(clocks),
-            pause,
-            limit: clocks + 64,
-            in_high,
-            out_high,
-            word_high: out_high + u32::from(is_line),
-            user_bits,
-            user_words: user_bits.div_ceil(32),
-            offer_high: out_high + 1 + user_bits,
-        };
-        files.push((format!("{name}_axis_tb.v"), render(&bench)?));
-        let tests = &["streams_carry_every_point"];
-        let python = Python { name, wrapper: "axis", tests };
-        files.push((format!("test_{name}_axis.py"), render(&python)?));
+            passes: usize = (8 * 6 * pause).div_ceil(clocks),
+            pause: usize,
+            limit: usize = clocks + 64,
+            in_high: u32,
+            out_high: u32,
+            // Of a line's results, which say whether they are the last.
+            word_high: u32 = out_high + u32::from(job.is_line()),
+            user_bits: u32,
+            // Words of 32 bits that tuser needs.
+            user_words: u32 = user_bits.div_ceil(32),
+            offer_high: u32 = out_high + 1 + user_bits,
+        })?;
+        files.add(Kind::Bench, format!("{name}_axis_tb.v"), text);
+        add_python(job, "axis", &["streams_carry_every_point"], files)?;
     }
-    if let Some((bus, map)) = map {
-        let top = format!("{name}_{}", bus.suffix());
+    if let Some((bus, map)) = &job.registers {
+        let top = format!("{name}_{}", bus.suffix);
+        // Addresses of registers that are neither operands nor results with what is read there after a reset.
         let (constants, read_only) = fixed(map);
-        let bench = Registers {
-            name,
-            wishbone: bus == Bus::Wishbone,
-            points: points.len(),
-            every: points.len().div_ceil(ON_A_BUS),
-            words: map.last() + 1,
-            places: 1 << (map.address_bits() - 2),
-            limit: clocks + 64,
-            in_high,
-            out_high,
-            address_high: map.address_bits() - 1,
-            parts: accesses(&map.operands, &operands, "point"),
-            results: of_results(map, &results),
-            constants,
-            read_only,
-            top: top.clone(),
-        };
-        files.push((format!("{top}_tb.v"), render(&bench)?));
+        let text = fill!("registers_tb.v" {
+            name: &'a str,
+            top: &'a str = &top,
+            wishbone: bool = bus.key == "wishbone",
+            points: usize = points.len(),
+            every: usize = points.len().div_ceil(ON_A_BUS),
+            words: u32 = map.last() + 1,
+            // Registers that addresses have room for.
+            places: u32 = 1 << (map.address_bits() - 2),
+            limit: usize = clocks + 64,
+            in_high: u32,
+            out_high: u32,
+            address_high: u32 = map.address_bits() - 1,
+            parts: Vec<Access> = accesses(&map.operands, &operands, "point"),
+            results: Vec<Access> = of_results(map, &results),
+            constants: Vec<(String, String)>,
+            read_only: Vec<String>,
+        })?;
+        files.add(Kind::Bench, format!("{top}_tb.v"), text);
         let tests = &["registers_compute_every_point", "registers_keep_what_is_written"];
-        let python = Python { name, wrapper: bus.suffix(), tests };
-        files.push((format!("test_{top}.py"), render(&python)?));
+        add_python(job, bus.suffix, tests, files)?;
     }
-    files.push((format!("{name}_sent.mem"), sent(&points, &operands)));
-    files.push((format!("{name}_received.mem"), received(&points, &results, is_line)));
-    Ok(files)
+    files.add(Kind::Bench, format!("{name}_sent.mem"), sent(&points, &operands));
+    let received = received(&points, &results, job.is_line());
+    files.add(Kind::Bench, format!("{name}_received.mem"), received);
+    Ok(())
+}
+
+/// Adds the bench of a wrapper in Python, where the core has one.
+fn add_python(job: &Job, wrapper: &str, tests: &[&str], files: &mut Artifacts) -> Result<()> {
+    if job.inputs.example.is_some() && job.inputs.accuracy.is_some() {
+        let name = job.name();
+        let text = fill!("test_wrapper.py" {
+            name: &'a str, wrapper: &'a str, tests: &'a [&'a str],
+        })?;
+        files.add(Kind::Python, format!("test_{name}_{wrapper}.py"), text);
+    }
+    Ok(())
 }
 
 fn address(place: u32) -> String {

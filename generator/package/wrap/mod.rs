@@ -9,66 +9,42 @@ mod stream;
 mod words;
 
 use anyhow::Result;
-use askama::Template;
 
-use super::map::Map;
-use super::surroundings::Bus;
-use super::{EmitInputs, render};
+use super::artifact::{Artifacts, Job, Kind};
 use crate::hdl::netlist::{Design, Port, Role};
 use crate::hdl::verilog::rows::separated;
 use crate::hdl::verilog::text::range;
 
-/// The wrappers that a configuration asks for: pairs of a plain name and its text.
-#[derive(Default)]
-pub struct Wrappers {
-    /// Verilog.
-    pub rtl: Vec<(String, String)>,
-    /// The properties that are proved of it, for formal tools alone.
-    pub formal: Vec<(String, String)>,
-    /// Benches and the points for them.
-    pub benches: Vec<(String, String)>,
-}
-
-/// The wrappers that the configuration asks for; the map is that of the registers.
+/// Adds the wrappers that the configuration asks for, and where there is a bench, theirs and what is proved of them.
 ///
 /// # Errors
 /// A core that they do not fit.
-pub fn wrappers(
-    design: &Design,
-    inputs: &EmitInputs,
-    map: Option<(Bus, &Map)>,
-) -> Result<Wrappers> {
-    let mut made = Wrappers::default();
-    let mut add = |one: Wrappers| {
-        made.rtl.extend(one.rtl);
-        made.formal.extend(one.formal);
+pub fn files(job: &Job, files: &mut Artifacts) -> Result<()> {
+    let streams = job.inputs.around.stream;
+    if streams {
+        match &job.design.pipeline {
+            Some(pipeline) => pipeline::modules(job, pipeline, files)?,
+            None => stream::modules(job, files)?,
+        }
+    }
+    if let Some((bus, map)) = &job.registers {
+        registers::modules(job, bus, map, files)?;
+    }
+    let Some(vectors) = job.inputs.vectors.as_ref().filter(|_| streams || job.registers.is_some())
+    else {
+        return Ok(());
     };
-    if inputs.around.stream {
-        add(match &design.pipeline {
-            Some(pipeline) => pipeline::wrapper(design, pipeline, inputs)?,
-            None => stream::wrapper(design, inputs)?,
-        });
-    }
-    if let Some((bus, map)) = map {
-        add(registers::wrapper(design, inputs, bus, map)?);
-    }
-    if let Some(vectors) = &inputs.vectors
-        && !made.rtl.is_empty()
-    {
-        made.benches = bench::benches(design, inputs, map, vectors)?;
-    }
-    Ok(made)
+    bench::files(job, vectors, files)
 }
 
-/// The commands of Yosys that make the problem of `<wrapper>_formal.sv`.
-#[derive(Template)]
-#[template(path = "wrapper_formal.ys")]
-struct Script<'a> {
-    name: &'a str,
-}
-
-fn script(name: &str) -> Result<String> {
-    render(&Script { name })
+/// Adds what is proved of a wrapper, and the commands of Yosys that make the problem, where there is a bench.
+fn add_proof(job: &Job, wrapper: &str, text: String, files: &mut Artifacts) -> Result<()> {
+    if job.inputs.vectors.is_some() {
+        let script = fill!("wrapper_formal.ys" { name: &'a str = wrapper })?;
+        files.add(Kind::WrapperProof, format!("{wrapper}_formal.sv"), text);
+        files.add(Kind::WrapperProof, format!("{wrapper}_formal.ys"), script);
+    }
+    Ok(())
 }
 
 /// Returns the connections of the core, the clock first: where `to` says nothing, inputs to 0, and outputs to the wire of

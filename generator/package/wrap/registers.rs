@@ -2,16 +2,15 @@
 //! proved of them.
 
 use anyhow::Result;
-use askama::Template;
 
 use super::fields::sink;
 use super::words::{Word, constants, select, within, words};
-use super::{Wrappers, connected, core_wire, script, seen_inside, stub_free, stub_ports};
-use crate::hdl::netlist::{Design, Role};
+use super::{add_proof, connected, core_wire, seen_inside, stub_free, stub_ports};
+use crate::hdl::netlist::Role;
 use crate::hdl::verilog::text::{comment, literal, range, statement};
+use crate::package::artifact::{Artifacts, Job, Kind};
+use crate::package::bus::Bus;
 use crate::package::map::{self, Bits, Map, Part, Placed, Register};
-use crate::package::surroundings::Bus;
-use crate::package::{EmitInputs, render};
 
 /// An operand where it is kept.
 struct Operand {
@@ -32,118 +31,23 @@ struct Lane {
     data: String,
 }
 
-#[derive(Template)]
-#[template(path = "registers.v")]
-struct Registers<'a> {
-    name: &'a str,
-    regenerate: &'a str,
-    /// The map, as comments.
-    map: Vec<String>,
-    address_high: u32,
-    word_high: u32,
-    operands: Vec<Operand>,
-    /// The words that reads of the first registers give, and of all others.
-    constants: Vec<String>,
-    words: Vec<Word>,
-    last_number: u32,
-    no_constant: String,
-    result_wires: Vec<String>,
-    connections: Vec<String>,
-    control: String,
-    enable: String,
-    pending: String,
-    last_operand: String,
-    writable: Vec<String>,
-    readable: Vec<String>,
-    read_result: Vec<String>,
-    unused: Vec<String>,
-}
-
-#[derive(Template)]
-#[template(path = "registers_formal.sv")]
-struct Formal<'a> {
-    name: &'a str,
-    address_high: u32,
-    word_high: u32,
-    word_count: u32,
-    control_number: u32,
-    last_operand_number: u32,
-    first_result_number: u32,
-    last_result_number: u32,
-    operands: Vec<Operand>,
-    /// The place of each register, and what is read there.
-    reads: Vec<(u32, Vec<String>)>,
-    stub_ports: Vec<String>,
-    stub_free: Vec<String>,
-    /// Declarations of what the proof sees of the inside.
-    inside: Vec<String>,
-}
-
-#[derive(Template)]
-#[template(path = "axil.v")]
-struct AxiLite<'a> {
-    name: &'a str,
-    regenerate: &'a str,
-    address_high: u32,
-}
-
-#[derive(Template)]
-#[template(path = "axil_formal.sv")]
-struct AxiLiteFormal<'a> {
-    name: &'a str,
-    address_high: u32,
-}
-
-#[derive(Template)]
-#[template(path = "wb.v")]
-struct Wishbone<'a> {
-    name: &'a str,
-    regenerate: &'a str,
-    address_high: u32,
-}
-
-#[derive(Template)]
-#[template(path = "wb_formal.sv")]
-struct WishboneFormal<'a> {
-    name: &'a str,
-    address_high: u32,
-}
-
-/// The registers and their bus.
+/// Adds the registers and their bus, and what is proved of them.
 ///
 /// # Errors
 /// A template that fails.
-pub fn wrapper(design: &Design, inputs: &EmitInputs, bus: Bus, map: &Map) -> Result<Wrappers> {
-    let (name, regenerate) = (design.name.as_str(), inputs.config.as_str());
-    let address_high = map.address_bits() - 1;
-    let (rtl, formal) = match bus {
-        Bus::AxiLite => (
-            render(&AxiLite { name, regenerate, address_high })?,
-            render(&AxiLiteFormal { name, address_high })?,
-        ),
-        Bus::Wishbone => (
-            render(&Wishbone { name, regenerate, address_high })?,
-            render(&WishboneFormal { name, address_high })?,
-        ),
-    };
-    let registers = format!("{name}_registers");
-    let bus = format!("{name}_{}", bus.suffix());
-    Ok(Wrappers {
-        rtl: vec![
-            (format!("{bus}.v"), rtl),
-            (format!("{registers}.v"), render(&block(design, inputs, map))?),
-        ],
-        formal: vec![
-            (format!("{bus}_formal.sv"), formal),
-            (format!("{bus}_formal.ys"), script(&bus)?),
-            (format!("{registers}_formal.sv"), render(&proof(design, map))?),
-            (format!("{registers}_formal.ys"), script(&registers)?),
-        ],
-        ..Wrappers::default()
-    })
+pub fn modules(job: &Job, bus: &Bus, map: &Map, files: &mut Artifacts) -> Result<()> {
+    let [module, module_proof] =
+        (bus.module)(job.name(), job.regenerate(), map.address_bits() - 1)?;
+    let registers = format!("{}_registers", job.name());
+    let bus = format!("{}_{}", job.name(), bus.suffix);
+    files.add(Kind::Wrapper, format!("{bus}.v"), module);
+    files.add(Kind::Wrapper, format!("{registers}.v"), block(job, map)?);
+    add_proof(job, &bus, module_proof, files)?;
+    add_proof(job, &registers, proof(job, map)?, files)
 }
 
-fn block<'a>(design: &'a Design, inputs: &'a EmitInputs, map: &Map) -> Registers<'a> {
+fn block(job: &Job, map: &Map) -> Result<String> {
+    let design = job.design;
     let word_bits = map.address_bits() - 2;
     let place = |place: u32| literal(place.into(), word_bits);
     let connections = connected(design, "clk", |role, name| match role {
@@ -164,33 +68,32 @@ fn block<'a>(design: &'a Design, inputs: &'a EmitInputs, map: &Map) -> Registers
             unused.push(format!("core_{}", design.net(port.net).name));
         }
     }
-    Registers {
-        name: &design.name,
-        regenerate: &inputs.config,
-        map: described(map),
-        address_high: map.address_bits() - 1,
-        word_high: word_bits - 1,
-        operands: operands(map),
-        constants: constants(map),
-        words: words(design, map),
-        last_number: map.last(),
-        no_constant: literal(0, word_bits - 2),
-        result_wires,
-        connections,
-        control: place(map::CONTROL),
-        enable: place(map::INTERRUPT_ENABLE),
-        pending: place(map::INTERRUPT_PENDING),
-        last_operand: place(map.last_operand()),
-        writable: within("writable", "write_at", (map::CONTROL, map.last_operand()), word_bits),
-        readable: within("readable", "read_at", (0, map.last()), word_bits),
-        read_result: within(
-            "read_result",
-            "read_at",
-            (map.last_operand() + 1, map.last()),
-            word_bits,
-        ),
-        unused: sink(&unused),
-    }
+    let among = |wire, at, places| within(wire, at, places, word_bits);
+    fill!("registers.v" {
+        name: &'a str = job.name(),
+        regenerate: &'a str = job.regenerate(),
+        // The map, as comments.
+        map: Vec<String> = described(map),
+        address_high: u32 = map.address_bits() - 1,
+        word_high: u32 = word_bits - 1,
+        operands: Vec<Operand> = operands(map),
+        // What is read of the first registers, and of all others.
+        constants: Vec<String> = constants(map),
+        words: Vec<Word> = words(design, map),
+        last_number: u32 = map.last(),
+        no_constant: String = literal(0, word_bits - 2),
+        result_wires: Vec<String>,
+        connections: Vec<String>,
+        control: String = place(map::CONTROL),
+        enable: String = place(map::INTERRUPT_ENABLE),
+        pending: String = place(map::INTERRUPT_PENDING),
+        last_operand: String = place(map.last_operand()),
+        writable: Vec<String> = among("writable", "write_at", (map::CONTROL, map.last_operand())),
+        readable: Vec<String> = among("readable", "read_at", (0, map.last())),
+        read_result: Vec<String> =
+            among("read_result", "read_at", (map.last_operand() + 1, map.last())),
+        unused: Vec<String> = sink(&unused),
+    })
 }
 
 /// A line a register, and one for each of its bits that have a name of their own.
@@ -299,7 +202,7 @@ fn source(map: &Map, register: &Register, bits: &Bits) -> String {
     }
 }
 
-fn proof<'a>(design: &'a Design, map: &Map) -> Formal<'a> {
+fn proof(job: &Job, map: &Map) -> Result<String> {
     let word_bits = map.address_bits() - 2;
     let own = [
         ("start", 1),
@@ -322,19 +225,22 @@ fn proof<'a>(design: &'a Design, map: &Map) -> Formal<'a> {
     inside.extend(
         map.results.iter().map(|result| (format!("core.{}", result.name), result.format.width())),
     );
-    Formal {
-        name: &design.name,
-        address_high: map.address_bits() - 1,
-        word_high: word_bits - 1,
-        word_count: map.last() + 1,
-        control_number: map::CONTROL,
-        last_operand_number: map.last_operand(),
-        first_result_number: map.last_operand() + 1,
-        last_result_number: map.last(),
-        operands: operands(map),
-        reads: map.registers.iter().map(|register| (register.place, read(map, register))).collect(),
-        stub_ports: stub_ports(design),
-        stub_free: stub_free(design),
-        inside: inside.into_iter().map(seen_inside).collect(),
-    }
+    let reads = map.registers.iter().map(|register| (register.place, read(map, register)));
+    fill!("registers_formal.sv" {
+        name: &'a str = job.name(),
+        address_high: u32 = map.address_bits() - 1,
+        word_high: u32 = word_bits - 1,
+        word_count: u32 = map.last() + 1,
+        control_number: u32 = map::CONTROL,
+        last_operand_number: u32 = map.last_operand(),
+        first_result_number: u32 = map.last_operand() + 1,
+        last_result_number: u32 = map.last(),
+        operands: Vec<Operand> = operands(map),
+        // The place of each register, and what is read there.
+        reads: Vec<(u32, Vec<String>)> = reads.collect(),
+        stub_ports: Vec<String> = stub_ports(job.design),
+        stub_free: Vec<String> = stub_free(job.design),
+        // Declarations of what the proof sees of the inside.
+        inside: Vec<String> = inside.into_iter().map(seen_inside).collect(),
+    })
 }

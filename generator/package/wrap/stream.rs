@@ -1,14 +1,13 @@
 //! `<name>_axis.v`: the core between two AXI4-Streams, and what is proved of it.
 
 use anyhow::{Context, Result};
-use askama::Template;
 
 use super::fields::{Field, bits, operands, packed, padding, results, sink};
-use super::{Wrappers, connected, core_wire, script, seen_inside, stub_free, stub_ports};
-use crate::hdl::netlist::{Design, Role};
+use super::{add_proof, connected, core_wire, seen_inside, stub_free, stub_ports};
+use crate::hdl::netlist::Role;
 use crate::hdl::verilog::rows::separated;
 use crate::hdl::verilog::text::literal;
-use crate::package::{EmitInputs, render};
+use crate::package::artifact::{Artifacts, Job, Kind};
 
 /// The line of a core that walks lines: the operand that says how long one is, and the buffer.
 struct Line {
@@ -44,73 +43,16 @@ impl Line {
     }
 }
 
-/// All that the templates print.
-#[derive(Template)]
-#[template(path = "axis.v")]
-struct Wrapper<'a> {
-    name: &'a str,
-    regenerate: &'a str,
-    user_bits: u32,
-    operands: Vec<Field>,
-    results: Vec<Field>,
-    signed: bool,
-    in_high: u32,
-    out_high: u32,
-    result_wires: Vec<String>,
-    packed: Vec<String>,
-    connections: Vec<String>,
-    line: Option<Line>,
-    unused: Vec<String>,
-    /// The core hears `start` in the clock of `done` too.
-    overlaps: bool,
-    /// The declaration of the outputs: `reg `, or `wire` of the buffer.
-    output: &'static str,
-}
-
-#[derive(Template)]
-#[template(path = "axis_buffer.v")]
-struct Buffer<'a> {
-    name: &'a str,
-    regenerate: &'a str,
-    out_high: u32,
-    user_bits: u32,
-    line: Line,
-}
-
-#[derive(Template)]
-#[template(path = "axis_formal.sv")]
-struct Formal<'a> {
-    name: &'a str,
-    in_high: u32,
-    out_high: u32,
-    user_high: u32,
-    /// The highest bit of results, tlast and tuser together.
-    packed_high: u32,
-    stub_ports: Vec<String>,
-    stub_free: Vec<String>,
-    stub_packed: Vec<String>,
-    stub_checks: Vec<String>,
-    strobes: Vec<String>,
-    /// Declarations of what the proof sees of the inside.
-    inside: Vec<String>,
-    line: Option<Line>,
-    /// The core hears `start` in the clock of `done` too.
-    overlaps: bool,
-}
-
-/// The wrapper, of a core that walks lines its buffer too, and what is proved of them.
+/// Adds the wrapper, of a core that walks lines its buffer too, and what is proved of them.
 ///
 /// # Errors
 /// A core without the handshake of a microprogram, or without operands or results.
-pub fn wrapper(design: &Design, inputs: &EmitInputs) -> Result<Wrappers> {
+pub fn modules(job: &Job, files: &mut Artifacts) -> Result<()> {
+    let (name, design, regenerate) = (job.name(), job.design, job.regenerate());
     design.handshake()?;
-    let (rtl, formal) = (modules(design, inputs)?, formal(design, inputs)?);
-    Ok(Wrappers { rtl, formal, ..Wrappers::default() })
-}
-
-fn modules(design: &Design, inputs: &EmitInputs) -> Result<Vec<(String, String)>> {
-    let name = design.name.as_str();
     let (operands, results) = (operands(design), results(design));
+    let (in_high, out_high) = (bits(&operands)? - 1, bits(&results)? - 1);
+    let user_bits = job.inputs.around.user_bits;
     let overlaps = design.control.overlaps;
     let is_unused = |role: Role| role == Role::Status || role == Role::Done && !overlaps;
     let connections = connected(design, "aclk", |role, name| match role {
@@ -137,66 +79,52 @@ fn modules(design: &Design, inputs: &EmitInputs) -> Result<Vec<(String, String)>
         }
     }
     unused.extend(padding(&operands, "operands"));
-    let signed = results.iter().any(|field| field.signed && field.padded() > field.width);
-    let packed = packed(&results, "core_");
-    let buffered = line(inputs, &operands)?;
-    let wrapper = Wrapper {
-        name: &design.name,
-        regenerate: &inputs.config,
-        user_bits: inputs.around.user_bits,
-        in_high: bits(&operands)? - 1,
-        out_high: bits(&results)? - 1,
-        signed,
-        result_wires,
-        packed: separated(packed),
-        connections,
-        output: if buffered.is_some() { "wire" } else { "reg " },
-        line: line(inputs, &operands)?,
-        unused: sink(&unused),
-        overlaps,
-        operands,
-        results,
-    };
-    let (regenerate, user_bits, out_high) =
-        (wrapper.regenerate, wrapper.user_bits, wrapper.out_high);
-    let mut files = vec![(format!("{name}_axis.v"), render(&wrapper)?)];
-    if let Some(line) = buffered {
-        let buffer = Buffer { name, regenerate, out_high, user_bits, line };
-        files.push((format!("{name}_axis_buffer.v"), render(&buffer)?));
+    let line = line(job, &operands)?;
+    let text = fill!("axis.v" {
+        name: &'a str,
+        regenerate: &'a str,
+        user_bits: u32,
+        operands: &'a [Field] = &operands,
+        results: &'a [Field] = &results,
+        signed: bool = results.iter().any(|field| field.signed && field.padded() > field.width),
+        in_high: u32,
+        out_high: u32,
+        result_wires: Vec<String>,
+        packed: Vec<String> = separated(packed(&results, "core_")),
+        connections: Vec<String>,
+        // What drives the outputs: a register, or the buffer.
+        output: &'a str = if line.is_some() { "wire" } else { "reg " },
+        line: Option<&'a Line> = line.as_ref(),
+        unused: Vec<String> = sink(&unused),
+        // The core hears `start` in the clock of `done` too.
+        overlaps: bool,
+    })?;
+    files.add(Kind::Wrapper, format!("{name}_axis.v"), text);
+    if let Some(line) = &line {
+        let buffer = fill!("axis_buffer.v" {
+            name: &'a str, regenerate: &'a str, out_high: u32, user_bits: u32, line: &'a Line,
+        })?;
+        files.add(Kind::Wrapper, format!("{name}_axis_buffer.v"), buffer);
     }
-    Ok(files)
-}
-
-/// Returns the properties that are proved of the wrapper.
-fn formal(design: &Design, inputs: &EmitInputs) -> Result<Vec<(String, String)>> {
-    let name = design.name.as_str();
-    let (operands, results) = (operands(design), results(design));
-    let line = line(inputs, &operands)?;
-    let user_high = inputs.around.user_bits - 1;
-    let out_high = bits(&results)? - 1;
-    let stub_checks = operands
-        .iter()
-        .map(|field| format!("dut.core.{} == its_operands{}", field.name, field.bits()));
-    let inside = inside(&operands, &results, line.as_ref(), user_high + 1)?;
-    let formal = Formal {
-        name,
-        in_high: bits(&operands)? - 1,
-        out_high,
-        user_high,
-        packed_high: out_high + 1 + user_high + 1,
-        stub_ports: stub_ports(design),
-        stub_free: stub_free(design),
-        stub_packed: separated(packed(&results, "dut.core.")),
-        stub_checks: stub_checks.collect(),
-        inside,
-        strobes: operands.iter().map(|field| field.strobe.clone()).collect(),
-        line,
-        overlaps: design.control.overlaps,
-    };
-    Ok(vec![
-        (format!("{name}_axis_formal.sv"), render(&formal)?),
-        (format!("{name}_axis_formal.ys"), script(&format!("{name}_axis"))?),
-    ])
+    let check = |field: &Field| format!("dut.core.{} == its_operands{}", field.name, field.bits());
+    let text = fill!("axis_formal.sv" {
+        name: &'a str,
+        in_high: u32,
+        out_high: u32,
+        user_high: u32 = user_bits - 1,
+        // The highest bit of results, tlast and tuser together.
+        packed_high: u32 = out_high + 1 + user_bits,
+        stub_ports: Vec<String> = stub_ports(design),
+        stub_free: Vec<String> = stub_free(design),
+        stub_packed: Vec<String> = separated(packed(&results, "dut.core.")),
+        stub_checks: Vec<String> = operands.iter().map(check).collect(),
+        // Declarations of what the proof sees of the inside.
+        inside: Vec<String> = inside(&operands, &results, line.as_ref(), user_bits)?,
+        strobes: Vec<&'a String> = operands.iter().map(|field| &field.strobe).collect(),
+        line: Option<&'a Line> = line.as_ref(),
+        overlaps: bool,
+    })?;
+    add_proof(job, &format!("{name}_axis"), text, files)
 }
 
 /// Yosys finds nets below the top by their path, if a declaration says how wide they are.
@@ -244,8 +172,8 @@ fn inside(
     Ok(nets.into_iter().map(seen_inside).collect())
 }
 
-fn line(inputs: &EmitInputs, operands: &[Field]) -> Result<Option<Line>> {
-    let length = inputs.accuracy.as_ref().and_then(|accuracy| accuracy.length.as_ref());
+fn line(job: &Job, operands: &[Field]) -> Result<Option<Line>> {
+    let length = job.inputs.accuracy.as_ref().and_then(|accuracy| accuracy.length.as_ref());
     let Some(length) = length else {
         return Ok(None);
     };

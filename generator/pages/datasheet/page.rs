@@ -188,7 +188,7 @@ pub fn page(subject: &Subject, measured: &Measured) -> Result<String> {
         }),
         record: subject.figures.as_ref().map(RecordView::new),
         synthesis: measured.synthesis.as_ref(),
-        instance: package::instance(design)?,
+        instance: package::instance(design),
         keys: TableView::new("Keys of the configuration", &account::keys(&schema, &core.config)),
         toml: core.config.to_toml(&schema),
     };

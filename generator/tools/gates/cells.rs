@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use anyhow::{Context, Result};
 
-use super::super::synthesis;
+use super::super::sources::Sources;
 use crate::tools::Tool;
 
 /// The library of Oklahoma State University for 0.18 µm, where Debian's `qflow-tech-osu018` has it.
@@ -54,8 +54,9 @@ pub fn netlist(
     files.push(("cells.constr".to_owned(), LOAD.to_owned()));
     let commands =
         format!("synth -flatten -top {top}; {MAPPING}; write_verilog -noattr -noexpr {NETLIST}");
-    let dir = synthesis::commanded(yosys, &files, &commands, limit)?;
-    fs::read_to_string(dir.path().join(NETLIST)).context("`yosys` wrote no netlist")
+    let sources = Sources::new(yosys, &files, limit)?;
+    sources.run(&commands)?;
+    sources.text(NETLIST)
 }
 
 /// The models of the cells, without their delays and with a flip-flop that begins as `start` says: the library's own becomes

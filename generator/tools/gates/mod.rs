@@ -8,7 +8,8 @@ use std::time::Duration;
 
 use anyhow::{Context, Result, bail};
 
-use super::synthesis::{self, Family};
+use super::sources::Sources;
+use super::synthesis::Family;
 use crate::tools::Tool;
 
 /// Models of the ECP5 cells for which Yosys has none.
@@ -22,7 +23,7 @@ pub fn is_simulated(family: &Family) -> bool {
 /// The flat netlist of the module `top`, as Verilog, with the contents of the ROMs.
 ///
 /// # Errors
-/// As of [`synthesis::synthesise`].
+/// As of [`super::synthesis::synthesise`].
 pub fn netlist(
     yosys: &Tool,
     files: &[(String, String)],
@@ -31,9 +32,9 @@ pub fn netlist(
     limit: Duration,
 ) -> Result<String> {
     const NETLIST: &str = "netlist.v";
-    let command = format!("write_verilog -noattr {NETLIST}");
-    let dir = synthesis::run(yosys, files, top, family, &command, limit)?;
-    fs::read_to_string(dir.path().join(NETLIST)).context("`yosys` wrote no netlist")
+    let sources = Sources::new(yosys, files, limit)?;
+    sources.run(&format!("{}; write_verilog -noattr {NETLIST}", family.script(top)))?;
+    sources.text(NETLIST)
 }
 
 /// The files of the bench around a netlist of a family, of `sources`, those of device and bench: without those named in

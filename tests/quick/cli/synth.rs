@@ -44,7 +44,7 @@ fn figures_are_kept_beside_the_configuration() {
             "[ \"$1\" = --version ] && echo 'Yosys 0.23 (git)' && exit
 echo run >>'{}'
 s=${{3#*-check -top }}
-printf '{{\"modules\": {{\"\\\\\\\\%s\": {{\"num_cells_by_type\": {{\"LUT6\": 40, \"DSP48E1\": 3, \"FDRE\": 99}}}}}}}}' \"${{s%%;*}}\" >area.json",
+printf '{{\"modules\": {{\"\\\\\\\\%s\": {{\"num_cells_by_type\": {{\"LUT6\": 40, \"DSP48E1\": 3, \"FDRE\": 99}}}}}}}}' \"${{s%%;*}}\" >statistics.json",
             log.display()
         ),
     );

@@ -8,7 +8,7 @@ use super::Arguments;
 use crate::cli::commands::Loaded;
 use crate::cli::commands::mismatch::{first_clock, waveform_of};
 use crate::cli::failure;
-use crate::cli::{Output, progress, say, staged, tables, wrong_usage};
+use crate::cli::{Output, destination, progress, say, tables, wrong_usage};
 use crate::package;
 use crate::tools::{BenchDifference, BenchOutcome, Simulator, bench_waveform, run_bench};
 
@@ -91,7 +91,7 @@ fn bench(one: &Loaded, which: Simulator, points: u64, arguments: &Arguments) -> 
         let clocks = (from, difference.clock);
         let path = waveform_of(one);
         let written = bench_waveform(which, &files, &top, clocks, arguments.time_limit.get())
-            .and_then(|waveform| staged::replace(&path, &waveform));
+            .and_then(|waveform| destination::replace(&path, &waveform));
         if let Err(error) = &written {
             // What differs is worth more than its waveform.
             failure::warn(&format!("{}: no waveform: {error:#}", one.path));

@@ -15,7 +15,7 @@ use super::Arguments;
 use crate::base::{input, text};
 use crate::cli::commands::load;
 use crate::cli::interrupt::Deferred;
-use crate::cli::{Output, progress, say, staged, tables, wrong_usage};
+use crate::cli::{Output, destination, progress, say, tables, wrong_usage};
 use crate::cosim::exhaustive::{Job, Shard, State, kept};
 use crate::registry::Registry;
 use show::{announce, report};
@@ -85,7 +85,7 @@ pub fn read(path: &Path) -> Result<Option<State>> {
 fn prove(output: Output, job: &Job<'_>, state: &mut State, file: Option<&Path>) -> Result<()> {
     let save = |state: &State| -> Result<()> {
         match file {
-            Some(path) => staged::replace(path, kept::to_text(state)?.as_bytes()),
+            Some(path) => destination::replace(path, kept::to_text(state)?.as_bytes()),
             None => Ok(()),
         }
     };

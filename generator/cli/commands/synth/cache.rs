@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use crate::base::input;
-use crate::cli::staged;
+use crate::cli::destination;
 use crate::core::Core;
 use crate::synth::{Figures, Target};
 
@@ -50,7 +50,7 @@ impl Cache {
         };
         let text = serde_json::to_string_pretty(&entry);
         if let (Ok(text), Ok(())) = (text, fs::create_dir_all(&self.0)) {
-            let _ = staged::replace(&self.file(core, figures.target), text.as_bytes());
+            let _ = destination::replace(&self.file(core, figures.target), text);
         }
     }
 }

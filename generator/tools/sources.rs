@@ -1,0 +1,77 @@
+//! Verilog and memory files in a directory of their own, where Yosys reads them.
+
+use std::fs;
+use std::path::Path;
+use std::time::Duration;
+
+use anyhow::{Context, Result};
+use serde_json::Value;
+
+use super::Tool;
+use crate::base::transient::Directory;
+
+/// Files with the Yosys that reads them.
+pub struct Sources<'a> {
+    directory: Directory,
+    yosys: &'a Tool,
+    verilog: String,
+    limit: Duration,
+}
+
+impl<'a> Sources<'a> {
+    /// Writes files, pairs of a plain name and contents, of which Yosys reads those that end in `.v`. No run of it takes longer
+    /// than `limit`.
+    ///
+    /// # Errors
+    /// They cannot be written.
+    pub fn new(yosys: &'a Tool, files: &[(String, String)], limit: Duration) -> Result<Self> {
+        let directory = Directory::new().context("cannot make a directory for synthesis")?;
+        let names = files.iter().map(|(name, _)| name.as_str());
+        let verilog: Vec<&str> = names.filter(|name| name.ends_with(".v")).collect();
+        let sources = Self { directory, yosys, verilog: verilog.join(" "), limit };
+        files.iter().try_for_each(|(name, contents)| sources.write(name, contents))?;
+        Ok(sources)
+    }
+
+    /// Writes another file beside them.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn write(&self, name: &str, contents: &str) -> Result<()> {
+        fs::write(self.path().join(name), contents)
+            .with_context(|| format!("cannot write `{name}` for synthesis"))
+    }
+
+    /// The directory.
+    pub fn path(&self) -> &Path {
+        self.directory.path()
+    }
+
+    /// Has Yosys read the Verilog and run commands.
+    ///
+    /// # Errors
+    /// It fails, or takes too long.
+    pub fn run(&self, commands: &str) -> Result<()> {
+        let script = format!("read_verilog {}; {commands}", self.verilog);
+        self.yosys.run_to_success(["-q", "-p", &script], self.path(), self.limit)?;
+        Ok(())
+    }
+
+    /// Reads a file that a tool has left.
+    ///
+    /// # Errors
+    /// It is not there.
+    pub fn text(&self, name: &str) -> Result<String> {
+        fs::read_to_string(self.path().join(name))
+            .with_context(|| format!("a tool wrote no `{name}`"))
+    }
+
+    /// Reads a JSON file that a tool has left.
+    ///
+    /// # Errors
+    /// It is not there, or no JSON.
+    pub fn json(&self, name: &str) -> Result<Value> {
+        let text = self.text(name)?;
+        serde_json::from_str(&text).with_context(|| format!("`{name}` of a tool is no JSON"))
+    }
+}
