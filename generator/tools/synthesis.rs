@@ -134,8 +134,8 @@ pub fn synthesise(
     limit: Duration,
 ) -> Result<Usage> {
     let sources = Sources::new(yosys, files, limit)?;
-    let used = sources.run(&format!("{}; {STATISTICS_COMMAND}", family.script(top)));
-    used.and_then(|()| usage(&sources, top, family))
+    sources.run(&format!("{}; {STATISTICS_COMMAND}", family.script(top)))?;
+    usage(&sources, top, family)
         .with_context(|| format!("`{}` for {}", family.command, family.title))
 }
 
