@@ -30,6 +30,7 @@
 //! assert!(outcome.mismatch.is_none());
 //! ```
 
+pub mod approximate;
 pub mod base;
 #[cfg(feature = "cli")]
 pub mod certify;
@@ -46,6 +47,7 @@ pub mod equality;
 #[cfg(feature = "cli")]
 #[doc(hidden)]
 pub mod evidence;
+pub mod formula;
 pub mod golden;
 pub mod hdl;
 pub mod keys;

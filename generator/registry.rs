@@ -185,6 +185,7 @@ impl Registry {
             schlick: "schlick", "Schlick's function, c / (n - n*c + c), by a divider (seed 002)";
             blinn: "blinn", "cos(gamma)^n itself, by tables of -log2 and 2^-x (seeds 000 to 002)";
             gauss: "gauss", "exp(-n*gamma^2/2), by tables of gamma^2 and 2^-x (seed 002)";
+            function: "function", "any formula of one operand, by piecewise polynomials with a proved error";
         ])
     }
 

@@ -33,9 +33,6 @@ impl Schema {
             for violation in key.violations_of(&key.default) {
                 mistakes.push(format!("default of `{name}`: {}", violation.message));
             }
-            if key.kind.mixes_integers_and_words() {
-                mistakes.push(format!("`{name}` is a choice among integers and words"));
-            }
             if let Some((other, value)) = key.only_when {
                 // Only an earlier key, so that chains of conditions end.
                 match self.keys[..index].iter().find(|key| key.name == other) {

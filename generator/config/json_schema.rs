@@ -65,7 +65,14 @@ fn of_key(key: &Key) -> Json {
             json!({ "enum": options.iter().map(|option| choice(key, option)).collect::<Vec<_>>() })
         }
         Kind::Flag => json!({ "type": "boolean" }),
-        Kind::Text(pattern) => json!({ "type": "string", "pattern": pattern.regex() }),
+        Kind::Text(pattern) => {
+            let types = if key.kind.takes_integers() {
+                json!(["string", "number"])
+            } else {
+                json!("string")
+            };
+            json!({ "type": types, "pattern": pattern.regex() })
+        }
         Kind::Integers { min, max, len_min, len_max } => json!({
             "type": "array",
             "items": { "type": "integer", "minimum": min, "maximum": max },
@@ -88,7 +95,7 @@ fn of_key(key: &Key) -> Json {
 /// A choice as a file writes it.
 fn choice(key: &Key, option: &str) -> Json {
     match option.parse::<i64>() {
-        Ok(number) if key.kind.is_integer_choice() => json!(number),
+        Ok(number) if key.kind.takes_integers() => json!(number),
         _ => json!(option),
     }
 }

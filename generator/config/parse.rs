@@ -11,6 +11,7 @@ use super::module_name;
 use super::nearest::{listed, nearest};
 use super::problems::{Problems, STANDARD_INPUT, Violation, out_of_range, quoted, shown};
 use super::schema::{Key, Kind, Schema};
+use super::text_pattern::TextPattern;
 use super::validate::{Draft, keys_of};
 use super::values::{Config, Value};
 
@@ -345,8 +346,11 @@ fn converted(key: &Key, value: &Spanned<DeValue>) -> Result<Value, Vec<Violation
             Value::Text(text.clone().into_owned())
         }
         (Kind::Text(_), DeValue::String(text)) => Value::Text(text.clone().into_owned()),
-        (Kind::Choice(_), DeValue::Integer(_)) if key.kind.is_integer_choice() => {
+        (_, DeValue::Integer(_)) if key.kind.takes_integers() => {
             Value::Text(integer(value).ok_or_else(too_large)?.to_string())
+        }
+        (Kind::Text(TextPattern::Formula), DeValue::Float(number)) => {
+            Value::Text(number.as_str().to_owned())
         }
         (Kind::Flag, DeValue::Boolean(flag)) => Value::Flag(*flag),
         (Kind::Integers { .. }, DeValue::Array(entries)) => {

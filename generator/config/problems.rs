@@ -53,6 +53,27 @@ impl Problems {
         self.insert(key, message.into(), remedy.into(), span);
     }
 
+    /// Adds a problem of some bytes of a key's text: it is shown under them where the file gives the text as it is.
+    pub fn push_within(
+        &mut self,
+        key: &str,
+        bytes: Option<Range<usize>>,
+        message: impl Into<String>,
+        remedy: impl Into<String>,
+    ) {
+        let whole = self.locations.get(key).cloned();
+        let within = whole.clone().zip(bytes).and_then(|(whole, bytes)| {
+            // Between quotes, without an escape; what is missing at the end is missing at the closing quote.
+            let text = self.text.get(whole.clone())?;
+            let plain = text.starts_with(['"', '\''])
+                && !text.starts_with("\"\"\"")
+                && !text.contains('\\');
+            let from = whole.start + 1 + bytes.start;
+            plain.then_some(from..(whole.start + 1 + bytes.end).max(from + 1))
+        });
+        self.insert(key, message.into(), remedy.into(), within.or(whole));
+    }
+
     /// Adds a problem at a location in the text.
     pub(super) fn push_at(
         &mut self,

@@ -62,7 +62,10 @@ fn settle(schema: &Schema, config: &mut Config) {
 
 fn draw(key: &Key, rng: &mut ChaCha8Rng) -> Value {
     match &key.kind {
-        Kind::Integer { min, max } => Value::Integer(integer(*min, *max, rng)),
+        Kind::Integer { min, max } => {
+            let (min, max) = key.drawn.unwrap_or((*min, *max));
+            Value::Integer(integer(min, max, rng))
+        }
         Kind::Number { min, max, or_zero } => {
             let drawn = number(*min, *max, rng);
             Value::Number(if *or_zero && drawn == *min { 0.0 } else { drawn })

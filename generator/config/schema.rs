@@ -36,6 +36,8 @@ pub struct Key {
     pub only_when: Option<(&'static str, &'static str)>,
     /// At its default it is not written, as a shared key: digests of configurations from before there was the key hold.
     pub joined_later: bool,
+    /// Random configurations draw an integer from this range rather than from the whole one.
+    pub drawn: Option<(i64, i64)>,
 }
 
 /// The type of a key, and which of its values are accepted.
@@ -57,7 +59,7 @@ pub enum Kind {
 
 impl Key {
     fn new(name: &'static str, kind: Kind, default: Value, doc: &'static str) -> Self {
-        Key { name, kind, default, doc, only_when: None, joined_later: false }
+        Key { name, kind, default, doc, only_when: None, joined_later: false, drawn: None }
     }
 
     /// An integer in a range.
@@ -146,6 +148,11 @@ impl Key {
         Self { joined_later: true, ..self }
     }
 
+    /// Lets random configurations draw an integer from a range: beyond it they take long.
+    pub fn drawn(self, min: i64, max: i64) -> Self {
+        Self { drawn: Some((min, max)), ..self }
+    }
+
     /// The table and the last part of the name: `("cosine", "fraction")`. The table of a key at
     /// the top is empty.
     pub fn table_and_leaf(&self) -> (&'static str, &'static str) {
@@ -159,9 +166,9 @@ impl Kind {
         matches!(self, Kind::Choice(options) if options.iter().all(|option| is_integer(option)))
     }
 
-    /// Such a choice could not tell how a file writes it.
-    pub(super) fn mixes_integers_and_words(&self) -> bool {
-        matches!(self, Kind::Choice(options)
-            if !self.is_integer_choice() && options.iter().any(|option| is_integer(option)))
+    /// Whether a file may write an integer: of a choice among words and integers, those without quotes.
+    pub(super) fn takes_integers(&self) -> bool {
+        matches!(self, Kind::Choice(options) if options.iter().any(|option| is_integer(option)))
+            || *self == Kind::Text(TextPattern::Formula)
     }
 }

@@ -10,7 +10,13 @@ pub enum TextPattern {
     /// An SPDX licence expression, of which only the characters are checked: letters, digits, blanks, `.`, `-`,
     /// `+` and parentheses, beginning with a letter or a parenthesis.
     Licence,
+    /// Letters, digits, blanks and the signs of a formula, of which its reader says whether it is one. It alone may have
+    /// signs that XML writes otherwise.
+    Formula,
 }
+
+/// The most characters of a formula.
+const LONGEST_FORMULA: usize = 500;
 
 /// The most characters of a name or a licence.
 const LONGEST: usize = 60;
@@ -30,6 +36,12 @@ impl TextPattern {
         match self {
             TextPattern::Name => first("") && more(".-_"),
             TextPattern::Licence => first("(") && more(" .-+()"),
+            TextPattern::Formula => {
+                let good = |c: char| c.is_ascii_alphanumeric() || " ._+-*/%^(),<>=−·×".contains(c);
+                !text.is_empty()
+                    && text.chars().count() <= LONGEST_FORMULA
+                    && text.chars().all(good)
+            }
             TextPattern::Version => {
                 let numbers: Vec<&str> = text.split('.').collect();
                 numbers.len() == 3 && numbers.into_iter().all(is_number)
@@ -42,6 +54,7 @@ impl TextPattern {
         match self {
             TextPattern::Name => "^[A-Za-z][A-Za-z0-9._-]{0,59}$",
             TextPattern::Licence => "^[A-Za-z(][A-Za-z0-9 .+()-]{0,59}$",
+            TextPattern::Formula => "^[A-Za-z0-9 ._+*/%^(),<>=−·×-]{1,500}$",
             TextPattern::Version => "^(0|[1-9][0-9]{0,3})(\\.(0|[1-9][0-9]{0,3})){2}$",
         }
     }
@@ -54,6 +67,9 @@ impl TextPattern {
             }
             TextPattern::Licence => {
                 "an SPDX licence expression of at most 60 characters, as \"MIT OR Apache-2.0\""
+            }
+            TextPattern::Formula => {
+                "a formula of at most 500 characters, as \"1 / sqrt(x)\", or a number"
             }
             TextPattern::Version => "a version of three numbers up to 9999, as \"1.0.0\"",
         }
@@ -83,6 +99,11 @@ mod tests {
                 vec!["", "1.0", "1.0.0.0", "01.0.0", "1.0.10000", "1.0.x"],
             ),
             (
+                TextPattern::Formula,
+                vec!["1 / sqrt(x)", "if(x <= 2, -x, 3 · x^2 % 4)"],
+                vec!["", "x; y", "a\"b", "$x", "x\n"],
+            ),
+            (
                 TextPattern::Licence,
                 vec!["MIT", "MIT OR Apache-2.0", "(0BSD) AND GPL-2.0+"],
                 vec!["", " MIT", "M<T", "MIT\n", "$a"],
@@ -94,8 +115,10 @@ mod tests {
             for text in bad {
                 assert!(!pattern.fits(text), "{text}");
             }
-            assert!(!pattern.fits(&"a".repeat(61)));
+            assert!(!pattern.fits(&"a".repeat(501)));
         }
-        assert!(TextPattern::Name.fits(&"a".repeat(60)));
+        assert!(
+            TextPattern::Name.fits(&"a".repeat(60)) && !TextPattern::Name.fits(&"a".repeat(61))
+        );
     }
 }

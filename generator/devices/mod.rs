@@ -5,6 +5,7 @@ mod common;
 pub mod cosine_power;
 pub mod cosine_squared;
 mod decay;
+pub mod function;
 pub mod gauss;
 pub mod lyon;
 pub mod quad_cosine;

@@ -13,6 +13,7 @@ pub mod decay;
 pub mod device;
 pub mod formulas;
 pub mod frame;
+pub mod function;
 pub mod gauss;
 pub mod halving;
 pub mod highlight;

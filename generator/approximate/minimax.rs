@@ -1,0 +1,150 @@
+//! The polynomial of least largest error on some points, by exchange of points (Remez).
+
+/// The most coefficients.
+const MOST: usize = 4;
+
+/// Exchanges until the largest error is that of the reference.
+const EXCHANGES: usize = 30;
+
+/// The coefficients, from the constant on, of the polynomial of `degree` whose largest distance from `values` at the
+/// points `at` is least, and that distance. Points rise. With no more points than coefficients the degree is lowered.
+pub fn minimax(at: &[f64], values: &[f64], degree: usize) -> ([f64; MOST], f64) {
+    let count = degree.min(at.len().saturating_sub(1)) + 1;
+    if at.len() <= count {
+        let all: Vec<usize> = (0..at.len()).collect();
+        return (level(at, values, &all, false).0, 0.0);
+    }
+    // Extrema of the Chebyshev polynomial, by their places among the points.
+    let mut reference: Vec<usize> = (0..=count)
+        .map(|k| {
+            let part = (1.0 - libm::cos(std::f64::consts::PI * k as f64 / count as f64)) / 2.0;
+            (part * (at.len() - 1) as f64 + 0.5) as usize
+        })
+        .collect();
+    for k in 1..=count {
+        reference[k] = reference[k].max(reference[k - 1] + 1);
+    }
+    for k in (0..=count).rev() {
+        reference[k] = reference[k].min(at.len() - 1 - (count - k));
+    }
+    let mut best = ([0.0; MOST], f64::INFINITY);
+    for _ in 0..EXCHANGES {
+        let (coefficients, height) = level(at, values, &reference, true);
+        let error = |k: usize| values[k] - at_point(&coefficients, at[k]);
+        let worst = (0..at.len()).max_by(|&a, &b| error(a).abs().total_cmp(&error(b).abs()));
+        let worst = worst.unwrap_or(0);
+        let largest = error(worst).abs();
+        if largest < best.1 {
+            best = (coefficients, largest);
+        }
+        if largest <= height.abs() * (1.0 + 1e-9) || reference.contains(&worst) {
+            break;
+        }
+        exchange(&mut reference, worst, &error);
+    }
+    best
+}
+
+/// The value of a polynomial.
+pub fn at_point(coefficients: &[f64], at: f64) -> f64 {
+    coefficients.iter().rev().fold(0.0, |sum, coefficient| sum * at + coefficient)
+}
+
+/// Puts a point into the reference so that the signs of its errors still alternate.
+fn exchange(reference: &mut Vec<usize>, worst: usize, error: &dyn Fn(usize) -> f64) {
+    let like = |other: usize| error(other) * error(worst) > 0.0;
+    let place = reference.partition_point(|&point| point < worst);
+    let last = reference.len() - 1;
+    if place == 0 {
+        if !like(reference[0]) {
+            reference.insert(0, worst);
+            reference.pop();
+        } else {
+            reference[0] = worst;
+        }
+    } else if place > last {
+        if !like(reference[last]) {
+            reference.push(worst);
+            reference.remove(0);
+        } else {
+            reference[last] = worst;
+        }
+    } else if like(reference[place]) {
+        reference[place] = worst;
+    } else {
+        reference[place - 1] = worst;
+    }
+}
+
+/// The polynomial through the values at the points of the reference, or `levelled`: off by the same height at each, on
+/// one side and the other.
+fn level(at: &[f64], values: &[f64], reference: &[usize], levelled: bool) -> ([f64; MOST], f64) {
+    let count = reference.len();
+    let columns = if levelled { count - 1 } else { count };
+    let mut rows: Vec<Vec<f64>> = Vec::with_capacity(count);
+    for (k, &point) in reference.iter().enumerate() {
+        let mut row: Vec<f64> = Vec::with_capacity(count + 1);
+        let mut power = 1.0;
+        for _ in 0..columns {
+            row.push(power);
+            power *= at[point];
+        }
+        if levelled {
+            row.push(if k.is_multiple_of(2) { 1.0 } else { -1.0 });
+        }
+        row.push(values[point]);
+        rows.push(row);
+    }
+    let solution = solve(rows);
+    let mut coefficients = [0.0; MOST];
+    coefficients[..columns].copy_from_slice(&solution[..columns]);
+    (coefficients, if levelled { solution[columns] } else { 0.0 })
+}
+
+/// The solution of linear equations, each a row with its right side last.
+fn solve(mut rows: Vec<Vec<f64>>) -> Vec<f64> {
+    let count = rows.len();
+    for column in 0..count {
+        let pivot = (column..count)
+            .max_by(|&a, &b| rows[a][column].abs().total_cmp(&rows[b][column].abs()))
+            .unwrap_or(column);
+        rows.swap(column, pivot);
+        for other in 0..count {
+            if other != column && rows[column][column] != 0.0 {
+                let factor = rows[other][column] / rows[column][column];
+                for k in column..=count {
+                    let part = factor * rows[column][k];
+                    rows[other][k] -= part;
+                }
+            }
+        }
+    }
+    (0..count).map(|k| if rows[k][k] == 0.0 { 0.0 } else { rows[k][count] / rows[k][k] }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The polynomial next to x^n on −1 … 1 is x^n less the Chebyshev polynomial of degree n, scaled: it is 2^(1−n) off.
+    #[test]
+    fn powers_are_missed_by_the_height_of_chebyshev_polynomials() {
+        let at: Vec<f64> = (0..=4000).map(|k| f64::from(k) / 2000.0 - 1.0).collect();
+        for degree in 0..=3usize {
+            let values: Vec<f64> = at.iter().map(|x| x.powi(degree as i32 + 1)).collect();
+            let (_, error) = minimax(&at, &values, degree);
+            let height = 0.5f64.powi(degree as i32);
+            assert!((error / height - 1.0).abs() < 1e-5, "degree {degree}: {error}");
+        }
+    }
+
+    #[test]
+    fn few_points_are_met() {
+        let (at, values) = ([0.0, 1.0, 2.0], [1.0, 3.0, 11.0]);
+        let (coefficients, error) = minimax(&at, &values, 3);
+        assert_eq!(error, 0.0);
+        for (x, y) in at.iter().zip(values) {
+            assert!((at_point(&coefficients, *x) - y).abs() < 1e-12);
+        }
+    }
+}

@@ -1,0 +1,272 @@
+//! Piecewise polynomials in fixed point for a function of one operand, with a proved error.
+//!
+//! The domain is cut into [`Segments`]; a table has the coefficients of each, and Horner's rule carries the polynomial out
+//! in integers. [`find`] chooses degree, segments, coefficients and widths; [`Piecewise::prove`] then computes every
+//! operand and sets the result against the formula, whose own error of evaluation is in the bound.
+
+pub mod keys;
+mod minimax;
+mod search;
+mod segments;
+
+#[cfg(test)]
+mod tests;
+
+use std::collections::HashMap;
+use std::ops::Range;
+use std::sync::{Arc, LazyLock, Mutex};
+
+use rayon::prelude::*;
+
+use crate::base::fixed::{Format, exp2};
+use crate::formula::{Enclosure, Fault, Formula};
+
+pub use search::Wish;
+pub use segments::{Layout, Place, Segments};
+
+/// The most bits of an operand of which every value is computed.
+pub const MOST_BITS: u32 = 26;
+
+/// What is approximated.
+#[derive(Clone, Debug)]
+pub enum Target {
+    /// A formula of the operand x.
+    Formula(Formula),
+    /// A value for each raw operand of the domain, from the first on.
+    Samples(Vec<f64>),
+}
+
+/// What an operand outside the domain gives.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Outside {
+    /// The result of the nearer end.
+    Clamp,
+    /// The result of the operand as many whole domains away.
+    Wrap,
+    /// Any result.
+    Anything,
+}
+
+/// A function on a domain, and the formats that its operand and result have.
+#[derive(Clone, Debug)]
+pub struct Function {
+    /// What is approximated.
+    pub target: Target,
+    /// The raw operands, first and last.
+    pub domain: (i64, i64),
+    /// The operand's format.
+    pub operand: Format,
+    /// What other operands give.
+    pub outside: Outside,
+    /// Fraction bits of the result.
+    pub fraction: u32,
+    /// The largest error, in units of the last place of the result.
+    pub error: f64,
+}
+
+/// Why there is no approximation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Refusal {
+    /// The configuration key that is best changed.
+    pub key: &'static str,
+    /// The bytes of the formula that it is about, if it is about one place.
+    pub place: Option<Range<usize>>,
+    /// What is wrong.
+    pub message: String,
+    /// What to do about it.
+    pub remedy: String,
+}
+
+impl Refusal {
+    fn new(key: &'static str, message: String, remedy: impl Into<String>) -> Self {
+        Self { key, place: None, message, remedy: remedy.into() }
+    }
+}
+
+/// What is cut off before and after a product.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Step {
+    /// Leading bits of the offset that are multiplied.
+    pub offset: u32,
+    /// Low bits of the product that are dropped.
+    pub dropped: u32,
+}
+
+impl Step {
+    /// What is added to the next coefficient: the product of a sum and an offset of `rest` bits, both cut.
+    #[inline]
+    pub fn product(self, sum: i64, offset: i64, rest: u32) -> i64 {
+        (sum * (offset >> (rest - self.offset))) >> self.dropped
+    }
+}
+
+/// A piecewise polynomial in integers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Piecewise {
+    /// The operand's format.
+    pub operand: Format,
+    /// The raw operands of the domain.
+    pub domain: (i64, i64),
+    /// What other operands give.
+    pub outside: Outside,
+    /// The raw operand whose number is 0.
+    pub origin: i64,
+    /// How numbers choose words.
+    pub segments: Segments,
+    /// The formats of the coefficients, the constant first.
+    pub coefficients: Vec<Format>,
+    /// The words of the table, each with its coefficients.
+    pub words: Vec<Vec<i64>>,
+    /// What becomes of the product that is added to coefficient k.
+    pub steps: Vec<Step>,
+    /// The formats of the sums from coefficient k on; the first is that of the result.
+    pub sums: Vec<Format>,
+    /// The proved bound of the error, in units of the last place of the result.
+    pub bound: f64,
+}
+
+impl Function {
+    /// The limits of the value of a raw operand, in units of the last place of the result.
+    ///
+    /// # Errors
+    /// The part of the formula that has no value there.
+    pub fn limits(&self, raw: i64) -> Result<Enclosure, Fault> {
+        let unit = exp2(self.fraction as i32);
+        let Enclosure { low, high } = match &self.target {
+            Target::Formula(formula) => {
+                let x = Enclosure::exactly(self.operand.to_f64(raw.into()));
+                formula.enclose(&[("x", x)])?
+            }
+            Target::Samples(values) => Enclosure::exactly(values[(raw - self.domain.0) as usize]),
+        };
+        Ok(Enclosure::between(low * unit, high * unit))
+    }
+
+    /// The raw operand whose number is 0, and the bits of a number.
+    fn numbering(&self) -> (i64, u32) {
+        let span = (self.domain.1 - self.domain.0) as u64;
+        let bits = (u64::BITS - span.leading_zeros()).max(1);
+        let whole = self.operand.width();
+        let origin = self.operand.min_raw() as i64;
+        if bits < whole { (self.domain.0, bits) } else { (origin, whole) }
+    }
+}
+
+impl Piecewise {
+    /// The names of the registers with the sums, the result's first.
+    pub const REGISTERS: [&str; 3] = ["result", "sum1", "sum2"];
+
+    /// The polynomial's degree.
+    pub fn degree(&self) -> usize {
+        self.coefficients.len() - 1
+    }
+
+    /// The number of a raw operand within the domain.
+    pub fn number(&self, raw: i64) -> u64 {
+        (raw - self.origin) as u64 & ((1 << self.segments.bits) - 1)
+    }
+
+    /// Where a raw operand lies. Beyond the words that the domain reads it is the last.
+    pub fn place(&self, raw: i64) -> Place {
+        let Place { word, offset } = self.segments.place(self.number(raw));
+        Place { word: word.min(self.words.len() - 1), offset }
+    }
+
+    /// The sum from coefficient k on, of which `above` is the one from k + 1 on; whole.
+    pub fn sum(&self, k: usize, place: Place, above: i64) -> i64 {
+        let coefficient = self.words[place.word][k];
+        let Some(step) = self.steps.get(k) else { return coefficient };
+        coefficient + step.product(above, place.offset, self.segments.rest())
+    }
+
+    /// The fraction bits that the sum with the constant has beyond the result.
+    pub fn guard(&self) -> u32 {
+        (self.coefficients[0].frac - self.sums[0].frac) as u32
+    }
+
+    /// All sums of a raw operand, with nothing cut off at the top: the result first.
+    fn sums_of(&self, raw: i64) -> Vec<i64> {
+        let place = self.place(raw);
+        let mut sums = vec![0; self.coefficients.len()];
+        let mut above = 0;
+        for k in (0..sums.len()).rev() {
+            above = self.sum(k, place, above);
+            sums[k] = above;
+        }
+        sums[0] >>= self.guard();
+        sums
+    }
+
+    /// The result of a raw operand.
+    pub fn result(&self, raw: i64) -> i64 {
+        let place = self.place(raw);
+        let sum = (0..self.coefficients.len()).rev().fold(0, |above, k| self.sum(k, place, above));
+        sum >> self.guard()
+    }
+
+    /// Bits of the table.
+    pub fn rom_bits(&self) -> u64 {
+        let width: u32 = self.coefficients.iter().map(|format| format.width()).sum();
+        self.words.len() as u64 * u64::from(width)
+    }
+
+    /// Computes every operand of the domain, and gives the largest error against the limits of the function: no operand
+    /// is further off, whatever its exact value.
+    ///
+    /// # Errors
+    /// An operand whose sums leave their formats, whose result is further off than the function allows, or where the
+    /// function has no value.
+    pub fn prove(&self, function: &Function) -> Result<f64, Refusal> {
+        let (first, last) = self.domain;
+        let of = |raw: i64| -> Result<f64, Refusal> {
+            let sums = self.sums_of(raw);
+            if let Some((sum, format)) =
+                sums.iter().zip(&self.sums).find(|(sum, format)| !format.holds(i128::from(**sum)))
+            {
+                let message = format!("at the operand {raw} a sum is {sum}, which is not {format}");
+                return Err(Refusal::new("result.fraction", message, "change the formats"));
+            }
+            let limits = function.limits(raw).map_err(|fault| function.refusal(raw, &fault))?;
+            let result = sums[0] as f64;
+            let error = (result - limits.low).abs().max((result - limits.high).abs());
+            if error > function.error {
+                let message = format!("at the operand {raw} the result is {error:.4} units off");
+                return Err(Refusal::new("result.error", message, "allow a larger error"));
+            }
+            Ok(error)
+        };
+        (first..=last).into_par_iter().map(of).try_reduce(|| 0.0, |a, b| Ok(a.max(b)))
+    }
+}
+
+impl Function {
+    /// A place where the formula has no value, as a refusal of the formula.
+    fn refusal(&self, raw: i64, fault: &Fault) -> Refusal {
+        let x = self.operand.to_f64(raw.into());
+        Refusal {
+            key: "function.formula",
+            place: Some(fault.span.clone()),
+            message: format!("at x = {x}: {}", fault.message),
+            remedy: "keep such places out of the domain: change function.from or function.to"
+                .to_owned(),
+        }
+    }
+}
+
+type Found = Result<Arc<Piecewise>, Refusal>;
+
+/// The approximation of a function with least cost, and proved; what was found before is not searched again.
+///
+/// # Errors
+/// Why there is none.
+pub fn find(function: &Function, wish: Wish) -> Found {
+    static FOUND: LazyLock<Mutex<HashMap<String, Found>>> = LazyLock::new(Mutex::default);
+    let key = format!("{function:?} {wish:?}");
+    let known = || FOUND.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+    if let Some(found) = known().get(&key) {
+        return found.clone();
+    }
+    let found = search::search(function, wish).map(Arc::new);
+    known().insert(key, found.clone());
+    found
+}

@@ -1,0 +1,135 @@
+//! How a domain is cut into segments, and which word of the table an operand reads.
+
+/// How segments are laid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Layout {
+    /// All of one length.
+    Uniform,
+    /// Half as long in each octave toward the low end: for what is steep there.
+    Octaves,
+    /// Half as long in each octave toward the high end.
+    Halving,
+}
+
+impl Layout {
+    /// All, by the names that a configuration has for them.
+    pub const NAMES: [(&str, Self); 3] =
+        [("uniform", Self::Uniform), ("octaves", Self::Octaves), ("halving", Self::Halving)];
+
+    /// The name.
+    pub fn name(self) -> &'static str {
+        Self::NAMES.iter().find(|(_, layout)| *layout == self).map_or("", |(name, _)| name)
+    }
+}
+
+/// The domain, from 0 to 2^bits, cut into segments. An octave holds the numbers with one leading bit; what lies below the last is
+/// a block of its own, and each block has as many segments as every other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Segments {
+    /// Bits of the number of an operand.
+    pub bits: u32,
+    /// How they are laid.
+    pub layout: Layout,
+    /// How many octaves there are; none of uniform ones.
+    pub octaves: u32,
+    /// Bits of the number of a segment in its block.
+    pub prefix: u32,
+}
+
+/// A segment and the place of an operand in it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// The word of the table.
+    pub word: usize,
+    /// From the middle of the segment, in parts of 2^−[`Segments::rest`] of its length: from −1/2 to below 1/2.
+    pub offset: i64,
+}
+
+impl Segments {
+    /// Bits of the way through the longest segment.
+    pub fn rest(&self) -> u32 {
+        self.bits - self.prefix - u32::from(self.octaves > 0)
+    }
+
+    /// Bits of the way through a segment of a block: number 0 lies below the octaves, and the last is the highest.
+    pub fn rest_of(&self, block: u32) -> u32 {
+        (self.bits + block.max(1) - 1) - self.octaves - self.prefix
+    }
+
+    /// Words of the whole table.
+    pub fn words(&self) -> usize {
+        (self.octaves as usize + 1) << self.prefix
+    }
+
+    /// An operand's number, counted from the end toward which octaves are shorter.
+    fn turned(&self, number: u64) -> u64 {
+        match self.layout {
+            Layout::Halving => ((1 << self.bits) - 1) - number,
+            _ => number,
+        }
+    }
+
+    /// Where the operand of a number lies.
+    #[inline]
+    pub fn place(&self, number: u64) -> Place {
+        let number = self.turned(number);
+        let below = self.bits - self.octaves;
+        let (block, within) = if self.octaves > 0 && number >> below != 0 {
+            let top = number.ilog2();
+            (top + 1 - below, number - (1 << top))
+        } else {
+            (0, number)
+        };
+        let rest = self.rest_of(block);
+        let low = within & ((1 << rest) - 1);
+        let word = ((block as usize) << self.prefix) + (within >> rest) as usize;
+        let places = self.rest() - rest;
+        let middle = if self.rest() == 0 { 0 } else { 1i64 << (self.rest() - 1) };
+        Place { word, offset: ((low << places) as i64) - middle }
+    }
+
+    /// The numbers that read a word: the lowest and how many there are.
+    pub fn numbers(&self, word: usize) -> (u64, u64) {
+        let block = (word >> self.prefix) as u32;
+        let rest = self.rest_of(block);
+        let within = (word as u64 & ((1 << self.prefix) - 1)) << rest;
+        let first = if block == 0 { 0 } else { 1u64 << (self.bits - self.octaves + block - 1) };
+        let (from, count) = (first + within, 1u64 << rest);
+        (self.turned(from).min(self.turned(from + count - 1)), count)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_number_lies_in_the_segment_of_its_word() {
+        for layout in [Layout::Uniform, Layout::Octaves, Layout::Halving] {
+            for octaves in if layout == Layout::Uniform { 0..=0 } else { 1..=3 } {
+                for prefix in 0..=3 {
+                    let cut = Segments { bits: 6, layout, octaves, prefix };
+                    for number in 0..64 {
+                        let Place { word, offset } = cut.place(number);
+                        let (first, count) = cut.numbers(word);
+                        assert!(word < cut.words() && (first..first + count).contains(&number));
+                        let half = if cut.rest() == 0 { 0 } else { 1i64 << (cut.rest() - 1) };
+                        assert!((-half..half.max(1)).contains(&offset), "{cut:?} {number}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn octaves_are_shorter_toward_the_end_that_they_are_for() {
+        let low = Segments { bits: 6, layout: Layout::Octaves, octaves: 2, prefix: 1 };
+        assert_eq!(
+            [0, 1, 2, 3, 4, 5].map(|word| low.numbers(word)),
+            [(0, 8), (8, 8), (16, 8), (24, 8), (32, 16), (48, 16)]
+        );
+        let high = Segments { layout: Layout::Halving, ..low };
+        assert_eq!(high.numbers(5), (0, 16));
+        assert_eq!(high.numbers(0), (56, 8));
+    }
+}

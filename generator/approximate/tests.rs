@@ -1,0 +1,89 @@
+//! Approximations are proved, and a wrong coefficient is not.
+
+use super::{Function, Layout, Outside, Target, Wish, find};
+use crate::base::fixed::{Format, exp2};
+use crate::formula::parse;
+
+/// A function with as many fraction bits in its result as its operand has, from one value to another that does not belong
+/// to it.
+fn function(text: &str, (from, to): (f64, f64), fraction: i32, error: f64) -> Function {
+    let raw = |value: f64| (value * exp2(fraction)) as i64;
+    let domain = (raw(from), raw(to) - 1);
+    Function {
+        target: Target::Formula(parse(text).unwrap()),
+        domain,
+        operand: Format::holding(domain.0.into(), domain.1.into(), fraction),
+        outside: Outside::Clamp,
+        fraction: fraction as u32,
+        error,
+    }
+}
+
+#[test]
+fn a_planted_wrong_coefficient_is_refused_at_every_degree() {
+    for degree in 0..=3 {
+        let it = function("exp(-x)", (0.0, 1.0), 10, 1.0);
+        let wish = Wish { degree: Some(degree), layout: None };
+        let found = find(&it, wish).unwrap();
+        assert_eq!(found.degree(), degree as usize);
+        assert!(found.bound < 1.0 && found.bound == found.prove(&it).unwrap());
+        for k in 0..=degree as usize {
+            // As much as moves results at the end of a segment by two units.
+            let unit = 1i64 << (found.coefficients[k].frac - 10).max(0);
+            let mut wrong = (*found).clone();
+            wrong.words[1][k] += (2 * unit) << k;
+            let refusal = wrong.prove(&it).unwrap_err();
+            assert!(["result.error", "result.fraction"].contains(&refusal.key), "{refusal:?}");
+        }
+    }
+}
+
+#[test]
+fn results_are_right_against_libm() {
+    let cases: [(&str, (f64, f64), fn(f64) -> f64); 5] = [
+        ("1 / sqrt(x)", (1.0, 4.0), |x| 1.0 / x.sqrt()),
+        ("sigmoid(x)", (-8.0, 8.0), |x| 1.0 / (1.0 + libm::exp(-x))),
+        ("log2(1 + x)", (0.0, 1.0), |x| libm::log2(1.0 + x)),
+        ("sqrt(x)", (0.0, 2.0), f64::sqrt),
+        ("sqrt(1 - x)", (0.0, 1.0), |x| (1.0 - x).sqrt()),
+    ];
+    for (text, domain, exact) in cases {
+        for error in [1.0, 0.55] {
+            let it = function(text, domain, 12, error);
+            let found = find(&it, Wish::default()).unwrap();
+            let mut largest: f64 = 0.0;
+            for raw in it.domain.0..=it.domain.1 {
+                let value = exact(raw as f64 / 4096.0) * 4096.0;
+                largest = largest.max((found.result(raw) as f64 - value).abs());
+            }
+            assert!(largest <= found.bound && found.bound < error, "{text}: {largest}");
+            assert!(largest > found.bound - 1e-6, "{text}: the bound is that of an operand");
+        }
+    }
+}
+
+#[test]
+fn steep_ends_are_cut_into_octaves() {
+    for (text, layout) in [("sqrt(x)", Layout::Octaves), ("sqrt(1 - x)", Layout::Halving)] {
+        let it = function(text, (0.0, 1.0), 12, 1.0);
+        let uniform = Wish { degree: Some(2), layout: Some(Layout::Uniform) };
+        let found = find(&it, Wish { degree: Some(2), layout: None }).unwrap();
+        assert_eq!(found.segments.layout, layout, "{text}");
+        let bits = find(&it, uniform).map_or(u64::MAX, |found| found.rom_bits());
+        assert!(found.rom_bits() * 2 < bits, "{text}: {} of {bits}", found.rom_bits());
+    }
+}
+
+#[test]
+fn what_cannot_be_had_is_refused_with_what_can() {
+    let refused = |it: &Function, wish| find(it, wish).unwrap_err();
+    let pole = refused(&function("2 + 1 / x", (-1.0, 1.0), 8, 1.0), Wish::default());
+    assert_eq!((pole.key, pole.place), ("function.formula", Some(4..9)));
+    let near =
+        refused(&function("exp(-x)", (0.0, 1.0), 10, 0.5), Wish { degree: Some(1), layout: None });
+    assert_eq!(near.key, "result.error");
+    assert!(near.message.starts_with("degree 1 does not keep an error of 0.5 units"), "{near:?}");
+    assert!(near.remedy.starts_with("0.51 is reached"), "{near:?}");
+    let wide = refused(&function("x", (0.0, 4.0), 26, 1.0), Wish::default());
+    assert_eq!((wide.key, wide.remedy.as_str()), ("operand.fraction", "at most 24"));
+}

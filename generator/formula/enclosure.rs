@@ -1,0 +1,189 @@
+//! Intervals of real numbers that certainly hold the value: every rounding is outward.
+
+/// Far more than any function of `libm` is off: musl's, from which they come, state errors below 1.5 units in the last
+/// place, and this is at least four of them.
+const MARGIN: f64 = 1.0 / (1u64 << 50) as f64;
+
+/// Below this, products lose bits that a remainder cannot show.
+const SMALL: f64 = 1e-280;
+
+/// A lower and an upper limit of a real number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Enclosure {
+    /// The number is not below this.
+    pub low: f64,
+    /// The number is not above this.
+    pub high: f64,
+}
+
+impl Enclosure {
+    /// The number itself.
+    pub const fn exactly(value: f64) -> Self {
+        Self { low: value, high: value }
+    }
+
+    /// From one number to another.
+    pub const fn between(low: f64, high: f64) -> Self {
+        Self { low, high }
+    }
+
+    /// The middle.
+    pub fn middle(self) -> f64 {
+        self.low + (self.high - self.low) / 2.0
+    }
+
+    /// Whether both limits are numbers.
+    pub fn is_finite(self) -> bool {
+        self.low.is_finite() && self.high.is_finite()
+    }
+
+    /// Whether it holds a number.
+    pub fn holds(self, value: f64) -> bool {
+        (self.low..=self.high).contains(&value)
+    }
+
+    /// The smallest one with both.
+    #[must_use]
+    pub fn hull(self, other: Self) -> Self {
+        Self { low: self.low.min(other.low), high: self.high.max(other.high) }
+    }
+
+    /// The enclosure of a number that was computed up to an error of [`MARGIN`], relative to it.
+    fn near(low: f64, high: f64) -> Self {
+        let margin = |value: f64| value.abs() * MARGIN + f64::MIN_POSITIVE;
+        Self { low: low - margin(low), high: high + margin(high) }
+    }
+
+    /// The hull of what `of` gives for the corners of two enclosures: the limits of a function that is monotone in each.
+    fn corners(self, other: Self, of: impl Fn(f64, f64) -> Self) -> Self {
+        let [a, b, c, d] = [
+            of(self.low, other.low),
+            of(self.low, other.high),
+            of(self.high, other.low),
+            of(self.high, other.high),
+        ];
+        a.hull(b).hull(c.hull(d))
+    }
+
+    /// The values of a function of `libm` that never falls.
+    pub(super) fn rising(self, of: fn(f64) -> f64) -> Self {
+        Self::near(of(self.low), of(self.high))
+    }
+
+    /// The values of a sine or a cosine, which is never steeper than 1.
+    pub(super) fn wave(self, of: fn(f64) -> f64) -> Self {
+        let middle = self.middle();
+        let reach = ((self.high - middle).max(middle - self.low)).next_up();
+        let Self { low, high } = Self::near(of(middle), of(middle));
+        Self { low: (low - reach).next_down().max(-1.0), high: (high + reach).next_up().min(1.0) }
+    }
+
+    /// The square root, of no negative number.
+    pub(super) fn sqrt(self) -> Self {
+        let root = |value: f64| {
+            let root = value.sqrt();
+            directed(root, (-root).mul_add(root, value))
+        };
+        Self { low: root(self.low).low, high: root(self.high).high }
+    }
+
+    /// The size.
+    pub(super) fn abs(self) -> Self {
+        if self.low >= 0.0 {
+            self
+        } else if self.high <= 0.0 {
+            -self
+        } else {
+            Self { low: 0.0, high: self.high.max(-self.low) }
+        }
+    }
+
+    /// A power with an exponent that is a whole number above 0.
+    pub(super) fn times_itself(self, exponent: u32) -> Self {
+        let base = if exponent.is_multiple_of(2) { self.abs() } else { self };
+        let power = |value: f64| {
+            let value = Self::exactly(value);
+            (1..exponent).fold(value, |power, _| power * value)
+        };
+        // Without a sign between them, or with an odd exponent, a power rises.
+        Self { low: power(base.low).low, high: power(base.high).high }
+    }
+
+    /// A power of no negative number, by `libm`.
+    pub(super) fn power(self, exponent: Self) -> Self {
+        self.corners(exponent, |base, exponent| {
+            let power = libm::pow(base, exponent);
+            Self::near(power, power)
+        })
+    }
+}
+
+/// The enclosure of a number of which the nearest f64 is `value`, and whose difference from it has the sign of `error`.
+fn directed(value: f64, error: f64) -> Enclosure {
+    if value.abs() < SMALL && (value != 0.0 || error != 0.0) || !error.is_finite() {
+        return Enclosure { low: value.next_down(), high: value.next_up() };
+    }
+    Enclosure {
+        low: if error < 0.0 { value.next_down() } else { value },
+        high: if error > 0.0 { value.next_up() } else { value },
+    }
+}
+
+impl std::ops::Neg for Enclosure {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self { low: -self.high, high: -self.low }
+    }
+}
+
+impl std::ops::Add for Enclosure {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        let sum = |a: f64, b: f64| {
+            let sum = a + b;
+            let part = sum - a;
+            directed(sum, (a - (sum - part)) + (b - part))
+        };
+        Self { low: sum(self.low, other.low).low, high: sum(self.high, other.high).high }
+    }
+}
+
+impl std::ops::Sub for Enclosure {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl std::ops::Mul for Enclosure {
+    type Output = Self;
+
+    fn mul(self, other: Self) -> Self {
+        self.corners(other, |a, b| {
+            if a == 0.0 || b == 0.0 {
+                return Self::exactly(0.0);
+            }
+            let product = a * b;
+            directed(product, a.mul_add(b, -product))
+        })
+    }
+}
+
+impl std::ops::Div for Enclosure {
+    type Output = Self;
+
+    /// By a number that is not 0.
+    fn div(self, other: Self) -> Self {
+        self.corners(other, |a, b| {
+            if b.is_infinite() {
+                return Self { low: -f64::MIN_POSITIVE, high: f64::MIN_POSITIVE };
+            }
+            let quotient = a / b;
+            let rest = (-quotient).mul_add(b, a);
+            directed(quotient, if b < 0.0 { -rest } else { rest })
+        })
+    }
+}

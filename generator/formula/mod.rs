@@ -1,0 +1,175 @@
+//! Formulas: text to a tree, and the tree to numbers, enclosures and the languages of other tools.
+//!
+//! The text is what a configuration or a contract states, `1 / sqrt(x)` or `max(x, 0) if x > 1 else 2 ** -x`. Every part
+//! of the tree knows the bytes of the text that it came from, so that a mistake is shown under its place.
+
+mod enclosure;
+mod evaluate;
+mod parse;
+mod print;
+
+use std::fmt;
+use std::ops::Range;
+
+pub use enclosure::Enclosure;
+pub use parse::{FUNCTIONS, parse};
+pub use print::Language;
+
+/// A part of a formula.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Formula {
+    /// What it is.
+    pub kind: Kind,
+    /// The bytes of the text that it came from.
+    pub span: Range<usize>,
+}
+
+/// What a part of a formula is.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Kind {
+    /// A number, and whether it is the number that the text states or the nearest to it.
+    Number(f64, bool),
+    /// A constant by its name, and the number below it.
+    Constant(&'static str, f64),
+    /// An operand, as a value and not raw.
+    Operand(String),
+    /// A word of a ROM, as a value, by the name of the ROM and what numbers it.
+    Word(String, Box<Formula>),
+    /// A function of one number.
+    Unary(Function, Box<Formula>),
+    /// A function of two.
+    Binary(Operator, Box<Formula>, Box<Formula>),
+    /// The first where the comparison holds, else the second.
+    If(Comparison, Box<Formula>, Box<Formula>),
+}
+
+/// Whether one number exceeds another.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Comparison {
+    /// The number.
+    pub left: Box<Formula>,
+    /// The other.
+    pub right: Box<Formula>,
+    /// Whether equal ones count.
+    pub or_equal: bool,
+}
+
+/// The functions of one number that are no combination of others.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(missing_docs, reason = "the names are those of mathematics")]
+pub enum Function {
+    Negate,
+    Abs,
+    Sqrt,
+    Exp,
+    Exp2,
+    Ln,
+    Log2,
+    Sin,
+    Cos,
+    Tan,
+    Atan,
+    Tanh,
+    Erf,
+}
+
+/// The functions of two numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(missing_docs, reason = "the names are those of mathematics")]
+pub enum Operator {
+    Add,
+    Sub,
+    Mul,
+    Div,
+    /// What is left of the first when multiples of the second are taken away, between 0 and the second.
+    Mod,
+    Power,
+    Min,
+    Max,
+}
+
+/// What is wrong with a formula, and where.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fault {
+    /// The bytes of the text.
+    pub span: Range<usize>,
+    /// What is wrong.
+    pub message: String,
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for Fault {}
+
+impl Fault {
+    fn new(span: Range<usize>, message: impl Into<String>) -> Self {
+        Self { span, message: message.into() }
+    }
+
+    /// The text in a line, carets under the place in the next, and what is wrong behind them.
+    pub fn under(&self, text: &str) -> String {
+        let count = |range: Range<usize>| text.get(range).map_or(0, |it| it.chars().count());
+        let carets = count(self.span.clone()).max(1);
+        let before = " ".repeat(count(0..self.span.start.min(text.len())));
+        format!("{text}\n{before}{} {}", "^".repeat(carets), self.message)
+    }
+}
+
+impl Formula {
+    /// The parts that it is made of.
+    pub fn parts(&self) -> Vec<&Self> {
+        match &self.kind {
+            Kind::Number(..) | Kind::Constant(..) | Kind::Operand(_) => Vec::new(),
+            Kind::Word(_, a) | Kind::Unary(_, a) => vec![a],
+            Kind::Binary(_, a, b) => vec![a, b],
+            Kind::If(Comparison { left, right, .. }, a, b) => vec![left, right, a, b],
+        }
+    }
+
+    /// The formula and all parts within it, each after those that it is made of.
+    pub fn walk<'f>(&'f self, visit: &mut dyn FnMut(&'f Self)) {
+        self.parts().into_iter().for_each(|part| part.walk(visit));
+        visit(self);
+    }
+
+    /// Refuses names other than `operand`, and words of ROMs.
+    ///
+    /// # Errors
+    /// The first such name.
+    pub fn of_operand(self, operand: &str) -> Result<Self, Fault> {
+        let mut fault = None;
+        self.walk(&mut |part| {
+            if let Kind::Operand(name) | Kind::Word(name, _) = &part.kind
+                && (name != operand || matches!(part.kind, Kind::Word(..)))
+            {
+                let message = format!("there is no `{name}`: the operand is `{operand}`");
+                fault.get_or_insert(Fault::new(part.span.clone(), message));
+            }
+        });
+        fault.map_or(Ok(self), Err)
+    }
+
+    /// The formula with another in the place of an operand; every part has the span of `call`.
+    fn substitute(&self, name: &str, value: &Self, call: &Range<usize>) -> Self {
+        let inner = |part: &Self| Box::new(part.substitute(name, value, call));
+        let kind = match &self.kind {
+            Kind::Operand(own) if own == name => return value.clone(),
+            Kind::Word(rom, at) => Kind::Word(rom.clone(), inner(at)),
+            Kind::Unary(function, a) => Kind::Unary(*function, inner(a)),
+            Kind::Binary(operator, a, b) => Kind::Binary(*operator, inner(a), inner(b)),
+            Kind::If(it, a, b) => {
+                let (left, right) = (inner(&it.left), inner(&it.right));
+                Kind::If(Comparison { left, right, or_equal: it.or_equal }, inner(a), inner(b))
+            }
+            leaf => leaf.clone(),
+        };
+        Self { kind, span: call.clone() }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,305 @@
+//! Text to a tree.
+
+use std::ops::Range;
+
+use super::{Comparison, Fault, Formula, Function, Kind, Operator};
+
+/// The functions of one number, by the names that a formula may use.
+pub const FUNCTIONS: [(&str, Function); 13] = [
+    ("abs", Function::Abs),
+    ("sqrt", Function::Sqrt),
+    ("exp", Function::Exp),
+    ("exp2", Function::Exp2),
+    ("ln", Function::Ln),
+    ("log", Function::Ln),
+    ("log2", Function::Log2),
+    ("sin", Function::Sin),
+    ("cos", Function::Cos),
+    ("tan", Function::Tan),
+    ("atan", Function::Atan),
+    ("tanh", Function::Tanh),
+    ("erf", Function::Erf),
+];
+
+/// Functions that are combinations of others, of a number u.
+const DEFINED: [(&str, &str); 7] = [
+    ("reciprocal", "1 / u"),
+    ("rsqrt", "1 / sqrt(u)"),
+    ("sigmoid", "1 / (1 + exp(-u))"),
+    ("gelu", "u / 2 * (1 + erf(u / sqrt(2)))"),
+    ("silu", "u / (1 + exp(-u))"),
+    ("softplus", "ln(1 + exp(u))"),
+    // Of an operand that is an integer.
+    ("int", "u"),
+];
+
+/// Constants and the largest f64 that is not above them.
+const CONSTANTS: [(&str, f64); 2] = [("pi", std::f64::consts::PI), ("e", std::f64::consts::E)];
+
+/// The most parts within each other: as many calls of the parser stand on the stack.
+const DEEPEST: usize = 200;
+
+/// Reads a formula: sums, products, powers (`^` or `**`), parentheses, numbers, pi, e, operands by their names,
+/// functions, `if(a < b, x, y)`, and `x if a < b else y` as Python writes it.
+///
+/// # Errors
+/// The first mistake, with its place.
+pub fn parse(text: &str) -> Result<Formula, Fault> {
+    let mut parser = Parser { text, tokens: tokens(text)?, at: 0, depth: 0 };
+    let formula = parser.choice()?;
+    match parser.tokens.get(parser.at) {
+        None => Ok(formula),
+        Some(rest) => Err(Fault::new(rest.clone(), "this does not belong here")),
+    }
+}
+
+/// The places of names, numbers and signs.
+fn tokens(text: &str) -> Result<Vec<Range<usize>>, Fault> {
+    let mut tokens = Vec::new();
+    let mut at = 0;
+    while let Some(first) = text[at..].chars().next() {
+        let rest = &text[at..];
+        let run =
+            |belongs: &dyn Fn(char) -> bool| rest.find(|c: char| !belongs(c)).unwrap_or(rest.len());
+        let length = match first {
+            'a'..='z' | 'A'..='Z' | '_' => run(&|c| c.is_ascii_alphanumeric() || c == '_'),
+            '0'..='9' | '.' => number(rest),
+            _ if ["**", "<=", ">="].iter().any(|two| rest.starts_with(two)) => 2,
+            '+' | '-' | '*' | '/' | '%' | '^' | '(' | ')' | '[' | ']' | ',' | '<' | '>' => 1,
+            '−' | '·' | '×' => first.len_utf8(),
+            _ if first.is_whitespace() => {
+                at += first.len_utf8();
+                continue;
+            }
+            _ => {
+                let span = at..at + first.len_utf8();
+                return Err(Fault::new(span, format!("`{first}` is no part of a formula")));
+            }
+        };
+        tokens.push(at..at + length);
+        at += length;
+    }
+    Ok(tokens)
+}
+
+/// The length of the number at the beginning of a text: digits with a point, and a power of ten.
+fn number(text: &str) -> usize {
+    let digits = |from: usize, also: char| {
+        let rest = &text[from..];
+        from + rest.find(|c: char| !c.is_ascii_digit() && c != also).unwrap_or(rest.len())
+    };
+    let end = digits(0, '.');
+    if !text[end..].starts_with(['e', 'E']) {
+        return end;
+    }
+    let sign = usize::from(text[end + 1..].starts_with(['+', '-']));
+    let power = digits(end + 1 + sign, '0');
+    // The constant e behind a number is a mistake that the parser tells.
+    if power > end + 1 + sign { power } else { end }
+}
+
+struct Parser<'t> {
+    text: &'t str,
+    tokens: Vec<Range<usize>>,
+    at: usize,
+    depth: usize,
+}
+
+impl Parser<'_> {
+    /// The token that follows, or no text.
+    fn peek(&self) -> &str {
+        self.tokens.get(self.at).map_or("", |token| &self.text[token.clone()])
+    }
+
+    fn taken(&mut self, tokens: &[&str]) -> bool {
+        let taken = tokens.contains(&self.peek());
+        self.at += usize::from(taken);
+        taken
+    }
+
+    fn here(&self) -> Range<usize> {
+        self.tokens.get(self.at).cloned().unwrap_or(self.text.len()..self.text.len())
+    }
+
+    fn fault<T>(&self, message: impl Into<String>) -> Result<T, Fault> {
+        Err(Fault::new(self.here(), message))
+    }
+
+    fn expect(&mut self, token: &str) -> Result<(), Fault> {
+        if self.taken(&[token]) { Ok(()) } else { self.fault(format!("`{token}` is missing")) }
+    }
+
+    /// A part from the token `from` to the last that was read.
+    fn made(&self, from: usize, kind: Kind) -> Formula {
+        Formula { kind, span: self.tokens[from].start..self.tokens[self.at - 1].end }
+    }
+
+    fn choice(&mut self) -> Result<Formula, Fault> {
+        if self.depth == DEEPEST {
+            return self.fault(format!("more than {DEEPEST} parts are within each other"));
+        }
+        self.depth += 1;
+        let from = self.at;
+        let mut choice = self.sum()?;
+        if self.taken(&["if"]) {
+            let comparison = self.comparison()?;
+            self.expect("else")?;
+            let other = self.choice()?;
+            let kind = Kind::If(comparison, Box::new(choice), Box::new(other));
+            choice = self.made(from, kind);
+        }
+        self.depth -= 1;
+        Ok(choice)
+    }
+
+    fn comparison(&mut self) -> Result<Comparison, Fault> {
+        let first = Box::new(self.sum()?);
+        let sign = self.peek().to_owned();
+        if !self.taken(&["<", ">", "<=", ">="]) {
+            return self.fault("`<`, `>`, `<=` or `>=` is missing");
+        }
+        let second = Box::new(self.sum()?);
+        let (left, right) = if sign.starts_with('>') { (first, second) } else { (second, first) };
+        Ok(Comparison { left, right, or_equal: sign.len() == 2 })
+    }
+
+    /// Operands of one rank from the left.
+    fn chain(
+        &mut self,
+        signs: &[(&str, Operator)],
+        part: fn(&mut Self) -> Result<Formula, Fault>,
+    ) -> Result<Formula, Fault> {
+        let from = self.at;
+        let mut all = part(self)?;
+        while let Some((_, operator)) = signs.iter().find(|(sign, _)| *sign == self.peek()) {
+            self.at += 1;
+            let kind = Kind::Binary(*operator, Box::new(all), Box::new(part(self)?));
+            all = self.made(from, kind);
+        }
+        Ok(all)
+    }
+
+    fn sum(&mut self) -> Result<Formula, Fault> {
+        let signs = [("+", Operator::Add), ("-", Operator::Sub), ("−", Operator::Sub)];
+        self.chain(&signs, Self::product)
+    }
+
+    fn product(&mut self) -> Result<Formula, Fault> {
+        use Operator::{Div, Mod, Mul};
+        let signs = [("*", Mul), ("·", Mul), ("×", Mul), ("/", Div), ("%", Mod)];
+        self.chain(&signs, Self::signed)
+    }
+
+    /// A power with a sign before it, which is weaker.
+    fn signed(&mut self) -> Result<Formula, Fault> {
+        let from = self.at;
+        let mut signs = 0;
+        while self.taken(&["-", "−"]) {
+            signs += 1;
+        }
+        let mut part = self.atom()?;
+        if self.taken(&["^", "**"]) {
+            if self.depth == DEEPEST {
+                return self.fault(format!("more than {DEEPEST} parts are within each other"));
+            }
+            self.depth += 1;
+            let kind = Kind::Binary(Operator::Power, Box::new(part), Box::new(self.signed()?));
+            self.depth -= 1;
+            part = self.made(from + signs, kind);
+        }
+        if signs % 2 == 1 {
+            part = self.made(from, Kind::Unary(Function::Negate, Box::new(part)));
+        }
+        Ok(part)
+    }
+
+    fn atom(&mut self) -> Result<Formula, Fault> {
+        let from = self.at;
+        let token = self.peek().to_owned();
+        if token.is_empty() {
+            return self.fault("a number, an operand or a function is missing");
+        }
+        if self.taken(&["("]) {
+            let inner = self.choice()?;
+            self.expect(")")?;
+            return Ok(inner);
+        }
+        if token.starts_with(|c: char| c.is_ascii_digit() || c == '.') {
+            let Ok(value) = token.parse::<f64>() else {
+                return self.fault("this is no number");
+            };
+            self.at += 1;
+            return Ok(self.made(from, Kind::Number(value, is_exact(&token, value))));
+        }
+        if !token.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_') {
+            return self.fault("a number, an operand or a function is missing before this");
+        }
+        self.at += 1;
+        if self.taken(&["["]) {
+            let place = Box::new(self.choice()?);
+            self.expect("]")?;
+            return Ok(self.made(from, Kind::Word(token, place)));
+        }
+        if !self.taken(&["("]) {
+            let constant = CONSTANTS.iter().find(|(name, _)| *name == token);
+            let kind = match constant {
+                Some((name, value)) => Kind::Constant(name, *value),
+                None => Kind::Operand(token),
+            };
+            return Ok(self.made(from, kind));
+        }
+        self.call(from, &token)
+    }
+
+    /// A function with its parentheses, of which the first is read.
+    fn call(&mut self, from: usize, name: &str) -> Result<Formula, Fault> {
+        if name == "if" {
+            let comparison = self.comparison()?;
+            self.expect(",")?;
+            let yes = Box::new(self.choice()?);
+            self.expect(",")?;
+            let no = Box::new(self.choice()?);
+            self.expect(")")?;
+            return Ok(self.made(from, Kind::If(comparison, yes, no)));
+        }
+        let two = [("min", Operator::Min), ("max", Operator::Max)];
+        let two = two.iter().find(|(own, _)| *own == name).map(|(_, operator)| *operator);
+        let one = FUNCTIONS.iter().find(|(own, _)| *own == name).map(|(_, function)| *function);
+        let defined = DEFINED.iter().find(|(own, _)| *own == name).map(|(_, text)| *text);
+        if two.is_none() && one.is_none() && defined.is_none() {
+            let all = FUNCTIONS.iter().map(|it| it.0).chain(DEFINED.iter().map(|it| it.0));
+            let all: Vec<&str> = all.chain(["min", "max", "if"]).collect();
+            let message = format!("there is no function `{name}`; there are {}", all.join(", "));
+            return Err(Fault::new(self.tokens[from].clone(), message));
+        }
+        let first = self.choice()?;
+        let kind = match (two, one) {
+            (Some(operator), _) => {
+                self.expect(",")?;
+                Kind::Binary(operator, Box::new(first), Box::new(self.choice()?))
+            }
+            (_, Some(function)) => Kind::Unary(function, Box::new(first)),
+            _ => {
+                self.expect(")")?;
+                let span = self.tokens[from].start..self.tokens[self.at - 1].end;
+                let body = parse(defined.unwrap_or("u"))?;
+                return Ok(body.substitute("u", &first, &span));
+            }
+        };
+        self.expect(")")?;
+        Ok(self.made(from, kind))
+    }
+}
+
+/// Whether a number is that of its text, and not the nearest to it. Of a text with a power of ten nothing is claimed.
+fn is_exact(text: &str, value: f64) -> bool {
+    // All digits of a number that few binary places have; more digits of the text than these are not exact.
+    let trimmed = |text: &str| match text.split_once('.') {
+        Some((whole, part)) => (whole.to_owned(), part.trim_end_matches('0').to_owned()),
+        None => (text.to_owned(), String::new()),
+    };
+    let (whole, part) = trimmed(text);
+    let whole = whole.trim_start_matches('0').to_owned();
+    let (own, rest) = trimmed(&format!("{value:.60}"));
+    (whole, part) == (own.trim_start_matches('0').to_owned(), rest)
+}
