@@ -6,6 +6,7 @@
 
 pub mod keys;
 mod minimax;
+pub mod presets;
 mod search;
 mod segments;
 

@@ -34,7 +34,7 @@ pub use schema::{Key, Kind, Schema};
 pub use shared::{Shared, shared_keys};
 pub use text_pattern::TextPattern;
 pub use values::{Config, Value};
-pub use write::commented;
+pub use write::{commented, commented_values};
 
 /// The keys of every device that a [`Config`] holds in fields of its own, with what they govern.
 const COMMON: [(&str, &str); 3] = [

@@ -10,13 +10,16 @@ const WIDTH: usize = 90;
 /// The file that `glint new` writes: every key with its default, what it governs and what it
 /// accepts. It reads back as the defaults; keys that do not apply to them are commented out.
 pub fn commented(schema: &Schema, name: &str) -> String {
-    let config = Config::defaults(schema, name);
+    commented_values(schema, &Config::defaults(schema, name))
+}
+
+/// As [`commented`], with the values of a configuration in place of defaults.
+pub fn commented_values(schema: &Schema, config: &Config) -> String {
     let mut text = comment(&format!(
-        "Glint configuration of the device \"{}\". All keys are shown with their defaults; those \
-         that you do not change may be deleted.",
+        "Glint configuration of the device \"{}\". All keys are shown; those at their defaults may be deleted.",
         schema.device
     ));
-    for ((key, value), doc) in common(&config).into_iter().zip(super::COMMON.map(|c| c.1)) {
+    for ((key, value), doc) in common(config).into_iter().zip(super::COMMON.map(|c| c.1)) {
         text += &format!("\n{}{key} = {value}\n", comment(doc));
     }
     for (table, keys) in tables(schema) {
@@ -27,19 +30,19 @@ pub fn commented(schema: &Schema, name: &str) -> String {
             if index > 0 || table.is_empty() {
                 text.push('\n');
             }
-            let default = config.value(key.name).toml();
+            let value = config.value(key.name).toml();
             text += &comment(&sentence(key.doc));
-            let mut rule = format!("{}, default {default}", key.accepts());
-            if let Some((other, value)) = key.only_when {
-                let value = match config.value(other) {
-                    Value::Text(_) => Value::Text(value.to_owned()).toml(),
-                    _ => value.to_owned(),
+            let mut rule = format!("{}, default {}", key.accepts(), key.default.toml());
+            if let Some((other, needed)) = key.only_when {
+                let needed = match config.value(other) {
+                    Value::Text(_) => Value::Text(needed.to_owned()).toml(),
+                    _ => needed.to_owned(),
                 };
-                rule += &format!("; only with {other} = {value}");
+                rule += &format!("; only with {other} = {needed}");
             }
             text += &comment(&sentence(&rule));
             let off = if config.applies(schema, key.name) { "" } else { "# " };
-            text += &format!("{off}{} = {default}\n", key.table_and_leaf().1);
+            text += &format!("{off}{} = {value}\n", key.table_and_leaf().1);
         }
     }
     text

@@ -62,7 +62,7 @@ pub fn describe(d: &Designer, config: &Config) {
     });
     let shared = select.map(|select| {
         let factors = d.bus("factor", select, (0..degree).rev().map(factor));
-        let places = d.bus("offset_bits", select, (0..degree).rev().map(|k| offsets[k]));
+        let places = d.bus("offset_of_step", select, (0..degree).rev().map(|k| offsets[k]));
         let product = d.shared_mul("product", &factors, &places);
         (factors, product)
     });

@@ -42,7 +42,7 @@ const ROOMS: [(&str, &str); 29] = [
     ("verify", "base golden package tools cosim core mutate certify equality"),
     (
         "cli",
-        "base config golden hdl/netlist package tools cosim registry core mutate render evidence pages verify synth tune certify",
+        "base config approximate golden hdl/netlist package tools cosim registry core mutate render evidence pages verify synth tune certify",
     ),
 ];
 

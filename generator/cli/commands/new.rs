@@ -4,18 +4,21 @@ use anyhow::{Result, bail};
 use clap::Args;
 use serde_json::json;
 
+use crate::approximate::presets;
 use crate::cli::failure::WrongUsage;
 use crate::cli::{Output, tables, wrong_usage};
-use crate::config;
+use crate::config::{self, Config};
 use crate::registry::Registry;
 
-/// Print a commented configuration of a device
+/// Print a commented configuration of a device, or of a function by its name
 #[derive(Args)]
 #[command(after_help = "\
 Example:
-  glint new rough --name my_core > my_core.toml")]
+  glint new rough --name my_core > my_core.toml
+  glint new rsqrt > rsqrt.toml")]
 pub struct Arguments {
-    /// A device of `glint list`
+    /// A device of `glint list`, or a function: exp2, exp, log2, ln, reciprocal, rsqrt, sqrt, sin, cos, atan, sigmoid, tanh,
+    /// gelu, silu, softplus, gamma
     device: String,
     /// The name of the top module [default: the device's, with _ for -]
     #[arg(long)]
@@ -25,15 +28,23 @@ pub struct Arguments {
 /// `glint new`.
 pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
     let Arguments { device, name } = arguments;
-    let Some(found) = registry.device(device) else {
-        let names: Vec<&str> = registry.devices().iter().map(|device| device.name).collect();
+    let preset = presets::values(device);
+    let of_preset = preset.as_ref().and_then(|_| registry.device(presets::DEVICE));
+    let Some(found) = registry.device(device).or(of_preset) else {
+        let names = registry.devices().iter().map(|device| device.name);
+        let names: Vec<&str> = names.chain(presets::names()).collect();
         let near = config::nearest(device, names.iter().copied())
             .map_or_else(|| ".".to_owned(), |near| format!("; did you mean `{near}`?"));
         wrong_usage!("there is no device `{device}`{near} The devices are: {}", names.join(", "));
     };
     let schema = (found.schema)();
-    let name = name.clone().unwrap_or_else(|| device.replace('-', "_"));
-    let text = config::commented(&schema, &name);
+    // The name of the device itself is a keyword of Verilog.
+    let own = if device == presets::DEVICE { "my_function" } else { device };
+    let name = name.clone().unwrap_or_else(|| own.replace('-', "_"));
+    let text = match preset.map(|values| Config::from_values(&schema, &name, values)) {
+        Some(Ok(config)) => config::commented_values(&schema, &config),
+        _ => config::commented(&schema, &name),
+    };
     // A name that the reader would refuse is refused here.
     if let Err(problems) = config::parse("<new>", &text, &[schema]) {
         let found: Vec<String> = problems
