@@ -4,9 +4,7 @@
 //! in integers. [`find`] chooses degree, segments, coefficients and widths; [`Piecewise::prove`] then computes every
 //! operand and sets the result against the formula, whose own error of evaluation is in the bound.
 
-pub mod keys;
 mod minimax;
-pub mod presets;
 mod search;
 mod segments;
 
@@ -20,6 +18,7 @@ use std::sync::{Arc, LazyLock, Mutex};
 use rayon::prelude::*;
 
 use crate::base::fixed::{Format, exp2};
+use crate::choices;
 use crate::formula::{Enclosure, Fault, Formula};
 
 pub use search::Wish;
@@ -37,15 +36,17 @@ pub enum Target {
     Samples(Vec<f64>),
 }
 
-/// What an operand outside the domain gives.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Outside {
-    /// The result of the nearer end.
-    Clamp,
-    /// The result of the operand as many whole domains away.
-    Wrap,
-    /// Any result.
-    Anything,
+choices! {
+    /// What an operand outside the domain gives.
+    #[derive(Hash)]
+    pub enum Outside {
+        /// The result of the nearer end.
+        Clamp = "clamp",
+        /// The result of the operand as many whole domains away.
+        Wrap = "wrap",
+        /// Any result.
+        Anything = "anything",
+    }
 }
 
 /// A function on a domain, and the formats that its operand and result have.
@@ -79,7 +80,8 @@ pub struct Refusal {
 }
 
 impl Refusal {
-    fn new(key: &'static str, message: String, remedy: impl Into<String>) -> Self {
+    /// A refusal that is about no place of the formula.
+    pub fn new(key: &'static str, message: String, remedy: impl Into<String>) -> Self {
         Self { key, place: None, message, remedy: remedy.into() }
     }
 }

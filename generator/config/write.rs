@@ -15,8 +15,13 @@ pub fn commented(schema: &Schema, name: &str) -> String {
 
 /// As [`commented`], with the values of a configuration in place of defaults.
 pub fn commented_values(schema: &Schema, config: &Config) -> String {
+    let shown = if *config == Config::defaults(schema, &config.name) {
+        " with their defaults; those that you do not change"
+    } else {
+        "; those at their defaults"
+    };
     let mut text = comment(&format!(
-        "Glint configuration of the device \"{}\". All keys are shown; those at their defaults may be deleted.",
+        "Glint configuration of the device \"{}\". All keys are shown{shown} may be deleted.",
         schema.device
     ));
     for ((key, value), doc) in common(config).into_iter().zip(super::COMMON.map(|c| c.1)) {

@@ -2,29 +2,20 @@
 
 use std::ops::Range;
 
-use crate::approximate::{Layout, Outside, Piecewise, Segments, find, keys};
+use crate::approximate::{Layout, Outside, Piecewise};
 use crate::base::fixed::{Format, MAX_WIDTH, Overflow, Rounding};
-use crate::config::{Config, Problems, Schema};
+use crate::config::Config;
 use crate::hdl::dsl::{Designer, Signal, end, step, valid};
 use crate::hdl::netlist::About;
-
-/// The keys of the device.
-pub fn schema() -> Schema {
-    Schema { device: "function", keys: keys::keys(), check }
-}
-
-fn check(config: &Config, problems: &mut Problems) {
-    let found = keys::function(config).and_then(|(function, wish)| find(&function, wish));
-    if let Err(refusal) = found {
-        problems.push_within(refusal.key, refusal.place, refusal.message, refusal.remedy);
-    }
-}
+use crate::keys::function::{Keys, found};
 
 /// The device.
+///
+/// # Panics
+/// If the check of the schema has not accepted the configuration.
 pub fn describe(d: &Designer, config: &Config) {
-    let (function, wish) = keys::function(config).expect("the check has read it");
-    let it = find(&function, wish).expect("the check has found it");
-    d.about(about(config, &it));
+    let (_, it) = found(config).expect("a configuration that is checked");
+    d.about(about(&Keys::of(config), &it));
     let (first, last) = it.domain;
     let operand = match it.outside {
         Outside::Clamp => {
@@ -35,7 +26,7 @@ pub fn describe(d: &Designer, config: &Config) {
     };
     let x = operand.doc("the operand").q();
     let number = number(d, x, &it);
-    let (address, offset) = place(d, number, it.segments);
+    let (address, offset) = place(d, number, &it);
     let coefficients = table(d, address, &it);
     let degree = it.degree();
 
@@ -137,12 +128,13 @@ fn flipped<'d>(d: &'d Designer, name: &str, word: Signal<'d>, format: Format) ->
     d.join(name, &[top, word.bits(0, Format::unsigned(low as i32, 0))], format)
 }
 
-/// The word of the table, and the offset from the middle of the segment, where a segment has more than one operand.
+/// The word of the table, and the offset from the middle of the segment, on which a polynomial depends.
 fn place<'d>(
     d: &'d Designer,
     number: Signal<'d>,
-    cut: Segments,
+    it: &Piecewise,
 ) -> (Signal<'d>, Option<Signal<'d>>) {
+    let cut = it.segments;
     let integer = |bits: u32| Format::unsigned(bits as i32, 0);
     let number = match cut.layout {
         Layout::Halving => d.not("mirrored", number),
@@ -158,7 +150,7 @@ fn place<'d>(
         } else {
             d.beside(base, number.bits(rest, integer(cut.prefix)), integer(words))
         };
-        let way = (cut.rest() > 0).then(|| {
+        let way = (it.degree() > 0).then(|| {
             if rest == 0 {
                 return d.raw_constant("no_rest", 0, integer(cut.rest()));
             }
@@ -225,14 +217,9 @@ fn table<'d>(d: &'d Designer, address: Signal<'d>, it: &Piecewise) -> Vec<Signal
     signals
 }
 
-fn about(config: &Config, it: &Piecewise) -> About {
-    let formula = config.text("function.formula");
-    let [from, to] = ["function.from", "function.to"].map(|key| config.text(key));
-    let ends = if config.flag("function.to_included") {
-        "both ends included"
-    } else {
-        "the end not included"
-    };
+fn about(keys: &Keys, it: &Piecewise) -> About {
+    let Keys { formula, from, to, .. } = keys;
+    let ends = if keys.to_included { "both ends included" } else { "the end not included" };
     let shape = match it.degree() {
         0 => format!("A table of {} results", it.words.len()),
         degree => format!(

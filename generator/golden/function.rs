@@ -7,10 +7,11 @@ use std::sync::Arc;
 use super::device::{self, Formula};
 use super::frame::{Frame, idle, step_by};
 use super::{Contract, Model, Term};
-use crate::approximate::{Function, Outside, Piecewise, Target, find, keys};
+use crate::approximate::{Function, Outside, Piecewise, Target};
 use crate::base::fixed::exp2;
 use crate::config::Config;
 use crate::formula::Language;
+use crate::keys::function::found;
 
 /// Registers: the operand, and the sums from each coefficient on, of which the first is the result.
 fn device(it: &Arc<Piecewise>) -> device::Device {
@@ -39,20 +40,20 @@ fn device(it: &Arc<Piecewise>) -> device::Device {
     frame.device(program.collect::<Vec<_>>()).domain("x", first, last)
 }
 
-fn found(config: &Config) -> (Function, Arc<Piecewise>) {
-    let (function, wish) = keys::function(config).expect("the schema's check has read it");
-    let it = find(&function, wish).expect("the schema's check has found it");
-    (function, it)
-}
-
 /// The golden model.
+///
+/// # Panics
+/// If the check of the schema has not accepted the configuration.
 pub fn model(config: &Config) -> Box<dyn Model> {
-    device(&found(config).1).model()
+    device(&found(config).expect("a configuration that is checked").1).model()
 }
 
 /// The accuracy contract.
+///
+/// # Panics
+/// As [`model`].
 pub fn contract(config: &Config) -> Box<dyn Contract> {
-    let (function, it) = found(config);
+    let (function, it) = found(config).expect("a configuration that is checked");
     let bound = it.bound;
     device(&it).contract(Stated { function, bound })
 }

@@ -11,9 +11,9 @@ use regex::Regex;
 const ROOMS: [(&str, &str); 29] = [
     ("base", ""),
     ("config", "base"),
-    ("keys", "base config"),
     ("formula", ""),
     ("approximate", "base config formula"),
+    ("keys", "base config formula approximate"),
     ("golden", "base config keys formula approximate"),
     ("hdl/netlist", "base"),
     ("hdl/dsl", "base hdl/netlist"),
@@ -42,7 +42,7 @@ const ROOMS: [(&str, &str); 29] = [
     ("verify", "base golden package tools cosim core mutate certify equality"),
     (
         "cli",
-        "base config approximate golden hdl/netlist package tools cosim registry core mutate render evidence pages verify synth tune certify",
+        "base config keys golden hdl/netlist package tools cosim registry core mutate render evidence pages verify synth tune certify",
     ),
 ];
 

@@ -4,10 +4,10 @@ use anyhow::{Result, bail};
 use clap::Args;
 use serde_json::json;
 
-use crate::approximate::presets;
 use crate::cli::failure::WrongUsage;
 use crate::cli::{Output, tables, wrong_usage};
 use crate::config::{self, Config};
+use crate::keys::presets;
 use crate::registry::Registry;
 
 /// Print a commented configuration of a device, or of a function by its name

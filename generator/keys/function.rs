@@ -1,0 +1,118 @@
+//! The keys of `function`, and the function that they state.
+
+use std::sync::Arc;
+
+use crate::approximate::{Function, Layout, Outside, Piecewise, Refusal, Target, Wish, find};
+use crate::base::fixed::{Format, MAX_WIDTH, exp2};
+use crate::config::{Config, Key, Problems, Schema, TextPattern};
+use crate::formula::{Enclosure, Fault, parse};
+
+keys! {
+    /// What a configuration says.
+    pub struct Keys {
+        formula: String = Key::text("function.formula", "1 / sqrt(x)", TextPattern::Formula,
+            "The function of the operand x."),
+        from: String = Key::text("function.from", "1", TextPattern::Formula,
+            "The smallest operand of the domain."),
+        to: String = Key::text("function.to", "4", TextPattern::Formula, "The end of the domain."),
+        to_included: bool = Key::flag("function.to_included", false,
+            "Whether the end belongs to the domain."),
+        outside: Outside = Key::choice("function.outside", "clamp", Outside::WORDS,
+            "What operands outside the domain give: the result of its nearer end, that of a period of the domain's length, or any."),
+        operand: u32 = Key::integer("operand.fraction", 16, 0..=40, "Fraction bits of the operand.")
+            .drawn(4, 10),
+        result: u32 = Key::integer("result.fraction", 16, 0..=40, "Fraction bits of the result.")
+            .drawn(4, 12),
+        error: f64 = Key::number("result.error", 1.0, 0.5..=1024.0,
+            "Every result is nearer to the function than this, in units of its last place: 1.0 for one of the two \
+             neighbours, 0.51 for nearly always the nearer."),
+        degree: String = Key::choice("approximation.degree", "auto", &["auto", "0", "1", "2", "3"],
+            "The degree of the polynomials: 0 is a table of results. By default that of the least cost."),
+        segments: String = Key::choice("approximation.segments", "auto",
+            &["auto", "uniform", "octaves", "halving"],
+            "How the domain is cut: evenly, or ever shorter toward its low end (octaves) or its high end (halving), for \
+             functions that are steep there."),
+    }
+}
+
+/// The keys of the device.
+pub fn schema() -> Schema {
+    Schema { device: "function", keys: Keys::keys(), check }
+}
+
+fn check(config: &Config, problems: &mut Problems) {
+    if let Err(refusal) = found(config) {
+        problems.push_within(refusal.key, refusal.place, refusal.message, refusal.remedy);
+    }
+}
+
+/// The function that a configuration states, and its approximation.
+///
+/// # Errors
+/// What is wrong with the formula or the domain, or why there is no approximation.
+pub fn found(config: &Config) -> Result<(Function, Arc<Piecewise>), Refusal> {
+    let keys = Keys::of(config);
+    let function = function(&keys)?;
+    let wish = Wish {
+        degree: keys.degree.parse().ok(),
+        layout: Layout::NAMES.iter().find(|it| it.0 == keys.segments).map(|it| it.1),
+    };
+    let it = find(&function, wish)?;
+    Ok((function, it))
+}
+
+fn function(keys: &Keys) -> Result<Function, Refusal> {
+    let formula = parse(&keys.formula).and_then(|formula| formula.of_operand("x"));
+    let formula = formula.map_err(|fault| misread("function.formula", fault))?;
+    let fraction = keys.operand as i32;
+    let ends = [("function.from", &keys.from), ("function.to", &keys.to)];
+    let [from, to] = ends.map(|(key, text)| end(key, text));
+    let [from, to] = [from?, to?].map(|it| (it.low * exp2(fraction), it.high * exp2(fraction)));
+    let beyond = exp2(MAX_WIDTH as i32 - 2);
+    if [from, to].iter().any(|it| it.0.abs().max(it.1.abs()) >= beyond) {
+        let message = format!("an operand of the domain has more than {} bits", MAX_WIDTH - 2);
+        return Err(Refusal::new("operand.fraction", message, "fewer, or a smaller domain"));
+    }
+    let first = from.1.ceil() as i64;
+    let last = if keys.to_included { to.0.floor() } else { to.0.ceil() - 1.0 } as i64;
+    if last <= first {
+        let message = format!(
+            "the domain from {} to {} has no two operands with {fraction} fraction bits",
+            keys.from, keys.to
+        );
+        let remedy = "a larger end, or more operand.fraction bits";
+        return Err(Refusal::new("function.to", message, remedy));
+    }
+    let count = (last - first) as u64 + 1;
+    if keys.outside == Outside::Wrap && !count.is_power_of_two() {
+        let message = format!("a period of {count} operands is no power of two");
+        let remedy = "scale the operand so that it is, or \"clamp\" or \"anything\"";
+        return Err(Refusal::new("function.outside", message, remedy));
+    }
+    Ok(Function {
+        target: Target::Formula(formula),
+        domain: (first, last),
+        operand: Format::holding(first.into(), last.into(), fraction),
+        outside: keys.outside,
+        fraction: keys.result,
+        error: keys.error,
+    })
+}
+
+/// An end of the domain.
+fn end(key: &'static str, text: &str) -> Result<Enclosure, Refusal> {
+    let value = parse(text).and_then(|formula| formula.enclose(&[]));
+    let value = value.map_err(|fault| misread(key, fault))?;
+    let remedy = "a number, or a formula of numbers";
+    if value.is_finite() {
+        Ok(value)
+    } else {
+        Err(Refusal::new(key, "this is no finite number".to_owned(), remedy))
+    }
+}
+
+fn misread(key: &'static str, fault: Fault) -> Refusal {
+    let remedy =
+        "a formula has numbers, pi, e, + - * / ^, parentheses and functions: `1 / sqrt(x)`, say";
+    Refusal { place: Some(fault.span), ..Refusal::new(key, fault.message, remedy) }
+}
