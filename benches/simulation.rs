@@ -5,7 +5,6 @@ use std::hint::black_box;
 
 use anyhow::{Context, Result, anyhow};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use glint::config::Config;
 use glint::hdl::netlist::{Design, NetId, Role};
 use glint::hdl::sim::Simulator;
 use glint::registry::Registry;
@@ -97,7 +96,7 @@ fn measure<const LANES: usize>(criterion: &mut Criterion, design: &Design) -> Re
 
 fn all(criterion: &mut Criterion) {
     for device in Registry::catalogue().devices() {
-        let config = Config::defaults(&(device.schema)(), &device.name.replace('-', "_"));
+        let config = device.defaults();
         let measured =
             device.design(&config).map_err(|problems| anyhow!("{problems:?}")).and_then(|design| {
                 measure::<1>(criterion, &design)?;

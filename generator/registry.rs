@@ -47,6 +47,12 @@ impl Device {
         })
     }
 
+    /// Returns its default configuration, under [`Schema::module`].
+    pub fn defaults(&self) -> Config {
+        let schema = (self.schema)();
+        Config::defaults(&schema, &schema.module())
+    }
+
     /// The design that a configuration asks for.
     ///
     /// # Errors

@@ -5,6 +5,7 @@ use std::ops::RangeInclusive;
 use super::problems::Problems;
 use super::text_pattern::TextPattern;
 use super::values::{Config, Value, is_integer};
+use crate::base::keywords::is_keyword;
 
 /// The keys of one device, and the conditions between them.
 #[derive(Clone, Debug)]
@@ -18,6 +19,14 @@ pub struct Schema {
     /// combination, and must not panic on any. It pushes each violated condition under the key
     /// that is best changed, because that is where the reader of the message is sent.
     pub check: fn(&Config, &mut Problems),
+}
+
+impl Schema {
+    /// Returns the name of the module where nobody gives another: that of the device, unless it is a keyword.
+    pub fn module(&self) -> String {
+        let name = self.device.replace('-', "_");
+        if is_keyword(&name) { format!("my_{name}") } else { name }
+    }
 }
 
 /// One configuration key.

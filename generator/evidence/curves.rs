@@ -5,7 +5,6 @@ use serde::Serialize;
 
 use super::chart::{Chart, ChartAxis, Mark, Series, even};
 use super::comparison;
-use crate::config::Config;
 use crate::golden::Contract;
 use crate::golden::formulas;
 use crate::registry::Device;
@@ -69,7 +68,7 @@ struct AtAngle {
 
 /// Measures the defaults of a device.
 pub fn device(device: &Device, done: &(dyn Fn() + Sync)) -> DeviceCurves {
-    let config = Config::defaults(&(device.schema)(), &device.name.replace('-', "_"));
+    let config = device.defaults();
     let contract = (device.contract)(&config);
     configuration(device, contract.as_ref(), done)
 }

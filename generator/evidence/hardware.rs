@@ -8,7 +8,6 @@ use serde::Serialize;
 
 use super::claims::Measured;
 use super::comparison;
-use crate::config::Config;
 use crate::core::Core;
 use crate::registry::Registry;
 use crate::tools::Tool;
@@ -110,11 +109,7 @@ pub fn synthesised(
     };
     let cores: Vec<Core> = rivals
         .into_iter()
-        .map(|device| {
-            let schema = (device.schema)();
-            let config = Config::defaults(&schema, &device.name.replace('-', "_"));
-            Core::new(*device, config)
-        })
+        .map(|device| Core::new(*device, device.defaults()))
         .collect::<Result<_>>()?;
     let files: Vec<_> = cores.iter().map(Core::verilog).collect::<Result<_>>()?;
     let usage: Vec<FamilyUsage> = (0..STEPS)

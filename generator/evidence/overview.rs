@@ -5,7 +5,6 @@ use anyhow::{Result, bail};
 use super::chart::{Chart, ChartAxis, Series};
 use super::comparison;
 use super::curves::{AtExponent, DeviceCurves, EXPONENTS};
-use crate::config::Config;
 use crate::registry::Registry;
 
 /// Smaller errors are shown at the bottom of the axis.
@@ -62,7 +61,7 @@ fn largest(device: &DeviceCurves) -> f64 {
 /// One-bit cells: bits of registers, of the arrays of products, and of ROMs by [`ROM_BITS`].
 fn size(registry: &Registry, device: &str) -> Result<f64> {
     let Some(device) = registry.device(device) else { bail!("no device `{device}`") };
-    let config = Config::defaults(&(device.schema)(), &device.name.replace('-', "_"));
+    let config = device.defaults();
     let design = device.design(&config)?;
     let registers: u32 = design.registers.iter().map(|register| design.width(register.q)).sum();
     let products: u32 =

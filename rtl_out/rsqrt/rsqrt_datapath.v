@@ -9,77 +9,52 @@ module rsqrt_datapath #(
     parameter COEFFICIENTS_FILE = "rsqrt_coefficients.mem"
 ) (
     input  wire        clk,
-    input  wire [17:0] x,               // u2.16: the operand
+    input  wire [16:0] x,               // u1.16: the operand
     input  wire        x_write,         // writes x
     input  wire        idle,            // operands may be written
     input  wire        result_load,
     input  wire        sum1_load,
-    input  wire        sum2_load,
-    input  wire [1:0]  factors_select,
+    input  wire        factors_select,
     output wire [16:0] result_out       // u1.16
 );
 
     // Constants
-    localparam [17:0] X_LEAST = 18'h10000;  // 1.0 in u1.16
-    localparam [1:0] FACTORS_SELECT_X3 = 2'd0;
-    localparam [1:0] FACTORS_SELECT_X2 = 2'd1;
-    localparam [1:0] FACTORS_SELECT_X1 = 2'd2;
+    localparam [16:0] X_LEAST = 17'h10000;  // 1.0 in u1.16
 
     // Registers
-    reg         [17:0] x_reg;              // u2.16: the operand
+    reg         [16:0] x_reg;              // u1.16: the operand
     reg         [16:0] result;             // u1.16
-    reg  signed [16:0] sum1;               // s-3.19
-    reg         [10:0] sum2;               // u-5.16
-    reg         [50:0] coefficients_word;
+    reg  signed [12:0] sum1;               // s-5.17
+    reg         [34:0] coefficients_word;
 
     wire x_under = x < X_LEAST;
-    wire [17:0] x_at_least = x_under ? X_LEAST : x;  // u2.16
+    wire [16:0] x_at_least = x_under ? X_LEAST : x;  // u1.16
     wire x_load = x_write & idle;
-    wire offset_top = ~x_reg[13];
-    wire [16:0] c0 = coefficients_word[50:34];  // u0.17
-    wire signed [16:0] c1 = coefficients_word[33:17];  // s-3.19
-    wire [10:0] c2 = coefficients_word[16:6];  // u-5.16
-    wire signed [5:0] c3 = coefficients_word[5:0];  // s-8.13
+    wire [15:0] number = x_reg[15:0] - 16'd0;
+    wire offset_top = ~number[11];
+    wire [16:0] c0 = coefficients_word[34:18];  // u0.17
+    wire signed [12:0] c1 = coefficients_word[17:5];  // s-5.17
+    wire [4:0] c2 = coefficients_word[4:0];  // u-9.14
+    wire signed [12:0] factor = factors_select ? sum1 : {8'd0, c2};  // s12.0
 
-    // s16.0
-    reg  signed [16:0] factor;
-    always @* begin
-        case (factors_select)
-            FACTORS_SELECT_X3: factor = {{11{c3[5]}}, c3};
-            FACTORS_SELECT_X2: factor = {6'd0, sum2};
-            FACTORS_SELECT_X1: factor = sum1;
-            default: factor = sum1;
-        endcase
-    end
+    // s11.0
+    wire signed [11:0] offset_of_step = factors_select ? {offset_top, number[10:0]} :
+            {{5{offset_top}}, offset_top, number[10:5]};
 
-    // s13.0
-    reg  signed [13:0] offset_of_step;
-    always @* begin
-        case (factors_select)
-            FACTORS_SELECT_X3: offset_of_step = {{7{offset_top}}, offset_top, x_reg[12:7]};
-            FACTORS_SELECT_X2: offset_of_step = {{2{offset_top}}, offset_top, x_reg[12:2]};
-            FACTORS_SELECT_X1: offset_of_step = {offset_top, x_reg[12:0]};
-            default: offset_of_step = {offset_top, x_reg[12:0]};
-        endcase
-    end
-
-    wire signed [30:0] product = factor * offset_of_step;  // s30.0
-    wire signed [8:0] product2 = product[12:4];  // s-8.16
-    wire signed [12:0] added2 = {2'd0, c2} + {{4{product2[8]}}, product2};  // s-4.16
-    wire [10:0] kept2 = added2[10:0];  // u-5.16
-    wire signed [13:0] product1 = product[22:9];  // s-6.19
-    wire signed [17:0] added1 = {c1[16], c1} + {{4{product1[13]}}, product1};  // s-2.19
-    wire signed [16:0] kept1 = added1[16:0];  // s-3.19
-    wire signed [14:0] product0 = product[30:16];  // s-3.17
-    wire signed [18:0] added0 = {2'd0, c0} + {{4{product0[14]}}, product0};  // s1.17
+    wire signed [24:0] product = factor * offset_of_step;  // s24.0
+    wire signed [7:0] product1 = product[11:4];  // s-10.17
+    wire signed [13:0] added1 = {c1[12], c1} + {{6{product1[7]}}, product1};  // s-4.17
+    wire signed [12:0] kept1 = added1[12:0];  // s-5.17
+    wire signed [12:0] product0 = product[24:12];  // s-5.17
+    wire signed [18:0] added0 = {2'd0, c0} + {{6{product0[12]}}, product0};  // s1.17
     wire [16:0] kept0 = added0[17:1];  // u1.16
     assign result_out = result;  // u1.16
 
     // ROM coefficients: coefficients of the segment's polynomial, that of the lowest power in the
     // top bits
-    reg [50:0] coefficients_rom [0:15];
+    reg [34:0] coefficients_rom [0:15];
     initial $readmemh(COEFFICIENTS_FILE, coefficients_rom);
-    always @(posedge clk) coefficients_word <= coefficients_rom[x_reg[17:14]];
+    always @(posedge clk) coefficients_word <= coefficients_rom[number[15:12]];
 
     always @(posedge clk) begin
         if (x_load) begin
@@ -99,14 +74,8 @@ module rsqrt_datapath #(
         end
     end
 
-    always @(posedge clk) begin
-        if (sum2_load) begin
-            sum2 <= kept2;
-        end
-    end
-
     // Unused bits, among them those that narrowing drops.
-    wire unused = &{1'b0, product[3:0], added2[12:11], added1[17], added0[0], added0[18]};
+    wire unused = &{1'b0, x_reg[16], product[3:0], added1[13], added0[0], added0[18]};
 
 `ifdef FORMAL
     reg was_busy = 1'b0;

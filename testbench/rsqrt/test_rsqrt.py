@@ -28,10 +28,10 @@ async def worked_example(dut: Any) -> None:
     """The example of the manifest, by hand."""
     core = await glint_cocotb.Core.after_reset(dut)
     shown = await core.compute(
-        x=259072,  # 3.953125
+        x=130048,  # 1.984375
     )
     assert shown.results[0] == {
-        "result_out": 32961,  # 0.5029449462890625
+        "result_out": 46523,  # 0.7098846435546875
     }
 
 

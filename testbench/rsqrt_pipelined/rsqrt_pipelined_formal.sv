@@ -16,7 +16,7 @@ module rsqrt_pipelined_formal (
     input  wire clk,
     input  wire rst_n,
     input  wire in_valid,
-    input  wire [17:0] x,
+    input  wire [16:0] x,
     input  wire out_ready
 );
     wire        in_ready;
@@ -38,22 +38,22 @@ module rsqrt_pipelined_formal (
     always @* if ($initstate) assume (!rst_n);
 
     // Which stage of the pipeline has a point.
-    (* hierconn *) wire [8:1] \dut.valid ;
-    wire [8:1] present = \dut.valid ;
+    (* hierconn *) wire [6:1] \dut.valid ;
+    wire [6:1] present = \dut.valid ;
 
     // The same for a queue beside it: all points in it move together, unless a result waits.
     wire moves = out_ready | ~out_valid;
-    reg  [8:1] queue;
+    reg  [6:1] queue;
     always @(posedge clk) begin
-        if (!rst_n) queue <= 8'd0;
-        else if (moves) queue <= {queue[7:1], in_valid};
+        if (!rst_n) queue <= 6'd0;
+        else if (moves) queue <= {queue[5:1], in_valid};
     end
 
     always @(posedge clk) if (!$initstate) begin
         // No point is lost, none is doubled, and none comes sooner or later than the stages let it:
         // out_valid follows from the points that were taken, whatever out_ready is.
         assert (present == queue);
-        assert (out_valid == queue[8]);
+        assert (out_valid == queue[6]);
         // A point is taken whenever no result waits.
         assert (in_ready == moves);
         // A result that waits stays as it is.

@@ -27,10 +27,10 @@ async def worked_example(dut: Any) -> None:
     """The example of the manifest, by hand."""
     pipeline = await glint_cocotb.Pipeline.after_reset(dut)
     shown = await pipeline.compute(
-        x=259072,  # 3.953125
+        x=130048,  # 1.984375
     )
     assert shown == {
-        "result_out": 32961,  # 0.5029449462890625
+        "result_out": 46523,  # 0.7098846435546875
     }
 
 

@@ -105,7 +105,10 @@ fn random_configurations_of_every_device() {
             let contract = (device.contract)(&config);
             let mut rng = ChaCha8Rng::seed_from_u64(seed);
             let what = config.to_toml(&schema);
-            assert_outputs_within_bound(contract.as_ref(), POINTS, &mut rng, &what);
+            // Of a function the places are all there is.
+            if contract.highlight().is_some() {
+                assert_outputs_within_bound(contract.as_ref(), POINTS, &mut rng, &what);
+            }
             assert_places_within_bound(contract.as_ref(), POINTS, &mut rng, &what);
         });
     }

@@ -25,7 +25,7 @@ use normaliser::NORMALISER;
 const DEVICES: [Device; 2] = [DOT_PRODUCT, NORMALISER];
 
 fn default(device: Device) -> Core {
-    let config = Config::defaults(&(device.schema)(), &device.name.replace('-', "_"));
+    let config = device.defaults();
     Core::new(device, config).unwrap_or_else(|error| panic!("{error:#}"))
 }
 

@@ -13,13 +13,16 @@ fn read(path: &str) -> String {
     fs::read_to_string(path).unwrap_or_else(|error| panic!("{path}: {error}"))
 }
 
-/// The modules of the default configurations, and of their pipelines.
-fn names() -> Vec<String> {
+/// The default configurations and their pipelines, each with the name of its module.
+fn names() -> Vec<(String, String)> {
     let catalogue = Registry::catalogue();
     let devices = catalogue.devices().iter();
     let cores = devices.map(|device| device.name.replace('-', "_"));
-    let both = cores.flat_map(|core| [format!("{core}_pipelined"), core]);
-    both.filter(|name| Path::new(&format!("configs/{name}.toml")).exists()).collect()
+    let both = cores.flat_map(|core| {
+        [format!("configs/{core}_pipelined.toml"), format!("configs/{core}.toml")]
+    });
+    let both = both.filter(|path| Path::new(path).exists());
+    both.map(|path| (configuration(&path).config.name.clone(), path)).collect()
 }
 
 #[test]
@@ -34,8 +37,8 @@ fn notes_have_no_runs_of_blanks() {
 #[test]
 fn every_device_has_its_page() {
     let readme = read("README.md");
-    for name in names() {
-        let (config, file) = (format!("configs/{name}.toml"), format!("docs/devices/{name}.md"));
+    for (name, config) in names() {
+        let file = format!("docs/devices/{name}.md");
         let today = configuration(&config)
             .page(&config, Path::new(PROOFS))
             .unwrap_or_else(|error| panic!("{config}: {error:?}"));
@@ -55,7 +58,8 @@ fn there_are_no_other_pages() {
         .map(|entry| entry.expect("an entry").file_name())
         .map(|name| name.to_string_lossy().into_owned())
         .collect();
-    let wanted: BTreeSet<String> = names().into_iter().map(|name| format!("{name}.md")).collect();
+    let wanted: BTreeSet<String> =
+        names().into_iter().map(|(name, _)| format!("{name}.md")).collect();
     assert_eq!(found, wanted);
 }
 

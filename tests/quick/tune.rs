@@ -16,7 +16,7 @@ fn device(name: &str) -> Device {
 }
 
 fn defaults(device: &Device) -> Config {
-    Config::defaults(&(device.schema)(), &device.name.replace('-', "_"))
+    device.defaults()
 }
 
 fn integers(range: std::ops::RangeInclusive<i64>) -> Vec<Value> {

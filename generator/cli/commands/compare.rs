@@ -98,7 +98,11 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     ];
     for device in registry.devices() {
         let config = with_widths(device, &widths, &mut notes);
-        cores.push((device.name.to_owned(), Core::new(*device, config)?));
+        let core = Core::new(*device, config)?;
+        // A function has no colour to multiply, and no exponent.
+        if core.contract.highlight().is_some() {
+            cores.push((device.name.to_owned(), core));
+        }
     }
     if !arguments.configs.is_empty() {
         let named = load(registry, &arguments.configs)?;
@@ -165,7 +169,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
 /// The device's defaults with these keys replaced, where it has them and accepts the value.
 fn with_widths(device: &Device, widths: &[(&str, Option<i64>)], notes: &mut Vec<String>) -> Config {
     let schema: Schema = (device.schema)();
-    let name = device.name.replace('-', "_");
+    let name = schema.module();
     let mut accepted: Vec<(String, Value)> = Vec::new();
     let mut config = Config::defaults(&schema, &name);
     for &(key, value) in widths {

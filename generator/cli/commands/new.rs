@@ -38,9 +38,8 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
         wrong_usage!("there is no device `{device}`{near} The devices are: {}", names.join(", "));
     };
     let schema = (found.schema)();
-    // The name of the device itself is a keyword of Verilog.
-    let own = if device == presets::DEVICE { "my_function" } else { device };
-    let name = name.clone().unwrap_or_else(|| own.replace('-', "_"));
+    let own = || if preset.is_some() { device.replace('-', "_") } else { schema.module() };
+    let name = name.clone().unwrap_or_else(own);
     let text = match preset.map(|values| Config::from_values(&schema, &name, values)) {
         Some(Ok(config)) => config::commented_values(&schema, &config),
         _ => config::commented(&schema, &name),

@@ -12,7 +12,6 @@ use crate::base::{input, text};
 use crate::cli::destination::Destination;
 use crate::cli::failure::{self, WrongUsage};
 use crate::cli::{Output, TimeLimit, number, progress, say, tables, wrong_usage};
-use crate::config::Config;
 use crate::core::{self, Core};
 use crate::registry::Registry;
 use crate::render::{
@@ -183,9 +182,7 @@ fn core(registry: &Registry, config: Option<&Path>) -> Result<(String, Core)> {
     }
     let device = registry.devices().first();
     let device = *device.context("there is no device")?;
-    let schema = (device.schema)();
-    let config = Config::defaults(&schema, &device.name.replace('-', "_"));
-    let core = Core::new(device, config)?;
+    let core = Core::new(device, device.defaults())?;
     Ok((format!("the defaults of `{}`", device.name), core))
 }
 

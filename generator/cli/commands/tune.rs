@@ -180,7 +180,7 @@ fn base(registry: &Registry, arguments: &Arguments) -> Result<(Device, Config, V
         let near = near.map_or_else(String::new, |near| format!("did you mean `{near}`? "));
         bail!("there is no device `{}`; {near}devices: {}", arguments.device, names.join(", "));
     };
-    let name = arguments.name.clone().unwrap_or_else(|| device.name.replace('-', "_"));
+    let name = arguments.name.clone().unwrap_or_else(|| (device.schema)().module());
     // The same reader as a file's, so that messages are the same.
     let mut text = format!("device = \"{}\"\nname = \"{name}\"\n", device.name);
     let mut fixed = Vec::new();

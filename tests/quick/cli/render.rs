@@ -2,10 +2,12 @@
 
 use std::fs;
 use std::io::Cursor;
+use std::path::Path;
 
 use png::{BitDepth, ColorType, Decoder, Encoder};
 use serde_json::Value;
 
+use crate::common::cores::configuration;
 use crate::workspace::{COSINE_POWER, Workspace};
 
 /// Every line of the documentation's list of pictures that is a command.
@@ -120,10 +122,11 @@ fn every_configuration_draws() {
     let mut drawn = 0;
     for entry in configs.into_iter().flatten() {
         let path = fs::canonicalize(entry.expect("an entry").path()).expect("a path");
-        if !path.is_file() {
+        let path = path.to_str().expect("UTF-8");
+        // A function is no highlight.
+        if !Path::new(path).is_file() || configuration(path).contract.highlight().is_none() {
             continue;
         }
-        let path = path.to_str().expect("UTF-8");
         let mut pictures = Vec::new();
         for through in ["golden", "rust-hdl"] {
             let run = dir.glint(render(&[path, "--through", through, "--compare", "--json"]));
