@@ -227,6 +227,9 @@ fn estimates_are_as_near_to_synthesis_as_is_said() {
     let records = input::records::<Record>(Path::new(synth::DIRECTORY)).expect("records");
     let cores: Vec<_> =
         records.iter().map(|(_, record)| (configuration(&record.config), record)).collect();
+    // The model is fitted to highlights; an estimate of a function may be further off.
+    let cores: Vec<_> =
+        cores.into_iter().filter(|(core, _)| core.contract.highlight().is_some()).collect();
     let stated =
         [(Target::Ice40, 0.09, 0.35), (Target::Ecp5, 0.095, 0.25), (Target::Xilinx7, 0.105, 0.51)];
     for (target, usual, most) in stated {
