@@ -30,14 +30,14 @@
 //! assert!(outcome.mismatch.is_none());
 //! ```
 
+#[macro_use]
+pub mod config;
 pub mod approximate;
 pub mod base;
 #[cfg(feature = "cli")]
 pub mod certify;
 #[cfg(feature = "cli")]
 pub mod cli;
-#[macro_use]
-pub mod config;
 pub mod core;
 pub mod cosim;
 pub mod devices;

@@ -1,7 +1,7 @@
-//! The command line of the catalogue.
+//! The command line of all devices.
 
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    glint::cli::run(&glint::registry::Registry::catalogue())
+    glint::cli::run(&glint::registry::Registry::all())
 }

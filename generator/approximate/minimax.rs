@@ -112,9 +112,9 @@ fn solve(mut rows: Vec<Vec<f64>>) -> Vec<f64> {
         for other in 0..count {
             if other != column && rows[column][column] != 0.0 {
                 let factor = rows[other][column] / rows[column][column];
-                for k in column..=count {
-                    let part = factor * rows[column][k];
-                    rows[other][k] -= part;
+                let pivot = rows[column].clone();
+                for (entry, part) in rows[other].iter_mut().zip(&pivot).skip(column) {
+                    *entry -= factor * part;
                 }
             }
         }

@@ -18,7 +18,6 @@ use std::sync::{Arc, LazyLock, Mutex};
 use rayon::prelude::*;
 
 use crate::base::fixed::{Format, exp2};
-use crate::choices;
 use crate::formula::{Enclosure, Fault, Formula};
 
 pub use search::Wish;

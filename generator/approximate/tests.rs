@@ -38,9 +38,12 @@ fn a_planted_wrong_coefficient_is_refused_at_every_degree() {
     }
 }
 
+/// A formula, its domain, and a function that computes it.
+type Case = (&'static str, (f64, f64), fn(f64) -> f64);
+
 #[test]
 fn results_are_right_against_libm() {
-    let cases: [(&str, (f64, f64), fn(f64) -> f64); 5] = [
+    let cases: [Case; 5] = [
         ("1 / sqrt(x)", (1.0, 4.0), |x| 1.0 / x.sqrt()),
         ("sigmoid(x)", (-8.0, 8.0), |x| 1.0 / (1.0 + libm::exp(-x))),
         ("log2(1 + x)", (0.0, 1.0), |x| libm::log2(1.0 + x)),

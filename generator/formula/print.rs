@@ -5,7 +5,7 @@ use super::{Comparison, Formula, Function, Kind, Operator};
 /// A language that formulas are written in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Language {
-    /// As [`super::parse`] reads it, and Python with `from math import *`.
+    /// As [`super::parse()`] reads it, and Python with `from math import *`.
     Python,
     /// NumPy, imported as `np`, on arrays.
     Numpy,
