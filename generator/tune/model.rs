@@ -88,14 +88,13 @@ const CHIPS: [Chip; 3] = [
     },
 ];
 
-// By `benches/tune/fit`, of the 20 cores in `synthesis/`, sequential and pipelined; on ECP5 and Xilinx 7 the pipelines were other
-// netlists then. The estimate of half of today's is within 9 % of the look-up tables on iCE40 and ECP5, 11 % on Xilinx 7, to
-// which a fit to today's comes no nearer, since it does not know which choices are resets; the worst are
-// `threshold` on iCE40 (33 % too many) and on ECP5 (25 %), and `schlick_pipelined` on Xilinx 7 (50 % too few: its adders divide,
-// those of other cores go into DSP blocks).
+// Of the 20 cores in `synthesis/`, sequential and pipelined: on iCE40 by `benches/tune/fit`; on ECP5 by a fit to pipelines that were
+// other netlists; on Xilinx 7 sought near such a fit for the least error in the median. The estimate of half of the cores is within
+// 9 % of the look-up tables on iCE40 and ECP5, 10 % on Xilinx 7; the worst are `threshold` on iCE40 (33 % too many) and on ECP5
+// (25 %), and `schlick_pipelined` on Xilinx 7 (47 % too few: its adders divide, those of other cores go into DSP blocks).
 const ICE40: [f64; 6] = [1.24, 0.66, 0.40, 1.23, 0.30, 0.48];
 const ECP5: [f64; 6] = [1.48, 0.46, 0.41, 2.09, 0.46, 27.92];
-const XILINX7: [f64; 6] = [0.49, 0.26, 1.18, 0.65, 0.0, 8.75];
+const XILINX7: [f64; 6] = [0.48, 0.33, 1.18, 0.64, 0.0, 8.48];
 
 fn chip(target: Target) -> &'static Chip {
     // Cells have no model of their own: of the FPGAs ECP5 is nearest, where a product is not split.
