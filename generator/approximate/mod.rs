@@ -26,17 +26,8 @@ pub use segments::{Layout, Place, Segments};
 /// The most bits of an operand of which every value is computed.
 pub const MOST_BITS: u32 = 26;
 
-/// What is approximated.
-#[derive(Clone, Debug)]
-pub enum Target {
-    /// A formula of the operand x.
-    Formula(Formula),
-    /// A value for each raw operand of the domain, from the first on.
-    Samples(Vec<f64>),
-}
-
 choices! {
-    /// What an operand outside the domain gives.
+    /// The result of an operand outside the domain.
     #[derive(Hash)]
     pub enum Outside {
         /// The result of the nearer end.
@@ -51,13 +42,13 @@ choices! {
 /// A function on a domain, and the formats that its operand and result have.
 #[derive(Clone, Debug)]
 pub struct Function {
-    /// What is approximated.
-    pub target: Target,
+    /// The formula that is approximated, of the operand x.
+    pub formula: Formula,
     /// The raw operands, first and last.
     pub domain: (i64, i64),
     /// The operand's format.
     pub operand: Format,
-    /// What other operands give.
+    /// The result of other operands.
     pub outside: Outside,
     /// Fraction bits of the result.
     pub fraction: u32,
@@ -72,9 +63,9 @@ pub struct Refusal {
     pub key: &'static str,
     /// The bytes of the formula that it is about, if it is about one place.
     pub place: Option<Range<usize>>,
-    /// What is wrong.
+    /// The fault, in words.
     pub message: String,
-    /// What to do about it.
+    /// The remedy, in words.
     pub remedy: String,
 }
 
@@ -85,7 +76,7 @@ impl Refusal {
     }
 }
 
-/// What is cut off before and after a product.
+/// The bits that are cut off before and after a product.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Step {
     /// Leading bits of the offset that are multiplied.
@@ -95,7 +86,7 @@ pub struct Step {
 }
 
 impl Step {
-    /// What is added to the next coefficient: the product of a sum and an offset of `rest` bits, both cut.
+    /// Returns the addend of the next coefficient: the product of a sum and an offset of `rest` bits, both cut.
     #[inline]
     pub fn product(self, sum: i64, offset: i64, rest: u32) -> i64 {
         (sum * (offset >> (rest - self.offset))) >> self.dropped
@@ -109,7 +100,7 @@ pub struct Piecewise {
     pub operand: Format,
     /// The raw operands of the domain.
     pub domain: (i64, i64),
-    /// What other operands give.
+    /// The result of other operands.
     pub outside: Outside,
     /// The raw operand whose number is 0.
     pub origin: i64,
@@ -119,7 +110,7 @@ pub struct Piecewise {
     pub coefficients: Vec<Format>,
     /// The words of the table, each with its coefficients.
     pub words: Vec<Vec<i64>>,
-    /// What becomes of the product that is added to coefficient k.
+    /// The cuts of the product that is added to coefficient k.
     pub steps: Vec<Step>,
     /// The formats of the sums from coefficient k on; the first is that of the result.
     pub sums: Vec<Format>,
@@ -134,13 +125,8 @@ impl Function {
     /// The part of the formula that has no value there.
     pub fn limits(&self, raw: i64) -> Result<Enclosure, Fault> {
         let unit = exp2(self.fraction as i32);
-        let Enclosure { low, high } = match &self.target {
-            Target::Formula(formula) => {
-                let x = Enclosure::exactly(self.operand.to_f64(raw.into()));
-                formula.enclose(&[("x", x)])?
-            }
-            Target::Samples(values) => Enclosure::exactly(values[(raw - self.domain.0) as usize]),
-        };
+        let x = Enclosure::exactly(self.operand.to_f64(raw.into()));
+        let Enclosure { low, high } = self.formula.enclose(&[("x", x)])?;
         Ok(Enclosure::between(low * unit, high * unit))
     }
 
@@ -230,7 +216,8 @@ impl Piecewise {
             }
             let limits = function.limits(raw).map_err(|fault| function.refusal(raw, &fault))?;
             let result = sums[0] as f64;
-            let error = (result - limits.low).abs().max((result - limits.high).abs());
+            // A difference may be rounded down.
+            let error = (result - limits.low).abs().max((result - limits.high).abs()).next_up();
             if error > function.error {
                 let message = format!("at the operand {raw} the result is {error:.4} units off");
                 return Err(Refusal::new("result.error", message, "allow a larger error"));

@@ -10,7 +10,7 @@ use super::minimax::minimax;
 use super::{Function, Layout, MOST_BITS, Piecewise, Refusal, Segments, Step};
 use crate::base::fixed::{Format, MAX_WIDTH, exp2};
 
-/// What a user asks of an approximation; what is not said is chosen.
+/// The choices that a user makes of an approximation; the search makes the others.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Wish {
     /// The degree.
@@ -40,10 +40,10 @@ const GENEROUS: i32 = 8;
 /// The fewest of them.
 const FEWEST: i32 = -8;
 
-/// What a step of Horner's rule costs beside the table, in look-up tables: a sum, and a multiplier's wiring.
+/// The cost of a step of Horner's rule beside the table, in look-up tables: a sum, and a multiplier's wiring.
 const STEP: f64 = 50.0;
 
-/// What an octave costs: a row of the muxes that bring offsets into their place.
+/// The cost of an octave: a row of the muxes that bring offsets into their place.
 const OCTAVE: f64 = 12.0;
 
 /// Bits of a table that a look-up table of four inputs holds.
@@ -122,7 +122,7 @@ fn attempt(function: &Function, wish: Wish) -> Result<Option<Piecewise>, Refusal
     Ok(Some(Piecewise { bound, ..found }))
 }
 
-/// What is known of a function at the operands that the search looks at.
+/// The values of a function at the operands that the search looks at.
 struct Seen<'f> {
     function: &'f Function,
     origin: i64,
@@ -152,7 +152,7 @@ struct Widths {
 }
 
 impl Widths {
-    /// What becomes of the products; none if one would have to gain bits.
+    /// The cuts of the products; none if one would have to gain bits.
     fn steps(&self) -> Option<Vec<Step>> {
         let of = |(k, &offset): (usize, &u32)| {
             let dropped = self.guard[k + 1] + offset as i32 - self.guard[k];
@@ -298,7 +298,7 @@ impl<'s> Table<'s> {
         Self { seen, cut, pieces }
     }
 
-    /// What is looked at of the segment of a word; none without an operand of the domain.
+    /// The samples in the segment of a word; none without an operand of the domain.
     fn piece(seen: &Seen, cut: Segments, word: usize) -> Option<Piece> {
         let (first, last) = seen.function.domain;
         let (from, count) = cut.numbers(word);

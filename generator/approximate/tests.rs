@@ -1,6 +1,6 @@
 //! Approximations are proved, and a wrong coefficient is not.
 
-use super::{Function, Layout, Outside, Target, Wish, find};
+use super::{Function, Layout, Outside, Wish, find};
 use crate::base::fixed::{Format, exp2};
 use crate::formula::parse;
 
@@ -10,7 +10,7 @@ fn function(text: &str, (from, to): (f64, f64), fraction: i32, error: f64) -> Fu
     let raw = |value: f64| (value * exp2(fraction)) as i64;
     let domain = (raw(from), raw(to) - 1);
     Function {
-        target: Target::Formula(parse(text).unwrap()),
+        formula: parse(text).unwrap(),
         domain,
         operand: Format::holding(domain.0.into(), domain.1.into(), fraction),
         outside: Outside::Clamp,

@@ -47,7 +47,7 @@ fn enclosures_hold_known_values() {
     }
 }
 
-/// What f64 has exactly stays exact, so that a root at the end of its domain is one.
+/// Values that f64 has exactly stay exact, so that a root at the end of its domain is one.
 #[test]
 fn exact_steps_stay_exact() {
     for (text, x, known) in [

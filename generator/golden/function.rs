@@ -7,7 +7,7 @@ use std::sync::Arc;
 use super::device::{self, Formula};
 use super::frame::{Frame, idle, step_by};
 use super::{Contract, Model, Term};
-use crate::approximate::{Function, Outside, Piecewise, Target};
+use crate::approximate::{Function, Outside, Piecewise};
 use crate::base::fixed::exp2;
 use crate::config::Config;
 use crate::formula::Language;
@@ -84,9 +84,6 @@ impl Formula for Stated {
     }
 
     fn expressions(&self) -> Vec<String> {
-        match &self.function.target {
-            Target::Formula(formula) => formula.print(Language::Python).into_iter().collect(),
-            Target::Samples(_) => Vec::new(),
-        }
+        self.function.formula.print(Language::Python).into_iter().collect()
     }
 }

@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use crate::approximate::{Function, Layout, Outside, Piecewise, Refusal, Target, Wish, find};
+use crate::approximate::{Function, Layout, Outside, Piecewise, Refusal, Wish, find};
 use crate::base::fixed::{Format, MAX_WIDTH, exp2};
 use crate::config::{Config, Key, Problems, Schema, TextPattern};
 use crate::formula::{Enclosure, Fault, parse};
 
 keys! {
-    /// What a configuration says.
+    /// The keys of a configuration.
     pub struct Keys {
         formula: String = Key::text("function.formula", "1 / sqrt(x)", TextPattern::Formula,
             "The function of the operand x."),
@@ -90,7 +90,7 @@ fn function(keys: &Keys) -> Result<Function, Refusal> {
         return Err(Refusal::new("function.outside", message, remedy));
     }
     Ok(Function {
-        target: Target::Formula(formula),
+        formula,
         domain: (first, last),
         operand: Format::holding(first.into(), last.into(), fraction),
         outside: keys.outside,
