@@ -1,10 +1,10 @@
 // ${ name }$: self-checking bench of ${ module }$
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -s ${ name }$ -o ${ name }$ ${ module }$*.v
-//   $ ./${ name }$
+//   $ iverilog -g2012 -s ${ name }$ -o sim ${ module }$*.v
+//   $ ./sim
 // or, with Verilator 5,
-//   $ verilator --binary --timing --top-module ${ name }$ ${ module }$*.v
+//   $ verilator --binary --timing --top ${ name }$ ${ module }$*.v
 //   $ obj_dir/V${ name }$
 // Inputs change on the falling edge of the clock; outputs are compared just before the rising edge.
 //

@@ -84,8 +84,9 @@ module ${ name }$_registers_formal (
             write_word >= ${ control_number }$ && write_word <= ${ last_operand_number }$;
     wire is_result =
             read_word >= ${ first_result_number }$ && read_word <= ${ last_result_number }$;
-    wire asks_start = write_mapped && (dut.start_on_write && write_word == dut.start_word && write_bytes != 0
-            || write_word == ${ control_number }$ && write_bytes[0] && write_data[0]);
+    wire asks_start = write_mapped
+            && (dut.start_on_write && write_word == dut.start_word && write_bytes != 0
+                || write_word == ${ control_number }$ && write_bytes[0] && write_data[0]);
 
     always @* if (!$initstate) begin
         // A request waits only for a computation, which ends; only requests are answered.

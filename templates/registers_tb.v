@@ -1,14 +1,14 @@
 // ${ top }$_tb: self-checking bench of ${ top }$
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -s ${ top }$_tb -o ${ top }$_tb ${ name }$*.v
-//   $ ./${ top }$_tb
+//   $ iverilog -g2012 -s ${ top }$_tb -o sim ${ name }$*.v
+//   $ ./sim
 // or, with Verilator 5,
-//   $ verilator --binary --timing --top-module ${ top }$_tb ${ name }$*.v
+//   $ verilator --binary --timing --top ${ top }$_tb ${ name }$*.v
 //   $ obj_dir/V${ top }$_tb
 // The points of the core's bench are written and started in turn in each way that there is, and the
-// results are read. Inputs change on the falling edge of the clock; outputs are read just before the
-// rising edge.
+// results are read. Inputs change on the falling edge of the clock; outputs are read just before
+// the rising edge.
 //
 // Generated files belong to their user, without conditions.
 
@@ -137,7 +137,8 @@ module ${ top }$_tb #(
         begin
             access(address, 1'b0, 32'd0, 4'hf);
             check(!failed, "a read fails");
-            if (got !== word && errors < REPORTED) $display("at %h: %h, not %h", address, got, word);
+            if (got !== word && errors < REPORTED)
+                $display("at %h: %h, not %h", address, got, word);
             check(got === word, "what is read");
         end
     endtask

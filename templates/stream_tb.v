@@ -1,10 +1,10 @@
 // ${ name }$_axis_tb: self-checking bench of ${ name }$_axis
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -s ${ name }$_axis_tb -o ${ name }$_axis_tb ${ name }$*.v
-//   $ ./${ name }$_axis_tb
+//   $ iverilog -g2012 -s ${ name }$_axis_tb -o sim ${ name }$*.v
+//   $ ./sim
 // or, with Verilator 5,
-//   $ verilator --binary --timing --top-module ${ name }$_axis_tb ${ name }$*.v
+//   $ verilator --binary --timing --top ${ name }$_axis_tb ${ name }$*.v
 //   $ obj_dir/V${ name }$_axis_tb
 // The points of the core's bench are sent, and what comes back is compared. By turns nobody
 // pauses, the sender does, the receiver does, and both do; a reset in the midst begins it anew.
@@ -177,10 +177,12 @@ module ${ name }$_axis_tb #(
             errors = errors + 1;
         end
         if (errors != 0) begin
-            $display("FAIL ${ name }$_axis: %0d differences in %0d clocks", errors, clock);
+            $display("FAIL ${ name }$_axis: %0d differences in %0d clocks",
+                errors, clock);
             $fatal;
         end
-        $display("PASS ${ name }$_axis: %0d transfers in %0d clocks, no difference", taken, clock);
+        $display("PASS ${ name }$_axis: %0d transfers in %0d clocks, no difference",
+            taken, clock);
         $finish;
     end
 endmodule

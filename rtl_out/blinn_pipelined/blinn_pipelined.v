@@ -321,7 +321,8 @@ module blinn_pipelined #(
     // s-15.19: what the field adds, less half an ulp
     reg  signed [4:0]  exp2_bend_offset3_term_s15;
     reg                peak_s15, halvings_bits_2_bits_5_s15, halvings_bits_2_bits_4_s15;
-    reg                halvings_bits_2_bits_3_s15, halvings_bits_2_bits_2_s15, halvings_bits_2_bits_s15;
+    reg                halvings_bits_2_bits_3_s15, halvings_bits_2_bits_2_s15;
+    reg                halvings_bits_2_bits_s15;
     always @(posedge clk) if (advance) begin
         peak_s15 <= peak_s14;
         halvings_bits_2_bits_5_s15 <= halvings_s14[16];

@@ -278,7 +278,8 @@ module gauss_pipelined #(
     // s-15.19: what the field adds, less half an ulp
     reg  signed [4:0]  exp2_bend_offset3_term_s12;
     reg                facing_s12, peak_s12, halvings_bits_2_bits_5_s12, halvings_bits_2_bits_4_s12;
-    reg                halvings_bits_2_bits_3_s12, halvings_bits_2_bits_2_s12, halvings_bits_2_bits_s12;
+    reg                halvings_bits_2_bits_3_s12, halvings_bits_2_bits_2_s12;
+    reg                halvings_bits_2_bits_s12;
     always @(posedge clk) if (advance) begin
         facing_s12 <= facing_s11;
         peak_s12 <= peak_s11;

@@ -1,10 +1,10 @@
 // blinn_tb: self-checking bench of blinn
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -s blinn_tb -o blinn_tb blinn*.v
-//   $ ./blinn_tb
+//   $ iverilog -g2012 -s blinn_tb -o sim blinn*.v
+//   $ ./sim
 // or, with Verilator 5,
-//   $ verilator --binary --timing --top-module blinn_tb blinn*.v
+//   $ verilator --binary --timing --top blinn_tb blinn*.v
 //   $ obj_dir/Vblinn_tb
 // Inputs change on the falling edge of the clock; outputs are compared just before the rising edge.
 //

@@ -1,10 +1,10 @@
 // blinn_pipelined_tb: self-checking bench of blinn_pipelined
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -s blinn_pipelined_tb -o blinn_pipelined_tb blinn_pipelined*.v
-//   $ ./blinn_pipelined_tb
+//   $ iverilog -g2012 -s blinn_pipelined_tb -o sim blinn_pipelined*.v
+//   $ ./sim
 // or, with Verilator 5,
-//   $ verilator --binary --timing --top-module blinn_pipelined_tb blinn_pipelined*.v
+//   $ verilator --binary --timing --top blinn_pipelined_tb blinn_pipelined*.v
 //   $ obj_dir/Vblinn_pipelined_tb
 // Inputs change on the falling edge of the clock; outputs are compared just before the rising edge.
 //

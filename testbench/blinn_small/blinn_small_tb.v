@@ -1,10 +1,10 @@
 // blinn_small_tb: self-checking bench of blinn_small
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -s blinn_small_tb -o blinn_small_tb blinn_small*.v
-//   $ ./blinn_small_tb
+//   $ iverilog -g2012 -s blinn_small_tb -o sim blinn_small*.v
+//   $ ./sim
 // or, with Verilator 5,
-//   $ verilator --binary --timing --top-module blinn_small_tb blinn_small*.v
+//   $ verilator --binary --timing --top blinn_small_tb blinn_small*.v
 //   $ obj_dir/Vblinn_small_tb
 // Inputs change on the falling edge of the clock; outputs are compared just before the rising edge.
 //

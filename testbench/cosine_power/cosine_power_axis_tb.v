@@ -1,10 +1,10 @@
 // cosine_power_axis_tb: self-checking bench of cosine_power_axis
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -s cosine_power_axis_tb -o cosine_power_axis_tb cosine_power*.v
-//   $ ./cosine_power_axis_tb
+//   $ iverilog -g2012 -s cosine_power_axis_tb -o sim cosine_power*.v
+//   $ ./sim
 // or, with Verilator 5,
-//   $ verilator --binary --timing --top-module cosine_power_axis_tb cosine_power*.v
+//   $ verilator --binary --timing --top cosine_power_axis_tb cosine_power*.v
 //   $ obj_dir/Vcosine_power_axis_tb
 // The points of the core's bench are sent, and what comes back is compared. By turns nobody
 // pauses, the sender does, the receiver does, and both do; a reset in the midst begins it anew.
@@ -166,10 +166,12 @@ module cosine_power_axis_tb #(
             errors = errors + 1;
         end
         if (errors != 0) begin
-            $display("FAIL cosine_power_axis: %0d differences in %0d clocks", errors, clock);
+            $display("FAIL cosine_power_axis: %0d differences in %0d clocks",
+                errors, clock);
             $fatal;
         end
-        $display("PASS cosine_power_axis: %0d transfers in %0d clocks, no difference", taken, clock);
+        $display("PASS cosine_power_axis: %0d transfers in %0d clocks, no difference",
+            taken, clock);
         $finish;
     end
 endmodule

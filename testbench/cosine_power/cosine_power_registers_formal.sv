@@ -124,8 +124,9 @@ module cosine_power_registers_formal (
             write_word >= 5 && write_word <= 12;
     wire is_result =
             read_word >= 13 && read_word <= 13;
-    wire asks_start = write_mapped && (dut.start_on_write && write_word == dut.start_word && write_bytes != 0
-            || write_word == 5 && write_bytes[0] && write_data[0]);
+    wire asks_start = write_mapped
+            && (dut.start_on_write && write_word == dut.start_word && write_bytes != 0
+                || write_word == 5 && write_bytes[0] && write_data[0]);
 
     always @* if (!$initstate) begin
         // A request waits only for a computation, which ends; only requests are answered.

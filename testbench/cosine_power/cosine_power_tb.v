@@ -1,10 +1,10 @@
 // cosine_power_tb: self-checking bench of cosine_power
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -s cosine_power_tb -o cosine_power_tb cosine_power*.v
-//   $ ./cosine_power_tb
+//   $ iverilog -g2012 -s cosine_power_tb -o sim cosine_power*.v
+//   $ ./sim
 // or, with Verilator 5,
-//   $ verilator --binary --timing --top-module cosine_power_tb cosine_power*.v
+//   $ verilator --binary --timing --top cosine_power_tb cosine_power*.v
 //   $ obj_dir/Vcosine_power_tb
 // Inputs change on the falling edge of the clock; outputs are compared just before the rising edge.
 //

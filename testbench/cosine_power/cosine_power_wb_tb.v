@@ -1,14 +1,14 @@
 // cosine_power_wb_tb: self-checking bench of cosine_power_wb
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -s cosine_power_wb_tb -o cosine_power_wb_tb cosine_power*.v
-//   $ ./cosine_power_wb_tb
+//   $ iverilog -g2012 -s cosine_power_wb_tb -o sim cosine_power*.v
+//   $ ./sim
 // or, with Verilator 5,
-//   $ verilator --binary --timing --top-module cosine_power_wb_tb cosine_power*.v
+//   $ verilator --binary --timing --top cosine_power_wb_tb cosine_power*.v
 //   $ obj_dir/Vcosine_power_wb_tb
 // The points of the core's bench are written and started in turn in each way that there is, and the
-// results are read. Inputs change on the falling edge of the clock; outputs are read just before the
-// rising edge.
+// results are read. Inputs change on the falling edge of the clock; outputs are read just before
+// the rising edge.
 //
 // Generated files belong to their user, without conditions.
 
@@ -194,7 +194,8 @@ module cosine_power_wb_tb #(
         begin
             access(address, 1'b0, 32'd0, 4'hf);
             check(!failed, "a read fails");
-            if (got !== word && errors < REPORTED) $display("at %h: %h, not %h", address, got, word);
+            if (got !== word && errors < REPORTED)
+                $display("at %h: %h, not %h", address, got, word);
             check(got === word, "what is read");
         end
     endtask

@@ -1,10 +1,10 @@
 // cosine_power_pipelined_tb: self-checking bench of cosine_power_pipelined
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -s cosine_power_pipelined_tb -o cosine_power_pipelined_tb cosine_power_pipelined*.v
-//   $ ./cosine_power_pipelined_tb
+//   $ iverilog -g2012 -s cosine_power_pipelined_tb -o sim cosine_power_pipelined*.v
+//   $ ./sim
 // or, with Verilator 5,
-//   $ verilator --binary --timing --top-module cosine_power_pipelined_tb cosine_power_pipelined*.v
+//   $ verilator --binary --timing --top cosine_power_pipelined_tb cosine_power_pipelined*.v
 //   $ obj_dir/Vcosine_power_pipelined_tb
 // Inputs change on the falling edge of the clock; outputs are compared just before the rising edge.
 //

@@ -1,10 +1,10 @@
 // cosine_squared_tb: self-checking bench of cosine_squared
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -s cosine_squared_tb -o cosine_squared_tb cosine_squared*.v
-//   $ ./cosine_squared_tb
+//   $ iverilog -g2012 -s cosine_squared_tb -o sim cosine_squared*.v
+//   $ ./sim
 // or, with Verilator 5,
-//   $ verilator --binary --timing --top-module cosine_squared_tb cosine_squared*.v
+//   $ verilator --binary --timing --top cosine_squared_tb cosine_squared*.v
 //   $ obj_dir/Vcosine_squared_tb
 // Inputs change on the falling edge of the clock; outputs are compared just before the rising edge.
 //

@@ -1,10 +1,10 @@
 // gauss_tb: self-checking bench of gauss
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -s gauss_tb -o gauss_tb gauss*.v
-//   $ ./gauss_tb
+//   $ iverilog -g2012 -s gauss_tb -o sim gauss*.v
+//   $ ./sim
 // or, with Verilator 5,
-//   $ verilator --binary --timing --top-module gauss_tb gauss*.v
+//   $ verilator --binary --timing --top gauss_tb gauss*.v
 //   $ obj_dir/Vgauss_tb
 // Inputs change on the falling edge of the clock; outputs are compared just before the rising edge.
 //

@@ -1,10 +1,10 @@
 // gauss_pipelined_tb: self-checking bench of gauss_pipelined
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -s gauss_pipelined_tb -o gauss_pipelined_tb gauss_pipelined*.v
-//   $ ./gauss_pipelined_tb
+//   $ iverilog -g2012 -s gauss_pipelined_tb -o sim gauss_pipelined*.v
+//   $ ./sim
 // or, with Verilator 5,
-//   $ verilator --binary --timing --top-module gauss_pipelined_tb gauss_pipelined*.v
+//   $ verilator --binary --timing --top gauss_pipelined_tb gauss_pipelined*.v
 //   $ obj_dir/Vgauss_pipelined_tb
 // Inputs change on the falling edge of the clock; outputs are compared just before the rising edge.
 //

@@ -1,10 +1,10 @@
 // lyon_tb: self-checking bench of lyon
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -s lyon_tb -o lyon_tb lyon*.v
-//   $ ./lyon_tb
+//   $ iverilog -g2012 -s lyon_tb -o sim lyon*.v
+//   $ ./sim
 // or, with Verilator 5,
-//   $ verilator --binary --timing --top-module lyon_tb lyon*.v
+//   $ verilator --binary --timing --top lyon_tb lyon*.v
 //   $ obj_dir/Vlyon_tb
 // Inputs change on the falling edge of the clock; outputs are compared just before the rising edge.
 //

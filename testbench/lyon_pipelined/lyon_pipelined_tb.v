@@ -1,10 +1,10 @@
 // lyon_pipelined_tb: self-checking bench of lyon_pipelined
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -s lyon_pipelined_tb -o lyon_pipelined_tb lyon_pipelined*.v
-//   $ ./lyon_pipelined_tb
+//   $ iverilog -g2012 -s lyon_pipelined_tb -o sim lyon_pipelined*.v
+//   $ ./sim
 // or, with Verilator 5,
-//   $ verilator --binary --timing --top-module lyon_pipelined_tb lyon_pipelined*.v
+//   $ verilator --binary --timing --top lyon_pipelined_tb lyon_pipelined*.v
 //   $ obj_dir/Vlyon_pipelined_tb
 // Inputs change on the falling edge of the clock; outputs are compared just before the rising edge.
 //

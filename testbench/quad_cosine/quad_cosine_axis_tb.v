@@ -1,10 +1,10 @@
 // quad_cosine_axis_tb: self-checking bench of quad_cosine_axis
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -s quad_cosine_axis_tb -o quad_cosine_axis_tb quad_cosine*.v
-//   $ ./quad_cosine_axis_tb
+//   $ iverilog -g2012 -s quad_cosine_axis_tb -o sim quad_cosine*.v
+//   $ ./sim
 // or, with Verilator 5,
-//   $ verilator --binary --timing --top-module quad_cosine_axis_tb quad_cosine*.v
+//   $ verilator --binary --timing --top quad_cosine_axis_tb quad_cosine*.v
 //   $ obj_dir/Vquad_cosine_axis_tb
 // The points of the core's bench are sent, and what comes back is compared. By turns nobody
 // pauses, the sender does, the receiver does, and both do; a reset in the midst begins it anew.
@@ -163,10 +163,12 @@ module quad_cosine_axis_tb #(
             errors = errors + 1;
         end
         if (errors != 0) begin
-            $display("FAIL quad_cosine_axis: %0d differences in %0d clocks", errors, clock);
+            $display("FAIL quad_cosine_axis: %0d differences in %0d clocks",
+                errors, clock);
             $fatal;
         end
-        $display("PASS quad_cosine_axis: %0d transfers in %0d clocks, no difference", taken, clock);
+        $display("PASS quad_cosine_axis: %0d transfers in %0d clocks, no difference",
+            taken, clock);
         $finish;
     end
 endmodule

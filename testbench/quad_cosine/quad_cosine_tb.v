@@ -1,10 +1,10 @@
 // quad_cosine_tb: self-checking bench of quad_cosine
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -s quad_cosine_tb -o quad_cosine_tb quad_cosine*.v
-//   $ ./quad_cosine_tb
+//   $ iverilog -g2012 -s quad_cosine_tb -o sim quad_cosine*.v
+//   $ ./sim
 // or, with Verilator 5,
-//   $ verilator --binary --timing --top-module quad_cosine_tb quad_cosine*.v
+//   $ verilator --binary --timing --top quad_cosine_tb quad_cosine*.v
 //   $ obj_dir/Vquad_cosine_tb
 // Inputs change on the falling edge of the clock; outputs are compared just before the rising edge.
 //

@@ -1,10 +1,10 @@
 // quadratic_tb: self-checking bench of quadratic
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -s quadratic_tb -o quadratic_tb quadratic*.v
-//   $ ./quadratic_tb
+//   $ iverilog -g2012 -s quadratic_tb -o sim quadratic*.v
+//   $ ./sim
 // or, with Verilator 5,
-//   $ verilator --binary --timing --top-module quadratic_tb quadratic*.v
+//   $ verilator --binary --timing --top quadratic_tb quadratic*.v
 //   $ obj_dir/Vquadratic_tb
 // Inputs change on the falling edge of the clock; outputs are compared just before the rising edge.
 //

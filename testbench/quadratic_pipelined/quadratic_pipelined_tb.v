@@ -1,10 +1,10 @@
 // quadratic_pipelined_tb: self-checking bench of quadratic_pipelined
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -s quadratic_pipelined_tb -o quadratic_pipelined_tb quadratic_pipelined*.v
-//   $ ./quadratic_pipelined_tb
+//   $ iverilog -g2012 -s quadratic_pipelined_tb -o sim quadratic_pipelined*.v
+//   $ ./sim
 // or, with Verilator 5,
-//   $ verilator --binary --timing --top-module quadratic_pipelined_tb quadratic_pipelined*.v
+//   $ verilator --binary --timing --top quadratic_pipelined_tb quadratic_pipelined*.v
 //   $ obj_dir/Vquadratic_pipelined_tb
 // Inputs change on the falling edge of the clock; outputs are compared just before the rising edge.
 //

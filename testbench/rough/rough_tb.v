@@ -1,10 +1,10 @@
 // rough_tb: self-checking bench of rough
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -s rough_tb -o rough_tb rough*.v
-//   $ ./rough_tb
+//   $ iverilog -g2012 -s rough_tb -o sim rough*.v
+//   $ ./sim
 // or, with Verilator 5,
-//   $ verilator --binary --timing --top-module rough_tb rough*.v
+//   $ verilator --binary --timing --top rough_tb rough*.v
 //   $ obj_dir/Vrough_tb
 // Inputs change on the falling edge of the clock; outputs are compared just before the rising edge.
 //

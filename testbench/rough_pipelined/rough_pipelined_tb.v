@@ -1,10 +1,10 @@
 // rough_pipelined_tb: self-checking bench of rough_pipelined
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -s rough_pipelined_tb -o rough_pipelined_tb rough_pipelined*.v
-//   $ ./rough_pipelined_tb
+//   $ iverilog -g2012 -s rough_pipelined_tb -o sim rough_pipelined*.v
+//   $ ./sim
 // or, with Verilator 5,
-//   $ verilator --binary --timing --top-module rough_pipelined_tb rough_pipelined*.v
+//   $ verilator --binary --timing --top rough_pipelined_tb rough_pipelined*.v
 //   $ obj_dir/Vrough_pipelined_tb
 // Inputs change on the falling edge of the clock; outputs are compared just before the rising edge.
 //

@@ -1,10 +1,10 @@
 // rough_small_tb: self-checking bench of rough_small
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -s rough_small_tb -o rough_small_tb rough_small*.v
-//   $ ./rough_small_tb
+//   $ iverilog -g2012 -s rough_small_tb -o sim rough_small*.v
+//   $ ./sim
 // or, with Verilator 5,
-//   $ verilator --binary --timing --top-module rough_small_tb rough_small*.v
+//   $ verilator --binary --timing --top rough_small_tb rough_small*.v
 //   $ obj_dir/Vrough_small_tb
 // Inputs change on the falling edge of the clock; outputs are compared just before the rising edge.
 //

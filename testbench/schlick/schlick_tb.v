@@ -1,10 +1,10 @@
 // schlick_tb: self-checking bench of schlick
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -s schlick_tb -o schlick_tb schlick*.v
-//   $ ./schlick_tb
+//   $ iverilog -g2012 -s schlick_tb -o sim schlick*.v
+//   $ ./sim
 // or, with Verilator 5,
-//   $ verilator --binary --timing --top-module schlick_tb schlick*.v
+//   $ verilator --binary --timing --top schlick_tb schlick*.v
 //   $ obj_dir/Vschlick_tb
 // Inputs change on the falling edge of the clock; outputs are compared just before the rising edge.
 //

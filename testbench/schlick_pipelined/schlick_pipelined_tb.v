@@ -1,10 +1,10 @@
 // schlick_pipelined_tb: self-checking bench of schlick_pipelined
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -s schlick_pipelined_tb -o schlick_pipelined_tb schlick_pipelined*.v
-//   $ ./schlick_pipelined_tb
+//   $ iverilog -g2012 -s schlick_pipelined_tb -o sim schlick_pipelined*.v
+//   $ ./sim
 // or, with Verilator 5,
-//   $ verilator --binary --timing --top-module schlick_pipelined_tb schlick_pipelined*.v
+//   $ verilator --binary --timing --top schlick_pipelined_tb schlick_pipelined*.v
 //   $ obj_dir/Vschlick_pipelined_tb
 // Inputs change on the falling edge of the clock; outputs are compared just before the rising edge.
 //

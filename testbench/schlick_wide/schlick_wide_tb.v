@@ -1,10 +1,10 @@
 // schlick_wide_tb: self-checking bench of schlick_wide
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -s schlick_wide_tb -o schlick_wide_tb schlick_wide*.v
-//   $ ./schlick_wide_tb
+//   $ iverilog -g2012 -s schlick_wide_tb -o sim schlick_wide*.v
+//   $ ./sim
 // or, with Verilator 5,
-//   $ verilator --binary --timing --top-module schlick_wide_tb schlick_wide*.v
+//   $ verilator --binary --timing --top schlick_wide_tb schlick_wide*.v
 //   $ obj_dir/Vschlick_wide_tb
 // Inputs change on the falling edge of the clock; outputs are compared just before the rising edge.
 //

@@ -1,10 +1,10 @@
 // threshold_tb: self-checking bench of threshold
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -s threshold_tb -o threshold_tb threshold*.v
-//   $ ./threshold_tb
+//   $ iverilog -g2012 -s threshold_tb -o sim threshold*.v
+//   $ ./sim
 // or, with Verilator 5,
-//   $ verilator --binary --timing --top-module threshold_tb threshold*.v
+//   $ verilator --binary --timing --top threshold_tb threshold*.v
 //   $ obj_dir/Vthreshold_tb
 // Inputs change on the falling edge of the clock; outputs are compared just before the rising edge.
 //

@@ -1,14 +1,14 @@
 // threshold_levels_axil_tb: self-checking bench of threshold_levels_axil
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -s threshold_levels_axil_tb -o threshold_levels_axil_tb threshold_levels*.v
-//   $ ./threshold_levels_axil_tb
+//   $ iverilog -g2012 -s threshold_levels_axil_tb -o sim threshold_levels*.v
+//   $ ./sim
 // or, with Verilator 5,
-//   $ verilator --binary --timing --top-module threshold_levels_axil_tb threshold_levels*.v
+//   $ verilator --binary --timing --top threshold_levels_axil_tb threshold_levels*.v
 //   $ obj_dir/Vthreshold_levels_axil_tb
 // The points of the core's bench are written and started in turn in each way that there is, and the
-// results are read. Inputs change on the falling edge of the clock; outputs are read just before the
-// rising edge.
+// results are read. Inputs change on the falling edge of the clock; outputs are read just before
+// the rising edge.
 //
 // Generated files belong to their user, without conditions.
 
@@ -210,7 +210,8 @@ module threshold_levels_axil_tb #(
         begin
             access(address, 1'b0, 32'd0, 4'hf);
             check(!failed, "a read fails");
-            if (got !== word && errors < REPORTED) $display("at %h: %h, not %h", address, got, word);
+            if (got !== word && errors < REPORTED)
+                $display("at %h: %h, not %h", address, got, word);
             check(got === word, "what is read");
         end
     endtask

@@ -1,10 +1,10 @@
 // threshold_levels_axis_tb: self-checking bench of threshold_levels_axis
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -s threshold_levels_axis_tb -o threshold_levels_axis_tb threshold_levels*.v
-//   $ ./threshold_levels_axis_tb
+//   $ iverilog -g2012 -s threshold_levels_axis_tb -o sim threshold_levels*.v
+//   $ ./sim
 // or, with Verilator 5,
-//   $ verilator --binary --timing --top-module threshold_levels_axis_tb threshold_levels*.v
+//   $ verilator --binary --timing --top threshold_levels_axis_tb threshold_levels*.v
 //   $ obj_dir/Vthreshold_levels_axis_tb
 // The points of the core's bench are sent, and what comes back is compared. By turns nobody
 // pauses, the sender does, the receiver does, and both do; a reset in the midst begins it anew.
@@ -166,10 +166,12 @@ module threshold_levels_axis_tb #(
             errors = errors + 1;
         end
         if (errors != 0) begin
-            $display("FAIL threshold_levels_axis: %0d differences in %0d clocks", errors, clock);
+            $display("FAIL threshold_levels_axis: %0d differences in %0d clocks",
+                errors, clock);
             $fatal;
         end
-        $display("PASS threshold_levels_axis: %0d transfers in %0d clocks, no difference", taken, clock);
+        $display("PASS threshold_levels_axis: %0d transfers in %0d clocks, no difference",
+            taken, clock);
         $finish;
     end
 endmodule

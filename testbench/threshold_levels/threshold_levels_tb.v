@@ -1,10 +1,10 @@
 // threshold_levels_tb: self-checking bench of threshold_levels
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -s threshold_levels_tb -o threshold_levels_tb threshold_levels*.v
-//   $ ./threshold_levels_tb
+//   $ iverilog -g2012 -s threshold_levels_tb -o sim threshold_levels*.v
+//   $ ./sim
 // or, with Verilator 5,
-//   $ verilator --binary --timing --top-module threshold_levels_tb threshold_levels*.v
+//   $ verilator --binary --timing --top threshold_levels_tb threshold_levels*.v
 //   $ obj_dir/Vthreshold_levels_tb
 // Inputs change on the falling edge of the clock; outputs are compared just before the rising edge.
 //

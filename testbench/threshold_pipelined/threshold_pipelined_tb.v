@@ -1,10 +1,10 @@
 // threshold_pipelined_tb: self-checking bench of threshold_pipelined
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   $ iverilog -g2012 -s threshold_pipelined_tb -o threshold_pipelined_tb threshold_pipelined*.v
-//   $ ./threshold_pipelined_tb
+//   $ iverilog -g2012 -s threshold_pipelined_tb -o sim threshold_pipelined*.v
+//   $ ./sim
 // or, with Verilator 5,
-//   $ verilator --binary --timing --top-module threshold_pipelined_tb threshold_pipelined*.v
+//   $ verilator --binary --timing --top threshold_pipelined_tb threshold_pipelined*.v
 //   $ obj_dir/Vthreshold_pipelined_tb
 // Inputs change on the falling edge of the clock; outputs are compared just before the rising edge.
 //

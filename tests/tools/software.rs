@@ -312,10 +312,12 @@ fn lines_are_set_up_in_c_and_python_as_by_glint() {
         let arguments: Vec<&str> = arguments.chain(["lines.c", &setup, "-lm"]).collect();
         let compiled = tool("cc").run_to_success(&arguments, dir, LIMIT);
         assert_eq!(compiled.unwrap_or_else(|error| panic!("{error:#}")), "", "{name}");
-        let in_c = run_program(&dir.join("set_up"), dir);
+        run_program(&dir.join("set_up"), dir);
         fs::write(dir.join("lines.py"), IN_PYTHON.replace("NAME", name)).expect("written");
-        let in_python = tool("python").run_to_success(["lines.py"], dir, LIMIT);
-        let in_python = in_python.unwrap_or_else(|error| panic!("{error:#}"));
+        let printed = tool("python").run_to_success(["lines.py"], dir, LIMIT);
+        printed.unwrap_or_else(|error| panic!("{error:#}"));
+        let [in_c, in_python] =
+            ["in_c", "in_python"].map(|file| fs::read_to_string(dir.join(file)).expect("written"));
 
         let contract = model.core.contract.as_ref();
         let feed = Feed::new(model.core.device.name, contract).expect("operands of a line");
@@ -399,6 +401,7 @@ const IN_C: &str = r#"
 #include "NAME_setup.h"
 int main(void) {
     FILE *in = fopen("lines", "r");
+    if (freopen("in_c", "w", stdout) == NULL) return 1;
     double v[12], intensity, exponent, points;
     for (;;) {
         for (int at = 0; at < 12; ++at)
@@ -421,7 +424,9 @@ int main(void) {
 
 const IN_PYTHON: &str = r#"
 import NAME_setup as setup
+import sys
 
+sys.stdout = open("in_python", "w")
 for line in open("lines"):
     *v, intensity, exponent, points = map(float, line.split())
     try:

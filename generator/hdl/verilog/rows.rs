@@ -80,11 +80,14 @@ impl Row {
         let (mut all, plain): (Vec<_>, Vec<_>) =
             rows.into_iter().partition(|row| !row.note.is_empty());
         let first = all.len();
+        let widest = |part: fn(&Self) -> &String| {
+            all.iter().chain(&plain).map(|row| part(row).len()).max().unwrap_or(0)
+        };
+        let indent = 4 + widest(|row| &row.head) + 1 + widest(|row| &row.range) + 1;
         for row in plain {
             let alike = |other: &&mut Self| {
-                let length = other.head.len() + other.range.len() + other.name.len();
                 (&other.head, &other.range) == (&row.head, &row.range)
-                    && length + row.name.len() + 10 <= COLUMNS
+                    && indent + other.name.len() + 2 + row.name.len() < COLUMNS
             };
             match all[first..].iter_mut().rev().find(alike) {
                 Some(other) => other.name = format!("{}, {}", other.name, row.name),
