@@ -7,6 +7,7 @@
 //! No register is put on the other edge of the clock: what it takes is stable by then, so that it carries the
 //! same at every edge that counts, and only timing analysis can tell.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 use std::sync::LazyLock;
@@ -391,8 +392,12 @@ fn in_line(
     // What is assigned on a clock is no comparison.
     let assignment =
         code.find(" <= ").filter(|_| !code.contains("wire") && !code.contains("assign"));
+    let mut numbers = BTreeMap::<&str, usize>::new();
     for operator in OPERATORS.iter().filter(|_| !is_memory) {
-        for (number, found) in operator.pattern.captures_iter(code).enumerate() {
+        for found in operator.pattern.captures_iter(code) {
+            // Two operators of a kind number their faults on.
+            let number = numbers.entry(operator.kind).or_default();
+            *number += 1;
             let Some(all) = found.get(0) else { continue };
             let by = (operator.with)(&found);
             let taken = assignment == Some(all.start());
@@ -401,12 +406,7 @@ fn in_line(
             }
             let text = format!("{}{by}{}", &whole[..all.start()], &whole[all.end()..]);
             faults.push(TextFault {
-                id: format!(
-                    "{name}:{}:{}:{}",
-                    line + 1,
-                    operator.kind.replace(' ', "-"),
-                    number + 1
-                ),
+                id: format!("{name}:{}:{}:{number}", line + 1, operator.kind.replace(' ', "-"),),
                 kind: operator.kind,
                 file,
                 line,

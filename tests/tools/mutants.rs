@@ -136,6 +136,11 @@ fn faults_have_names_of_their_own() {
         assert_eq!(ids.len(), faults.len(), "{path}");
         assert!(faults.len() > 500, "{path}: a kind of fault is missing");
     }
+    for (path, core) in defaults() {
+        let faults = Text::of(&core).unwrap_or_else(|error| panic!("{path}: {error:?}")).faults();
+        let ids: BTreeSet<&str> = faults.iter().map(|fault| fault.id.as_str()).collect();
+        assert_eq!(ids.len(), faults.len(), "{path}: the Verilog");
+    }
 }
 
 #[test]
