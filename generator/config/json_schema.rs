@@ -8,10 +8,22 @@ use super::values::Value;
 /// A JSON Schema (draft 7) of a configuration of any of these devices: names, types, ranges, defaults and what
 /// each key governs. Conditions between keys are in the descriptions alone; reading the file checks them.
 pub fn json_schema(schemas: &[Schema]) -> Json {
+    let names: Vec<&str> = schemas.iter().map(|schema| schema.device).collect();
+    // Not `oneOf`, of which editors say only that no alternative fits: they name the key that is wrong.
+    let by_device = schemas.iter().map(|schema| {
+        let is_it = json!({
+            "required": ["device"],
+            "properties": { "device": { "const": schema.device } },
+        });
+        json!({ "if": is_it, "then": of_device(schema) })
+    });
     json!({
         "$schema": "http://json-schema.org/draft-07/schema#",
         "title": "Glint configuration",
-        "oneOf": schemas.iter().map(of_device).collect::<Vec<_>>(),
+        "type": "object",
+        "required": ["device"],
+        "properties": { "device": { "enum": names } },
+        "allOf": by_device.collect::<Vec<_>>(),
     })
 }
 
@@ -36,7 +48,6 @@ fn of_device(schema: &Schema) -> Json {
         level.insert(leaf.to_owned(), of_key(key));
     }
     device["title"] = json!(schema.device);
-    device["required"] = json!(["device"]);
     device
 }
 

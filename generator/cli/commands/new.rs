@@ -25,6 +25,10 @@ pub struct Arguments {
     name: Option<String>,
 }
 
+/// The line by which editors find the schema, and how it comes there.
+const SCHEMA: &str =
+    "#:schema glint.schema.json\n# Editors check keys by it: glint schema > glint.schema.json\n\n";
+
 /// `glint new`.
 pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
     let Arguments { device, name } = arguments;
@@ -52,6 +56,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
             .collect();
         bail!(WrongUsage(found.join("\n")));
     }
+    let text = format!("{SCHEMA}{text}");
     if output.json {
         tables::print_json(&json!({ "ok": true, "device": device, "name": name, "text": text }));
     } else {

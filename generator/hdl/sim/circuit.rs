@@ -30,8 +30,8 @@ pub struct Circuit<const LANES: usize = 1> {
     changed: bool,
     connected: bool,
     ports: Vec<Observed>,
-    control: Vec<Observed>,
-    datapath: Vec<Observed>,
+    /// Control unit and datapath, or the handshake and the stages of a pipeline.
+    scopes: Vec<(String, Vec<Observed>)>,
     microprogram: Microprogram,
 }
 
@@ -79,17 +79,9 @@ impl<const LANES: usize> Circuit<LANES> {
                 observed(port.net, if input { Direction::Input } else { Direction::Output })
             })
             .collect();
-        let of_partition = |partition| {
-            design
-                .iter()
-                .filter(|(id, net)| {
-                    net.named
-                        && net.partition == partition
-                        && design.ports.iter().all(|port| port.net != *id)
-                })
-                .map(|(id, _)| observed(id, Direction::Local))
-                .collect()
-        };
+        let scopes = scopes(design).into_iter().map(|(name, nets)| {
+            (name, nets.into_iter().map(|net| observed(net, Direction::Local)).collect())
+        });
         let mut circuit = Self {
             clock: Signal::default(),
             machine: Machine::new(program),
@@ -98,8 +90,7 @@ impl<const LANES: usize> Circuit<LANES> {
             changed: false,
             connected: false,
             ports,
-            control: of_partition(Partition::Control),
-            datapath: of_partition(Partition::Datapath),
+            scopes: scopes.collect(),
             microprogram: Microprogram::new(design),
         };
         circuit.connect_all();
@@ -126,6 +117,26 @@ impl<const LANES: usize> Circuit<LANES> {
             probe.visit_atom(&net.name, &wire);
         }
     }
+}
+
+/// Returns the named nets that are no ports, by the scope in which a waveform has them.
+fn scopes(design: &Design) -> Vec<(String, Vec<NetId>)> {
+    let mut names = vec!["control".to_owned()];
+    match &design.pipeline {
+        Some(pipeline) => names.extend((0..=pipeline.stages.len()).map(|at| format!("stage_{at}"))),
+        None => names.push("datapath".to_owned()),
+    }
+    let mut scopes: Vec<_> = names.into_iter().map(|name| (name, Vec::new())).collect();
+    let is_port = |id| design.ports.iter().any(|port| port.net == id);
+    for (id, net) in design.iter().filter(|(id, net)| net.named && !is_port(*id)) {
+        let scope = match &design.pipeline {
+            Some(pipeline) if pipeline.handshake.contains(&id) => 0,
+            Some(pipeline) => 1 + pipeline.clock_of(id),
+            None => usize::from(net.partition == Partition::Datapath),
+        };
+        scopes[scope].1.push(id);
+    }
+    scopes
 }
 
 impl Microprogram {
@@ -176,19 +187,18 @@ impl<const LANES: usize> Block for Circuit<LANES> {
         probe.visit_start_scope(name, self);
         self.clock.accept("clk", probe);
         self.visit(&self.ports, probe);
-        probe.visit_start_namespace("control", self);
-        self.visit(&self.control, probe);
-        if let Some((address, run)) = self.microprogram.state {
-            let [address, run] = [address, run].map(|net| self.machine.lane(net, 0));
-            let names = &self.microprogram.names;
-            let seen = Seen::Microinstruction { names, run: run == 1 };
-            let name = self.wire(self.microprogram.id, address, seen);
-            probe.visit_atom("microinstruction", &name);
+        for (at, (scope, nets)) in self.scopes.iter().enumerate() {
+            probe.visit_start_namespace(scope, self);
+            self.visit(nets, probe);
+            if let (0, Some((address, run))) = (at, self.microprogram.state) {
+                let [address, run] = [address, run].map(|net| self.machine.lane(net, 0));
+                let names = &self.microprogram.names;
+                let seen = Seen::Microinstruction { names, run: run == 1 };
+                let name = self.wire(self.microprogram.id, address, seen);
+                probe.visit_atom("microinstruction", &name);
+            }
+            probe.visit_end_namespace(scope, self);
         }
-        probe.visit_end_namespace("control", self);
-        probe.visit_start_namespace("datapath", self);
-        self.visit(&self.datapath, probe);
-        probe.visit_end_namespace("datapath", self);
         probe.visit_end_scope(name, self);
     }
 }

@@ -31,6 +31,9 @@ impl<W: Write> VcdWriter<W> {
         let mut probe = write_vcd_header(page.clone(), &Named { name, circuit });
         probe.timestamp(time)?;
         let mut writer = Self { probe: Some(write_vcd_dump(probe, circuit)), page, file };
+        // rust_hdl declares text as a wire without bits, which viewers read as no value or refuse.
+        let header = String::from_utf8_lossy(&writer.page.take()).replacen(WIRE, STRING, 1);
+        writer.page.write_all(header.as_bytes())?;
         writer.write_out()?;
         Ok(writer)
     }
@@ -65,6 +68,9 @@ impl<W: Write> VcdWriter<W> {
         self.file.write_all(&self.page.take()).context(CANNOT_WRITE)
     }
 }
+
+const WIRE: &str = "$var wire 0 ";
+const STRING: &str = "$var string 1 ";
 
 const CANNOT_WRITE: &str = "cannot write the waveform";
 

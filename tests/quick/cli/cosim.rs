@@ -5,7 +5,7 @@ use std::fs;
 use std::io::BufReader;
 
 use serde_json::Value;
-use vcd::{Command, Parser, ScopeItem, Var};
+use vcd::{Command, Parser, ScopeItem, Var, VarType};
 
 use crate::workspace::{COSINE_POWER, Run, Workspace};
 
@@ -93,10 +93,37 @@ fn a_waveform_has_ports_and_microinstructions() {
         }
     }
     let words = manifest["control"]["words"].as_array().unwrap();
+    assert_eq!((executed.var_type, executed.size), (VarType::String, 1));
     // A VCD string has no spaces.
     let names = words.iter().map(|word| word["name"].as_str().unwrap().replace(' ', "_"));
     let unseen: Vec<String> = names.filter(|name| !seen.contains(name)).collect();
     assert!(unseen.is_empty(), "{unseen:?} not in {seen:?}");
+}
+
+/// A pipeline's nets are in a scope of their stage, its handshake in one of its own.
+#[test]
+fn a_waveform_of_a_pipeline_has_its_stages() {
+    let dir = Workspace::with("core.toml", ROUGH);
+    dir.write("core.toml", &format!("architecture = \"pipelined\"\n{ROUGH}"));
+    dir.done(["cosim", "core.toml", "--points", "20", "--vcd", "wave.vcd"]);
+    let file = BufReader::new(fs::File::open(dir.at("wave.vcd")).unwrap());
+    let mut found = Vec::new();
+    variables(&Parser::new(file).parse_header().unwrap().items, "", &mut found);
+    let schedule = dir.done(["schedule", "core.toml", "--json"]);
+    let schedule: Value = serde_json::from_str(&schedule).expect("JSON");
+    let stages = schedule["schedules"][0]["stages"].as_array().expect("stages").len();
+    for stage in 0..=stages {
+        let scope = format!("core.stage_{stage}.");
+        let nets: Vec<&str> = found.iter().filter_map(|it| it.0.strip_prefix(&scope)).collect();
+        assert!(!nets.is_empty(), "{scope}");
+        // A register says its stage in its name.
+        let other = |net: &&&str| {
+            let stage_of_name = net.rsplit_once("_s").and_then(|(_, at)| at.parse().ok());
+            stage_of_name.is_some_and(|at: usize| at != stage)
+        };
+        assert_eq!(nets.iter().find(other), None, "{scope}");
+    }
+    assert!(found.iter().any(|it| it.0.starts_with("core.control.valid")), "{found:?}");
 }
 
 #[test]

@@ -191,6 +191,8 @@ fn a_killed_run_leaves_nothing_for_long() {
     let temporary = || fs::read_dir(dir.at("tmp")).expect("tmp").count();
     let mut run = Running::start(&dir, &arguments);
     run.until_tools_sleep();
+    // The guard learns of a child when it has started, which on a busy machine may be later than its sleep.
+    thread::sleep(Duration::from_secs(2));
     run.child.kill().expect("a signal");
     run.child.wait().expect("its end");
     let begin = Instant::now();

@@ -124,7 +124,7 @@ fn names_widths_and_values() {
         widths,
         [
             ("probe.clk", 1),
-            ("probe.control.microinstruction", 0),
+            ("probe.control.microinstruction", 1),
             ("probe.control.other_address", 1),
             ("probe.control.run", 1),
             ("probe.control.select", 2),
