@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::path::Path;
+use std::time::Duration;
 
 use super::{BUSES, STREAM};
 use crate::common::cores::{Files, configuration_between, write};
@@ -13,6 +14,9 @@ use rayon::prelude::*;
 
 /// Faults of each configuration that are planted by default.
 const FAULTS: usize = 4;
+
+/// A bench takes seconds; with a fault it may go round in no time for ever.
+const PATIENCE: Duration = Duration::from_secs(120);
 
 /// Faults that change nothing, or nothing that is promised, each with the reason.
 const HARMLESS: &str = include_str!("harmless.txt");
@@ -59,7 +63,7 @@ fn is_noticed(name: &str, files: &Files) -> bool {
         told.map_or(true, |told| !told.is_empty())
     };
     let fails = |top: &String| {
-        let outcome = run_bench(Simulator::Icarus, &simulated, &format!("{top}_tb"), LIMIT);
+        let outcome = run_bench(Simulator::Icarus, &simulated, &format!("{top}_tb"), PATIENCE);
         !outcome.is_ok_and(|outcome| outcome.passed)
     };
     tops().any(warns)
