@@ -1,7 +1,7 @@
-//! The command line of all devices.
+//! The command line of the catalogue.
 
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    glint::cli::run(&glint::registry::Registry::all())
+    glint::cli::run(&glint::registry::Registry::catalogue())
 }

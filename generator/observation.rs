@@ -4,7 +4,7 @@ use std::iter::repeat;
 
 use serde::Serialize;
 
-use crate::golden::{Contract, Highlight};
+use crate::golden::Contract;
 
 /// Clocks between the events of the handshake; `None` where they depend on the data.
 ///
@@ -92,7 +92,7 @@ pub struct ContractFacts {
     pub outputs: Vec<(String, Option<String>)>,
     /// The operand that says how many results there are beyond the first, where one does.
     pub length: Option<String>,
-    /// The values that are right for f, as expressions of Python.
+    /// Expressions of Python: the values that are right for a highlight's f, or else one for each output.
     pub f: Vec<String>,
     /// The largest error of an output, in its units.
     pub bound: f64,
@@ -115,11 +115,11 @@ impl ContractFacts {
                 .collect(),
             length: contract.length().map(str::to_owned),
             // Without a bound there is nothing that results could be held against.
-            f: contract
-                .highlight()
-                .filter(|_| contract.bound().is_stated())
-                .map(Highlight::expressions)
-                .unwrap_or_default(),
+            f: match contract.highlight() {
+                _ if !contract.bound().is_stated() => Vec::new(),
+                Some(highlight) => highlight.expressions(),
+                None => contract.expressions(),
+            },
             bound: contract.bound().units,
         }
     }

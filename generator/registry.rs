@@ -40,8 +40,8 @@ pub struct Device {
 impl Device {
     /// Whether keys and contract are those of a device of the catalogue, where the bound is proved beside the golden model.
     pub fn is_of_catalogue(&self) -> bool {
-        let all = Registry::all();
-        all.device(self.name).is_some_and(|own| {
+        let catalogue = Registry::catalogue();
+        catalogue.device(self.name).is_some_and(|own| {
             std::ptr::fn_addr_eq(own.contract, self.contract)
                 && std::ptr::fn_addr_eq(own.schema, self.schema)
         })
@@ -178,7 +178,7 @@ impl Registry {
         Self(Vec::new())
     }
 
-    /// The devices of the seeds.
+    /// The devices of the seeds, and the one that computes any formula.
     pub fn catalogue() -> Self {
         Self(of_catalogue![
             quad_cosine: "quad-cosine", "cos^k(sqrt(n/k)*delta) along a scan line, k = 1, 2, 4, 16 by n (seed 000)";
@@ -191,16 +191,8 @@ impl Registry {
             schlick: "schlick", "Schlick's function, c / (n - n*c + c), by a divider (seed 002)";
             blinn: "blinn", "cos(gamma)^n itself, by tables of -log2 and 2^-x (seeds 000 to 002)";
             gauss: "gauss", "exp(-n*gamma^2/2), by tables of gamma^2 and 2^-x (seed 002)";
-        ])
-    }
-
-    /// The devices of the seeds, and the one that computes any formula.
-    pub fn all() -> Self {
-        let mut all = Self::catalogue();
-        all.0.extend(of_catalogue![
             function: "function", "any formula of one operand, by piecewise polynomials with a proved error";
-        ]);
-        all
+        ])
     }
 
     /// The registry with one device more.

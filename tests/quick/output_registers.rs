@@ -28,14 +28,17 @@ fn every_device_has_its_results_in_registers_a_clock_later() {
             ["", REGISTERED].map(|more| core(*device, more).expect("a design"));
         let design = &registered.design;
         let results = design.ports.iter().filter(|port| port.role == Role::Result);
+        let mut before = plain.design.ports.iter().filter(|port| port.role == Role::Result);
+        // A result that is a register anyway comes no later.
+        let more = u32::from(!before.all(|port| shows_register(&plain.design, port.net)));
         for port in results {
             assert!(shows_register(design, port.net), "{}", design.net(port.net).name);
         }
         for (one, other) in computations(&registered).iter().zip(computations(&plain)) {
             assert_eq!(one.operands, other.operands);
-            assert_eq!(one.done, other.done + 1, "{}", device.name);
+            assert_eq!(one.done, other.done + more, "{}", device.name);
             let clocks: Vec<u32> = one.results.iter().map(|it| it.clock).collect();
-            let before: Vec<u32> = other.results.iter().map(|it| it.clock + 1).collect();
+            let before: Vec<u32> = other.results.iter().map(|it| it.clock + more).collect();
             assert_eq!(clocks, before, "{}", device.name);
             let outputs = one.results.iter().map(|it| &it.outputs);
             assert!(outputs.eq(other.results.iter().map(|it| &it.outputs)), "{}", device.name);

@@ -12,7 +12,7 @@ const ROOMS: [(&str, &str); 29] = [
     ("base", ""),
     ("config", "base"),
     ("formula", ""),
-    ("approximate", "base config formula"),
+    ("approximate", "base choices config formula"),
     ("keys", "base config formula approximate"),
     ("golden", "base config keys formula approximate"),
     ("hdl/netlist", "base"),

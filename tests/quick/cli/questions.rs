@@ -193,7 +193,7 @@ fn devices_and_configurations_are_listed() {
     assert_eq!(value["configs"], json!(["configs/mine.toml"]));
     let names: Vec<&Value> =
         value["devices"].as_array().unwrap().iter().map(|device| &device["name"]).collect();
-    let registry = Registry::all();
+    let registry = Registry::catalogue();
     let all: Vec<&str> = registry.devices().iter().map(|device| device.name).collect();
     assert_eq!(names, all);
     assert_eq!(Workspace::new().glint(["list", "--json"]).json()["configs"], json!([]));

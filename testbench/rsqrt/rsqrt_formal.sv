@@ -1,0 +1,68 @@
+// rsqrt_formal: properties of the handshake of rsqrt
+//
+// For formal tools alone: every input is free. To prove it, from a directory that holds the files
+// of both folders:
+//   $ yosys -q rsqrt_formal.ys
+//   $ yosys-smtbmc -s z3 -t 7 rsqrt_formal.smt2
+//   $ yosys-smtbmc -s z3 -i -t 7 rsqrt_formal.smt2
+// or, with SymbiYosys,
+//   $ sby -f rsqrt_formal.sby
+//
+// Generated files belong to their user, without conditions.
+
+`default_nettype none
+
+module rsqrt_formal (
+    input  wire clk,
+    input  wire rst_n,
+    input  wire start,
+    input  wire [16:0] x,
+    input  wire x_write
+);
+    wire        valid;
+    wire        busy;
+    wire        done;
+    wire [16:0] result_out;
+
+    rsqrt dut (
+        .clk(clk),
+        .rst_n(rst_n),
+        .start(start),
+        .x(x),
+        .x_write(x_write),
+        .valid(valid),
+        .busy(busy),
+        .done(done),
+        .result_out(result_out)
+    );
+
+    // The reset comes first; the state before it is arbitrary.
+    always @* if ($initstate) assume (!rst_n);
+
+    // Clocks since start.
+    reg [2:0] age;
+    always @(posedge clk) age <= busy ? age + 3'd1 : 3'd1;
+
+    always @(posedge clk) if (!$initstate) begin
+        if (!$past(rst_n)) begin
+            // Idle after reset, whatever the state was before.
+            assert (!busy && !done);
+        end else if (!$past(busy)) begin
+            // Idle until start, busy from the clock after it.
+            assert (busy == $past(start));
+        end else begin
+            // Busy up to the clock of done.
+            assert (busy == !$past(done));
+        end
+        if (done) assert (busy);
+        if (valid) assert (busy);
+        if ($past(rst_n)) begin
+            // The clocks that the manifest promises.
+            assert (valid == (busy && age == 3'd4));
+            assert (done == (busy && age == 3'd4));
+            if (busy) assert (age <= 3'd4);
+        end
+    end
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,39 @@
+"""rsqrt: bench in Python.
+
+Needs cocotb 2.1 and Icarus Verilog; from the directory that holds rtl_out/ and testbench/:
+
+    $ python testbench/rsqrt/test_rsqrt.py
+
+Generated files belong to their user, without conditions.
+"""
+
+import sys
+from pathlib import Path
+from typing import Any
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+import cocotb
+import glint_cocotb
+from glint_cocotb import (  # noqa: F401 - cocotb runs what is imported here
+    computations_are_exact,
+    held_start_repeats,
+    reset_ends_a_computation,
+    writes_and_starts_while_busy_are_ignored,
+)
+
+
+@cocotb.test()
+async def worked_example(dut: Any) -> None:
+    """The example of the manifest, by hand."""
+    core = await glint_cocotb.Core.after_reset(dut)
+    shown = await core.compute(
+        x=130048,  # 1.984375
+    )
+    assert shown.results[0] == {
+        "result_out": 46523,  # 0.7098846435546875
+    }
+
+
+if __name__ == "__main__":
+    glint_cocotb.run("rsqrt")

@@ -1,0 +1,67 @@
+// rsqrt_pipelined_formal: what is proved of the handshake of rsqrt_pipelined
+//
+// For formal tools alone: every input is free. To prove it, from a directory that holds the files
+// of both folders:
+//   $ yosys -q rsqrt_pipelined_formal.ys
+//   $ yosys-smtbmc --unroll -s z3 -t 2 rsqrt_pipelined_formal.smt2
+//   $ yosys-smtbmc --unroll -s z3 -i -t 2 rsqrt_pipelined_formal.smt2
+// or, with SymbiYosys,
+//   $ sby -f rsqrt_pipelined_formal.sby
+//
+// Generated files belong to their user, without conditions.
+
+`default_nettype none
+
+module rsqrt_pipelined_formal (
+    input  wire clk,
+    input  wire rst_n,
+    input  wire in_valid,
+    input  wire [16:0] x,
+    input  wire out_ready
+);
+    wire        in_ready;
+    wire        out_valid;
+    wire [16:0] result_out;
+
+    rsqrt_pipelined dut (
+        .clk(clk),
+        .rst_n(rst_n),
+        .in_valid(in_valid),
+        .x(x),
+        .out_ready(out_ready),
+        .in_ready(in_ready),
+        .out_valid(out_valid),
+        .result_out(result_out)
+    );
+
+    // The reset comes first; the state before it is arbitrary.
+    always @* if ($initstate) assume (!rst_n);
+
+    // Which stage of the pipeline has a point.
+    (* hierconn *) wire [6:1] \dut.valid ;
+    wire [6:1] present = \dut.valid ;
+
+    // The same for a queue beside it: all points in it move together, unless a result waits.
+    wire moves = out_ready | ~out_valid;
+    reg  [6:1] queue;
+    always @(posedge clk) begin
+        if (!rst_n) queue <= 6'd0;
+        else if (moves) queue <= {queue[5:1], in_valid};
+    end
+
+    always @(posedge clk) if (!$initstate) begin
+        // No point is lost, none is doubled, and none comes sooner or later than the stages let it:
+        // out_valid follows from the points that were taken, whatever out_ready is.
+        assert (present == queue);
+        assert (out_valid == queue[6]);
+        // A point is taken whenever no result waits.
+        assert (in_ready == moves);
+        // A result that waits stays as it is.
+        if ($past(rst_n && out_valid && !out_ready)) begin
+            assert (out_valid);
+            assert ($stable(result_out));
+        end
+    end
+endmodule
+
+`default_nettype wire
