@@ -17,6 +17,7 @@ import cocotb
 import glint_cocotb
 from glint_cocotb import (  # noqa: F401 - cocotb runs what is imported here
     computations_are_exact,
+    formula_holds_at_random_points,
     held_start_repeats,
     reset_ends_a_computation,
     writes_and_starts_while_busy_are_ignored,
