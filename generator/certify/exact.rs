@@ -2,9 +2,9 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use super::formula::{Comparison, Real};
 use super::terms::{Id, Term, Terms};
 use crate::base::fixed::exp2;
+use crate::formula::{Comparison, Formula, Kind, Operator};
 use crate::golden::Operand;
 
 /// A formula's term under what it presupposes: these terms are not negative, those not positive.
@@ -87,25 +87,29 @@ pub fn word_variable(rom: &str, variable: &str) -> String {
 }
 
 /// How often each operand is divided by a power of two where it occurs: that power, if it is so everywhere.
-pub fn divisors(real: &Real, found: &mut HashMap<String, Option<i32>>) {
+pub fn divisors(formula: &Formula, found: &mut HashMap<String, Option<i32>>) {
     let mut note = |name: &str, power: i32| {
         let all = found.entry(name.to_owned()).or_insert(Some(power));
         if *all != Some(power) {
             *all = Some(0);
         }
     };
-    match real {
-        Real::Div(a, b)
-            if let (Real::Operand(name), Real::Number(by)) = (&**a, &**b)
-                && let Some(power) = power_of_two(*by) =>
-        {
-            note(name, power);
-        }
-        Real::Operand(name) => note(name, 0),
-        // The number of a word is no number of the formula.
-        Real::Word(..) => {}
-        _ => real.parts().into_iter().for_each(|part| divisors(part, found)),
+    if let Some((name, power)) = quotient(formula) {
+        return note(name, power);
     }
+    match &formula.kind {
+        Kind::Operand(name) => note(name, 0),
+        // The number of a word is no number of the formula.
+        Kind::Word(..) => {}
+        _ => formula.parts().into_iter().for_each(|part| divisors(part, found)),
+    }
+}
+
+/// The operand that is divided by a power of two, and that power.
+fn quotient(formula: &Formula) -> Option<(&str, i32)> {
+    let Kind::Binary(Operator::Div, a, b) = &formula.kind else { return None };
+    let (Kind::Operand(name), Kind::Number(by, _)) = (&a.kind, &b.kind) else { return None };
+    Some((name, power_of_two(*by)?))
 }
 
 fn power_of_two(value: f64) -> Option<i32> {
@@ -116,15 +120,21 @@ fn power_of_two(value: f64) -> Option<i32> {
 ///
 /// # Errors
 /// The formula has a part without a translation.
-pub fn branches(real: &Real, setting: &Setting, terms: &mut Terms) -> Result<Vec<Branch>, String> {
+pub fn branches(
+    formula: &Formula,
+    setting: &Setting,
+    terms: &mut Terms,
+) -> Result<Vec<Branch>, String> {
     // Of two expressions every way that both can go together, each with its term.
-    let pairs = |terms: &mut Terms, a: &Real, b: &Real| -> Result<Vec<(Branch, Id, Id)>, String> {
-        let (first, second) = (branches(a, setting, terms)?, branches(b, setting, terms)?);
-        let all = first.iter().flat_map(|one| second.iter().map(move |other| (one, other)));
-        let pairs = all.filter_map(|(one, other)| Some((one.and(other)?, one.term, other.term)));
-        Ok(pairs.collect())
-    };
-    let operation = |terms: &mut Terms, a: &Real, b: &Real, make: fn(Id, Id) -> Term| {
+    let pairs =
+        |terms: &mut Terms, a: &Formula, b: &Formula| -> Result<Vec<(Branch, Id, Id)>, String> {
+            let (first, second) = (branches(a, setting, terms)?, branches(b, setting, terms)?);
+            let all = first.iter().flat_map(|one| second.iter().map(move |other| (one, other)));
+            let pairs =
+                all.filter_map(|(one, other)| Some((one.and(other)?, one.term, other.term)));
+            Ok(pairs.collect())
+        };
+    let operation = |terms: &mut Terms, a: &Formula, b: &Formula, make: fn(Id, Id) -> Term| {
         let made = pairs(terms, a, b)?.into_iter().map(|(branch, left, right)| {
             let term = folded(terms, make(left, right));
             Branch { term, ..branch }
@@ -132,24 +142,25 @@ pub fn branches(real: &Real, setting: &Setting, terms: &mut Terms) -> Result<Vec
         Ok(made.collect())
     };
     let plain = |term: Id| vec![Branch { term, ..Branch::default() }];
-    match real {
-        Real::Number(value) => Ok(plain(terms.number(*value))),
-        Real::Operand(name) => Ok(plain(operand(name, setting, terms)?)),
-        Real::Word(rom, place) => Ok(plain(word(rom, place, setting, terms)?)),
-        Real::Add(a, b) => operation(terms, a, b, Term::Add),
-        Real::Sub(a, b) => operation(terms, a, b, Term::Sub),
-        Real::Mul(a, b) => operation(terms, a, b, Term::Mul),
-        Real::Div(a, b) => {
-            if let (Real::Operand(name), Real::Number(by)) = (&**a, &**b)
-                && let Some((variable, divisor)) = setting.variables.get(name)
-                && Some(*divisor) == power_of_two(*by)
-                && *divisor > 0
-            {
-                return Ok(plain(variable_of(name, variable, *divisor, setting, terms)));
-            }
-            operation(terms, a, b, Term::Div)
+    if let Some((name, power @ 1..)) = quotient(formula)
+        && let Some((variable, divisor)) = setting.variables.get(name)
+        && *divisor == power
+    {
+        return Ok(plain(variable_of(name, variable, power, setting, terms)));
+    }
+    match &formula.kind {
+        Kind::Number(value, _) => Ok(plain(terms.number(*value))),
+        Kind::Operand(name) => Ok(plain(operand(name, setting, terms)?)),
+        Kind::Word(rom, place) => Ok(plain(word(rom, place, setting, terms)?)),
+        Kind::Constant(name, _) => Err(format!("the constant `{name}` has no translation")),
+        Kind::Unary(function, _) => {
+            Err(format!("the function `{}` has no translation", function.name()))
         }
-        Real::Power(base, exponent) => {
+        Kind::Binary(Operator::Add, a, b) => operation(terms, a, b, Term::Add),
+        Kind::Binary(Operator::Sub, a, b) => operation(terms, a, b, Term::Sub),
+        Kind::Binary(Operator::Mul, a, b) => operation(terms, a, b, Term::Mul),
+        Kind::Binary(Operator::Div, a, b) => operation(terms, a, b, Term::Div),
+        Kind::Binary(Operator::Power, base, exponent) => {
             let exponent =
                 constant(exponent, setting).ok_or("a power with an exponent that varies")?;
             if let Some(base) = constant(base, setting) {
@@ -161,21 +172,20 @@ pub fn branches(real: &Real, setting: &Setting, terms: &mut Terms) -> Result<Vec
             }
             Ok(found)
         }
-        Real::Mod(..) => Err("the operator `%` has no translation".to_owned()),
-        Real::Abs(_) => Err("the function `abs` has no translation".to_owned()),
-        Real::Cos(_) => Err("the function `cos` has no translation".to_owned()),
-        Real::Max(a, b) => {
+        Kind::Binary(Operator::Mod, ..) => Err("the operator `%` has no translation".to_owned()),
+        Kind::Binary(operator @ (Operator::Max | Operator::Min), a, b) => {
             let mut found = Vec::new();
             for (branch, left, right) in pairs(terms, a, b)? {
                 let difference = folded(terms, Term::Sub(left, right));
-                for (taken, term) in [(true, left), (false, right)] {
+                let is_max = *operator == Operator::Max;
+                for (taken, term) in [(is_max, left), (!is_max, right)] {
                     let side = Branch { term, ..branch.clone() };
                     found.extend(side.choosing(difference, Choice::Larger, taken));
                 }
             }
             Ok(found)
         }
-        Real::If(comparison, yes, no) => {
+        Kind::If(comparison, yes, no) => {
             let decided = decided(comparison, setting);
             let choice = if comparison.or_equal { Choice::NotNegative } else { Choice::Positive };
             let mut found = Vec::new();
@@ -201,11 +211,11 @@ pub fn branches(real: &Real, setting: &Setting, terms: &mut Terms) -> Result<Vec
 }
 
 /// The word of a table: the number that it is wherever this case reads, or a variable.
-fn word(rom: &str, place: &Real, setting: &Setting, terms: &mut Terms) -> Result<Id, String> {
+fn word(rom: &str, place: &Formula, setting: &Setting, terms: &mut Terms) -> Result<Id, String> {
     let words = setting.words.get(rom).ok_or_else(|| format!("there is no table `{rom}`"))?;
-    let (name, range) = match place {
-        Real::Operand(name) => (name.as_str(), setting.ranges.get(name).copied()),
-        Real::Number(value) => ("", Some((*value, *value))),
+    let (name, range) = match &place.kind {
+        Kind::Operand(name) => (name.as_str(), setting.ranges.get(name).copied()),
+        Kind::Number(value, _) => ("", Some((*value, *value))),
         _ => return Err(format!("`{rom}` is read at an address that is computed")),
     };
     let (low, high) = range.ok_or_else(|| format!("there is no operand `{name}`"))?;
@@ -247,10 +257,10 @@ fn variable_of(
 }
 
 /// The value of what does not vary in this case.
-fn constant(real: &Real, setting: &Setting) -> Option<f64> {
-    match real {
-        Real::Number(value) => Some(*value),
-        Real::Operand(name) => {
+fn constant(formula: &Formula, setting: &Setting) -> Option<f64> {
+    match &formula.kind {
+        Kind::Number(value, _) => Some(*value),
+        Kind::Operand(name) => {
             setting.ranges.get(name).filter(|(low, high)| low == high).map(|range| range.0)
         }
         _ => None,
@@ -259,9 +269,9 @@ fn constant(real: &Real, setting: &Setting) -> Option<f64> {
 
 /// Whether a comparison of an operand with a number holds for all values of this case, or for none.
 fn decided(comparison: &Comparison, setting: &Setting) -> Option<bool> {
-    let range = |real: &Real| match real {
-        Real::Number(value) => Some((*value, *value)),
-        Real::Operand(name) => setting.ranges.get(name).copied(),
+    let range = |formula: &Formula| match &formula.kind {
+        Kind::Number(value, _) => Some((*value, *value)),
+        Kind::Operand(name) => setting.ranges.get(name).copied(),
         _ => None,
     };
     let (left, right) = (range(&comparison.left)?, range(&comparison.right)?);

@@ -1,13 +1,12 @@
 //! Writes the bound of a contract as statements that Gappa proves.
 //!
 //! The computation is unrolled into a graph of values and split into [`cases`] at saturations, clamps and tables, which together cover the
-//! domain. In each the [`hardware`] is an expression with roundings and the [`formula`] one without ([`exact`]), and a statement says that
+//! domain. In each the [`hardware`] is an expression with roundings and the formula one without ([`exact`]), and a statement says that
 //! they differ by the bound at most; a formula that reads a table reads the words that the hardware has.
 
 pub mod cases;
 pub mod exact;
 mod find;
-pub mod formula;
 pub mod hardware;
 pub mod polynomial;
 mod premises;
@@ -22,13 +21,13 @@ use std::collections::{BTreeMap, HashMap};
 use std::time::{Duration, Instant};
 
 use crate::base::fixed::exp2;
+use crate::formula::{Formula, Kind, Operator, parse};
 use crate::golden::Contract;
 use crate::hdl::netlist::{Design, RomId};
 use crate::hdl::pipeline::{Cell, Graph, NodeId, Op, Unrolled, unroll, unroll_line};
 use cases::{Case, Known, View};
 use exact::{Branch, Setting};
 pub use find::bound;
-use formula::Real;
 use hardware::{Hardware, Value, Variables};
 pub use proof::{Outcome, Subject, prove};
 use script::Script;
@@ -163,7 +162,7 @@ fn within(
     Ok(statements.list)
 }
 
-fn formulas(contract: &dyn Contract) -> Result<Vec<Real>, String> {
+fn formulas(contract: &dyn Contract) -> Result<Vec<Formula>, String> {
     let (expressions, wanted) = match contract.highlight() {
         Some(highlight) => (highlight.expressions(), 1),
         None => (contract.expressions(), contract.outputs().len()),
@@ -171,8 +170,13 @@ fn formulas(contract: &dyn Contract) -> Result<Vec<Real>, String> {
     if expressions.len() < wanted {
         return Err("its contract has no formula in words".to_owned());
     }
-    let parsed = expressions.iter().map(|text| formula::parse(text));
-    parsed.collect::<anyhow::Result<_>>().map_err(|error| error.to_string())
+    let parsed = expressions.iter().map(|text| {
+        parse(text).map_err(|fault| {
+            let rest: String = text.chars().skip(fault.span.start).take(40).collect();
+            format!("{fault}, `{rest}`")
+        })
+    });
+    parsed.collect()
 }
 
 struct Task<'a> {
@@ -184,7 +188,7 @@ struct Task<'a> {
     view: View<'a>,
     tables: &'a [String],
     /// The formulas of a highlight's f, or else of the outputs.
-    formulas: &'a [Real],
+    formulas: &'a [Formula],
 }
 
 impl Task<'_> {
@@ -243,8 +247,8 @@ impl Task<'_> {
                 continue;
             };
             let tables: Vec<RomId> = self.tables_read_at(node);
-            let is_exponent = |formula: &Real| formula.has_exponent(&operand.name);
-            let single = self.formulas.iter().any(is_exponent);
+            let is_exponent = |part: &Kind| matches!(part, Kind::Binary(Operator::Power, _, exponent) if **exponent == Formula::operand(&operand.name));
+            let single = self.formulas.iter().any(|formula| formula.has(&is_exponent));
             let words = |at: i64| -> Vec<i128> {
                 tables.iter().map(|&rom| (self.view.words)(rom, at as u64)).collect()
             };
@@ -257,7 +261,8 @@ impl Task<'_> {
             }
             let is_variable = |rom: &RomId| {
                 let name = &self.tables[rom.index()];
-                runs.len() > RUNS && self.formulas.iter().any(|formula| formula.reads(name))
+                let reads = |part: &Kind| matches!(part, Kind::Word(rom, _) if rom == name);
+                runs.len() > RUNS && self.formulas.iter().any(|formula| formula.has(&reads))
             };
             if !single && (tables.is_empty() || tables.len() == 1 && tables.iter().all(is_variable))
             {
@@ -421,8 +426,7 @@ impl Task<'_> {
 }
 
 fn real_operand(name: &str, setting: &Setting, terms: &mut Terms) -> Result<Id, String> {
-    let real = Real::Operand(name.to_owned());
-    let branches = exact::branches(&real, setting, terms)?;
+    let branches = exact::branches(&Formula::operand(name), setting, terms)?;
     Ok(branches[0].term)
 }
 

@@ -17,12 +17,12 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use super::cases::{self, Case};
-use super::formula::{Comparison, Real};
 use super::hardware::{self, Hardware, Value, Variables};
 use super::script::Script;
 use super::terms::{Id, Term, Terms, number};
 use super::{Statement, Statements, Task};
 use crate::base::fixed::exp2;
+use crate::formula::{Enclosure, Formula, Function, Kind, Operator, parse};
 use crate::hdl::netlist::NetId;
 use crate::hdl::pipeline::{Cell, NodeId, Op, Walked};
 
@@ -81,13 +81,13 @@ pub fn statements(task: &Task, walk: &[Walked]) -> Result<Vec<Statement>, String
 }
 
 /// Returns x and k of cos(pi / 2 · x)ᵏ.
-fn lobe(formula: &Real) -> Option<(&Real, u32)> {
-    let Real::Power(base, exponent) = formula else { return None };
-    let (Real::Cos(angle), Real::Number(power)) = (&**base, &**exponent) else { return None };
-    let Real::Mul(right, angle) = &**angle else { return None };
-    let half = Real::Div(Box::new(Real::Operand("pi".to_owned())), Box::new(Real::Number(2.0)));
+fn lobe(formula: &Formula) -> Option<(&Formula, u32)> {
+    let Kind::Binary(Operator::Power, base, exponent) = &formula.kind else { return None };
+    let Kind::Unary(Function::Cos, angle) = &base.kind else { return None };
+    let Kind::Number(power, true) = &exponent.kind else { return None };
+    let Kind::Binary(Operator::Mul, right, angle) = &angle.kind else { return None };
     let is_whole = *power >= 1.0 && *power <= 64.0 && libm::floor(*power) == *power;
-    (is_whole && **right == half).then_some((&**angle, *power as u32))
+    (is_whole && **right == parse("pi / 2").ok()?).then_some((&**angle, *power as u32))
 }
 
 /// An angle that is walked along, by names of operands.
@@ -95,7 +95,7 @@ struct Walk {
     /// The angle of the first point.
     start: String,
     /// The angle as a point has it, as the formula of a point that is no first one says it: wrapped around.
-    wrapped: Real,
+    wrapped: Formula,
 }
 
 impl Walk {
@@ -119,30 +119,16 @@ impl Walk {
             return Err(other());
         }
         let turn = exp2(format.width() as i32 - format.frac);
-        let [half, turn] = [turn / 2.0, turn].map(|value| Box::new(Real::Number(value)));
-        let [from, index, by] = [start.as_str(), "index", added.as_str()]
-            .map(|name| Box::new(Real::Operand(name.to_owned())));
-        let sum = Real::Add(from, Box::new(Real::Mul(index, by)));
-        let shifted = Real::Add(Box::new(sum), half.clone());
-        let wrapped = Real::Sub(Box::new(Real::Mod(Box::new(shifted), turn)), half);
+        let half = turn / 2.0;
+        let wrapped = format!("({start} + index * {added} + {half}) % {turn} - {half}");
+        let wrapped = parse(&wrapped).map_err(|fault| fault.under(&wrapped))?;
         Ok(Self { start, wrapped })
     }
 
     /// The expression with [`POINT`] for the angle of a point, which is what the walk's register holds: by induction that is
     /// start + index·step, wrapped around.
-    fn angle(&self, real: &Real) -> Real {
-        if *real == self.wrapped {
-            return Real::Operand(POINT.to_owned());
-        }
-        let of = |real: &Real| Box::new(self.angle(real));
-        match real {
-            Real::Abs(a) => Real::Abs(of(a)),
-            Real::If(Comparison { left, right, or_equal }, yes, no) => {
-                let (left, right) = (of(left), of(right));
-                Real::If(Comparison { left, right, or_equal: *or_equal }, of(yes), of(no))
-            }
-            other => other.clone(),
-        }
+    fn angle(&self, formula: &Formula) -> Formula {
+        formula.substitute(&self.wrapped, &Formula::operand(POINT), &formula.span)
     }
 }
 
@@ -190,7 +176,7 @@ fn table(task: &Task) -> Result<Products, String> {
 }
 
 /// The words of the table with the angles that read them, by address.
-fn words(task: &Task, table: NodeId, walk: &Walk, angle: &Real) -> Result<Vec<Word>, String> {
+fn words(task: &Task, table: NodeId, walk: &Walk, angle: &Formula) -> Result<Vec<Word>, String> {
     let graph = task.graph();
     let Cell::Read { rom, address } = graph.node(table).cell else {
         return Err("there is no table".to_owned());
@@ -227,8 +213,8 @@ fn words(task: &Task, table: NodeId, walk: &Walk, angle: &Real) -> Result<Vec<Wo
             pending.extend([(middle + 1, high), (low, middle)]);
             continue;
         };
-        let (from, to) = enclosed(angle, (value(low), value(high)))
-            .filter(|&(from, to)| from >= 0.0 && to <= 1.0)
+        let Enclosure { low: from, high: to } = enclosed(angle, (value(low), value(high)))
+            .filter(|angle| angle.low >= 0.0 && angle.high <= 1.0)
             .ok_or("its angle does not lie between 0 and a right angle")?;
         let word = data.to_f64((task.view.words)(rom, at as u64));
         let known = found.entry(at).or_insert(Word { value: word, from, to });
@@ -237,27 +223,9 @@ fn words(task: &Task, table: NodeId, walk: &Walk, angle: &Real) -> Result<Vec<Wo
     Ok(found.into_values().collect())
 }
 
-/// Numbers between which the expression lies where the angle of the point is in this range; none where it is made of anything else, or
-/// of steps that are not exact in f64.
-fn enclosed(real: &Real, range: (f64, f64)) -> Option<(f64, f64)> {
-    let of = |real: &Real| enclosed(real, range);
-    match real {
-        Real::Number(value) => Some((*value, *value)),
-        Real::Operand(name) => (name == POINT).then_some(range),
-        Real::Abs(a) => {
-            let (low, high) = of(a)?;
-            let least = if low > 0.0 { low } else { (-high).max(0.0) };
-            Some((least, high.max(-low)))
-        }
-        // The smaller of two.
-        Real::If(Comparison { left, right, or_equal: false }, yes, no)
-            if left == no && right == yes =>
-        {
-            let (a, b) = (of(left)?, of(right)?);
-            Some((a.0.min(b.0), a.1.min(b.1)))
-        }
-        _ => None,
-    }
+/// The enclosure of an angle where that of the point is in this range; none where it is made of anything else.
+fn enclosed(angle: &Formula, (low, high): (f64, f64)) -> Option<Enclosure> {
+    angle.enclose(&[(POINT, Enclosure::between(low, high))]).ok()
 }
 
 /// That words are within `bound` of the formula at both ends of their segments.
@@ -368,13 +336,14 @@ fn about_output(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::certify::formula::parse;
 
     #[test]
     fn the_angle_of_a_point_is_that_of_the_walk_alone() {
-        let real = |text: &str| parse(text).expect("an expression");
+        let real = |text: &str| parse(text).expect("a formula");
         let walk = Walk { start: "a".to_owned(), wrapped: real("(a + index * d + 2) % 4 - 2") };
-        let range = |text: &str, range| enclosed(&walk.angle(&real(text)), range);
+        let range = |text: &str, range| {
+            enclosed(&walk.angle(&real(text)), range).map(|it| (it.low, it.high))
+        };
         let folded = "min(abs(((a + index * d + 2) % 4 - 2)), 1)";
         assert_eq!(range(folded, (0.25, 0.5)), Some((0.25, 0.5)));
         assert_eq!(range(folded, (-0.5, -0.25)), Some((0.25, 0.5)));
@@ -393,7 +362,7 @@ mod tests {
 
     #[test]
     fn a_power_of_a_cosine_is_recognised() {
-        let power = |text: &str| lobe(&parse(text).expect("an expression")).map(|(_, power)| power);
+        let power = |text: &str| lobe(&parse(text).expect("a formula")).map(|(_, power)| power);
         assert_eq!(power("cos(pi / 2 * x) ** 2"), Some(2));
         assert_eq!(power("cos(pi / 2 * x) ** 16"), Some(16));
         for other in ["cos(pi / 3 * x) ** 2", "cos(pi / 2 * x) ** 2.5", "cos(x) ** 2", "x ** 2"] {

@@ -8,9 +8,9 @@ use std::collections::HashMap;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 
-use super::formula::{Real, parse};
 use super::terms::{Direction, Id, Term, Terms, number};
 use crate::base::fixed::exp2;
+use crate::formula::{Formula, Function, Kind, Operator, parse};
 
 /// Points from which a descent begins.
 const STARTS: usize = 64;
@@ -187,17 +187,25 @@ fn expression(text: &str, terms: &mut Terms, names: &HashMap<String, Id>) -> Opt
     term(&parse(text).ok()?, terms, names)
 }
 
-fn term(real: &Real, terms: &mut Terms, names: &HashMap<String, Id>) -> Option<Id> {
-    let (make, a, b): (fn(Id, Id) -> Term, _, _) = match real {
-        Real::Number(value) => return Some(terms.number(*value)),
-        Real::Operand(name) => {
-            let known = names.get(name).copied();
-            return Some(known.unwrap_or_else(|| terms.insert(Term::Variable(name.clone()), name)));
+fn term(formula: &Formula, terms: &mut Terms, names: &HashMap<String, Id>) -> Option<Id> {
+    let (make, a, b): (fn(Id, Id) -> Term, _, _) = match &formula.kind {
+        Kind::Number(value, _) => return Some(terms.number(*value)),
+        // A script has names of its own alone.
+        Kind::Operand(_) | Kind::Constant(..) => {
+            let name = formula.python();
+            let known = names.get(&name).copied();
+            return Some(
+                known.unwrap_or_else(|| terms.insert(Term::Variable(name.clone()), &name)),
+            );
         }
-        Real::Add(a, b) => (Term::Add, a, b),
-        Real::Sub(a, b) => (Term::Sub, a, b),
-        Real::Mul(a, b) => (Term::Mul, a, b),
-        Real::Div(a, b) => (Term::Div, a, b),
+        Kind::Unary(Function::Negate, a) => {
+            let (zero, a) = (terms.number(0.0), term(a, terms, names)?);
+            return Some(terms.insert(Term::Sub(zero, a), ""));
+        }
+        Kind::Binary(Operator::Add, a, b) => (Term::Add, a, b),
+        Kind::Binary(Operator::Sub, a, b) => (Term::Sub, a, b),
+        Kind::Binary(Operator::Mul, a, b) => (Term::Mul, a, b),
+        Kind::Binary(Operator::Div, a, b) => (Term::Div, a, b),
         _ => return None,
     };
     let (a, b) = (term(a, terms, names)?, term(b, terms, names)?);

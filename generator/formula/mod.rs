@@ -1,4 +1,4 @@
-//! Formulas: text to a tree, and the tree to numbers, enclosures and the languages of other tools.
+//! Formulas: text to a tree, and the tree to enclosures and to Python.
 //!
 //! The text is what a configuration or a contract states, `1 / sqrt(x)` or `max(x, 0) if x > 1 else 2 ** -x`. Every part
 //! of the tree knows the bytes of the text that it came from, so that a mistake is shown under its place.
@@ -13,10 +13,9 @@ use std::ops::Range;
 
 pub use enclosure::Enclosure;
 pub use parse::{FUNCTIONS, parse};
-pub use print::Language;
 
-/// A part of a formula.
-#[derive(Clone, Debug, PartialEq)]
+/// A part of a formula. Two are equal whose kinds are, wherever they come from.
+#[derive(Clone, Debug)]
 pub struct Formula {
     /// What it is.
     pub kind: Kind,
@@ -119,7 +118,18 @@ impl Fault {
     }
 }
 
+impl PartialEq for Formula {
+    fn eq(&self, other: &Self) -> bool {
+        self.kind == other.kind
+    }
+}
+
 impl Formula {
+    /// The operand of this name, which comes from no text.
+    pub fn operand(name: &str) -> Self {
+        Self { kind: Kind::Operand(name.to_owned()), span: 0..0 }
+    }
+
     /// The parts that it is made of.
     pub fn parts(&self) -> Vec<&Self> {
         match &self.kind {
@@ -153,11 +163,18 @@ impl Formula {
         fault.map_or(Ok(self), Err)
     }
 
-    /// The formula with another in the place of an operand; every part has the span of `call`.
-    fn substitute(&self, name: &str, value: &Self, call: &Range<usize>) -> Self {
-        let inner = |part: &Self| Box::new(part.substitute(name, value, call));
+    /// Returns whether a part satisfies the predicate.
+    pub fn has(&self, is: &dyn Fn(&Kind) -> bool) -> bool {
+        is(&self.kind) || self.parts().into_iter().any(|part| part.has(is))
+    }
+
+    /// Puts `new` in the place of every `old`; every other part has the span of `call`.
+    pub fn substitute(&self, old: &Self, new: &Self, call: &Range<usize>) -> Self {
+        if self == old {
+            return new.clone();
+        }
+        let inner = |part: &Self| Box::new(part.substitute(old, new, call));
         let kind = match &self.kind {
-            Kind::Operand(own) if own == name => return value.clone(),
             Kind::Word(rom, at) => Kind::Word(rom.clone(), inner(at)),
             Kind::Unary(function, a) => Kind::Unary(*function, inner(a)),
             Kind::Binary(operator, a, b) => Kind::Binary(*operator, inner(a), inner(b)),

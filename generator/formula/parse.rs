@@ -10,8 +10,9 @@ pub const FUNCTIONS: [(&str, Function); 13] = [
     ("sqrt", Function::Sqrt),
     ("exp", Function::Exp),
     ("exp2", Function::Exp2),
-    ("ln", Function::Ln),
+    // First the name that Python has too.
     ("log", Function::Ln),
+    ("ln", Function::Ln),
     ("log2", Function::Log2),
     ("sin", Function::Sin),
     ("cos", Function::Cos),
@@ -283,7 +284,7 @@ impl Parser<'_> {
                 self.expect(")")?;
                 let span = self.tokens[from].start..self.tokens[self.at - 1].end;
                 let body = parse(defined.unwrap_or("u"))?;
-                return Ok(body.substitute("u", &first, &span));
+                return Ok(body.substitute(&Formula::operand("u"), &first, &span));
             }
         };
         self.expect(")")?;

@@ -10,7 +10,6 @@ use super::{Contract, Model, Term};
 use crate::approximate::{Function, Outside, Piecewise};
 use crate::base::fixed::exp2;
 use crate::config::Config;
-use crate::formula::Language;
 use crate::keys::function::found;
 
 /// Registers: the operand, and the sums from each coefficient on, of which the first is the result.
@@ -84,6 +83,6 @@ impl Formula for Stated {
     }
 
     fn expressions(&self) -> Vec<String> {
-        self.function.formula.print(Language::Python).into_iter().collect()
+        vec![self.function.formula.python()]
     }
 }

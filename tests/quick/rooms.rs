@@ -30,7 +30,7 @@ const ROOMS: [(&str, &str); 29] = [
     ("cosim", "base golden hdl/netlist hdl/sim observation package tools"),
     ("registry", "base config keys golden hdl/netlist hdl/dsl hdl/pipeline devices"),
     ("core", "base config golden hdl/netlist package tools cosim registry"),
-    ("certify", "base golden hdl/netlist hdl/pipeline tools"),
+    ("certify", "base formula golden hdl/netlist hdl/pipeline tools"),
     ("mutate", "base golden hdl/netlist hdl/sim package tools cosim core"),
     ("render", "base config golden cosim core"),
     ("evidence", "config golden hdl/netlist tools cosim registry core"),
