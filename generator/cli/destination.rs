@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, anyhow};
 
-use crate::base::transient::{Directory, left_beside};
+use crate::base::transient::Directory;
 
 /// The file while it is written, in a directory of its own.
 const UNFINISHED: &str = "unfinished";
@@ -45,9 +45,6 @@ impl Destination {
             Some(parent) if parent != Path::new("") => parent,
             _ => Path::new("."),
         };
-        for left in left_beside(directory).iter().filter(|left| left.stated == [UNFINISHED]) {
-            let _ = fs::remove_dir_all(&left.path);
-        }
         let missing = |error: io::Error| match error.kind() {
             ErrorKind::NotFound => {
                 anyhow!("there is no directory `{}`; make it", directory.display())
@@ -55,8 +52,7 @@ impl Destination {
             _ => error.into(),
         };
         let made = || -> Result<Directory> {
-            let mut beside = Directory::beside(directory).map_err(missing)?;
-            beside.state(UNFINISHED)?;
+            let beside = Directory::beside(directory).map_err(missing)?;
             File::create(beside.path().join(UNFINISHED))?;
             Ok(beside)
         };

@@ -47,7 +47,6 @@ impl fmt::Display for Written {
 /// Files of Glint's that were edited, or others that would be overwritten, unless `force` (which still keeps
 /// those that are not in the way); a directory that cannot be written. Nothing of the user's is changed then.
 pub fn write(out: &Path, name: &str, files: &[OutputFile], force: bool) -> Result<Written> {
-    staging::recover(out)?;
     let found = Survey::new(out, name, files)?;
     if found.different.is_empty() {
         return Ok(Written::Unchanged);

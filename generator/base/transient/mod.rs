@@ -22,7 +22,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 pub use child::{Child, adopt_orphans};
-pub use scratch::{Directory, files_below, left_beside, relative_name};
+pub use scratch::{Directory, files_below, relative_name};
 
 /// How long [`clear`] waits for killed processes, and for a directory that something still writes to.
 const CLEARING_LIMIT: Duration = Duration::from_secs(5);

@@ -33,20 +33,20 @@ impl Directory {
     /// It cannot be made.
     pub fn new() -> io::Result<Self> {
         let place = std::env::temp_dir();
-        SWEEP.call_once(|| {
-            left(&place, FOR_TOOLS).iter().for_each(|left| drop(fs::remove_dir_all(&left.path)));
-        });
+        SWEEP.call_once(|| sweep(&place, FOR_TOOLS));
         Self::made(&place, FOR_TOOLS)
     }
 
-    /// One in `parent`, for files that are moved into their places beside it. The files that are made in it are stated by
-    /// [`Directory::state`].
+    /// One in `parent`, for files that are moved into their places beside it, once those that killed processes have left
+    /// there are deleted.
     ///
     /// # Errors
     /// It cannot be made.
     pub fn beside(parent: &Path) -> io::Result<Self> {
         // The path stays right when the process changes its directory.
-        Self::made(&std::path::absolute(parent)?, BESIDE)
+        let parent = std::path::absolute(parent)?;
+        sweep(&parent, BESIDE);
+        Self::made(&parent, BESIDE)
     }
 
     fn made(parent: &Path, prefix: &str) -> io::Result<Self> {
@@ -58,32 +58,17 @@ impl Directory {
             made
         };
         let mut directory = Self { made: Some(made), lock: None };
-        let lock = fs::File::create(directory.path().join(LOCK))?;
+        let mut lock = fs::File::create(directory.path().join(LOCK))?;
         // Before it says anything: what is empty is nobody's. A system without locks goes without.
         let _ = lock.try_lock();
+        lock.write_all(title(directory.path()).as_bytes())?;
         directory.lock = Some(lock);
-        directory.state(&title(directory.path()))?;
         Ok(directory)
-    }
-
-    /// Adds a line to the file that says whose the directory is.
-    ///
-    /// # Errors
-    /// It cannot be written.
-    pub fn state(&mut self, line: &str) -> io::Result<()> {
-        self.lock.as_mut().map_or(Ok(()), |lock| writeln!(lock, "{line}"))
     }
 
     /// Where it is.
     pub fn path(&self) -> &Path {
         self.made.as_ref().map_or(Path::new(""), TempDir::path)
-    }
-
-    /// Keeps the directory, as a process does that is killed.
-    pub fn keep(mut self) -> PathBuf {
-        let path = self.path().to_owned();
-        list().paths.remove(&path);
-        self.made.take().map_or(path, TempDir::keep)
     }
 }
 
@@ -104,52 +89,27 @@ impl Drop for Directory {
     }
 }
 
-/// A directory that a killed process has left. It is locked while this lives.
-pub struct Left {
-    /// Where it is.
-    pub path: PathBuf,
-    /// What was stated of it, line by line.
-    pub stated: Vec<String>,
-    _lock: fs::File,
-}
-
-/// The directories that killed processes have left in `parent` beside files, and in which nothing stands but what was
-/// stated: what else is there may be somebody's.
-pub fn left_beside(parent: &Path) -> Vec<Left> {
-    let mut all = left(parent, BESIDE);
-    all.retain(|left| {
-        files_below(&left.path).is_ok_and(|files| {
-            let mut names = files.iter().map(|file| relative_name(&left.path, file));
-            names.all(|name| name == LOCK || left.stated.contains(&name))
-        })
-    });
-    all
-}
-
-/// The directories that killed processes have left in `parent`: those that say that they are, under their own name, and
-/// that nobody has locked.
-fn left(parent: &Path, prefix: &str) -> Vec<Left> {
-    let of_entry = |entry: fs::DirEntry| {
-        let (path, name) = (entry.path(), entry.file_name());
-        let lock = path.join(LOCK);
-        let is_named = name.to_string_lossy().starts_with(prefix);
-        if !is_named || !fs::symlink_metadata(&lock).is_ok_and(|found| found.is_file()) {
-            return None;
+/// Deletes the directories that killed processes have left in `parent`: those that say that they are, under their own
+/// name, and that nobody has locked.
+fn sweep(parent: &Path, prefix: &str) {
+    for entry in fs::read_dir(parent).into_iter().flatten().flatten() {
+        let (path, lock) = (entry.path(), entry.path().join(LOCK));
+        let is_own = entry.file_name().to_string_lossy().starts_with(prefix)
+            && fs::symlink_metadata(&lock).is_ok_and(|found| found.is_file())
+            && fs::read_to_string(&lock).is_ok_and(|text| text == title(&path));
+        if let Ok(lock) = fs::File::open(&lock)
+            && is_own
+            && lock.try_lock().is_ok()
+        {
+            let _ = fs::remove_dir_all(&path);
         }
-        let text = fs::read_to_string(&lock).ok()?;
-        let mut lines = text.lines().map(str::to_owned);
-        let lock = fs::File::open(&lock).ok()?;
-        let is_left = lines.next()? == title(&path) && lock.try_lock().is_ok();
-        is_left.then(|| Left { path, stated: lines.collect(), _lock: lock })
-    };
-    let entries = fs::read_dir(parent).into_iter().flatten().flatten();
-    entries.filter_map(of_entry).collect()
+    }
 }
 
-/// The first line of the file in a directory.
+/// The text of the file in a directory.
 fn title(directory: &Path) -> String {
     let name = directory.file_name().unwrap_or_default().to_string_lossy();
-    format!("Glint works in {name}. The next run deletes what a killed one has left.")
+    format!("Glint works in {name}. The next run deletes what a killed one has left.\n")
 }
 
 /// Everything below a directory that is none, sorted; links are not followed.

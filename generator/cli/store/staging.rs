@@ -1,7 +1,7 @@
 //! The directory in which new files are made whole before each is moved into its place.
 //!
-//! Of one that a killed run has left, if all was made, the next run moves the rest into place; else it begins anew, since what is
-//! generated can be generated again.
+//! The next run after one that was killed begins anew: what is generated can be generated again. Files that were moved
+//! already are as they are to be, and the manifest, which comes last, vouches for the others.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,11 +9,8 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, ensure};
 
 use super::{create_directory, create_parent};
-use crate::base::transient::{self, Directory, left_beside};
+use crate::base::transient::{self, Directory};
 use crate::package::OutputFile;
-
-/// What is stated of the directory once all files are made.
-const MADE: &str = "All are made. The next run moves into place what is still here.";
 
 /// Complete new files, beside the directories that they are for.
 pub struct Staging {
@@ -30,9 +27,7 @@ impl Staging {
     pub fn new(out: &Path, files: &[OutputFile]) -> Result<Self> {
         let cannot =
             || format!("cannot write to `{}`; choose another directory with --out", out.display());
-        let mut directory = Directory::beside(out).with_context(cannot)?;
-        let made: Vec<String> = files.iter().map(|file| file.path.clone()).collect();
-        directory.state(&made.join("\n")).with_context(cannot)?;
+        let directory = Directory::beside(out).with_context(cannot)?;
         for file in files {
             let path = directory.path().join(&file.path);
             create_parent(&path)?;
@@ -40,24 +35,15 @@ impl Staging {
                 format!("cannot write `{}`; what was there before is unchanged", file.path)
             })?;
         }
-        Ok(Self { directory, made })
-    }
-
-    /// Leaves everything as it is, as a process does that is killed.
-    #[cfg(test)]
-    pub fn abandon(mut self, is_made: bool) -> PathBuf {
-        if is_made {
-            self.directory.state(MADE).unwrap();
-        }
-        self.directory.keep()
+        Ok(Self { directory, made: files.iter().map(|file| file.path.clone()).collect() })
     }
 
     /// Deletes the files `stale`, which the configuration no longer asks for, and moves the new ones into their places, where
     /// nothing may stand any more that is not to be replaced.
     ///
     /// # Errors
-    /// A directory cannot be made; then nothing was changed. A file cannot be moved; then the next run moves the rest.
-    pub fn place(mut self, out: &Path, stale: &[PathBuf]) -> Result<()> {
+    /// A directory cannot be made; then nothing was changed. A file cannot be moved; then the next run writes the rest.
+    pub fn place(self, out: &Path, stale: &[PathBuf]) -> Result<()> {
         for path in &self.made {
             // `rtl_out/<name>/…`
             let mut parts = path.split('/');
@@ -71,8 +57,7 @@ impl Staging {
                 own.display()
             );
         }
-        self.directory.state(MADE).context("what was there before is unchanged")?;
-        let moved = transient::undivided(|| {
+        transient::undivided(|| {
             for path in stale {
                 fs::remove_file(path)
                     .with_context(|| format!("cannot delete `{}`", path.display()))?;
@@ -83,22 +68,14 @@ impl Staging {
                 let _ = below.map(fs::remove_dir).take_while(Result::is_ok).count();
             }
             place(out, self.directory.path(), &self.made)
-        });
-        moved.or_else(|error| {
-            let left = self.directory.keep();
-            Err(error)
-                .context(format!("the next run takes the new files from `{}`", left.display()))
         })
     }
 }
 
-/// Moves what is still in `staging` into its place. The manifest, which vouches for the others, comes last.
+/// Moves what is in `staging` into its place. The manifest, which vouches for the others, comes last.
 fn place(out: &Path, staging: &Path, made: &[String]) -> Result<()> {
     for path in made {
         let (new, place) = (staging.join(path), out.join(path));
-        if fs::symlink_metadata(&new).is_err() {
-            continue;
-        }
         make_room(out, path)?;
         create_parent(&place)?;
         fs::rename(&new, &place)
@@ -119,23 +96,6 @@ fn make_room(out: &Path, path: &str) -> Result<()> {
     let place = out.join(path);
     if fs::symlink_metadata(&place).is_ok_and(|found| found.is_dir()) {
         fs::remove_dir_all(&place).with_context(|| cannot(&place))?;
-    }
-    Ok(())
-}
-
-/// Finishes what killed runs have begun to move in `out`, and deletes their directories.
-///
-/// # Errors
-/// Something cannot be moved or deleted.
-pub fn recover(out: &Path) -> Result<()> {
-    for left in left_beside(out) {
-        let finished = match left.stated.split_last() {
-            Some((last, made)) if last == MADE => place(out, &left.path, made),
-            _ => Ok(()),
-        };
-        finished
-            .and_then(|()| Ok(fs::remove_dir_all(&left.path)?))
-            .with_context(|| format!("a killed run has left `{}`", left.path.display()))?;
     }
     Ok(())
 }
