@@ -1,10 +1,8 @@
 //! A bench that is built once and run several times, with other memories.
 
-// Each test crate uses a part of this.
-#![allow(dead_code)]
-
 use std::fs;
 
+use super::Sure;
 use glint::tools::{Run, Simulator};
 use tempfile::TempDir;
 
@@ -71,12 +69,12 @@ impl Bench {
     /// It does not start or does not end.
     pub fn run(&self) -> Run {
         let directory = self.dir.path();
-        let run = match self.simulator {
+        match self.simulator {
             // -n: a $stop ends the run instead of asking the terminal.
             Simulator::Icarus => tool("vvp").run(["-n", "bench.vvp"], directory, LIMIT),
             Simulator::Verilator => tool("env").run(["./obj_dir/bench"], directory, LIMIT),
-        };
-        run.unwrap_or_else(|error| panic!("{error:#}"))
+        }
+        .sure()
     }
 
     /// # Panics

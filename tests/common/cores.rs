@@ -1,8 +1,5 @@
 //! Configurations with their designs, and what is emitted for them.
 
-// Each test crate uses a part of this.
-#![allow(dead_code)]
-
 use std::fs;
 use std::path::Path;
 

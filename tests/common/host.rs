@@ -1,8 +1,5 @@
 //! A host that drives a core in the built-in simulator, by the names of its ports.
 
-// Each test crate uses a part of this.
-#![allow(dead_code)]
-
 use glint::hdl::netlist::{Design, NetId};
 use glint::hdl::sim::Simulator;
 

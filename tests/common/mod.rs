@@ -1,5 +1,8 @@
 //! The shared parts of the tests.
 
+// Each test crate uses a part of this.
+#![allow(dead_code)]
+
 pub mod bench;
 pub mod cores;
 pub mod host;
@@ -8,11 +11,26 @@ pub mod said;
 pub mod sample;
 pub mod tools;
 
+/// A result without which a test cannot go on.
+pub trait Sure<T> {
+    /// Returns the value.
+    ///
+    /// # Panics
+    /// There is an error, which is told with its causes.
+    fn sure(self) -> T;
+}
+
+impl<T, E: std::fmt::Display> Sure<T> for Result<T, E> {
+    #[track_caller]
+    fn sure(self) -> T {
+        self.unwrap_or_else(|error| panic!("{error:#}"))
+    }
+}
+
 /// Cases of a fuzz test: so many by default, or what `GLINT_FUZZ_CASES` says.
 ///
 /// # Panics
 /// It does not say a number.
-#[allow(dead_code)]
 pub fn cases(default: u32) -> u32 {
     match std::env::var("GLINT_FUZZ_CASES") {
         Ok(text) => text.parse().expect("GLINT_FUZZ_CASES is a number"),

@@ -1,10 +1,8 @@
 //! Netlists from synthesis, and their simulation with models of the family's cells.
 
-// Each test crate uses a part of this.
-#![allow(dead_code)]
-
 use std::path::Path;
 
+use super::Sure;
 use glint::tools::Simulator;
 use glint::tools::gates;
 use glint::tools::synthesis::Family;
@@ -40,7 +38,6 @@ pub fn synthesise(directory: &Path, emitted: &Emitted, family: &Family) {
 /// Icarus Verilog refuses it, or the models of the cells are not where Yosys has them.
 pub fn bench(emitted: &Emitted, netlist: String, family: &Family) -> Bench {
     let rtl: Vec<String> = emitted.rtl().into_iter().map(|(name, _)| name).collect();
-    let files = gates::bench(&tool("yosys"), emitted.simulated(), &rtl, netlist, family)
-        .unwrap_or_else(|error| panic!("{error:#}"));
+    let files = gates::bench(&tool("yosys"), emitted.simulated(), &rtl, netlist, family).sure();
     Bench::build_quietly(Simulator::Icarus, &files, &emitted.bench())
 }

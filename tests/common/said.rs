@@ -1,8 +1,5 @@
 //! Files and what is said of them, as text.
 
-// Each test crate uses a part of this.
-#![allow(dead_code)]
-
 /// A file, and what is said of it.
 pub struct Case {
     /// The heading above it and those before it.

@@ -1,8 +1,5 @@
 //! The sample of a long test that runs by default; the commit draws it, so that over time all is covered.
 
-// Each test crate uses a part of this.
-#![allow(dead_code)]
-
 use std::env;
 use std::process::Command;
 

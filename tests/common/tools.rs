@@ -2,14 +2,12 @@
 //!
 //! A missing tool fails the test, with the remedy: a test that skips itself proves nothing.
 
-// Each test crate uses a part of this.
-#![allow(dead_code)]
-
 use std::env;
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use super::Sure;
 use glint::tools::{BenchOutcome, Simulator, Tool, lint, run_bench};
 
 /// The time limit of any tool.
@@ -24,7 +22,19 @@ pub fn tool(name: &str) -> Tool {
     let path = env::var_os("PATH").unwrap_or_default();
     let dirs = std::iter::once(venv).chain(env::split_paths(&path));
     let search: OsString = env::join_paths(dirs).expect("a search path");
-    Tool::find_in(name, &search).unwrap_or_else(|error| panic!("{error:#}"))
+    Tool::find_in(name, &search).sure()
+}
+
+/// Runs a tool, which is expected to succeed, and returns what it says.
+///
+/// # Panics
+/// It does not.
+pub fn ran<A: AsRef<OsStr>>(
+    name: &str,
+    arguments: impl IntoIterator<Item = A>,
+    directory: &Path,
+) -> String {
+    tool(name).run_to_success(arguments, directory, LIMIT).sure()
 }
 
 /// Runs a bench that is expected to pass; returns what came of it.
@@ -36,8 +46,7 @@ pub fn assert_bench_passes(
     files: &[(String, String)],
     top: &str,
 ) -> BenchOutcome {
-    let outcome =
-        run_bench(simulator, files, top, LIMIT).unwrap_or_else(|error| panic!("{error:#}"));
+    let outcome = run_bench(simulator, files, top, LIMIT).sure();
     assert!(outcome.passed, "{top} under {simulator}:\n{}", outcome.transcript);
     if simulator == Simulator::Icarus {
         assert_eq!(outcome.build, "", "{top}: warnings of iverilog -Wall");

@@ -23,28 +23,30 @@ use crate::common::cores::{all_configurations, configuration};
 /// The cells of a row.
 type Row = Vec<String>;
 
-/// Makes the rows of a table from those that stand there.
-type Make = fn(Vec<Row>) -> Vec<Row>;
+/// Brings the rows of a table up to date.
+type Make = fn(&mut Vec<Row>);
 
 const MEASUREMENTS: &str = "docs/measurements.md";
 const VERIFICATION: &str = "docs/verification.md";
 
 /// A table: its page, its name, and the function that makes it.
 const TABLES: [(&str, &str, Make); 14] = [
-    ("README.md", "main_job", main_job),
-    (MEASUREMENTS, "devices", devices),
-    (MEASUREMENTS, "choices", choices),
+    ("README.md", "main_job", |rows| rows.iter_mut().for_each(main_job)),
+    (MEASUREMENTS, "devices", |rows| rows.iter_mut().for_each(device)),
+    (MEASUREMENTS, "choices", |rows| rows.iter_mut().for_each(choice)),
     (MEASUREMENTS, "area_and_speed", area_and_speed),
     (MEASUREMENTS, "small_ice40", |rows| small(rows, Target::Ice40)),
     (MEASUREMENTS, "small_ecp5", |rows| small(rows, Target::Ecp5)),
     (MEASUREMENTS, "literature", literature),
     (MEASUREMENTS, "pipelines", pipelines),
-    (MEASUREMENTS, "registered_multipliers", registered_multipliers),
+    (MEASUREMENTS, "registered_multipliers", |rows| {
+        rows.iter_mut().for_each(registered_multipliers)
+    }),
     (VERIFICATION, "verify", verify),
-    (VERIFICATION, "faults", |_| faults_in_netlists(false)),
-    (VERIFICATION, "faults_of_pipelines", |_| faults_in_netlists(true)),
-    (VERIFICATION, "faults_in_verilog", |_| faults_in_verilog()),
-    (VERIFICATION, "shipped_benches", |_| shipped_benches()),
+    (VERIFICATION, "faults", |rows| *rows = faults_in_netlists(false)),
+    (VERIFICATION, "faults_of_pipelines", |rows| *rows = faults_in_netlists(true)),
+    (VERIFICATION, "faults_in_verilog", |rows| *rows = faults_in_verilog()),
+    (VERIFICATION, "shipped_benches", |rows| *rows = shipped_benches()),
 ];
 
 fn read(path: &str) -> String {
@@ -74,7 +76,11 @@ fn divided<'a>(page: &str, text: &'a str, name: &str) -> (&'a str, Vec<Row>, &'a
 fn bless_changes_no_table() {
     let written: Vec<Vec<Row>> = TABLES
         .par_iter()
-        .map(|(page, name, rows)| rows(divided(page, &read(page), name).1))
+        .map(|(page, name, make)| {
+            let mut rows = divided(page, &read(page), name).1;
+            make(&mut rows);
+            rows
+        })
         .collect();
     let bless = std::env::var_os("GLINT_BLESS").is_some();
     for ((page, name, _), rows) in TABLES.iter().zip(written) {
@@ -125,60 +131,46 @@ fn trimmed(number: f64) -> String {
 }
 
 /// The largest error is that of a run of the main job.
-fn main_job(mut rows: Vec<Row>) -> Vec<Row> {
-    for row in &mut rows {
-        let core = core(key(row));
-        let clocks = core.timing().expect("clocks").clocks_per_point().expect("a number");
-        let bound = core.contract.bound().units;
-        let rom_bits = grouped(core.design.rom_bits());
-        let device = format!("`{}`", core.device.name);
-        put(row, 1, [device, clocks.to_string(), rom_bits, format!("{bound:.3}")]);
-        assert!(row[5].parse::<f64>().is_ok_and(|error| error <= bound), "{row:?}");
-    }
-    rows
+fn main_job(row: &mut Row) {
+    let core = core(key(row));
+    let clocks = core.timing().expect("clocks").clocks_per_point().expect("a number");
+    let bound = core.contract.bound().units;
+    let device = format!("`{}`", core.device.name);
+    let rom_bits = grouped(core.design.rom_bits());
+    put(row, 1, [device, clocks.to_string(), rom_bits, format!("{bound:.3}")]);
+    assert!(row[5].parse::<f64>().is_ok_and(|error| error <= bound), "{row:?}");
 }
 
 /// Errors at the exponent of the comparison, and areas by the records.
-fn devices(mut rows: Vec<Row>) -> Vec<Row> {
+fn device(row: &mut Row) {
     const EXPONENT: f64 = 35.0;
-    for row in &mut rows {
-        let name = key(row).replace('-', "_");
-        let core = core(&name);
-        let found = accuracy(core.contract.as_ref(), EXPONENT).expect("a highlight");
-        let clocks =
-            clocks_per_point(&core.design, core.contract.as_ref(), EXPONENT).expect("it ends");
-        let errors = [found.whole, found.formula, found.fixed_point];
-        put(row, 1, errors.map(|it| format!("{:.5}", it.largest)));
-        put(row, 4, [trimmed(clocks), core.design.rom_bits().to_string()]);
-        let record = record(&name);
-        put(
-            row,
-            6,
-            [Target::Ice40, Target::Ecp5, Target::Xilinx7].map(|it| area(figures(&record, it))),
-        );
-    }
-    rows
+    let name = key(row).replace('-', "_");
+    let core = core(&name);
+    let found = accuracy(core.contract.as_ref(), EXPONENT).expect("a highlight");
+    let clocks = clocks_per_point(&core.design, core.contract.as_ref(), EXPONENT).expect("it ends");
+    let errors = [found.whole, found.formula, found.fixed_point];
+    put(row, 1, errors.map(|it| format!("{:.5}", it.largest)));
+    put(row, 4, [trimmed(clocks), core.design.rom_bits().to_string()]);
+    let record = record(&name);
+    let targets = [Target::Ice40, Target::Ecp5, Target::Xilinx7];
+    put(row, 6, targets.map(|it| area(figures(&record, it))));
 }
 
-fn choices(mut rows: Vec<Row>) -> Vec<Row> {
-    for row in &mut rows {
-        let name = key(row).to_owned();
-        let core = core(&name);
-        let error = |value: &Value| format!("{:.3}", value.as_f64().expect("an error"));
-        let worst = &json(&format!("proofs/worst/{name}.json"))["units"];
-        let record = format!("proofs/{name}.json");
-        let together = if fs::exists(&record).expect("readable") {
-            error(&json(&record)["configurations"][0]["together"])
-        } else {
-            "–".to_owned()
-        };
-        let bound = format!("{:.3}", core.contract.bound().units);
-        put(row, 3, [grouped(core.design.rom_bits()), bound, error(worst), together]);
-    }
-    rows
+fn choice(row: &mut Row) {
+    let name = key(row).to_owned();
+    let core = core(&name);
+    let error = |value: &Value| format!("{:.3}", value.as_f64().expect("an error"));
+    let worst = &json(&format!("proofs/worst/{name}.json"))["units"];
+    let record = format!("proofs/{name}.json");
+    let together = match fs::exists(&record).expect("readable") {
+        true => error(&json(&record)["configurations"][0]["together"]),
+        false => "–".to_owned(),
+    };
+    let bound = format!("{:.3}", core.contract.bound().units);
+    put(row, 3, [grouped(core.design.rom_bits()), bound, error(worst), together]);
 }
 
-fn area_and_speed(_: Vec<Row>) -> Vec<Row> {
+fn area_and_speed(rows: &mut Vec<Row>) {
     let records = input::records::<Record>(Path::new(synth::DIRECTORY)).expect("records");
     let mut records: Vec<Record> = records.into_iter().map(|(_, record)| record).collect();
     let catalogue = Registry::catalogue();
@@ -205,7 +197,7 @@ fn area_and_speed(_: Vec<Row>) -> Vec<Row> {
             one(rate(cells).map(|it| it.points)),
         ]
     };
-    records.iter().map(row).collect()
+    *rows = records.iter().map(row).collect();
 }
 
 /// The pipeline of a configuration in which the line of the clock is another, or the same.
@@ -223,8 +215,8 @@ fn register_bits(pipeline: &Pipeline) -> String {
 }
 
 /// Stages and register bits; frequencies, areas and the pipelines by hand are of `benches/pipeline/ecp5.py`.
-fn pipelines(mut rows: Vec<Row>) -> Vec<Row> {
-    for row in &mut rows {
+fn pipelines(rows: &mut Vec<Row>) {
+    for row in &mut *rows {
         let now = pipeline(key(row), None);
         let slower = pipeline(key(row), Some("clock_mhz = 60"));
         put(row, 1, [now.stages.len().to_string()]);
@@ -237,17 +229,13 @@ fn pipelines(mut rows: Vec<Row>) -> Vec<Row> {
         core.design.pipeline.as_ref().is_some_and(|pipeline| pipeline.registered.is_empty())
     });
     assert_eq!(listed, inferred.map(|(_, core)| core.config.name).collect());
-    rows
 }
 
 /// All columns but the frequencies, which are of `benches/pipeline/ecp5.py`.
-fn registered_multipliers(mut rows: Vec<Row>) -> Vec<Row> {
-    for row in &mut rows {
-        let now = pipeline(key(row), Some("clock_mhz = 165\nmultipliers = \"registered\""));
-        put(row, 1, [now.stages.len().to_string()]);
-        put(row, 4, [now.registered.len().to_string(), register_bits(&now)]);
-    }
-    rows
+fn registered_multipliers(row: &mut Row) {
+    let now = pipeline(key(row), Some("clock_mhz = 165\nmultipliers = \"registered\""));
+    put(row, 1, [now.stages.len().to_string()]);
+    put(row, 4, [now.registered.len().to_string(), register_bits(&now)]);
 }
 
 /// A record stands for the netlist that it was made of: the sums of what that consists of are today's, within a
@@ -310,7 +298,7 @@ fn frequency(figures: &Figures) -> String {
 }
 
 /// Rows of the records in `benches/small/` with a frequency for the target, and of the sequential cores beside them.
-fn small(mut rows: Vec<Row>, target: Target) -> Vec<Row> {
+fn small(rows: &mut Vec<Row>, target: Target) {
     let small = input::records::<Record>(Path::new("benches/small")).expect("records");
     let own: BTreeMap<String, Record> =
         small.into_iter().map(|(_, record)| (record.name.clone(), record)).collect();
@@ -319,30 +307,20 @@ fn small(mut rows: Vec<Row>, target: Target) -> Vec<Row> {
         let listed = rows.iter().any(|row| key(row) == name);
         assert!(listed || name.contains(other), "{name} has no row");
     }
-    for row in &mut rows {
+    for row in rows {
         let record = own.get(key(row)).cloned().unwrap_or_else(|| record(key(row)));
         today(&record);
         let figures = figures(&record, target);
         let rate = Rate::new(figures, record.clocks_per_point).expect("a rate");
-        let flip_flops = figures.area.usage().expect("an FPGA").flip_flops;
-        put(
-            row,
-            1,
-            [
-                record.clocks_per_point.to_string(),
-                area(figures),
-                flip_flops.to_string(),
-                frequency(figures),
-                format!("{:.1}", rate.points),
-            ],
-        );
+        let flip_flops = figures.area.usage().expect("an FPGA").flip_flops.to_string();
+        let (clocks, points) = (record.clocks_per_point.to_string(), format!("{:.1}", rate.points));
+        put(row, 1, [clocks, area(figures), flip_flops, frequency(figures), points]);
     }
-    rows
 }
 
 /// Rows of Glint's own devices: gates and rate of the records in `benches/literature/`, and the error against cosⁿγ at n = 20,
 /// over γ = 0…90°.
-fn literature(mut rows: Vec<Row>) -> Vec<Row> {
+fn literature(rows: &mut Vec<Row>) {
     for (_, record) in input::records::<Record>(Path::new("benches/literature")).expect("records") {
         let row = rows.iter_mut().find(|row| key(row) == record.name);
         let row = row.unwrap_or_else(|| panic!("no row {}", record.name));
@@ -353,11 +331,10 @@ fn literature(mut rows: Vec<Row>) -> Vec<Row> {
         let gates = grouped(cells.area.gates.expect("gates") as u64);
         put(row, 2, [gates, format!("{:.1}", rate.points), format!("{error:.5}")]);
     }
-    rows
 }
 
 /// The lines of `glint verify` of `cosine_power` that come from records.
-fn verify(mut rows: Vec<Row>) -> Vec<Row> {
+fn verify(rows: &mut Vec<Row>) {
     let proof = &json("proofs/cosine_power.json")["configurations"][0];
     let [evaluations, products] =
         ["evaluations", "colour_products"].map(|key| grouped(number(&proof[key])));
@@ -365,23 +342,21 @@ fn verify(mut rows: Vec<Row>) -> Vec<Row> {
         Faults::new(&json("mutation/cosine_power.json")["netlist"]["all"]);
     let (planted, caught) = (grouped(planted), caught.values().sum::<u64>());
     let certificates = fs::read_dir("proofs/certificates/cosine_power").expect("certificates");
+    let [sweep, faults, gappa] = [
+        format!("{evaluations} evaluations of f and {products} colour products"),
+        format!(
+            "{planted} faults: {caught} caught, {equivalent} proved equivalent, {undecided} undecided"
+        ),
+        format!("all operands: {} statements", certificates.count()),
+    ];
     for (check, over) in [
-        (
-            "golden model against the formula",
-            format!("{evaluations} evaluations of f and {products} colour products"),
-        ),
-        (
-            "faults in the netlist",
-            format!(
-                "{planted} faults: {caught} caught, {equivalent} proved equivalent, {undecided} undecided"
-            ),
-        ),
-        ("the error bound, by Gappa", format!("all operands: {} statements", certificates.count())),
+        ("golden model against the formula", sweep),
+        ("faults in the netlist", faults),
+        ("the error bound, by Gappa", gappa),
     ] {
         let row = rows.iter_mut().find(|row| row[0] == check);
         put(row.unwrap_or_else(|| panic!("no row {check}")), 2, [over]);
     }
-    rows
 }
 
 /// The netlist's part of a record of `glint mutate`.

@@ -15,7 +15,7 @@ use rayon::prelude::*;
 
 use crate::common::cores::{Emitted, configuration_with};
 use crate::common::sample::sampled;
-use crate::common::tools::{LIMIT, tool};
+use crate::common::tools::ran;
 
 /// Points that are compared of each configuration.
 const POINTS: usize = 1_000_000;
@@ -117,7 +117,7 @@ fn values_become_operands_as_formats_say() {
     fs::write(dir.join("conversions.c"), text).expect("written");
     let _ = fs::remove_file(dir.join("conversions"));
     let compile = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-o", "conversions", "conversions.c"];
-    tool("cc").run_to_success(compile, dir, LIMIT).unwrap_or_else(|error| panic!("{error:#}"));
+    ran("cc", compile, dir);
     let printed = run_program(&dir.join("conversions"), dir);
     assert_eq!(printed, expected);
 }
@@ -132,10 +132,8 @@ fn the_example_in_python_computes_the_manifests_example() {
         let source = format!("{name}_model.c");
         let compile = ["-std=c99", "-O2", "-shared", "-fPIC", "-o", &library, &source];
         assert!(text.contains(&format!("$ cc {}\n", compile.join(" "))), "{text}");
-        let compiled = tool("cc").run_to_success(compile, dir, LIMIT);
-        compiled.unwrap_or_else(|error| panic!("{error:#}"));
-        let printed = tool("python").run_to_success([format!("{name}_model.py")], dir, LIMIT);
-        let printed = printed.unwrap_or_else(|error| panic!("{error:#}"));
+        ran("cc", compile, dir);
+        let printed = ran("python", [format!("{name}_model.py")], dir);
         let example = model.core.example().expect("an example");
         let first: Vec<String> = example.outputs.iter().map(|it| it.raw.to_string()).collect();
         assert_eq!(printed.lines().next(), Some(first.join(" ").as_str()), "{printed}");
@@ -195,8 +193,7 @@ impl Model {
         let model = format!("{name}_model.c");
         let arguments = FLAGS.split(' ').chain(["-fno-sanitize-recover=all", "-o", "driver"]);
         let arguments: Vec<&str> = arguments.chain(["driver.c", &model]).collect();
-        let compiled = tool("cc").run_to_success(&arguments, dir, LIMIT);
-        let compiled = compiled.unwrap_or_else(|error| panic!("{error:#}"));
+        let compiled = ran("cc", &arguments, dir);
         assert_eq!(compiled, "", "{name}: words of the compiler");
     }
 
@@ -252,8 +249,7 @@ impl Model {
 
 fn run_program(program: &Path, dir: &Path) -> String {
     let program = program.to_str().expect("a path").to_owned();
-    let printed = tool("env").run_to_success([program], dir, LIMIT);
-    printed.unwrap_or_else(|error| panic!("{error:#}"))
+    ran("env", [program], dir)
 }
 
 /// How many results a computation has.
@@ -310,12 +306,10 @@ fn lines_are_set_up_in_c_and_python_as_by_glint() {
         let setup = format!("{name}_setup.c");
         let arguments = FLAGS.split(' ').chain(["-fno-sanitize-recover=all", "-o", "set_up"]);
         let arguments: Vec<&str> = arguments.chain(["lines.c", &setup, "-lm"]).collect();
-        let compiled = tool("cc").run_to_success(&arguments, dir, LIMIT);
-        assert_eq!(compiled.unwrap_or_else(|error| panic!("{error:#}")), "", "{name}");
+        assert_eq!(ran("cc", &arguments, dir), "", "{name}");
         run_program(&dir.join("set_up"), dir);
         fs::write(dir.join("lines.py"), IN_PYTHON.replace("NAME", name)).expect("written");
-        let printed = tool("python").run_to_success(["lines.py"], dir, LIMIT);
-        printed.unwrap_or_else(|error| panic!("{error:#}"));
+        ran("python", ["lines.py"], dir);
         let [in_c, in_python] =
             ["in_c", "in_python"].map(|file| fs::read_to_string(dir.join(file)).expect("written"));
 

@@ -4,6 +4,7 @@
 //! agree; it compares every output on every clock. That a bench can fail is tested with one wrong
 //! bit in what it expects, and in what the device's ROMs hold.
 
+use crate::common::Sure;
 use crate::common::bench::{Bench, with_flipped_bit};
 use crate::common::cores::{Emitted, Files, all_configurations, configuration, parsed, write};
 use crate::common::sample::sampled;
@@ -98,11 +99,10 @@ fn initial_values_are_known_without_a_reset() {
         files.push(("bench.v".to_owned(), bench.to_owned()));
         write(dir.path(), &files);
         let sources = ["core_control.v", "core_datapath.v", "core.v", "bench.v"];
-        let build = tool("iverilog").run(["-o", "bench"].iter().chain(&sources), dir.path(), LIMIT);
-        let build = build.unwrap_or_else(|error| panic!("{error:#}"));
+        let build =
+            tool("iverilog").run(["-o", "bench"].iter().chain(&sources), dir.path(), LIMIT).sure();
         assert!(build.status.success(), "{}", build.output);
-        let run = tool("vvp").run(["bench"], dir.path(), LIMIT);
-        run.unwrap_or_else(|error| panic!("{error:#}")).output
+        tool("vvp").run(["bench"], dir.path(), LIMIT).sure().output
     };
     assert!(shown(true).contains("before 0 00000000\nvalid 200\n"), "{}", shown(true));
     assert!(shown(false).contains("before x xxxxxxxx\n"), "{}", shown(false));

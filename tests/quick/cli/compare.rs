@@ -111,41 +111,6 @@ fn every_device_is_there_and_configurations_as_they_are() {
     assert_eq!((bits("cosine-power"), bits("core.toml")), (json!([16, 10]), json!([16, 8])));
 }
 
-#[test]
-fn widths_that_a_device_refuses_are_noted() {
-    let value = compared(&["--bits", "50", "--intensity-fraction", "12"]);
-    let notes: Vec<&str> =
-        value["notes"].as_array().expect("notes").iter().filter_map(Value::as_str).collect();
-    let note = notes.iter().find(|note| note.starts_with("schlick: "));
-    let note = note.expect("a note");
-    assert!(
-        note.contains("colour.bits = 50 is not accepted, 8 is compared")
-            && note.contains("1 to 12"),
-        "{note}"
-    );
-    // The other width is taken.
-    assert_eq!(entry(&value, "schlick")["multipliers"][1], json!([12, 8]));
-}
-
-#[test]
-fn an_exponent_outside_the_domain_is_a_dash_and_a_note() {
-    let dir = Workspace::with("narrow.toml", "device = \"schlick\"\ndomain.exponent_max = 100\n");
-    let compare = ["compare", "--no-synthesis", "--exponent", "200", "narrow.toml"];
-    let run = dir.glint(compare).quiet();
-    let rows: Vec<Vec<&str>> = run
-        .out
-        .lines()
-        .filter(|line| line.starts_with("| narrow.toml "))
-        .map(|line| line.split('|').map(str::trim).collect())
-        .collect();
-    assert_eq!(rows.len(), 2, "{}", run.out);
-    assert_eq!(rows[0][2..10], ["-"; 8], "{}", run.out);
-    let note = "Note: narrow.toml: n = 200 is not in its domain, n = 1 to 100.";
-    assert!(run.out.contains(note), "{}", run.out);
-    let value = dir.glint(compare.iter().chain(&["--json"])).json();
-    assert_eq!(entry(&value, "narrow.toml")["errors"], Value::Null);
-}
-
 /// The record of a device in `synthesis/`; frequency over clocks a point, eight of `cosine-power`, are points a second.
 #[test]
 fn figures_of_a_record_stand_beside_its_device() {
@@ -204,23 +169,6 @@ fn csv_has_a_row_for_each_core() {
     assert!(noted.err.contains("warning: narrow.toml: n = 200"), "{noted:?}");
 }
 
-#[test]
-fn wrong_usage_is_refused() {
-    for (arguments, message) in [
-        (&["--exponent", "many"][..], "invalid digit"),
-        (&["--exponent", "-1"], "unexpected argument '-1'"),
-        (&["--bits", "0"], "0 is not in 1..=64"),
-        (&["--time-limit", "0"], "0 is not in 1..=1000000"),
-        (&["--cosine-fractio", "9"], "a similar argument exists: '--cosine-fraction'"),
-    ] {
-        compare(arguments).refused(2, &[message]);
-    }
-    let both = compare(&["--csv", "--json"]);
-    assert_eq!(both.code, 2, "{both:?}");
-    assert!(both.out.contains("give one"), "{both:?}");
-    compare(&["missing.toml"]).refused(1, &["missing.toml"]);
-}
-
 /// A comparison with `PATH` leading to this `yosys` alone, if to any.
 #[cfg(unix)]
 fn with_yosys(script: Option<&str>, arguments: &[&str]) -> Run {
@@ -261,44 +209,6 @@ fn figures_of_yosys_stand_in_every_form_of_output() {
     let csv = with_yosys(Some(COUNTS), &["--csv"]).out;
     assert!(csv.lines().next().is_some_and(|line| line.ends_with(",xilinx7_block_rams")), "{csv}");
     assert!(csv.contains(",11,3,2,28,5,1,61,6,3\n"), "{csv}");
-}
-
-#[cfg(unix)]
-#[test]
-fn yosys_is_missing() {
-    let run = with_yosys(None, &[]).quiet();
-    assert!(run.out.contains(
-        "Note: `yosys` is not on PATH; install it (Debian, Ubuntu: `apt install yosys`;"
-    ));
-    assert!(!run.out.contains("LUT |"), "{}", run.out);
-    let value = with_yosys(None, &["--json"]).json();
-    assert_eq!(entry(&value, "schlick").get("synthesis"), None);
-    assert_eq!(value["ok"], true);
-}
-
-#[cfg(unix)]
-#[test]
-fn yosys_fails() {
-    let fails = "echo 'ERROR: out of luck'; exit 3";
-    let run = with_yosys(Some(fails), &[]);
-    assert_eq!(run.code, 1, "{run:?}");
-    for part in
-        ["FAILS: schlick, ECP5: `yosys` failed (exit status: 3)", "out of luck", "| schlick "]
-    {
-        assert!(run.out.contains(part), "no `{part}` in {}", run.out);
-    }
-    let value = with_yosys(Some(fails), &["--json"]).json();
-    assert_eq!(value["ok"], false);
-    assert_eq!(entry(&value, "schlick")["synthesis"]["ecp5"], Value::Null);
-    let told = value["problems"][0]["message"].as_str().expect("a message");
-    assert!(told.contains("out of luck"), "{told}");
-
-    let silent = with_yosys(Some("exit 0"), &[]);
-    assert_eq!(silent.code, 1, "{silent:?}");
-    assert!(silent.out.contains("`yosys` wrote no statistics"), "{silent:?}");
-    let garbled = with_yosys(Some("echo nothing >statistics.json"), &[]);
-    assert_eq!(garbled.code, 1, "{garbled:?}");
-    assert!(garbled.out.contains("are no JSON"), "{garbled:?}");
 }
 
 #[cfg(unix)]

@@ -126,62 +126,6 @@ fn a_waveform_of_a_pipeline_has_its_stages() {
     assert!(found.iter().any(|it| it.0.starts_with("core.control.valid")), "{found:?}");
 }
 
-#[test]
-fn wrong_options_of_waveforms_are_refused() {
-    let dir = Workspace::with("a.toml", COSINE_POWER);
-    dir.write("b.toml", COSINE_POWER);
-    let two = dir.glint(["cosim", "a.toml", "b.toml", "--vcd", "wave.vcd"]);
-    two.refused(2, &["--vcd is for one configuration; here are 2"]);
-    let icarus = dir.glint(["cosim", "a.toml", "--simulator", "icarus", "--vcd", "wave.vcd"]);
-    icarus.refused(2, &["--vcd is for the built-in simulator"]);
-    assert!(!dir.at("wave.vcd").exists());
-    let nowhere = dir.glint(["cosim", "a.toml", "--vcd", "none/wave.vcd"]);
-    nowhere.refused(1, &["cannot write `none/wave.vcd`", "there is no directory `none`; make it"]);
-    assert!(!nowhere.err.contains(".glint"), "{nowhere:?}");
-    let itself = dir.glint(["cosim", "a.toml", "--vcd", "./a.toml"]);
-    itself.refused(2, &["--vcd would overwrite the configuration"]);
-}
-
-/// A run of an external simulator with `PATH` leading to `tools` alone, which holds `programs`.
-#[cfg(unix)]
-fn with_tools(simulator: &str, programs: &[(&str, &str)], more: &[&str]) -> Run {
-    let dir = Workspace::with("core.toml", COSINE_POWER);
-    for (name, script) in programs {
-        dir.script(&format!("tools/{name}"), script);
-    }
-    let command = ["cosim", "core.toml", "--points", "2", "--simulator", simulator];
-    dir.with_own_tools(command.iter().chain(more))
-}
-
-#[cfg(unix)]
-#[test]
-fn a_simulator_that_is_missing_is_named() {
-    for (simulator, program) in [("icarus", "iverilog"), ("verilator", "verilator")] {
-        let message = format!("`{program}` is not on PATH; install it");
-        with_tools(simulator, &[], &[]).refused(1, &[&message, "`core.toml`"]);
-        let run = with_tools(simulator, &[], &["--json"]);
-        assert_eq!((run.code, run.err.as_str()), (1, ""), "{run:?}");
-        let told = run.json()["problems"][0]["message"].to_string();
-        assert!(told.contains(&message), "{told}");
-    }
-}
-
-#[cfg(unix)]
-#[test]
-fn a_simulator_that_fails_is_quoted() {
-    let fails = ("iverilog", "echo 'core.v:1: out of luck' >&2; exit 3");
-    let run = with_tools("icarus", &[fails, ("vvp", "exit 0")], &[]);
-    run.refused(1, &["`iverilog` failed (exit status: 3)", "out of luck"]);
-    let silent = with_tools("icarus", &[("iverilog", "exit 0"), ("vvp", "exit 0")], &[]);
-    silent.refused(1, &["ended without a PASS or FAIL line"]);
-    let idle = with_tools("verilator", &[("verilator", "exit 0")], &[]);
-    idle.refused(1, &["ended well, and made no program of `core"]);
-    let wrong =
-        with_tools("icarus", &[("iverilog", "exit 0"), ("vvp", "echo FAIL: red_out; exit 1")], &[]);
-    assert_eq!(wrong.code, 1, "{wrong:?}");
-    assert!(wrong.out.contains("FAILS\nFAIL: red_out"), "{wrong:?}");
-}
-
 /// Verilog in which red is multiplied as green should be, as far as the simulator knows.
 #[cfg(all(unix, feature = "outside-tools"))]
 #[test]
@@ -213,18 +157,6 @@ fn a_difference_in_verilog_is_told_with_its_place() {
     assert!(text.out.contains(&told), "{told}\n{}", text.out);
     let again = one["reproduce"].as_str().unwrap();
     assert_eq!(again, "glint cosim core.toml --simulator icarus --seed 1 --points 9");
-}
-
-#[cfg(unix)]
-#[test]
-fn a_simulator_that_hangs_is_killed() {
-    let hangs = "exec /bin/sleep 100";
-    let build =
-        with_tools("icarus", &[("iverilog", hangs), ("vvp", "exit 0")], &["--time-limit", "1"]);
-    build.refused(1, &["`iverilog` did not end within", "and was killed"]);
-    let bench =
-        with_tools("icarus", &[("iverilog", "exit 0"), ("vvp", hangs)], &["--time-limit", "1"]);
-    bench.refused(1, &["`vvp` did not end within", "and was killed"]);
 }
 
 #[test]
@@ -269,46 +201,16 @@ fn an_exhaustive_check_proves_the_contract() {
     assert!(run.err.contains("--exhaustive"), "{run:?}");
 }
 
-/// A sweep of other values than the contract's: what it says, in one piece and in parts.
+/// A sweep of other values than the contract's, in one piece and in parts.
 #[test]
-fn an_exhaustive_check_takes_other_values() {
+fn a_sweep_of_other_values_is_merged() {
     let dir = Workspace::with("core.toml", COSINE_POWER);
-    let check = ["cosim", "core.toml", "--exhaustive", "--values", "exponent=7,1..9/4"];
-    let value = dir.glint(check.iter().chain(&["--json"])).json();
-    let one = &value["configurations"][0];
-    assert_eq!(one["axes"][1], serde_json::json!({ "name": "exponent", "values": [1, 5, 7, 9] }));
-    assert_eq!(one["not_covered"], "values of exponent that are not named");
-    assert_eq!(one["verdict"], "passed, not proved");
-    let part = check.iter().chain(&["--json", "--resume", "part.json", "--shard", "1/1"]);
-    dir.done(part);
+    let check = ["cosim", "core.toml", "--exhaustive", "--values", "exponent=7,1..9/4", "--json"];
+    let whole = dir.done(check);
+    dir.done(check.iter().chain(&["--resume", "part.json", "--shard", "1/1"]));
     let merge = ["merge", "core.toml", "part.json", "--json", "--values", "exponent=1..9/4,7"];
-    assert_eq!(dir.glint(merge).json(), value);
+    assert_eq!(dir.done(merge), whole);
     dir.glint(&merge[..3]).refused(1, &["of another sweep (--values)"]);
-    let refused = |values: &str, text: &str| {
-        dir.glint(["cosim", "core.toml", "--exhaustive", "--values", values]).refused(2, &[text]);
-    };
-    refused("n=1", "no operand `n`; its operands are cos_gamma, exponent");
-    refused("exponent=0..9", "`exponent` is 1 to 1000 in this check, not 0");
-    dir.glint(["cosim", "core.toml", "--values", "exponent=1"]).refused(2, &["--exhaustive"]);
-    // All are looked at before the first is checked.
-    dir.write("rough.toml", "device = \"rough\"\n");
-    let both =
-        ["cosim", "rough.toml", "core.toml", "--exhaustive", "--values", "cos_dgamma=1000000"];
-    let run = dir.glint(both);
-    assert_eq!(run.out, "", "{run:?}");
-    run.refused(2, &["--values for `core.toml`: the check goes through no operand `cos_dgamma`"]);
-}
-
-#[test]
-fn too_many_shards_are_refused() {
-    let dir = Workspace::with("core.toml", COSINE_POWER);
-    for of in ["18446744073709551615", "1000000000000", "1000001"] {
-        let shard = format!("1/{of}");
-        let arguments = ["cosim", "core.toml", "--exhaustive", "--resume", "a.json", "--shard"];
-        let run = dir.glint(arguments.iter().chain(&[shard.as_str()]));
-        run.refused(2, &["N at most 1 000 000"]);
-    }
-    assert_eq!(dir.files().len(), 1);
 }
 
 /// A job that is killed, resumed, and divided reports what an uninterrupted one does.
@@ -374,20 +276,6 @@ fn in_parts(text: &str) {
     assert!(error.contains("not of `core.toml` as it stands"), "{error}");
     let error = refused(&["cosim", "core.toml", "--exhaustive", "--resume", "gone/state.json"]);
     assert!(error.contains("gone/state.json"), "{error}");
-}
-
-#[test]
-fn points_are_counted_as_people_write_them() {
-    let dir = Workspace::with("core.toml", COSINE_POWER);
-    for (points, shown) in [("1e2", "100 points"), ("1.5e2", "150 points"), ("2_00", "200 points")]
-    {
-        let text = dir.done(["cosim", "core.toml", "--points", points]);
-        assert!(text.contains(shown), "{points}: {text}");
-    }
-    for points in ["0", "0e3", "1.5", "1e-1", "1e99", "ten", ""] {
-        let run = dir.glint(["cosim", "core.toml", "--points", points]);
-        run.refused(2, &["a whole number from 1 on is wanted, as 1000000 or 1e6"]);
-    }
 }
 
 #[test]

@@ -76,30 +76,6 @@ fn edited_files_stay() {
 }
 
 #[test]
-fn a_page_of_another_configuration_is_replaced() {
-    let dir = dir();
-    datasheet(&dir, &[]);
-    let before = dir.read("datasheets/core.html");
-    dir.write("core.toml", "device = \"cosine-power\"\npower = 2\n");
-    assert_eq!(datasheet(&dir, &[]).code, 0);
-    assert_ne!(dir.read("datasheets/core.html"), before);
-}
-
-#[test]
-fn wrong_requests() {
-    let dir = dir();
-    dir.write("other.toml", "device = \"schlick\"\n");
-    dir.write("taken", "a file");
-    let both = ["datasheet", "core.toml", "other.toml", "--out", "both.html"];
-    dir.glint(both).refused(2, &["both.html", "give a directory"]);
-    let missing = dir.glint(["datasheet", "missing.toml"]);
-    missing.refused(1, &["missing.toml"]);
-    datasheet(&dir, &["--out", "taken"]).refused(1, &["taken"]);
-    datasheet(&dir, &["--out", "taken/deeper"]).refused(1, &["taken"]);
-    assert!(!names(&dir).iter().any(|name| name.ends_with(".html")));
-}
-
-#[test]
 fn a_record_must_be_of_the_configuration() {
     let dir = dir();
     let record = include_str!("../../../proofs/cosine_power.json");

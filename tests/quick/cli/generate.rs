@@ -166,22 +166,6 @@ fn tables_fit_the_terminal() {
     }
 }
 
-#[test]
-fn an_edited_file_is_not_overwritten() {
-    for name in FILES {
-        let dir = generated();
-        dir.write(name, "// my own\n");
-        reconfigure(&dir);
-        let before = dir.files();
-        let run = dir.glint(["generate", "core.toml"]);
-        run.refused(1, &["were edited since; nothing was changed", name, "--force"]);
-        assert_eq!(dir.files(), before);
-        dir.done(["generate", "core.toml", "--force"]);
-        dir.done(["generate", "core.toml", "--check"]);
-        dir.assert_no_staging();
-    }
-}
-
 /// Files that systems, editors and people put into a directory; they are no reason to refuse.
 const FOREIGN: [&str; 5] = [
     "rtl_out/core/.DS_Store",
@@ -302,60 +286,6 @@ fn a_name_with_control_characters_is_refused() {
     let run = dir.glint(["generate", "a\nendmodule.toml"]);
     run.refused(1, &["\"a\\nendmodule.toml\" has control characters in its name", "rename it"]);
     assert_eq!(dir.files().len(), 1);
-}
-
-#[test]
-fn a_directory_in_the_way_is_named() {
-    let dir = Workspace::with("core.toml", COSINE_POWER);
-    dir.write("rtl_out/core/core.v/mine.txt", "mine");
-    let before = dir.files();
-    dir.glint(["generate", "core.toml"]).refused(1, &["rtl_out/core/core.v", "--force"]);
-    assert_eq!(dir.files(), before);
-}
-
-#[test]
-fn a_directory_that_glint_never_wrote_is_not_overwritten() {
-    let dir = Workspace::with("core.toml", COSINE_POWER);
-    dir.write("rtl_out/core/core.v", "module core; endmodule\n");
-    dir.write("rtl_out/other/other.v", "module other; endmodule\n");
-    let before = dir.files();
-    dir.glint(["generate", "core.toml"])
-        .refused(1, &["were not written by Glint", "rtl_out/core/core.v"]);
-    assert_eq!(dir.files(), before);
-    // A manifest that is none of Glint's vouches for nothing.
-    dir.write("rtl_out/core/core.json", "{\"sha256\": {}}");
-    dir.glint(["generate", "core.toml"]).refused(1, &["rtl_out/core/core.v"]);
-    dir.done(["generate", "core.toml", "--force"]);
-    let after = dir.files();
-    assert_eq!(after["rtl_out/other/other.v"], before["rtl_out/other/other.v"]);
-    assert_ne!(after["rtl_out/core/core.v"], before["rtl_out/core/core.v"]);
-}
-
-/// Names that stand for something else in the emitted text: an instance, ports, a memory's parameter, a variable of
-/// the bench, one of the properties.
-#[test]
-fn a_module_named_like_something_inside_is_refused() {
-    let names = ["control", "clk", "start", "red", "CONTROL_FILE", "divisor", "dut", "stimulus"];
-    for name in names {
-        let dir =
-            Workspace::with("core.toml", format!("device = \"schlick\"\nname = \"{name}\"\n"));
-        let run = dir.glint(["generate", "core.toml"]);
-        let message = format!("a module cannot be named `{name}`");
-        run.refused(1, &[&message, "set another `name` in the configuration"]);
-        assert_eq!(dir.files().len(), 1, "{name}: something was written");
-    }
-}
-
-#[test]
-fn two_configurations_that_make_one_module_are_refused() {
-    for other in ["core_control", "core_datapath", "core_tb", "core_formal"] {
-        let dir = Workspace::with("core.toml", COSINE_POWER);
-        dir.write(&format!("{other}.toml"), COSINE_POWER);
-        let run = dir.glint(["generate", "core.toml", &format!("{other}.toml")]);
-        let message = format!("both make a module `{other}`");
-        run.refused(1, &[&message, "`core.toml`", "set another `name`"]);
-        assert_eq!(dir.files().len(), 2, "{other}: something was written");
-    }
 }
 
 /// The order of the numbers is stated, and it is that of the ports.

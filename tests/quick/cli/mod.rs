@@ -19,6 +19,7 @@ mod report;
 mod schedule;
 mod setup;
 mod synth;
+mod transcripts;
 mod tune;
 mod verify;
 pub mod workspace;

@@ -26,33 +26,6 @@ fn faults_are_named_and_none_is_planted() {
 }
 
 #[test]
-fn a_fault_alone_shows_where_it_is_caught() {
-    let dir = dir();
-    let out = dir.done(["mutate", "core.toml", "--only", SHOWS]);
-    assert!(out.contains("caught by co-simulation: seed 1, after clock"), "{out}");
-    assert!(out.contains("`accumulator` is "), "{out}");
-    assert!(out.contains("the shipped bench notices it"), "{out}");
-    let waveform = dir.read("core_mutant.vcd");
-    assert!(waveform.contains("$enddefinitions"), "{waveform}");
-    let json = dir.glint(["mutate", "core.toml", "--only", SHOWS, "--json"]).json();
-    assert_eq!(json["ok"], true);
-    assert_eq!(json["caught"]["by"], "cosim");
-    assert_eq!(json["caught"]["signal"], "accumulator");
-    assert_eq!(json["shipped"], true);
-    dir.assert_no_staging();
-}
-
-#[test]
-fn what_is_no_fault_is_refused() {
-    let dir = dir();
-    let run = dir.glint(["mutate", "core.toml", "--only", "nothing[0]:inverted"]);
-    run.refused(2, &["no fault `nothing[0]:inverted`", "--list"]);
-    dir.write("more.toml", COSINE_POWER);
-    let run = dir.glint(["mutate", "core.toml", "more.toml", "--only", SHOWS]);
-    run.refused(2, &["--only is for one configuration"]);
-}
-
-#[test]
 fn scores_are_recorded_and_nothing_else_is_overwritten() {
     let dir = dir();
     let run = dir.glint(["mutate", "core.toml", "--json", "--out", "scores"]).quiet();
@@ -77,12 +50,4 @@ fn scores_are_recorded_and_nothing_else_is_overwritten() {
     let run = dir.glint(["mutate", "core.toml", "--out", "scores"]);
     run.refused(1, &["core.json", "not of Glint's making", "--out"]);
     assert_eq!(dir.read("scores/core.json"), "mine");
-}
-
-#[test]
-fn a_missing_tool_is_named_before_any_work() {
-    let dir = dir();
-    let run = dir.with_own_tools(["mutate", "core.toml", "--full", "--out", "scores"]);
-    run.refused(1, &["`iverilog` is not on PATH", "bash tools/install"]);
-    assert!(!dir.files().contains_key("scores/core.json"));
 }

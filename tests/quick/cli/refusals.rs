@@ -36,43 +36,6 @@ pub fn unprivileged(dir: &Workspace, arguments: &[&str]) -> crate::workspace::Ru
 }
 
 #[test]
-fn wrong_usage_is_refused() {
-    let dir = Workspace::with("core.toml", COSINE_POWER);
-    for (arguments, message) in [
-        (&["generat"][..], "similar subcommands exist: 'render', 'generate'"),
-        (&["cosim", "--point", "3"], "a similar argument exists: '--points'"),
-        (&["cosim", "--points", "0"], "a whole number from 1 on is wanted"),
-        (&["cosim", "--points", "-1"], "unexpected argument '-1'"),
-        (&["cosim", "--points", "many"], "a whole number from 1 on is wanted"),
-        (&["cosim", "--simulator", "icaru"], "a similar value exists: 'icarus'"),
-        (&["cosim", "--time-limit", "18446744073709551615"], "is not in 1..=1000000"),
-        (&["tune", "lyon", "--error", "small"], "a number is wanted, as 0.75 or 12e6"),
-        (
-            &["render", "core.toml", "--height", "a.png", "--height-depth", "inf"],
-            "a number is wanted",
-        ),
-        (
-            &["compare", "-n", "5000", "--no-synthesis"],
-            "--exponent 5000 is in no device's domain; the largest is 1000",
-        ),
-        (&["eval"], "required arguments were not provided"),
-        (&["new"], "required arguments were not provided"),
-    ] {
-        let run = dir.glint(arguments);
-        run.refused(2, &[message]);
-        assert_eq!(run.out, "");
-        let run = dir.glint(arguments.iter().chain(&["--json"]));
-        assert_eq!((run.code, run.err.as_str()), (2, ""), "{run:?}");
-        let value = run.json();
-        assert_eq!(value["ok"], false);
-        assert!(value["problems"][0]["message"].as_str().unwrap().contains(message), "{value}");
-    }
-    let most = "cosim core.toml --simulator icarus --points 18446744073709551615";
-    let run = dir.glint(most.split(' '));
-    run.refused(2, &["an external simulator takes at most 1000000"]);
-}
-
-#[test]
 fn nothing_panics() {
     let dir = Workspace::with("core.toml", COSINE_POWER);
     dir.write("null.toml", [0; 64]);

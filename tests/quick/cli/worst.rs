@@ -52,15 +52,3 @@ fn a_record_of_a_larger_error_stays() {
     assert!(units(&dir.read("r/core.json")) > units(&record));
     dir.assert_no_staging();
 }
-
-#[test]
-fn files_that_are_no_records_are_refused() {
-    let dir = dir();
-    dir.write("r/core.json", "mine");
-    let run = dir.glint(["worst", "core.toml", "--starts", "1", "--out", "r"]);
-    run.refused(1, &["not of Glint's making"]);
-    dir.write("r/core.json", "{\n  \"glint\": \"0.1.0\"\n}\n");
-    let run = dir.glint(["worst", "core.toml", "--starts", "1", "--out", "r"]);
-    run.refused(1, &["no record of `glint worst`"]);
-    dir.glint(["worst", "core.toml", "--starts", "0"]).refused(2, &["from 1 on"]);
-}

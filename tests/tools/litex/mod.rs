@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use crate::common::cores::{Emitted, configuration_between, write};
-use crate::common::tools::{LIMIT, tool};
+use crate::common::tools::{LIMIT, ran, tool};
 use glint::tools::{Simulator, run_bench};
 use rayon::prelude::*;
 
@@ -61,12 +61,9 @@ fn litex_reaches_registers_on_axi4_lite() {
     let options =
         ["--binary", "--timing", "-Wno-fatal", "-Wno-lint", "-Wno-style", "--top-module", "tb"];
     let names = files.iter().map(|(name, _)| name.as_str());
-    let built =
-        tool("verilator").run_to_success(options.into_iter().chain(names), dir.path(), LIMIT);
-    built.unwrap_or_else(|error| panic!("{error:#}"));
+    ran("verilator", options.into_iter().chain(names), dir.path());
     let bench = dir.path().join("obj_dir/Vtb").display().to_string();
-    let told = tool("env").run_to_success([&bench], dir.path(), LIMIT);
-    let told = told.unwrap_or_else(|error| panic!("{error:#}"));
+    let told = ran("env", [&bench], dir.path());
     assert!(told.starts_with("PASS: 12 points"), "{told}");
 }
 

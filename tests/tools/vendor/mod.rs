@@ -4,9 +4,10 @@
 use std::fs;
 use std::path::Path;
 
+use crate::common::Sure;
 use crate::common::cores::{Emitted, configuration_between, configuration_with, write};
 use crate::common::sample::sampled;
-use crate::common::tools::{LIMIT, assert_bench_passes, assert_lint_clean, tool, yosys};
+use crate::common::tools::{LIMIT, assert_bench_passes, assert_lint_clean, ran, tool, yosys};
 use glint::core::Core;
 use glint::tools::Simulator;
 use rayon::prelude::*;
@@ -37,8 +38,7 @@ fn calls(dir: &Path, script: &str, arguments: &[&str], slack: &str) -> (bool, St
     let run_in = dir.join("run");
     fs::create_dir_all(&run_in).expect("a directory");
     let command = [slack.as_str(), "tclsh", &stubs, &script];
-    let run = tool("env").run(command.iter().chain(arguments), &run_in, LIMIT);
-    let run = run.unwrap_or_else(|error| panic!("{error:#}"));
+    let run = tool("env").run(command.iter().chain(arguments), &run_in, LIMIT).sure();
     let output = run.output.replace(&format!("{}/", dir.display()), "");
     (run.status.success(), output)
 }
@@ -216,10 +216,7 @@ fn components_follow_their_schema_and_the_verilog() {
             files.extend([format!("{top}.xml"), format!("{top}.ports")]);
         }
         let told = validate(dir.path(), &files);
-        assert_eq!(
-            told.unwrap_or_else(|error| panic!("{error:#}")).lines().count(),
-            files.len() / 2
-        );
+        assert_eq!(told.sure().lines().count(), files.len() / 2);
         // The test can fail: an element that is missing, a port that is wider.
         for (right, wrong) in [
             ("<ipxact:library>ip</ipxact:library>", ""),
@@ -260,8 +257,7 @@ fn constraints_are_read_by_opensta() {
              puts \"period [get_property [get_clocks {clock}] period]\"\nreport_checks -format end\nexit\n"
         );
         fs::write(dir.path().join("read.tcl"), script).expect("written");
-        let told = tool("sta").run_to_success(["-exit", "read.tcl"], dir.path(), LIMIT);
-        let told = told.unwrap_or_else(|error| panic!("{error:#}"));
+        let told = ran("sta", ["-exit", "read.tcl"], dir.path());
         assert!(told.contains("period 10.000"), "{told}");
         let wrong = ["warning", "error"].iter().any(|word| told.to_lowercase().contains(word));
         assert!(!wrong, "{told}");
@@ -272,8 +268,7 @@ fn constraints_are_read_by_opensta() {
 
 /// Yosys with its warnings, of which it has some about liberty files.
 fn yosys_quietly(dir: &Path, commands: &str) {
-    let run = tool("yosys").run_to_success(["-q", "-p", commands], dir, LIMIT);
-    run.unwrap_or_else(|error| panic!("{error:#}"));
+    ran("yosys", ["-q", "-p", commands], dir);
 }
 
 #[test]
@@ -350,8 +345,7 @@ fn fusesoc_sets_up_the_vendors_projects() {
         let common = ["--cores-root", &rtl, "--cores-root", &benches, "run"];
         let core = ["glint:device:cosine_power"];
         let all = common.iter().chain(arguments).chain(&core);
-        let run = tool("fusesoc").run_to_success(all, dir.path(), LIMIT);
-        run.unwrap_or_else(|error| panic!("{error:#}"))
+        ran("fusesoc", all, dir.path())
     };
     let text_below = |target: &str, ending: &str| {
         let mut found = String::new();
@@ -385,8 +379,7 @@ fn fusesoc_sets_up_the_vendors_projects() {
         let core = "glint_device_cosine_power_0.1.0";
         let directory = dir.path().join("build").join(core).join(target);
         let netlist = format!("{core}.json");
-        let made = tool("make").run_to_success([&netlist], &directory, LIMIT);
-        made.unwrap_or_else(|error| panic!("{error:#}"));
+        ran("make", [&netlist], &directory);
         assert!(text_below(&format!("/{target}/"), ".json").contains(cell), "{target}");
     }
     // The clock of the constraints, which this core does not reach there, without an end before the bitstream.

@@ -4,6 +4,7 @@ mod planted;
 
 use std::fs;
 
+use crate::common::Sure;
 use crate::common::cores::{Emitted, all_configurations, configuration_between};
 use crate::common::tools::{LIMIT, assert_lint_clean, tool};
 use crate::faults::{Fault, faults};
@@ -83,8 +84,7 @@ fn streams_carry_every_point() {
     with_interface(STREAM).par_iter().for_each(|(path, core)| {
         let dir = Emitted::new(core, 1, 1).tree();
         let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/tools/wrappers/stream.py");
-        let run = tool("python").run([script, &core.config.name], dir.path(), LIMIT);
-        let run = run.unwrap_or_else(|error| panic!("{error:#}"));
+        let run = tool("python").run([script, &core.config.name], dir.path(), LIMIT).sure();
         let says = format!("PASS {}: 6 tests, 0 failed", core.config.name);
         assert!(run.status.success() && run.output.contains(&says), "{path}:\n{}", run.output);
     });
@@ -157,8 +157,7 @@ fn registers_start_cores_and_give_their_results() {
     on_buses().par_iter().for_each(|(path, core, bus)| {
         let dir = Emitted::new(core, 1, 1).tree();
         let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/tools/wrappers/registers.py");
-        let run = tool("python").run([script, &core.config.name, bus], dir.path(), LIMIT);
-        let run = run.unwrap_or_else(|error| panic!("{error:#}"));
+        let run = tool("python").run([script, &core.config.name, bus], dir.path(), LIMIT).sure();
         let says = format!("PASS {}: 8 tests, 0 failed", core.config.name);
         assert!(run.status.success() && run.output.contains(&says), "{path}:\n{}", run.output);
     });
