@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, HashMap};
 
 use super::terms::{Id, Term, Terms};
 use crate::base::fixed::exp2;
-use crate::formula::{Comparison, Formula, Kind, Operator};
+use crate::formula::{Comparison, Formula, Function, Kind, Operator};
 use crate::golden::Operand;
 
 /// A formula's term under what it presupposes: these terms are not negative, those not positive.
@@ -116,6 +116,11 @@ fn power_of_two(value: f64) -> Option<i32> {
     (0..=30).find(|&power| exp2(power) == value)
 }
 
+/// The message about a function that Gappa lacks.
+pub fn untranslated(function: Function) -> String {
+    format!("the function `{}` has no translation", function.name())
+}
+
 /// Every way that a formula can go.
 ///
 /// # Errors
@@ -153,9 +158,11 @@ pub fn branches(
         Kind::Operand(name) => Ok(plain(operand(name, setting, terms)?)),
         Kind::Word(rom, place) => Ok(plain(word(rom, place, setting, terms)?)),
         Kind::Constant(name, _) => Err(format!("the constant `{name}` has no translation")),
-        Kind::Unary(function, _) => {
-            Err(format!("the function `{}` has no translation", function.name()))
+        Kind::Unary(Function::Negate, a) => {
+            let zero = Formula { kind: Kind::Number(0.0, true), span: formula.span.clone() };
+            operation(terms, &zero, a, Term::Sub)
         }
+        Kind::Unary(function, _) => Err(untranslated(*function)),
         Kind::Binary(Operator::Add, a, b) => operation(terms, a, b, Term::Add),
         Kind::Binary(Operator::Sub, a, b) => operation(terms, a, b, Term::Sub),
         Kind::Binary(Operator::Mul, a, b) => operation(terms, a, b, Term::Mul),

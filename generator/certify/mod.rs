@@ -21,7 +21,7 @@ use std::collections::{BTreeMap, HashMap};
 use std::time::{Duration, Instant};
 
 use crate::base::fixed::exp2;
-use crate::formula::{Formula, Kind, Operator, parse};
+use crate::formula::{Formula, Function, Kind, Operator, parse};
 use crate::golden::Contract;
 use crate::hdl::netlist::{Design, RomId};
 use crate::hdl::pipeline::{Cell, Graph, NodeId, Op, Unrolled, unroll, unroll_line};
@@ -171,10 +171,18 @@ fn formulas(contract: &dyn Contract) -> Result<Vec<Formula>, String> {
         return Err("its contract has no formula in words".to_owned());
     }
     let parsed = expressions.iter().map(|text| {
-        parse(text).map_err(|fault| {
+        let formula = parse(text).map_err(|fault| {
             let rest: String = text.chars().skip(fault.span.start).take(40).collect();
             format!("{fault}, `{rest}`")
-        })
+        })?;
+        // Before the ways through the hardware, which may be many. Of a line the cosine and the size have one.
+        let mut refused = None;
+        formula.walk(&mut |part| match part.kind {
+            Kind::Unary(Function::Negate | Function::Abs | Function::Cos, _) => {}
+            Kind::Unary(function, _) => refused = Some(exact::untranslated(function)),
+            _ => {}
+        });
+        refused.map_or(Ok(formula), Err)
     });
     parsed.collect()
 }

@@ -1,5 +1,4 @@
-//! `compare`: figures that are computed here a second time, the three forms of output, widths, and tools
-//! that are missing, fail or hang.
+//! `compare`: figures that are computed here a second time.
 
 use serde_json::{Value, json};
 
@@ -149,74 +148,4 @@ fn figures_of_a_record_stand_beside_its_device() {
     let line = csv.lines().find(|line| line.starts_with("cosine-power,")).expect("a row");
     let field = line.rsplit(',').nth(heading.len() - 1 - at).expect("a field");
     assert_eq!(field, ecp5["frequency"]["median"].to_string());
-}
-
-#[test]
-fn csv_has_a_row_for_each_core() {
-    let dir = Workspace::with("a, \"b\".toml", format!("{COSINE_POWER}name = \"mine\"\n"));
-    let run = dir.glint(["compare", "--no-synthesis", "--csv", "a, \"b\".toml"]).quiet();
-    let lines: Vec<&str> = run.out.lines().collect();
-    assert!(lines[0].starts_with("name,device,exponent,error_largest,error_mean,formula_largest,"));
-    assert!(lines[0].ends_with(",bound_units,clocks_per_point,rom_bits,multipliers"));
-    let row = lines.last().expect("a row");
-    assert!(row.starts_with("\"a, \"\"b\"\".toml\",cosine-power,35,0."), "{row}");
-    assert!(row.ends_with(",8,40,\"21x16, 3 of 16x8\""), "{row}");
-    // What is to be told beside the rows does not disturb them.
-    dir.write("narrow.toml", "device = \"schlick\"\ndomain.exponent_max = 100\n");
-    let noted = ["compare", "--no-synthesis", "--csv", "--exponent", "200", "narrow.toml"];
-    let noted = dir.glint(noted);
-    assert!(!noted.out.contains("domain"), "{noted:?}");
-    assert!(noted.err.contains("warning: narrow.toml: n = 200"), "{noted:?}");
-}
-
-/// A comparison with `PATH` leading to this `yosys` alone, if to any.
-#[cfg(unix)]
-fn with_yosys(script: Option<&str>, arguments: &[&str]) -> Run {
-    let dir = Workspace::new();
-    if let Some(script) = script {
-        dir.script("tools/yosys", script);
-    }
-    dir.with_own_tools(["compare"].iter().chain(arguments))
-}
-
-/// Writes statistics of the module that the script names.
-#[cfg(unix)]
-const COUNTS: &str = r#"
-s=${3#*-check -top }
-cells='"SB_LUT4": 11, "SB_MAC16": 3, "SB_RAM40_4K": 2, "LUT4": 20, "CCU2C": 4, "MULT18X18D": 5, "DP16KD": 1,
-"LUT1": 1, "LUT6": 40, "DSP48E1": 6, "RAMB18E1": 1, "RAMB36E1": 1, "FDRE": 99'
-printf '{"modules": {"\\\\%s": {"num_cells_by_type": {%s}}}}' "${s%%;*}" "$cells" >statistics.json"#;
-
-#[cfg(unix)]
-#[test]
-fn figures_of_yosys_stand_in_every_form_of_output() {
-    let run = with_yosys(Some(COUNTS), &["--json"]).quiet();
-    let value = run.json();
-    let told = &entry(&value, "schlick")["synthesis"];
-    // A carry cell of ECP5 is two tables, the larger RAM of Xilinx two of the smaller.
-    assert_eq!(
-        *told,
-        json!({
-            "ice40": { "luts": 11, "dsps": 3, "block_rams": 2 },
-            "ecp5": { "luts": 20 + 4 * 2, "dsps": 5, "block_rams": 1 },
-            "xilinx7": { "luts": 20 + 41, "dsps": 6, "block_rams": 3 },
-        })
-    );
-    let text = with_yosys(Some(COUNTS), &[]).out;
-    let rows: Vec<&str> = text.lines().filter(|line| line.starts_with("| schlick ")).collect();
-    let cells: Vec<&str> = rows[1].split('|').map(str::trim).collect();
-    assert_eq!(cells[5..14], ["11", "3", "2", "28", "5", "1", "61", "6", "3"]);
-    let csv = with_yosys(Some(COUNTS), &["--csv"]).out;
-    assert!(csv.lines().next().is_some_and(|line| line.ends_with(",xilinx7_block_rams")), "{csv}");
-    assert!(csv.contains(",11,3,2,28,5,1,61,6,3\n"), "{csv}");
-}
-
-#[cfg(unix)]
-#[test]
-fn yosys_hangs() {
-    // Only for one family, so that this does not take long.
-    let hangs = format!("case $3 in *synth_ecp5*) exec /bin/sleep 100;; esac\n{COUNTS}");
-    let run = with_yosys(Some(&hangs), &["--time-limit", "1"]);
-    assert_eq!(run.code, 1, "{run:?}");
-    assert!(run.out.contains("FAILS: schlick, ECP5: `yosys` did not end within"), "{run:?}");
 }

@@ -1,4 +1,4 @@
-//! Configuration files that are refused: exit code 1, the location, the remedy.
+//! Configurations that are no text, no files, or none at all.
 
 use std::fs;
 

@@ -1,4 +1,4 @@
-//! `cosim`: the three simulators, the waveform, tools that are missing, fail or hang.
+//! `cosim`: the three simulators, the waveform, and exhaustive checks in parts.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -157,48 +157,6 @@ fn a_difference_in_verilog_is_told_with_its_place() {
     assert!(text.out.contains(&told), "{told}\n{}", text.out);
     let again = one["reproduce"].as_str().unwrap();
     assert_eq!(again, "glint cosim core.toml --simulator icarus --seed 1 --points 9");
-}
-
-#[test]
-fn an_exhaustive_check_proves_the_contract() {
-    let text = "device = \"cosine-power\"\npower = 2\ncosine.fraction = 8\nexponent.bits = 3\n\
-                colour.bits = 2\nintensity.fraction = 8\ndomain.exponent_max = 7\n";
-    let dir = Workspace::with("core.toml", text);
-    let run = dir.glint(["cosim", "core.toml", "--exhaustive", "--json"]);
-    let value = run.json();
-    assert_eq!((run.code, &value["ok"]), (0, &Value::Bool(true)), "{run:?}");
-    let one = &value["configurations"][0];
-    // 257 cosines and 7 exponents; 256 words and 4 colours.
-    assert_eq!((&one["evaluations"], &one["colour_products"]), (&1799.into(), &1024.into()));
-    assert_eq!(one["not_covered"], "");
-    // 9 bits of cosine, 3 of exponent, 2 of each colour.
-    assert_eq!(
-        (&one["clocks"]["operand_bits"], &one["clocks"]["combinations"]),
-        (&18.into(), &262_144.into())
-    );
-    assert_eq!(one["clocks"]["mismatch"], Value::Null);
-    assert!(one["together"].as_f64() <= one["bound"].as_f64(), "{one}");
-    let text = dir.done(["cosim", "core.toml", "--exhaustive"]);
-    assert!(
-        text.contains("1 799 evaluations of f and 1 024 colour products (cos_gamma = 0 to 256 x exponent = 1 to 7)"),
-        "{text}"
-    );
-    assert!(text.contains(": proved\n"), "{text}");
-    assert!(
-        text.contains("every register and output at every clock for 262 144 combinations of 18"),
-        "{text}"
-    );
-    assert!(text.contains("  less than a second on ") || text.contains("  about "), "{text}");
-    // Of a wide configuration it says that it does not cover them.
-    dir.write("wide.toml", "device = \"cosine-power\"\npower = 2\ndomain.exponent_max = 2\n");
-    let text = dir.done(["cosim", "wide.toml", "--exhaustive"]);
-    assert!(
-        text.contains("not covered: registers at every clock: the operands have 55 bits"),
-        "{text}"
-    );
-    let run = dir.glint(["cosim", "core.toml", "--exhaustive", "--points", "5"]);
-    assert_eq!(run.code, 2, "{run:?}");
-    assert!(run.err.contains("--exhaustive"), "{run:?}");
 }
 
 /// A sweep of other values than the contract's, in one piece and in parts.

@@ -1,4 +1,4 @@
-//! `datasheet`: where pages go, whose they are, and what is refused.
+//! `datasheet`: what is in its pages, and whose they are.
 
 use serde_json::Value;
 
@@ -13,28 +13,13 @@ fn datasheet(dir: &Workspace, arguments: &[&str]) -> Run {
     dir.glint(start.iter().chain(arguments))
 }
 
-fn names(dir: &Workspace) -> Vec<String> {
-    dir.files().into_keys().collect()
-}
-
 #[test]
-fn pages_go_where_they_are_told_to() {
+fn pages_are_the_same_wherever_they_go() {
     let dir = dir();
-    let run = datasheet(&dir, &[]).good();
-    assert_eq!(run.out, "core.toml: datasheets/core.html written\n");
-    assert_eq!(names(&dir), ["core.toml", "datasheets/core.html"]);
-    let again = datasheet(&dir, &[]);
-    assert_eq!(again.out, "core.toml: datasheets/core.html up to date\n");
-    let single = datasheet(&dir, &["--out", "one.html", "--wavedrom", "--json"]);
-    let told = single.json();
-    assert_eq!(told["datasheets"][0]["file"], "one.html", "{told}");
-    assert_eq!(told["datasheets"][1]["file"], "one.wavedrom.json");
-    assert_eq!(dir.read("one.html"), dir.read("datasheets/core.html"));
-    dir.assert_no_staging();
-
+    datasheet(&dir, &[]).good();
+    datasheet(&dir, &["--out", "one.html"]).good();
     let page = dir.read("one.html");
-    assert!(page.contains("Not synthesised for this page"));
-    assert!(page.contains("There is no record of such a check"));
+    assert_eq!(page, dir.read("datasheets/core.html"));
     let directory = dir.path().display().to_string();
     assert!(!page.contains(&directory), "a path of this machine");
 }

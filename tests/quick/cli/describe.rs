@@ -1,4 +1,4 @@
-//! `describe`: pages printed and written, and whose they are.
+//! `describe`: pages that were edited, and pages for scripts.
 
 use crate::workspace::{COSINE_POWER, Workspace};
 

@@ -166,39 +166,6 @@ fn tables_fit_the_terminal() {
     }
 }
 
-/// Files that systems, editors and people put into a directory; they are no reason to refuse.
-const FOREIGN: [&str; 5] = [
-    "rtl_out/core/.DS_Store",
-    "rtl_out/core/.core.v.swp",
-    "rtl_out/core/notes.txt",
-    "rtl_out/core/deep/er/notes.txt",
-    "testbench/core/wave.gtkw",
-];
-
-#[test]
-fn foreign_files_stay_and_do_not_block() {
-    let dir = generated();
-    for name in FOREIGN {
-        dir.write(name, "mine");
-    }
-    dir.done(["generate", "core.toml", "--check"]);
-    assert!(dir.done(["generate", "core.toml"]).ends_with("files up to date\n"));
-    for force in [None, Some("--force")] {
-        reconfigure(&dir);
-        let before = dir.files();
-        dir.done(["generate", "core.toml"].into_iter().chain(force));
-        let after = dir.files();
-        for name in FOREIGN {
-            assert_eq!(after.get(name), before.get(name), "{name}");
-        }
-        assert_ne!(after["rtl_out/core/core.v"], before["rtl_out/core/core.v"]);
-        dir.done(["generate", "core.toml", "--check"]);
-        dir.assert_no_staging();
-        dir.write("core.toml", COSINE_POWER);
-        dir.done(["generate", "core.toml"]);
-    }
-}
-
 /// Links above the directories of a configuration are followed. These directories and their files are replaced, and what they
 /// lead to is not Glint's.
 #[test]

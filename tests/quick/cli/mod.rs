@@ -1,5 +1,5 @@
 //! The command line as a user meets it: the built program, in a directory of its own; messages, exit
-//! codes, and what is in the directory afterwards.
+//! codes, and what is in the directory afterwards. What a few lines of text can say is in `transcripts/`.
 
 mod certify;
 mod compare;

@@ -1,4 +1,4 @@
-//! `mutate`: the names of faults, one of them with its waveform, scores and records, and what is refused.
+//! `mutate`: the names of faults, scores and records.
 
 use crate::workspace::{COSINE_POWER, Workspace};
 

@@ -1,4 +1,4 @@
-//! `eval`, `list`, `new`, `--help`, `-V`.
+//! `eval`, `list`, `new`, `-V`.
 
 use glint::registry::Registry;
 use serde_json::{Value, json};
@@ -16,23 +16,6 @@ fn eval(operands: &[&str]) -> Run {
 fn named<'a>(list: &'a Value, name: &str) -> &'a Value {
     let list = list.as_array().expect("a list");
     list.iter().find(|entry| entry["name"] == name).unwrap_or_else(|| panic!("no {name}"))
-}
-
-#[test]
-fn a_point_is_evaluated() {
-    // n = 2, cos γ = 1/2: (−1/2 + 1)² = 1/4 of 200.
-    let run = eval(&["cos_gamma=0.5", "exponent=2", "red=200"]).quiet();
-    let rows = run.out.lines().filter(|line| line.contains("red_out") || line.contains("| f "));
-    let cells = |row: &str| row.split('|').map(|cell| cell.trim().to_owned()).collect::<Vec<_>>();
-    let rows: Vec<Vec<String>> = rows.map(cells).collect();
-    let wanted = [
-        ["red_out", "u8.0", "50", "50"],
-        // (1/2 - 2^-16)^2, cut off: the inverse of what is subtracted from 1 is a unit short.
-        ["f", "0.2499847412109375", "0.250000000", "1.000"],
-        ["red_out", "50", "50.000000000", "0.000"],
-    ];
-    assert_eq!(rows.len(), wanted.len(), "{}", run.out);
-    rows.iter().zip(wanted).for_each(|(row, wanted)| assert_eq!(row[1..5], wanted));
 }
 
 /// Whatever is left out, the point is lit and its error is in the bound.
@@ -91,33 +74,13 @@ fn a_point_of_a_pipeline_is_evaluated() {
 }
 
 #[test]
-fn points_are_evaluated_in_batch() {
+fn points_come_from_standard_input() {
     let dir = Workspace::with("core.toml", SQUARE);
-    // (n/2·(c − 1) + 1)² at n = 2 is c².
-    let points = "cos_gamma, exponent ,red\n0.5,2,200\n#1048576,2,#100\n0.25,2,\n";
-    dir.write("points.csv", points);
-    let table = dir.done(["eval", "core.toml", "--batch", "points.csv", "green=0", "blue=64"]);
-    let rows: Vec<Vec<&str>> = table.lines().map(|line| line.split(',').collect()).collect();
-    assert_eq!(
-        rows[0].join(","),
-        "cos_gamma,exponent,red,green,blue,f,red_out,green_out,blue_out,formula_f,formula_red_out,\
-         formula_green_out,formula_blue_out,inside_the_domain"
-    );
-    assert_eq!(rows[1][..5], ["0.5", "2", "200", "0", "64"]);
-    assert_eq!(rows[1][6..9], ["50", "0", "16"]);
-    assert_eq!(rows[1][9..], ["0.25", "50", "0", "16", "true"]);
-    assert_eq!(rows[2][9..], ["1", "100", "0", "64", "true"]);
-    // What is empty is taken from the top: a sixteenth of 255.
-    assert_eq!((rows[3][2], rows[3][6], rows.len()), ("255", "16", 4));
-    let json = ["eval", "core.toml", "--batch", "points.csv", "--json"];
-    let told: Value = serde_json::from_str(&dir.done(json)).expect("JSON");
-    assert_eq!(told["points"][0]["outputs"]["red_out"], 50);
-    assert_eq!(told["points"][0]["operands"]["cos_gamma"], 524_288);
-    // From standard input the same.
+    dir.write("points.csv", "cos_gamma,red\n0.5,200\n0.25,\n");
     let input = std::fs::File::open(dir.at("points.csv")).expect("a file");
     let mut command = dir.command();
-    command.args(["eval", "core.toml", "--batch", "-", "green=0", "blue=64"]).stdin(input);
-    assert_eq!(Run::of(command.output()).out, table);
+    let run = Run::of(command.args(["eval", "core.toml", "--batch", "-"]).stdin(input).output());
+    assert_eq!(run.out, dir.done(["eval", "core.toml", "--batch", "points.csv"]));
 }
 
 #[test]

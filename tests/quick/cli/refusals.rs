@@ -1,4 +1,4 @@
-//! Wrong usage, and arguments of all kinds: an exit code from 0 to 2, never a panic.
+//! Files that are refused, and arguments of all kinds: an exit code from 0 to 2, never a panic.
 
 use std::ffi::OsString;
 

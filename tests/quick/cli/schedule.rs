@@ -1,4 +1,4 @@
-//! `glint schedule`, and what is said of pipelines that cannot be made.
+//! `glint schedule`: clocks that can be reached, constraints, and drawings.
 
 use crate::workspace::{Run, Workspace};
 

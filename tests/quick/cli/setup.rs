@@ -1,4 +1,4 @@
-//! `glint setup`: operands by hand, the way through `eval` to the line of a picture, and what is refused.
+//! `glint setup`: the way through `eval` to the line of a picture.
 
 use std::fs::{self, File};
 
@@ -7,69 +7,13 @@ use serde_json::{Value, json};
 use super::render::pixels;
 use crate::workspace::{Run, Workspace};
 
-const QUAD: &str = "device = \"quad-cosine\"\n";
-
 fn setup(config: &str, inputs: &[&str]) -> Run {
     let dir = Workspace::with("core.toml", config);
     dir.glint(["setup", "core.toml"].iter().chain(inputs))
 }
 
-fn raw(run: &Run) -> Vec<i64> {
-    let told = run.json();
-    let operands = told["operands"].as_array().expect("operands");
-    operands.iter().map(|it| it["raw"].as_i64().expect("an integer")).collect()
-}
-
-/// From 30° on one side of N to 60° on the other, through N: λ = 30°, A = 1; 90 intervals of a degree.
 #[test]
-fn a_line_by_hand() {
-    let angles = ["theta_1=30", "theta_2=60", "gamma=90"];
-    let rest = ["points=91", "exponent=8", "intensity=0.8", "--json"];
-    // s1.26: 2²⁶/90 = 745654.04, −2²⁶/3; 0.8 of 255.
-    let wanted = [745_654, -22_369_621, 8, 90, 204];
-    let run = setup(QUAD, &[&angles[..], &rest].concat()).quiet();
-    assert_eq!(raw(&run), wanted);
-    let told = run.json();
-    for (name, value) in [("gamma", 90.0), ("lambda", 30.0), ("a_cosine", 1.0), ("c", 204.0)] {
-        let found = told["quantities"][name].as_f64().expect("a number");
-        assert!((found - value).abs() < 1e-9, "{name}: {found}");
-    }
-    let step = &told["operands"][0];
-    assert!((step["real"].as_f64().expect("a number") - 1.0 / 90.0).abs() < 1e-15, "{step}");
-    // The same in vectors: sin 30° = 1/2, and the square root of 3/4.
-    let vectors = [
-        "normal_1=0,0,2",
-        "half_1=-0.5,0,0.8660254037844386",
-        "normal_2=0,0,1",
-        "half_2_x=0.8660254037844386",
-        "half_2_y=0",
-        "half_2_z=0.5",
-    ];
-    assert_eq!(raw(&setup(QUAD, &[&vectors[..], &rest].concat())), wanted);
-    // H is the middle of L and V; N and H turned together change nothing.
-    let turned = ["normal_1=0,0,1", "light_1=-1,0,0", "view_1=0.5,0,0.8660254037844386"];
-    let turned = [&turned[..], &["normal_2=1,0,0", "half_2=0.5,0,-0.8660254037844386"]].concat();
-    assert_eq!(raw(&setup(QUAD, &[&turned[..], &rest].concat())), wanted);
-    // Without an exponent: s7.22, times √(8/2) = 2.
-    let run = setup("device = \"cosine-squared\"\n", &[&angles[..], &rest].concat());
-    assert_eq!(raw(&run), [93_207, -2_796_203, 90, 204]);
-    // In the formats of the file.
-    let narrow = format!("{QUAD}[angle]\nfraction = 16\n[colour]\nbits = 4\n");
-    assert_eq!(raw(&setup(&narrow, &[&angles[..], &rest].concat())), [728, -21_845, 8, 90, 12]);
-}
-
-#[test]
-fn a_point_by_hand() {
-    let given = ["gamma=60", "dgamma=-29", "exponent=20", "red=0.2", "--json"];
-    // u1.20: 1/2, and cos 29° = 917105.2 of 2²⁰.
-    assert_eq!(
-        raw(&setup("device = \"rough\"\n", &given)),
-        [524_288, 917_105, 20, 1, 51, 255, 255]
-    );
-    let vectors = ["normal=0,0,1", "light=1,0,0.5", "view=0,0,1", "exponent=20", "--json"];
-    // L + V leans by half of 63.4° to the side: 891972.02 of 2²⁰.
-    let run = setup("device = \"cosine-power\"\n", &vectors);
-    assert_eq!(raw(&run)[..2], [891_972, 20]);
+fn a_difference_by_hand() {
     // The square of the difference is 2(1 − cos γ), from vectors as from the angle.
     let of = |run: &Run| -> f64 {
         let told = run.json();

@@ -1,4 +1,4 @@
-//! `synth` without its tools, and with one that makes its figures up.
+//! `synth` with a Yosys that makes its figures up.
 
 use super::workspace::{COSINE_POWER, Run, Workspace};
 

@@ -1,5 +1,4 @@
-//! `verify`: page and record, the same whenever they are made; missing and failing tools; directories that
-//! cannot be written.
+//! `verify`: page and record, the same whenever they are made; records of sweeps.
 
 use serde_json::Value;
 

@@ -1,4 +1,4 @@
-//! `worst`: the largest error that is found, its record, and what is refused.
+//! `worst`: the largest error that is found, and its record.
 
 use serde_json::Value;
 
