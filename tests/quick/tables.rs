@@ -37,12 +37,12 @@ const TABLES: [(&str, &str, Make); 14] = [
     (MEASUREMENTS, "area_and_speed", area_and_speed),
     (MEASUREMENTS, "small_ice40", |rows| small(rows, Target::Ice40)),
     (MEASUREMENTS, "small_ecp5", |rows| small(rows, Target::Ecp5)),
-    (MEASUREMENTS, "literature", literature),
+    (MEASUREMENTS, "literature", |rows| literature(rows)),
     (MEASUREMENTS, "pipelines", pipelines),
     (MEASUREMENTS, "registered_multipliers", |rows| {
         rows.iter_mut().for_each(registered_multipliers)
     }),
-    (VERIFICATION, "verify", verify),
+    (VERIFICATION, "verify", |rows| verify(rows)),
     (VERIFICATION, "faults", |rows| *rows = faults_in_netlists(false)),
     (VERIFICATION, "faults_of_pipelines", |rows| *rows = faults_in_netlists(true)),
     (VERIFICATION, "faults_in_verilog", |rows| *rows = faults_in_verilog()),
@@ -320,7 +320,7 @@ fn small(rows: &mut Vec<Row>, target: Target) {
 
 /// Rows of Glint's own devices: gates and rate of the records in `benches/literature/`, and the error against cosⁿγ at n = 20,
 /// over γ = 0…90°.
-fn literature(rows: &mut Vec<Row>) {
+fn literature(rows: &mut [Row]) {
     for (_, record) in input::records::<Record>(Path::new("benches/literature")).expect("records") {
         let row = rows.iter_mut().find(|row| key(row) == record.name);
         let row = row.unwrap_or_else(|| panic!("no row {}", record.name));
@@ -334,7 +334,7 @@ fn literature(rows: &mut Vec<Row>) {
 }
 
 /// The lines of `glint verify` of `cosine_power` that come from records.
-fn verify(rows: &mut Vec<Row>) {
+fn verify(rows: &mut [Row]) {
     let proof = &json("proofs/cosine_power.json")["configurations"][0];
     let [evaluations, products] =
         ["evaluations", "colour_products"].map(|key| grouped(number(&proof[key])));
