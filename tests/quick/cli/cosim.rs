@@ -104,7 +104,7 @@ fn a_waveform_has_ports_and_microinstructions() {
 #[test]
 fn a_waveform_of_a_pipeline_has_its_stages() {
     let dir = Workspace::with("core.toml", ROUGH);
-    dir.write("core.toml", &format!("architecture = \"pipelined\"\n{ROUGH}"));
+    dir.write("core.toml", format!("architecture = \"pipelined\"\n{ROUGH}"));
     dir.done(["cosim", "core.toml", "--points", "20", "--vcd", "wave.vcd"]);
     let file = BufReader::new(fs::File::open(dir.at("wave.vcd")).unwrap());
     let mut found = Vec::new();
