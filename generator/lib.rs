@@ -66,6 +66,7 @@ pub mod render;
 #[cfg(feature = "cli")]
 #[doc(hidden)]
 pub mod synth;
+pub mod target;
 #[doc(hidden)]
 pub mod tools;
 #[cfg(feature = "cli")]

@@ -7,6 +7,7 @@ use std::sync::LazyLock;
 
 use super::schema::{Key, Schema};
 use super::text_pattern::TextPattern;
+use crate::target::TIMING_NAMES;
 
 /// The shared keys, in the order in which a written file shows them, after those of the device.
 pub fn shared_keys() -> &'static [Key] {
@@ -20,7 +21,7 @@ keys! {
     pub struct Shared {
         architecture: String = Key::choice("architecture", "sequential", &["sequential", "pipelined"],
             "A microprogram on one set of arithmetic, or the same unrolled: a point every clock."),
-        target: String = Key::choice("pipeline.target", "ecp5", &["ecp5", "ice40", "xilinx7", "generic"],
+        target: String = Key::choice("pipeline.target", "ecp5", &TIMING_NAMES,
             "Whose delays and multipliers decide what a stage of the pipeline does.")
             .only_when("architecture", "pipelined"),
         pipeline_clock_mhz: f64 = Key::number("pipeline.clock_mhz", 130.0, 1.0..=2000.0,

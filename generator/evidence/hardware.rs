@@ -10,8 +10,9 @@ use super::claims::Measured;
 use super::comparison;
 use crate::core::Core;
 use crate::registry::Registry;
+use crate::target::{FAMILIES, Family};
 use crate::tools::Tool;
-use crate::tools::synthesis::{self, FAMILIES, Family};
+use crate::tools::synthesis;
 
 /// W, whose default power is 16, and its rival.
 const RIVALS: [&str; 2] = ["cosine-power", "schlick"];
@@ -84,7 +85,7 @@ impl Hardware {
             })];
         for (at, family) in FAMILIES.iter().enumerate() {
             found.push(pair(
-                format!("luts-{}", family.name),
+                format!("luts-{}", family.name()),
                 format!("LUTs in {}, W for Schlick", family.title),
                 &|rival| rival.usage[at].luts as f64,
             ));

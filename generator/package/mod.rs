@@ -225,17 +225,16 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
 fn verilog(job: &Job, plan: &Plan, files: &mut Artifacts) -> Result<()> {
     let (naming, origin, top_file) = (job.naming, job.inputs.origin(), format!("{}.v", job.name()));
     if let Some(pipeline) = &job.design.pipeline {
-        let module = pipeline::module(plan, naming, pipeline, &origin);
-        files.add(Kind::Rtl, top_file, render(&module)?);
+        files.add(Kind::Rtl, top_file, pipeline::module(plan, naming, pipeline, &origin)?);
         return Ok(());
     }
     let control = Interface::new(plan, Partition::Control);
     let datapath = Interface::new(plan, Partition::Datapath);
     let units = [(Partition::Control, &control), (Partition::Datapath, &datapath)];
-    files.add(Kind::Rtl, top_file, render(&top::module(plan, naming, units, &origin))?);
+    files.add(Kind::Rtl, top_file, top::module(plan, naming, units, &origin));
     for (partition, interface) in units {
         let module = module::Builder::new(plan, naming, interface, partition).module(&origin);
-        files.add(Kind::Rtl, format!("{}.v", naming.module(partition)), render(&module)?);
+        files.add(Kind::Rtl, format!("{}.v", naming.module(partition)), module);
     }
     Ok(())
 }

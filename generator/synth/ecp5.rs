@@ -6,7 +6,8 @@ use serde_json::Value;
 use super::figures::{Figures, Step};
 use super::netlist::{self, Netlist};
 use super::workspace::Workspace;
-use super::{Chip, Subject, Target};
+use super::{Subject, Target};
+use crate::target::{Chip, ECP5};
 use crate::tools::Tool;
 
 /// Out of reach, so that the placer tries hardest, in MHz.
@@ -23,9 +24,8 @@ pub fn measure(
     no_registers_in_blocks(&netlist)?;
     done();
     // All are as fast.
-    let chips = Target::Ecp5.chips();
-    let fitting = chips.iter().find(|chip| chip.lack(usage.taken()).is_empty());
-    let chip = fitting.unwrap_or(&chips[chips.len() - 1]);
+    let fitting = ECP5.chips.iter().find(|chip| chip.lack(usage.taken()).is_empty());
+    let chip = fitting.unwrap_or(&ECP5.chips[ECP5.chips.len() - 1]);
     let name = format!("ECP5 {}, speed grade 6", chip.name);
     let mut figures = Figures::new(Target::Ecp5, &name, usage.into());
     figures.untimed = fitting.is_none().then(|| "does not fit".to_owned());

@@ -11,13 +11,14 @@ use serde_json::Value;
 use super::figures::{Figures, Step};
 use super::netlist::{self, Netlist};
 use super::workspace::Workspace;
-use super::{Chip, Subject, Target};
+use super::{Subject, Target};
+use crate::target::{Chip, ICE40};
 use crate::tools::Tool;
 
 const DEVICE: &str = "iCE40 UP5K, SG48";
 
 /// The largest of the family that has DSP blocks.
-const CHIP: &Chip = &Target::Ice40.chips()[0];
+const CHIP: &Chip = &ICE40.chips[0];
 
 /// Out of reach, so that the placer tries hardest, in MHz.
 const GOAL: &str = "60";

@@ -23,9 +23,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::hdl::netlist::Design;
 use crate::package;
+use crate::target::{FAMILIES, Family};
 use crate::tools::Tool;
 use crate::tools::gates::cells::MAPPING;
-use crate::tools::synthesis::{FAMILIES, Family, synthesise};
+use crate::tools::synthesis::synthesise;
 pub use figures::{Area, Figures, Frequency, Step};
 pub use record::{DIRECTORY, Rate, Record, tools};
 
@@ -46,28 +47,6 @@ pub enum Target {
 /// All targets.
 pub const TARGETS: [Target; 4] = [Target::Ice40, Target::Ecp5, Target::Xilinx7, Target::Osu018];
 
-/// What a chip has.
-#[derive(Debug)]
-pub struct Chip {
-    /// For people.
-    pub name: &'static str,
-    /// How nextpnr names it, with its package.
-    pub options: &'static str,
-    /// What it has of each resource, in the order of [`Chip::lack`].
-    pub has: [u64; 3],
-}
-
-impl Chip {
-    /// What is wanted and what is there, of the resources of which the chip has too little: by their place among look-up
-    /// tables, DSP blocks and block RAMs.
-    pub fn lack(&self, wanted: [u64; 3]) -> Vec<(usize, u64, u64)> {
-        let all = wanted.into_iter().zip(self.has).enumerate();
-        all.filter(|(_, (wanted, has))| wanted > has)
-            .map(|(at, (wanted, has))| (at, wanted, has))
-            .collect()
-    }
-}
-
 impl Target {
     /// For scripts: `ice40`.
     pub fn name(self) -> &'static str {
@@ -86,30 +65,7 @@ impl Target {
 
     /// The family as Yosys knows it; none of standard cells.
     pub fn family(self) -> Option<&'static Family> {
-        FAMILIES.iter().find(|family| family.name == self.name())
-    }
-
-    /// Chips of the family, from the smallest, which is a usual one.
-    pub const fn chips(self) -> &'static [Chip] {
-        match self {
-            Self::Ice40 => {
-                &[Chip { name: "iCE40 UP5K", options: "--up5k --package sg48", has: [5280, 8, 30] }]
-            }
-            Self::Ecp5 => &[
-                Chip {
-                    name: "LFE5U-25F",
-                    options: "--25k --package CABGA381",
-                    has: [24_288, 28, 56],
-                },
-                Chip {
-                    name: "LFE5U-85F",
-                    options: "--85k --package CABGA756",
-                    has: [83_640, 156, 208],
-                },
-            ],
-            Self::Xilinx7 => &[Chip { name: "XC7A35T", options: "", has: [20_800, 90, 100] }],
-            Self::Osu018 => &[],
-        }
+        FAMILIES.iter().find(|family| family.name() == self.name())
     }
 }
 

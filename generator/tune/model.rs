@@ -8,8 +8,9 @@ use std::collections::BTreeSet;
 use serde::{Deserialize, Serialize};
 
 use crate::hdl::netlist::{Design, Driver, NetId, Op, RegId};
-use crate::hdl::pipeline::{self, TARGETS};
-use crate::synth::{self, Target};
+use crate::hdl::pipeline::delay_of;
+use crate::synth::Target;
+use crate::target::{ECP5, Family};
 
 /// The composition of a netlist, as far as look-up tables are concerned.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -41,111 +42,43 @@ pub struct Cost {
     pub mhz: f64,
 }
 
-/// A target as the model sees it.
-struct Chip {
-    target: Target,
-    /// The weights of [`Features`], and what every core takes.
-    weights: [f64; 6],
-    /// The ratio of the measured clock to that of the delays.
-    scale: f64,
-    /// By how many bits signed operands of a DSP block may be wider than unsigned ones.
-    sign: u32,
-    /// Partial products of fewer bits are look-up tables.
-    least_product: u32,
-    /// Bits of a block RAM, and its widest word.
-    block: (u64, u64),
-    /// Synchronous ROMs of fewer bits are look-up tables.
-    least_block: u64,
-}
-
-const CHIPS: [Chip; 3] = [
-    Chip {
-        target: Target::Ice40,
-        weights: ICE40,
-        scale: 0.9,
-        sign: 0,
-        least_product: 11,
-        block: (4096, 16),
-        least_block: 128,
-    },
-    Chip {
-        target: Target::Ecp5,
-        weights: ECP5,
-        scale: 0.95,
-        sign: 0,
-        least_product: 9,
-        block: (18_432, 36),
-        least_block: 2048,
-    },
-    Chip {
-        target: Target::Xilinx7,
-        weights: XILINX7,
-        scale: 1.0,
-        sign: 1,
-        least_product: 9,
-        block: (18_432, 36),
-        least_block: 8192,
-    },
-];
-
-// Of the 20 cores in `synthesis/`, sequential and pipelined: on iCE40 by `benches/tune/fit`; on ECP5 by a fit to pipelines that were
-// other netlists; on Xilinx 7 sought near such a fit for the least error in the median. The estimate of half of the cores is within
-// 9 % of the look-up tables on iCE40 and ECP5, 10 % on Xilinx 7; the worst are `threshold` on iCE40 (33 % too many) and on ECP5
-// (25 %), and `schlick_pipelined` on Xilinx 7 (47 % too few: its adders divide, those of other cores go into DSP blocks).
-const ICE40: [f64; 6] = [1.24, 0.66, 0.40, 1.23, 0.30, 0.48];
-const ECP5: [f64; 6] = [1.48, 0.46, 0.41, 2.09, 0.46, 27.92];
-const XILINX7: [f64; 6] = [0.48, 0.33, 1.18, 0.64, 0.0, 8.48];
-
-fn chip(target: Target) -> &'static Chip {
-    // Cells have no model of their own: of the FPGAs ECP5 is nearest, where a product is not split.
-    CHIPS.iter().find(|chip| chip.target == target).unwrap_or(&CHIPS[1])
-}
-
-/// A usual chip of a target that the model knows, or of the nearest.
-fn usual(target: Target) -> &'static synth::Chip {
-    &chip(target).target.chips()[0]
-}
-
-impl Chip {
-    /// The delays of the target, and the widest unsigned operands of a DSP block.
-    fn delays(&self) -> &'static pipeline::Target {
-        pipeline::Target::named(self.target.name()).unwrap_or(&TARGETS[0])
-    }
-}
-
-/// Whether the model knows a target.
-pub fn knows(target: Target) -> bool {
-    CHIPS.iter().any(|chip| chip.target == target)
+/// The family of a target. Cells have no model of their own: of the FPGAs ECP5 is nearest, where a product is not split.
+fn family(target: Target) -> &'static Family {
+    target.family().unwrap_or(&ECP5)
 }
 
 impl Cost {
     /// The estimate for a design.
     pub fn new(design: &Design, target: Target) -> Self {
-        let chip = chip(target);
+        let family = family(target);
         let features = Features::new(design, target);
         let Features { adder, mux, logic, rom, product } = features;
         let parts = [adder, mux, logic, rom, product, 1.0];
-        let luts = parts.iter().zip(chip.weights).map(|(part, weight)| part * weight).sum::<f64>();
+        let luts = parts
+            .iter()
+            .zip(family.estimate.weights)
+            .map(|(part, weight)| part * weight)
+            .sum::<f64>();
         Self {
             // A tenth of a look-up table is more than an estimate is worth.
             luts: (luts * 10.0).round() / 10.0,
-            dsps: products(design).map(|(a, b)| dsps(design, chip, a, b)).sum(),
-            block_rams: block_rams(design, chip),
+            dsps: products(design).map(|(a, b)| dsps(design, family, a, b)).sum(),
+            block_rams: block_rams(design, family),
             rom_bits: design.rom_bits(),
-            mhz: (10_000.0 / (chip.scale * period(design, chip))).round() / 10.0,
+            mhz: (10_000.0 / (family.estimate.scale * period(design, family))).round() / 10.0,
         }
     }
 
     /// Everything in look-up tables.
     pub fn area(&self, target: Target) -> f64 {
-        let [luts, dsps, blocks] = usual(target).has.map(|has| has as f64);
+        let [luts, dsps, blocks] = family(target).chips[0].has.map(|has| has as f64);
         let (dsp, block) = ((luts / dsps).round(), (luts / blocks).round());
         self.luts + dsp * self.dsps as f64 + block * self.block_rams as f64
     }
 
     /// Returns the resources that a usual chip of the target lacks, in words; empty where the core fits.
     pub fn excess(&self, target: Target) -> String {
-        let chip = usual(target);
+        let chip = &family(target).chips[0];
         let wanted = [self.luts.ceil() as u64, self.dsps, self.block_rams];
         let short = chip.lack(wanted).into_iter().map(|(at, wanted, has)| {
             format!("{wanted} of {has} {}", ["look-up tables", "DSP blocks", "block RAMs"][at])
@@ -161,7 +94,7 @@ impl Cost {
 impl Features {
     /// Counts the features of a design on a target.
     pub fn new(design: &Design, target: Target) -> Self {
-        let chip = chip(target);
+        let family = family(target);
         let mut sum = Self::default();
         let width = |net: NetId| f64::from(design.width(net));
         for (id, net) in design.iter() {
@@ -175,7 +108,7 @@ impl Features {
                 Op::Equal(a, _) => sum.logic += 2.0 * width(*a) / 3.0,
                 Op::Mux { inputs, .. } => sum.mux += width(id) * (inputs.len() - 1) as f64,
                 Op::Mul(a, b) => {
-                    let blocks = blocks(chip, design.width(*a), design.width(*b));
+                    let blocks = blocks(family, design.width(*a), design.width(*b));
                     sum.product += blocks.saturating_sub(1) as f64 * width(id) / 2.0;
                 }
                 Op::Relabel(_) | Op::Extend(_) | Op::Slice { .. } | Op::Concat(_) | Op::Not(_) => {}
@@ -183,7 +116,7 @@ impl Features {
         }
         for rom in &design.roms {
             let bits = rom.words.len() as u64 * u64::from(design.width(rom.data));
-            if !rom.synchronous || bits < chip.least_block {
+            if !rom.synchronous || bits < family.estimate.least_block {
                 sum.rom += bits as f64 / 16.0;
             }
         }
@@ -200,12 +133,12 @@ fn products(design: &Design) -> impl Iterator<Item = (NetId, NetId)> {
 
 /// DSP blocks for a product, the better way round. As Yosys cuts operands: whole slices, and a rest, of which a single bit is a
 /// row of gates.
-fn dsps(design: &Design, chip: &Chip, a: NetId, b: NetId) -> u64 {
+fn dsps(design: &Design, family: &Family, a: NetId, b: NetId) -> u64 {
     let [a, b] = [a, b].map(|net| {
-        let sign = if design.net(net).format.signed { chip.sign } else { 0 };
+        let sign = if design.net(net).format.signed { family.estimate.sign } else { 0 };
         design.width(net) - sign
     });
-    let (wide, narrow) = chip.delays().multiplier;
+    let (wide, narrow) = family.timing.multiplier;
     let slices = |operand: u32, block: u32| {
         let whole = std::iter::repeat_n(block, (operand / block) as usize);
         let rest = Some(operand % block).filter(|rest| *rest > 1 || operand < block);
@@ -214,14 +147,14 @@ fn dsps(design: &Design, chip: &Chip, a: NetId, b: NetId) -> u64 {
     let either = |a: u32, b: u32| {
         let others = slices(b, narrow);
         let pairs = slices(a, wide).into_iter().flat_map(|a| others.iter().map(move |b| a + b));
-        pairs.filter(|bits| *bits >= chip.least_product).count() as u64
+        pairs.filter(|bits| *bits >= family.estimate.least_product).count() as u64
     };
     either(a, b).min(either(b, a))
 }
 
 /// Partial products of a product, the better way round.
-fn blocks(chip: &Chip, a: u32, b: u32) -> u64 {
-    let (wide, narrow) = chip.delays().multiplier;
+fn blocks(family: &Family, a: u32, b: u32) -> u64 {
+    let (wide, narrow) = family.timing.multiplier;
     let slices = |operand: u32, block: u32| {
         if operand <= block { 1 } else { u64::from(operand.div_ceil(block)) }
     };
@@ -229,14 +162,14 @@ fn blocks(chip: &Chip, a: u32, b: u32) -> u64 {
     either(a, b).min(either(b, a))
 }
 
-fn block_rams(design: &Design, chip: &Chip) -> u64 {
-    let (capacity, widest) = chip.block;
+fn block_rams(design: &Design, family: &Family) -> u64 {
+    let (capacity, widest) = family.estimate.block;
     design
         .roms
         .iter()
         .filter(|rom| rom.synchronous && rom.shares.is_none())
         .map(|rom| (rom.words.len() as u64, u64::from(design.width(rom.data))))
-        .filter(|(words, width)| words * width >= chip.least_block)
+        .filter(|(words, width)| words * width >= family.estimate.least_block)
         .map(|(words, width)| {
             // The word of a block shrinks as the number of words grows, by powers of two.
             let mut shapes =
@@ -249,12 +182,10 @@ fn block_rams(design: &Design, chip: &Chip) -> u64 {
 }
 
 /// The longest path between registers in nanoseconds, by the delays of the pipelines' target.
-fn period(design: &Design, chip: &Chip) -> f64 {
-    let delays = chip.delays();
+fn period(design: &Design, family: &Family) -> f64 {
+    let delays = &family.timing;
     let order = design.levelise().unwrap_or_default();
     let mut arrival = vec![0.0_f64; design.nets.len()];
-    let levels = |inputs: u32| f64::from(inputs.max(2).ilog2().div_ceil(2).max(1));
-    let chain = |width: u32| delays.carry + delays.carry_bit * f64::from(width);
     let mut longest = 0.0_f64;
     let registers = (0..design.registers.len()).map(|at| RegId(at as u32));
     let inside = registers.filter_map(|register| design.multiplier(register));
@@ -264,28 +195,16 @@ fn period(design: &Design, chip: &Chip) -> f64 {
         let before = design.combinational_inputs(id);
         let before = before.iter().map(|input| arrival[input.index()]).fold(0.0, f64::max);
         let own = match &net.driver {
-            Driver::Op(op) => match op {
-                Op::And(..) | Op::Or(..) | Op::Xor(..) => delays.logic,
-                Op::Add { a, .. } | Op::Sub(a, _) | Op::Less(a, _) => chain(design.width(*a)),
-                Op::Mul(..) if inside.contains(&id) => {
-                    delays.registered.map_or(delays.product, |it| it.product)
-                }
-                Op::Mul(a, b) => {
-                    let blocks = blocks(chip, design.width(*a), design.width(*b));
-                    let sums = if blocks > 1 { chain(design.width(id) / 2) } else { 0.0 };
-                    delays.product + sums
-                }
-                Op::Equal(a, _) => delays.logic * levels(2 * design.width(*a)),
-                Op::Any(a) | Op::All(a) => delays.logic * levels(design.width(*a)),
-                Op::Mux { inputs, .. } => delays.logic * levels(inputs.len() as u32),
-                Op::Relabel(_) | Op::Extend(_) | Op::Slice { .. } | Op::Concat(_) | Op::Not(_) => {
-                    0.0
-                }
-            },
+            Driver::Op(Op::Mul(..)) if inside.contains(&id) => {
+                delays.registered.map_or(delays.product, |it| it.product)
+            }
+            Driver::Op(Op::Mul(a, b)) if blocks(family, design.width(*a), design.width(*b)) > 1 => {
+                delays.product + delays.chain(design.width(id) / 2)
+            }
+            Driver::Op(op) => delay_of(delays, op, &|operand| design.width(operand)),
             Driver::Rom(rom) => {
                 let rom = design.rom(*rom);
-                let address = design.width(rom.address).saturating_sub(2).max(1);
-                if rom.synchronous { delays.block } else { delays.logic * levels(2 * address) }
+                if rom.synchronous { delays.block } else { delays.word(design.width(rom.address)) }
             }
             Driver::Undriven
             | Driver::Input

@@ -16,9 +16,10 @@ use crate::certify::{self, Outcome, statements};
 use crate::core::{BENCH_SEED, Core};
 use crate::equality;
 use crate::package;
+use crate::target::{FAMILIES, Family};
 use crate::tools::gates;
 use crate::tools::gates::cells::{LIBERTY, Start};
-use crate::tools::synthesis::{FAMILIES, Family, synthesise};
+use crate::tools::synthesis::synthesise;
 use crate::tools::{
     LimitReached, Limits, PROOF_LIMITS, Simulator, elaborate, lint, prove, run_bench,
 };
@@ -300,7 +301,7 @@ pub const SYNTHESIS: Check = Check {
         let taken: Vec<String> = FAMILIES
             .par_iter()
             .map(|family| {
-                let files = subject.sources(family.name)?;
+                let files = subject.sources(family.name())?;
                 let usage = synthesise(&tools[0], &files, name, family, limit)?;
                 progress(1);
                 Ok(format!(
@@ -447,7 +448,7 @@ pub const GATES: Check = Check {
         let failures: Vec<Option<String>> = families
             .par_iter()
             .map(|family| {
-                let rtl = subject.sources(family.name)?;
+                let rtl = subject.sources(family.name())?;
                 let names: Vec<String> = rtl.iter().map(|(name, _)| name.clone()).collect();
                 let netlist = gates::netlist(&tools[0], &rtl, name, family, limit)?;
                 let files = gates::bench(&tools[0], sources.clone(), &names, netlist, family)?;

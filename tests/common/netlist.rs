@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use super::Sure;
+use glint::target::Family;
 use glint::tools::Simulator;
 use glint::tools::gates;
-use glint::tools::synthesis::Family;
 
 use super::bench::Bench;
 use super::cores::{Emitted, write};
@@ -19,7 +19,7 @@ pub const POINTS: u64 = 40;
 /// # Panics
 /// Yosys fails or warns, or there is a latch.
 pub fn synthesise(directory: &Path, emitted: &Emitted, family: &Family) {
-    write(directory, &emitted.rtl_for(family.name));
+    write(directory, &emitted.rtl_for(family.name()));
     let commands = format!(
         "{}read_verilog {}; hierarchy -check -top {top}; proc; \
          select -assert-none t:$dlatch t:$adlatch t:$dlatchsr t:$sr; \

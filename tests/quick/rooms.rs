@@ -8,41 +8,42 @@ use glint::registry::Registry;
 use regex::Regex;
 
 /// From the bottom: a room and those above it that it may import from.
-const ROOMS: [(&str, &str); 29] = [
+const ROOMS: [(&str, &str); 30] = [
     ("base", ""),
-    ("config", "base"),
+    ("target", ""),
+    ("config", "base target"),
     ("formula", ""),
     ("approximate", "base choices config formula"),
     ("keys", "base config formula approximate"),
     ("golden", "base config keys formula approximate"),
-    ("hdl/netlist", "base"),
+    ("hdl/netlist", "base target"),
     ("hdl/dsl", "base hdl/netlist"),
     ("hdl/blocks", "base hdl/dsl"),
     ("hdl/sim", "base hdl/netlist"),
-    ("hdl/pipeline", "base config hdl/netlist"),
+    ("hdl/pipeline", "base target config hdl/netlist"),
     ("observation", "golden"),
     ("hdl/verilog", "base hdl/netlist observation"),
     ("devices", "base config keys approximate hdl/netlist hdl/dsl hdl/blocks"),
     ("package", "base config golden hdl/netlist hdl/pipeline hdl/verilog observation"),
-    ("tools", "base package"),
+    ("tools", "base target package"),
     ("equality", "base hdl/netlist tools"),
-    ("synth", "base hdl/netlist package tools"),
+    ("synth", "base target hdl/netlist package tools"),
     ("cosim", "base golden hdl/netlist hdl/sim observation package tools"),
     ("registry", "base config keys golden hdl/netlist hdl/dsl hdl/pipeline devices"),
     ("core", "base config golden hdl/netlist package tools cosim registry"),
     ("certify", "base formula golden hdl/netlist hdl/pipeline tools"),
     ("mutate", "base golden hdl/netlist hdl/sim package tools cosim core"),
     ("render", "base config golden cosim core"),
-    ("evidence", "config golden hdl/netlist tools cosim registry core"),
-    ("tune", "config golden hdl/netlist hdl/pipeline cosim registry synth evidence"),
+    ("evidence", "config target golden hdl/netlist tools cosim registry core"),
+    ("tune", "config golden hdl/netlist hdl/pipeline cosim registry synth evidence target"),
     (
         "pages",
-        "base config golden hdl/netlist hdl/verilog package tools synth cosim core render evidence",
+        "base target config golden hdl/netlist hdl/verilog package tools synth cosim core render evidence",
     ),
-    ("verify", "base golden package tools cosim core mutate certify equality"),
+    ("verify", "base target golden package tools cosim core mutate certify equality"),
     (
         "cli",
-        "base config keys golden hdl/netlist package tools cosim registry core mutate render evidence pages verify synth tune certify",
+        "base target config keys golden hdl/netlist package tools cosim registry core mutate render evidence pages verify synth tune certify",
     ),
 ];
 

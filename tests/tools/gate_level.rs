@@ -6,20 +6,15 @@ use std::fs;
 use crate::common::cores::{Emitted, configuration, configuration_with};
 use crate::common::netlist::{self, POINTS, synthesise};
 use crate::common::tools::{LIMIT, tool};
+use glint::target::{ECP5, FAMILIES, Family};
 use glint::tools::gates;
 use glint::tools::gates::cells::{self, Start};
-use glint::tools::synthesis::{FAMILIES, Family};
 use glint::tools::{Simulator, run_bench};
 use rayon::prelude::*;
 
 fn families() -> impl ParallelIterator<Item = &'static Family> {
     let simulated = |family: &&Family| gates::is_simulated(family);
     FAMILIES.par_iter().filter(simulated)
-}
-
-fn ecp5() -> &'static Family {
-    let ecp5 = FAMILIES.iter().find(|family| family.name == "ecp5");
-    ecp5.expect("ECP5")
 }
 
 fn netlist(emitted: &Emitted, family: &Family) -> String {
@@ -35,11 +30,11 @@ fn a_bit_of_a_block_ram_is_noticed() {
     const PARAMETER: &str = ".INITVAL_00(320'h";
     const BIT: usize = 20 + 17;
     let emitted = Emitted::new(&configuration("configs/quadratic.toml"), POINTS, 1);
-    let netlist = netlist(&emitted, ecp5());
+    let netlist = netlist(&emitted, &ECP5);
     let at = netlist.find(PARAMETER).expect(PARAMETER) + PARAMETER.len();
     let digits = netlist[at..].find(')').expect("the end of the number");
     let wrong = with_digit(&netlist, at + digits - 1 - BIT / 4, |digit| digit ^ 1 << (BIT % 4));
-    netlist::bench(&emitted, wrong, ecp5()).assert_fails("a bit of a block RAM");
+    netlist::bench(&emitted, wrong, &ECP5).assert_fails("a bit of a block RAM");
 }
 
 /// Look-up tables, spread over the netlist, each inverted. Not all of them matter: synthesis leaves tables whose
@@ -50,7 +45,7 @@ fn bits_of_look_up_tables_are_noticed() {
     families().for_each(|family| {
         let emitted = Emitted::new(&configuration("configs/schlick.toml"), POINTS, 1);
         let netlist = netlist(&emitted, family);
-        let (cell, parameter) = match family.name {
+        let (cell, parameter) = match family.name() {
             "ice40" => ("SB_LUT4 #(", ".LUT_INIT(16'h"),
             _ => ("LUT4 #(", ".INIT(16'h"),
         };
@@ -58,7 +53,7 @@ fn bits_of_look_up_tables_are_noticed() {
             .match_indices(cell)
             .filter_map(|(at, _)| Some(at + netlist[at..].find(parameter)? + parameter.len()))
             .collect();
-        assert!(tables.len() > 10 * TABLES, "{}", family.name);
+        assert!(tables.len() > 10 * TABLES, "{}", family.name());
         let step = tables.len() / TABLES;
         let unnoticed: Vec<usize> = (0..TABLES)
             .into_par_iter()
@@ -73,7 +68,7 @@ fn bits_of_look_up_tables_are_noticed() {
         assert!(
             unnoticed.len() * 2 <= TABLES,
             "{}: {} of {TABLES} inverted look-up tables are not noticed: those at {unnoticed:?}",
-            family.name,
+            family.name(),
             unnoticed.len()
         );
     });
@@ -83,7 +78,7 @@ fn bits_of_look_up_tables_are_noticed() {
 #[test]
 fn an_unknown_mode_is_refused() {
     let emitted = Emitted::new(&configuration("configs/quadratic.toml"), 1, 1);
-    let netlist = netlist(&emitted, ecp5());
+    let netlist = netlist(&emitted, &ECP5);
     for (right, wrong) in [
         (".REGMODE_A(\"NOREG\")", ".REGMODE_A(\"OUTREG\")"),
         (".DATA_WIDTH_A(32'd18)", ".DATA_WIDTH_A(32'd36)"),
@@ -91,7 +86,7 @@ fn an_unknown_mode_is_refused() {
     ] {
         assert!(netlist.contains(right), "{right}");
         let wrong_netlist = netlist.replace(right, wrong);
-        netlist::bench(&emitted, wrong_netlist, ecp5()).assert_fails(wrong);
+        netlist::bench(&emitted, wrong_netlist, &ECP5).assert_fails(wrong);
     }
 }
 

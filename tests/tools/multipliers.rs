@@ -10,7 +10,7 @@ use crate::common::cores::{Emitted, Files, configuration, configuration_with};
 use crate::common::netlist::{self, POINTS, synthesise};
 use crate::common::tools::{LIMIT, tool};
 use crate::faults::faults;
-use glint::tools::synthesis::{FAMILIES, Family};
+use glint::target::{ECP5, ICE40};
 use glint::tools::{Simulator, gates};
 use rayon::prelude::*;
 
@@ -18,10 +18,6 @@ const CONFIGURATION: &str = "configs/studies/threshold_dsp.toml";
 
 /// The two forms side by side at all widths, with and without a sign, while factors and enable change.
 const TWINS: &str = include_str!("benches/twins.v");
-
-fn ecp5() -> &'static Family {
-    FAMILIES.iter().find(|family| family.name == "ecp5").expect("ECP5")
-}
 
 /// The files of the configuration, and the text of its multiplier for ECP5.
 fn emitted() -> (Emitted, String) {
@@ -43,7 +39,7 @@ fn twins(emitted: &Emitted, own: &str, step: u32) -> Bench {
         "twins.v".to_owned(),
         TWINS.replace("MODULE", &module).replace("STEP", &step.to_string()),
     ));
-    files.extend(gates::models(&tool("yosys"), ecp5()).expect("models"));
+    files.extend(gates::models(&tool("yosys"), &ECP5).expect("models"));
     Bench::build_quietly(Simulator::Icarus, &files, "twins")
 }
 
@@ -61,14 +57,14 @@ fn a_netlist_has_a_register_in_every_multiplier_and_passes_its_bench() {
     let core = configuration(CONFIGURATION);
     let (emitted, _) = emitted();
     let place = tempfile::tempdir().expect("a directory");
-    synthesise(place.path(), &emitted, ecp5());
+    synthesise(place.path(), &emitted, &ECP5);
     let text = fs::read_to_string(place.path().join("netlist.v")).expect("a netlist");
     let pipeline = core.design.pipeline.as_ref().expect("a pipeline");
     assert_eq!(text.matches("MULT18X18D #(").count(), pipeline.registered.len());
     assert_eq!(text.matches(".REG_OUTPUT_CLK(\"CLK0\")").count(), pipeline.registered.len());
-    netlist::bench(&emitted, text.clone(), ecp5()).assert_passes();
+    netlist::bench(&emitted, text.clone(), &ECP5).assert_passes();
     let wrong = text.replacen(".REG_OUTPUT_CLK(\"CLK0\")", ".REG_OUTPUT_CLK(\"NONE\")", 1);
-    netlist::bench(&emitted, wrong, ecp5()).assert_fails("a product that is not held");
+    netlist::bench(&emitted, wrong, &ECP5).assert_fails("a product that is not held");
 }
 
 /// For another family the portable form is as good: its synthesiser finds multipliers itself.
@@ -77,11 +73,10 @@ fn another_family_takes_the_portable_form() {
     // It has no memories for delay lines either.
     let core = configuration_with(CONFIGURATION, "[pipeline]\ndelays = \"registers\"\n");
     let emitted = Emitted::new(&core, POINTS, 1);
-    let ice40 = FAMILIES.iter().find(|family| family.name == "ice40").expect("iCE40");
     let place = tempfile::tempdir().expect("a directory");
-    synthesise(place.path(), &emitted, ice40);
+    synthesise(place.path(), &emitted, &ICE40);
     let text = fs::read_to_string(place.path().join("netlist.v")).expect("a netlist");
-    netlist::bench(&emitted, text, ice40).assert_passes();
+    netlist::bench(&emitted, text, &ICE40).assert_passes();
 }
 
 /// The flow for ECP5 takes the file for ECP5 and no other of that name; a simulation takes the portable one.

@@ -14,8 +14,9 @@ use crate::common::netlist::{self, POINTS, synthesise};
 use crate::common::sample::sampled;
 use crate::common::tools::{LIMIT, tool};
 use glint::hdl::netlist::{Design, Driver, Op, Rom};
+use glint::target::{ECP5, FAMILIES, Family, Kinds};
 use glint::tools::gates;
-use glint::tools::synthesis::{self, FAMILIES, Family, Kinds, Usage};
+use glint::tools::synthesis::{self, Usage};
 use rayon::prelude::*;
 
 /// Pairs of a configuration and a family that are synthesised.
@@ -24,7 +25,7 @@ const PAIRS: usize = 15;
 /// The prefixes of the names of the initial values of a family's block RAMs, before so many hexadecimal
 /// digits.
 fn initial(family: &Family) -> (&'static [&'static str], usize) {
-    match family.name {
+    match family.name() {
         "ice40" => (&["INIT_"], 1),
         "ecp5" => (&["INITVAL_"], 2),
         // INIT_A and INIT_B are of the output register.
@@ -132,9 +133,8 @@ fn memories_are_where_the_key_wants_them() {
     let [auto, block, distributed] = ["auto", "block", "distributed"].map(|style| {
         let more = format!("\n[package]\nrom_style = \"{style}\"\n");
         let emitted = Emitted::new(&configuration_with("configs/gauss.toml", &more), POINTS, 1);
-        let ecp5 = FAMILIES.iter().find(|family| family.name == "ecp5").expect("ECP5");
         let used =
-            synthesis::synthesise(&tool("yosys"), &emitted.rtl(), &emitted.name, ecp5, LIMIT);
+            synthesis::synthesise(&tool("yosys"), &emitted.rtl(), &emitted.name, &ECP5, LIMIT);
         used.unwrap_or_else(|error| panic!("{style}: {error:#}"))
     });
     assert_eq!(distributed.block_rams, 0);

@@ -17,8 +17,9 @@ use crate::evidence::comparison::{self, Accuracy, Multiplier};
 use crate::golden::contract;
 use crate::registry::{Device, Registry};
 use crate::synth::Record;
+use crate::target::{FAMILIES, Family};
 use crate::tools::Tool;
-use crate::tools::synthesis::{self, FAMILIES, Family, Usage};
+use crate::tools::synthesis::{self, Usage};
 
 /// Compare all devices with cos^n gamma at one exponent, side by side
 ///
@@ -211,7 +212,7 @@ fn figures(core: &Core, n: f64) -> Result<Figures> {
 fn recorded(record: Option<&Record>) -> Vec<Result<Usage, String>> {
     let usage = |family: &Family| {
         let mut targets = record?.targets.iter();
-        targets.find(|figures| figures.target.name() == family.name)?.area.usage()
+        targets.find(|figures| figures.target.name() == family.name())?.area.usage()
     };
     let all: Option<Vec<Usage>> = FAMILIES.iter().map(usage).collect();
     all.into_iter().flatten().map(Ok).collect()

@@ -113,7 +113,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
             wrong_usage!("{option} {wanted}: a number above 0 is wanted");
         }
     }
-    if !tune::model::knows(arguments.target) {
+    if arguments.target.family().is_none() {
         wrong_usage!(
             "--target {}: there is no estimate of what a configuration costs there; tune for an FPGA and see `glint synth`",
             arguments.target

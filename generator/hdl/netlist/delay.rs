@@ -4,27 +4,6 @@ use std::collections::BTreeMap;
 
 use super::{Design, Driver, NetId, Op, RegId};
 
-/// A memory in look-up tables, as a target has it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct DelayMemory {
-    /// Its words.
-    pub words: u32,
-    /// Their bits.
-    pub width: u32,
-    /// The look-up tables that it takes, those of its addresses too.
-    pub tables: u32,
-}
-
-impl DelayMemory {
-    /// Whether a line with its counter takes fewer look-up tables and registers than it takes the place of.
-    fn pays(self, words: usize, bits: u32) -> bool {
-        let words = words as u32;
-        let memories = bits.div_ceil(self.width) * words.div_ceil(self.words);
-        let counter = words.next_power_of_two().trailing_zeros();
-        words > 1 && words * bits > memories * self.tables + 2 * counter
-    }
-}
-
 /// Values on the same way, from one stage to another.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DelayLine {

@@ -34,7 +34,7 @@ use crate::base::interval::Interval;
 pub use cell::Op;
 pub use control::{Control, Field, FieldKind, Microinstruction, Sequence};
 pub use decisions::{decided_by_data, delay_of_valid};
-pub use delay::{DelayLine, DelayMemory, Delayed};
+pub use delay::{DelayLine, Delayed};
 pub use eval::Interpreter;
 pub use handshake::Handshake;
 pub use held::register_held;

@@ -1,6 +1,7 @@
 //! The facts of a design that is a pipeline.
 
-use super::{DelayMemory, Design, Driver, Net, NetId, Op, RegId};
+use super::{Design, Driver, Net, NetId, Op, RegId};
+use crate::target::DelayMemory;
 
 /// The pipeline of a design that takes a point every clock.
 #[derive(Clone, Debug)]

@@ -1,10 +1,11 @@
 //! The pipelined architecture: one microprogram, a point every clock.
 //!
 //! A design with a microprogram is unrolled (`unroll`) into a graph of values, whose products are
-//! split (`split`) to the multipliers of a [`Target`]; a schedule (`schedule`) gives every value its stage,
+//! split (`split`) to the multipliers of a [`Timing`]; a schedule (`schedule`) gives every value its stage,
 //! and `stages` makes a design of it again, without a microprogram: a register wherever a value
 //! crosses from a stage to the next. Nothing here knows a device.
 
+mod delay;
 mod gates;
 mod graph;
 mod possible;
@@ -14,7 +15,6 @@ mod settle;
 mod split;
 mod stages;
 mod sums;
-mod target;
 #[cfg(test)]
 mod tests;
 mod unroll;
@@ -22,10 +22,11 @@ mod unroll;
 use crate::base::diagnostic::{Diagnostic, Diagnostics};
 use crate::config::{Config, Shared};
 use crate::hdl::netlist::Design;
+use crate::target::{TIMINGS, Timing};
 
+pub use delay::delay_of;
 pub use graph::{Cell, Graph, Node, NodeId, Op};
 use schedule::{Refusal, Unreachable};
-pub use target::{TARGETS, Target};
 pub use unroll::{
     Cycle, Held, Line, Unrolled, Walked, any_cycle, carried, unroll, unroll_in_powers, unroll_line,
 };
@@ -52,7 +53,7 @@ pub enum Delays {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
     /// The target whose delays and multipliers count.
-    pub target: &'static Target,
+    pub target: &'static Timing,
     /// The goal of the schedule.
     pub goal: Goal,
     /// Products end in the register of a multiplier, where the target has a delay for it.
@@ -69,7 +70,7 @@ pub struct Options {
 pub fn options(config: &Config) -> Option<Options> {
     let keys = Shared::of(config);
     (keys.architecture == "pipelined").then(|| Options {
-        target: Target::named(&keys.target).unwrap_or(&TARGETS[0]),
+        target: Timing::named(&keys.target).unwrap_or(&TIMINGS[0]),
         goal: match keys.stages {
             0 => Goal::ClockMhz(keys.pipeline_clock_mhz),
             stages => Goal::Stages(stages as usize),

@@ -12,7 +12,7 @@ use std::collections::BTreeSet;
 use microlp::{ComparisonOp, OptimizationDirection, Problem, SolveOutcome};
 
 use super::graph::{Cell, Graph, Node, NodeId, Op};
-use super::target::{Registered, Target};
+use crate::target::{Registered, Timing};
 
 /// When each value is computed.
 #[derive(Clone, Debug)]
@@ -48,7 +48,7 @@ pub struct Unreachable {
 /// Nodes, edges and delays: what a schedule has to respect.
 pub struct Problems<'a> {
     graph: &'a Graph,
-    target: &'a Target,
+    target: &'a Timing,
     /// The nodes that are scheduled, in order.
     live: Vec<NodeId>,
     results: &'a [NodeId],
@@ -113,7 +113,7 @@ impl<'a> Problems<'a> {
     /// For the nodes that `results` need.
     pub fn new(
         graph: &'a Graph,
-        target: &'a Target,
+        target: &'a Timing,
         registered: Option<Registered>,
         results: &'a [NodeId],
     ) -> Self {
@@ -515,7 +515,7 @@ mod tests {
         });
         let unrolled = unroll::unroll(&design).unwrap_or_else(|wrong| panic!("{wrong}"));
         let results: Vec<NodeId> = unrolled.results.iter().map(|&(_, value)| value).collect();
-        let target = Target::named("ecp5").expect("a target");
+        let target = Timing::named("ecp5").expect("a target");
         let problems = Problems::new(&unrolled.graph, target, None, &results);
         let period = problems.fastest().expect("an operation").period;
         let schedule = problems.for_period(period).expect("a schedule");

@@ -10,15 +10,15 @@
 use super::graph::{Graph, Label, NodeId, Op};
 use super::rebuild::rebuilt;
 use super::sums::shortened;
-use super::target::Target;
 use super::unroll::Unrolled;
 use crate::base::fixed::Format;
+use crate::target::Timing;
 
 /// The most bits of an operand that become rows in look-up tables.
 const MOST_ROWS: u32 = 4;
 
 /// Returns the computation with products that the target's multipliers take.
-pub fn split(unrolled: &Unrolled, target: &Target) -> Unrolled {
+pub fn split(unrolled: &Unrolled, target: &Timing) -> Unrolled {
     rebuilt(unrolled, |graph, op, node| {
         Some(match op {
             Op::Mul(a, b) => product(graph, target, *a, *b, node.format, &node.label),
@@ -30,7 +30,7 @@ pub fn split(unrolled: &Unrolled, target: &Target) -> Unrolled {
 /// `a·b`, of one sign, exact.
 fn product(
     graph: &mut Graph,
-    target: &Target,
+    target: &Timing,
     a: NodeId,
     b: NodeId,
     format: Format,
@@ -46,7 +46,7 @@ fn product(
 /// Returns the terms whose sum is `a·b`.
 fn parts(
     graph: &mut Graph,
-    target: &Target,
+    target: &Timing,
     [a, b]: [NodeId; 2],
     format: Format,
     label: &Label,
@@ -77,7 +77,7 @@ fn reaches_a_power_of_two(graph: &Graph, factor: NodeId) -> bool {
 /// below.
 fn below_the_highest(
     graph: &mut Graph,
-    target: &Target,
+    target: &Timing,
     [wide, narrow]: [NodeId; 2],
     format: Format,
     label: &Label,
@@ -115,7 +115,7 @@ fn with_a_sign(graph: &Graph, [a, b]: [NodeId; 2]) -> Option<[NodeId; 2]> {
 /// the sign is set. Of two signed factors more bits would be cut.
 fn below_the_sign(
     graph: &mut Graph,
-    target: &Target,
+    target: &Timing,
     positive: NodeId,
     other: NodeId,
     format: Format,
@@ -183,7 +183,7 @@ fn in_ones(graph: &mut Graph, term: Term, width: u32, signed: bool, label: &Labe
 /// Returns the terms of a product whose wider factor is cut into its `limit` upper bits and the rest.
 fn cut(
     graph: &mut Graph,
-    target: &Target,
+    target: &Timing,
     [wide, narrow]: [NodeId; 2],
     limit: u32,
     signed: bool,
@@ -274,7 +274,8 @@ mod tests {
     use crate::hdl::dsl::fixture::design;
     use crate::hdl::dsl::{Designer, Operand, Signal, step};
     use crate::hdl::netlist::{Design, Driver, Interpreter, Op};
-    use crate::hdl::pipeline::{Delays, Goal, Options, TARGETS, Target, pipeline};
+    use crate::hdl::pipeline::{Delays, Goal, Options, pipeline};
+    use crate::target::{TIMINGS, Timing};
 
     /// A product in one stage, of a device whose multipliers take 4 bits by 4.
     fn product(factors: impl for<'d> Fn(&'d Designer) -> [Signal<'d>; 2]) -> Design {
@@ -286,8 +287,8 @@ mod tests {
             d.output("product_out", held.q());
             vec![step("product", [held.load()])]
         });
-        let target: &Target =
-            Box::leak(Box::new(Target { multiplier: (4, 4), ..TARGETS[0].clone() }));
+        let target: &Timing =
+            Box::leak(Box::new(Timing { multiplier: (4, 4), ..TIMINGS[0].clone() }));
         let options = Options {
             target,
             goal: Goal::Stages(1),

@@ -1,12 +1,13 @@
-use super::{Delays, Goal, Options, Target, pipeline};
+use super::{Delays, Goal, Options, pipeline};
 use crate::base::fixed::Format;
 use crate::hdl::blocks::divider::Divider;
 use crate::hdl::dsl::fixture::design;
 use crate::hdl::dsl::{loop_while, step, wait_for_start};
 use crate::hdl::netlist::{Design, Driver, Net, NetId, Op, RegId, Register};
+use crate::target::Timing;
 
 fn options(goal: Goal) -> Options {
-    let target = Target::named("ecp5").expect("a target");
+    let target = Timing::named("ecp5").expect("a target");
     Options { target, goal, registered: false, stall: true, side: 0, delays: Delays::Memory }
 }
 

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use super::module::Builder;
 use super::naming::Naming;
 use super::plan::address_width;
-use super::text::{comment, literal, statement};
-use super::view::{Item, Spaced, StageSection};
+use super::text::{literal, statement};
+use super::writer;
 use crate::hdl::netlist::{DelayLine, NetId};
 
 const TITLE: &str =
@@ -15,14 +15,14 @@ const TITLE: &str =
 /// How many words go round, and when they do.
 type Pace = (usize, Option<NetId>);
 
-/// The section of the delay lines: an instance for those of one length. None without any.
-pub fn section(builder: &mut Builder<'_>, naming: &Naming) -> Option<StageSection> {
+/// The section of the delay lines: an instance for those of one length. Empty without any.
+pub fn section(builder: &mut Builder<'_>, naming: &Naming) -> Vec<String> {
     let plan = builder.plan;
     let mut paces: BTreeMap<Pace, Vec<&DelayLine>> = BTreeMap::new();
     for line in &plan.delays {
         paces.entry((line.words(), line.enable)).or_default().push(line);
     }
-    let mut items = Vec::new();
+    let mut text = Vec::new();
     for ((words, enable), lines) in paces {
         let instance = builder.expressions.fresh(&format!("delay_of_{}", words + 1));
         let values: Vec<_> = lines.iter().flat_map(|line| &line.values).collect();
@@ -38,19 +38,13 @@ pub fn section(builder: &mut Builder<'_>, naming: &Naming) -> Option<StageSectio
             address_width(words)
         );
         let flow = format!(".clk(clk), .rst_n({reset}), .enable({enable}),");
-        let mut text = statement(4, &head);
+        text.extend(statement(4, &head));
         for line in [flow, format!(".entering({enter}),"), format!(".leaving({leave})")] {
             text.extend(statement(8, &line));
         }
         text.push("    );".to_owned());
-        items.push(Spaced { gap: false, item: Item::Assign(text) });
     }
-    (!items.is_empty()).then(|| StageSection {
-        title: comment(4, TITLE),
-        words: Vec::new(),
-        items,
-        registers: Vec::new(),
-    })
+    writer::section(TITLE, text)
 }
 
 /// One value, or several side by side.

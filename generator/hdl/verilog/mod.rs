@@ -1,5 +1,5 @@
-//! The text of Verilog modules. Names and expressions become strings first (`plan`, `expression`), views
-//! collect them, and the templates in `templates/` print views and decide nothing.
+//! The text of Verilog modules. Names and expressions become strings first (`plan`, `expression`), and `writer` makes
+//! modules of their lines.
 
 pub(crate) mod bits;
 pub(crate) mod delays;
@@ -14,5 +14,5 @@ pub(crate) mod plan;
 pub(crate) mod rows;
 pub(crate) mod text;
 pub(crate) mod top;
-pub(crate) mod view;
 pub(crate) mod words;
+pub(crate) mod writer;

@@ -1,4 +1,4 @@
-//! The modules: from a plan to the view that the templates print.
+//! The modules of the two units, and the parts of which a pipeline is made.
 
 use std::collections::BTreeSet;
 
@@ -10,8 +10,8 @@ use super::naming::{Naming, is_control_rom, rom_label};
 use super::plan::{NetForm, Plan, address_width};
 use super::rows::{Row, separated};
 use super::text::{COLUMNS, annotated, comment, literal, range, statement};
-use super::view::{Contents, Instance, Item, Module, RomItem, Section, Spaced};
 use super::words::{in_fields, in_hex, word_note};
+use super::writer;
 use crate::hdl::netlist::{
     Design, Driver, Multiplier, NetId, Op, Partition, RegId, Register, RomId,
 };
@@ -49,29 +49,37 @@ impl<'a> Builder<'a> {
     }
 
     /// The module.
-    pub fn module(mut self, origin: &Origin) -> Module {
+    pub fn module(mut self, origin: &Origin) -> String {
         // Statements first: they tell which constants and choices are to be declared.
         let items = self.items(&|_| true);
         let groups = self.groups(&|_| true);
-        let constants = self.constants();
+        let initial = if self.naming.style.initial { self.initial() } else { Vec::new() };
+        let mut body = writer::section("Constants", self.constants());
         let state = Row::declarations(&self.state(&|_| true));
-        let sections = [("Constants", constants), ("Registers", state)];
-        Module {
-            header: header::partition(self.plan.design, self.partition, origin, self.naming),
-            name: self.naming.module(self.partition),
-            parameters: parameters(self.naming, &self.interface.roms),
-            ports: self.ports(),
-            declarations: sections
-                .into_iter()
-                .filter(|(_, lines)| !lines.is_empty())
-                .map(|(title, lines)| Section { title, lines })
-                .collect(),
-            initial: if self.naming.style.initial { self.initial() } else { Vec::new() },
-            items,
-            groups,
-            unused: self.unused(),
-            formal: invariants(self.plan.design, self.naming, self.partition),
+        body.extend(writer::section("Registers", state));
+        body.extend(writer::block("    initial begin", initial, "    end"));
+        // One-liners stand together.
+        let mut after_line = false;
+        for item in items {
+            let is_line = item.len() == 1;
+            body.extend((!(is_line && after_line)).then(String::new));
+            body.extend(item);
+            after_line = is_line;
         }
+        for group in groups {
+            body.extend(writer::block("    always @(posedge clk) begin", group, "    end"));
+        }
+        body.extend(self.unused());
+        let formal = invariants(self.plan.design, self.naming, self.partition);
+        body.extend(writer::block("`ifdef FORMAL", formal, "`endif"));
+        writer::module(
+            header::partition(self.plan.design, self.partition, origin, self.naming),
+            &self.naming.module(self.partition),
+            &parameters(self.naming, &self.interface.roms),
+            self.ports(),
+            body,
+            "",
+        )
     }
 
     pub(super) fn ports(&self) -> Vec<String> {
@@ -127,7 +135,8 @@ impl<'a> Builder<'a> {
     /// values there on some targets.
     fn initial(&self) -> Vec<String> {
         let design = self.plan.design;
-        let zero = |net| format!("{} = {};", design.net(net).name, literal(0, design.width(net)));
+        let zero =
+            |net| format!("        {} = {};", design.net(net).name, literal(0, design.width(net)));
         self.registers().map(zero).collect()
     }
 
@@ -145,8 +154,8 @@ impl<'a> Builder<'a> {
         lines
     }
 
-    /// The cells and memories whose nets are wanted.
-    pub(super) fn items(&mut self, wanted: &dyn Fn(NetId) -> bool) -> Vec<Spaced> {
+    /// The lines of each cell and memory whose net is wanted.
+    pub(super) fn items(&mut self, wanted: &dyn Fn(NetId) -> bool) -> Vec<Vec<String>> {
         let design = self.plan.design;
         let mut items = Vec::new();
         for &id in &self.plan.live {
@@ -177,18 +186,10 @@ impl<'a> Builder<'a> {
                 items.push(self.multiplier(register, multiplier));
             }
         }
-        // One-liners stand together.
-        let mut after_line = false;
-        let mut spaced = Vec::new();
-        for item in items {
-            let line = matches!(&item, Item::Assign(lines) if lines.len() == 1);
-            spaced.push(Spaced { gap: !(line && after_line), item });
-            after_line = line;
-        }
-        spaced
+        items
     }
 
-    fn assign(&mut self, id: NetId) -> Item {
+    fn assign(&mut self, id: NetId) -> Vec<String> {
         let mut note = self.plan.remark(id);
         let right = self.expressions.driver(id);
         let lines = statement(4, &format!("{} = {right};", self.target(id)));
@@ -198,14 +199,14 @@ impl<'a> Builder<'a> {
         if let [line] = &lines[..] {
             let behind = annotated(line.trim_start(), 4, &note);
             if behind.len() == 1 {
-                return Item::Assign(behind);
+                return behind;
             }
         }
         // In a pipeline neither a format nor what was said of the net before stands on a line of its own.
         if repeats && self.plan.design.pipeline.is_some() {
             note.clear();
         }
-        Item::Assign(comment(4, &note).into_iter().chain(lines).collect())
+        [comment(4, &note), lines].concat()
     }
 
     /// The left side of a continuous assignment: with the declaration, unless the net is a port.
@@ -219,28 +220,27 @@ impl<'a> Builder<'a> {
         words.into_iter().filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ")
     }
 
-    fn case(&mut self, id: NetId, select: NetId, inputs: &[NetId]) -> Item {
+    /// A mux of more than two inputs.
+    fn case(&mut self, id: NetId, select: NetId, inputs: &[NetId]) -> Vec<String> {
         let design = self.plan.design;
         let name = &design.net(id).name;
         let labels = self.case_labels(select, inputs.len());
+        let labels = labels.iter().map(String::as_str).chain(["default"]);
         let mut arms = Vec::new();
-        for (label, input) in labels.iter().zip(inputs) {
+        for (label, input) in labels.zip(inputs.iter().chain(inputs.last())) {
             let value = self.expressions.whole(*input);
             arms.extend(statement(12, &format!("{label}: {name} = {value};")));
         }
-        let last = inputs.last().map(|input| self.expressions.whole(*input)).unwrap_or_default();
-        let declaration = if self.interface.outputs.contains(&id) {
-            Vec::new()
-        } else {
-            Row::declarations(&[Row::net(self.plan, "", "reg", id).without_note()])
-        };
-        Item::Case {
-            comment: comment(4, &self.plan.remark(id)),
-            declaration,
-            select: self.expressions.whole(select),
-            arms,
-            default: statement(12, &format!("default: {name} = {last};")),
+        let mut lines = comment(4, &self.plan.remark(id));
+        if !self.interface.outputs.contains(&id) {
+            let declaration = Row::net(self.plan, "", "reg", id).without_note();
+            lines.extend(Row::declarations(&[declaration]));
         }
+        lines.push("    always @* begin".to_owned());
+        lines.push(format!("        case ({})", self.expressions.whole(select)));
+        lines.extend(arms);
+        lines.extend(["        endcase", "    end"].map(str::to_owned));
+        lines
     }
 
     /// Names where the select is a field of the control word, else numbers.
@@ -265,13 +265,12 @@ impl<'a> Builder<'a> {
             .collect()
     }
 
-    fn rom(&mut self, id: RomId) -> Item {
+    /// A memory, unless it is there for another read port, and its read port.
+    fn rom(&mut self, id: RomId) -> Vec<String> {
         let rom = self.plan.design.rom(id);
         let case = self.naming.style.case;
-        let width = self.plan.design.width(rom.data);
         let what =
             if rom.doc.is_empty() { String::new() } else { format!(": {}", rom.doc.join(" ")) };
-        let control = is_control_rom(self.plan.design, id);
         let memory = &self.naming.memories[id.index()];
         let address = self.expressions.address(rom);
         let word =
@@ -284,39 +283,53 @@ impl<'a> Builder<'a> {
         } else {
             format!("{} = {word};", self.target(rom.data))
         };
-        Item::Rom(RomItem {
-            comment: comment(4, &format!("{}{what}", rom_label(rom))),
-            attribute: match self.naming.style.rom_style {
-                Some(style) if rom.synchronous => format!("(* {style} *) "),
-                _ => String::new(),
-            },
-            range: range(width),
-            number: range(address_width(rom.words.len())),
-            at: if case { self.expressions.fresh("address") } else { String::new() },
-            memory: self.naming.memories[id.index()].clone(),
-            last: rom.words.len().saturating_sub(1),
-            contents: if case {
-                let mut choices = words(self.plan.design, id, 12, &|address, bits| {
-                    format!("{}: {memory} = ", literal(address as u64, bits))
-                });
-                choices.push(format!("            default: {memory} = {{{width}{{1'bx}}}};"));
-                Contents::Case(choices)
-            } else if self.naming.style.inline {
-                let place = |address, _| format!("{memory}[{address}] = ");
-                Contents::Inline(words(self.plan.design, id, 8, &place))
-            } else {
-                Contents::File {
-                    radix: if control { 'b' } else { 'h' },
-                    parameter: self.naming.parameters[id.index()].clone(),
-                }
-            },
-            second: rom.shares.is_some(),
-            read: statement(4, &read),
-        })
+        let mut lines = comment(4, &format!("{}{what}", rom_label(rom)));
+        if rom.shares.is_none() {
+            lines.extend(self.memory(id));
+        }
+        lines.extend(statement(4, &read));
+        lines
+    }
+
+    /// The declaration of a memory with its words, or of the function in its place.
+    fn memory(&mut self, id: RomId) -> Vec<String> {
+        let design = self.plan.design;
+        let rom = design.rom(id);
+        let (style, memory) = (self.naming.style, &self.naming.memories[id.index()]);
+        let width = design.width(rom.data);
+        if style.case {
+            let at = self.expressions.fresh("address");
+            let number = range(address_width(rom.words.len()));
+            let mut lines = vec![
+                format!("    function {} {memory};", range(width)),
+                format!("        input {number} {at};"),
+                format!("        case ({at})"),
+            ];
+            lines.extend(words(design, id, 12, &|address, bits| {
+                format!("{}: {memory} = ", literal(address as u64, bits))
+            }));
+            lines.push(format!("            default: {memory} = {{{width}{{1'bx}}}};"));
+            lines.extend(["        endcase", "    endfunction"].map(str::to_owned));
+            return lines;
+        }
+        let attribute = match style.rom_style {
+            Some(style) if rom.synchronous => format!("(* {style} *) "),
+            _ => String::new(),
+        };
+        let (range, last) = (range(width), rom.words.len().saturating_sub(1));
+        let declaration = format!("    {attribute}reg {range} {memory} [0:{last}];");
+        if style.inline {
+            let place = |address, _| format!("{memory}[{address}] = ");
+            let begin = vec![declaration, "    initial begin".to_owned()];
+            return [begin, words(design, id, 8, &place), vec!["    end".to_owned()]].concat();
+        }
+        let radix = if is_control_rom(design, id) { 'b' } else { 'h' };
+        let parameter = &self.naming.parameters[id.index()];
+        vec![declaration, format!("    initial $readmem{radix}({parameter}, {memory});")]
     }
 
     /// The instance that computes a product and holds it.
-    fn multiplier(&mut self, register: &Register, multiplier: Multiplier) -> Item {
+    fn multiplier(&mut self, register: &Register, multiplier: Multiplier) -> Vec<String> {
         let design = self.plan.design;
         let Multiplier { product, factors } = multiplier;
         let [a, b] = factors.map(|factor| self.expressions.whole(factor));
@@ -334,15 +347,14 @@ impl<'a> Builder<'a> {
             format!(".b({b})"),
             format!(".product({})", design.net(register.q).name),
         ];
-        Item::Instance {
-            declaration: Row::declarations(&[Row::net(self.plan, "", "wire", register.q)]),
-            instance: Instance {
-                module: self.naming.multiplier(),
-                name: design.net(product).name.clone(),
-                parameters: separated(parameters.to_vec()),
-                connections: separated(connections.to_vec()),
-            },
-        }
+        let mut lines = Row::declarations(&[Row::net(self.plan, "", "wire", register.q)]);
+        lines.extend(writer::instance(
+            &self.naming.multiplier(),
+            &separated(parameters.to_vec()),
+            &design.net(product).name,
+            &separated(connections.to_vec()),
+        ));
+        lines
     }
 
     /// Registers with the same enable and the same reset behaviour share a block.
@@ -447,6 +459,7 @@ impl<'a> Builder<'a> {
         lines
     }
 
+    /// The section of the net that takes the bits that nobody reads; empty without any.
     pub(super) fn unused(&self) -> Vec<String> {
         let ranges = unread(self.plan, self.partition, self.interface);
         if ranges.is_empty() {
@@ -457,7 +470,9 @@ impl<'a> Builder<'a> {
             let bits = self.plan.bits[net.index()].slice(low, count);
             parts.push(self.expressions.bits(&bits));
         }
-        statement(4, &format!("wire {} = &{{{}}};", self.naming.unused, parts.join(", ")))
+        let net =
+            statement(4, &format!("wire {} = &{{{}}};", self.naming.unused, parts.join(", ")));
+        writer::section("Unused bits, among them those that narrowing drops.", net)
     }
 }
 

@@ -1,5 +1,7 @@
 //! The module of a pipeline: the handshake, then a section for every stage.
 
+use askama::Template;
+
 use super::delays;
 use super::header::{self, Origin};
 use super::interface::Interface;
@@ -8,16 +10,26 @@ use super::naming::Naming;
 use super::plan::Plan;
 use super::rows::Row;
 use super::text::{ascii, comment, literal};
-use super::view::{PipelineModule, Spaced, StageSection};
+use super::writer;
 use crate::hdl::netlist::{Design, Driver, NetId, Partition, Pipeline, Role};
 
-/// The module.
+/// The module of delay lines.
+#[derive(Template)]
+#[template(path = "delay.v")]
+struct Delay {
+    name: String,
+}
+
+/// The text of the module, and of that of its delay lines.
+///
+/// # Errors
+/// A template that cannot be filled.
 pub fn module(
     plan: &Plan,
     naming: &Naming,
     pipeline: &Pipeline,
     origin: &Origin,
-) -> PipelineModule {
+) -> askama::Result<String> {
     let design = plan.design;
     let interface = Interface::new(plan, Partition::Datapath);
     let mut builder = Builder::new(plan, naming, &interface, Partition::Datapath);
@@ -32,40 +44,36 @@ pub fn module(
     let enable = enable(design, pipeline);
     let here =
         |net: NetId, number: usize| !pipeline.handshake.contains(&net) && section(net) == number;
-    let mut stages = vec![handshake(plan, naming, pipeline)];
+    let mut stages = handshake(plan, naming, pipeline);
     for (number, stage) in pipeline.stages.iter().enumerate() {
         let here = |net: NetId| here(net, number);
-        let items = dense(builder.items(&here));
-        let block = builder.stage(enable, &here);
+        stages.push(String::new());
+        stages.extend(title(number, &stage.microinstructions));
+        stages.extend(Row::declarations(&builder.state(&|net| here(net) && is_word(net))));
+        stages.extend(builder.items(&here).concat());
         let registers = Row::together(builder.state(&|net| here(net) && !is_word(net)));
-        stages.push(StageSection {
-            title: title(number, &stage.microinstructions),
-            words: Row::declarations(&builder.state(&|net| here(net) && is_word(net))),
-            items,
-            registers: Row::declarations(&registers).into_iter().chain(block).collect(),
-        });
+        stages.extend(Row::declarations(&registers));
+        stages.extend(builder.stage(enable, &here));
     }
     stages.extend(delays::section(&mut builder, naming));
-    stages.push(StageSection {
-        title: comment(4, "Results"),
-        words: Vec::new(),
-        items: dense(builder.items(&|net| here(net, pipeline.stages.len()))),
-        registers: Vec::new(),
-    });
-    PipelineModule {
-        header: header::top(design, origin),
-        name: design.name.clone(),
-        parameters: parameters(naming, &interface.roms),
-        ports: builder.ports(),
-        constants: builder.constants(),
-        stages,
-        unused: builder.unused(),
-        delay: (!plan.delays.is_empty()).then(|| naming.delay()),
-    }
+    let results = builder.items(&|net| here(net, pipeline.stages.len())).concat();
+    stages.extend(writer::section("Results", results));
+    let delay = match plan.delays.is_empty() {
+        true => String::new(),
+        false => Delay { name: naming.delay() }.render()? + "\n",
+    };
+    Ok(writer::module(
+        header::top(design, origin),
+        &design.name,
+        &parameters(naming, &interface.roms),
+        builder.ports(),
+        [writer::section("Constants", builder.constants()), stages, builder.unused()].concat(),
+        &delay,
+    ))
 }
 
 /// Returns the valid bits of the stages and their enables: a shift register in place of the bits of the netlist.
-fn handshake(plan: &Plan, naming: &Naming, pipeline: &Pipeline) -> StageSection {
+fn handshake(plan: &Plan, naming: &Naming, pipeline: &Pipeline) -> Vec<String> {
     let design = plan.design;
     let port = |role: Role| {
         let port = design.port(|it| it == role);
@@ -94,26 +102,15 @@ fn handshake(plan: &Plan, naming: &Naming, pipeline: &Pipeline) -> StageSection 
     lines.push(format!("    if (!{reset}) {valid} <= {};", literal(0, last as u32)));
     lines.push(format!("    else {when}{valid} <= {next};"));
     lines.push("end".to_owned());
-    StageSection {
-        title: comment(
-            4,
-            "The handshake: a bit for each stage that has a point; all points move on together",
-        ),
-        words: Vec::new(),
-        items: Vec::new(),
-        registers: lines.into_iter().map(|line| format!("    {line}")).collect(),
-    }
+    writer::section(
+        "The handshake: a bit for each stage that has a point; all points move on together",
+        lines.into_iter().map(|line| format!("    {line}")).collect(),
+    )
 }
 
 /// When all points move on; none if they always do.
 fn enable(design: &Design, pipeline: &Pipeline) -> Option<NetId> {
     design.registers.iter().find(|it| pipeline.valid.contains(&it.q))?.enable
-}
-
-/// Items without empty lines between them.
-fn dense(mut items: Vec<Spaced>) -> Vec<Spaced> {
-    items.iter_mut().for_each(|it| it.gap = false);
-    items
 }
 
 /// `Stage 3, part of: accumulator <- base^2`.

@@ -6,7 +6,7 @@ use super::module::parameters;
 use super::naming::Naming;
 use super::plan::Plan;
 use super::rows::{Row, separated};
-use super::view::{Instance, Section, Top};
+use super::writer;
 use crate::hdl::netlist::Partition;
 
 /// The top module.
@@ -15,7 +15,7 @@ pub fn module(
     naming: &Naming,
     units: [(Partition, &Interface); 2],
     origin: &Origin,
-) -> Top {
+) -> String {
     let design = plan.design;
     let mut ports = vec![Row::port("input", "wire", 1, false, "clk", "")];
     for port in &design.ports {
@@ -28,44 +28,39 @@ pub fn module(
         .filter(|net| !plan.is_port(**net))
         .map(|net| Row::net(plan, "", "wire", *net))
         .collect();
-    let declarations = if between.is_empty() {
-        Vec::new()
-    } else {
-        vec![Section {
-            title: "Between the control unit and the datapath",
-            lines: Row::declarations(&between),
-        }]
-    };
-    let roms: Vec<_> = units.iter().flat_map(|(_, interface)| interface.roms.clone()).collect();
-    Top {
-        header: header::top(design, origin),
-        name: design.name.clone(),
-        parameters: parameters(naming, &roms),
-        ports: Row::ports(&ports),
-        declarations,
-        instances: units
-            .iter()
-            .map(|(partition, interface)| instance(plan, naming, *partition, interface))
-            .collect(),
+    let between = Row::declarations(&between);
+    let mut body = writer::section("Between the control unit and the datapath", between);
+    for (partition, interface) in units {
+        body.push(String::new());
+        body.extend(instance(plan, naming, partition, interface));
     }
+    let roms: Vec<_> = units.iter().flat_map(|(_, interface)| interface.roms.clone()).collect();
+    writer::module(
+        header::top(design, origin),
+        &design.name,
+        &parameters(naming, &roms),
+        Row::ports(&ports),
+        body,
+        "",
+    )
 }
 
-fn instance(plan: &Plan, naming: &Naming, partition: Partition, interface: &Interface) -> Instance {
+fn instance(
+    plan: &Plan,
+    naming: &Naming,
+    partition: Partition,
+    interface: &Interface,
+) -> Vec<String> {
     let clock = interface.clocked.then_some("clk");
     let nets = interface.inputs.iter().chain(&interface.outputs);
     let names = clock.into_iter().chain(nets.map(|net| plan.design.net(*net).name.as_str()));
     let connect = |name: &str| format!(".{name}({name})");
-    Instance {
-        module: naming.module(partition),
-        name: naming.instance(partition).to_owned(),
-        parameters: separated(
-            interface
-                .roms
-                .iter()
-                .filter(|_| !naming.style.inline)
-                .map(|rom| connect(&naming.parameters[rom.index()]))
-                .collect(),
-        ),
-        connections: separated(names.map(connect).collect()),
-    }
+    let roms = interface.roms.iter().filter(|_| !naming.style.inline);
+    let parameters = roms.map(|rom| connect(&naming.parameters[rom.index()]));
+    writer::instance(
+        &naming.module(partition),
+        &separated(parameters.collect()),
+        naming.instance(partition),
+        &separated(names.map(connect).collect()),
+    )
 }

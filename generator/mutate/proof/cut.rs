@@ -25,13 +25,16 @@ pub(super) fn smallest_cut(
     if affected.iter().any(|net| source(*net)) {
         return None;
     }
-    // From what is wanted back: through affected nets freely, through others by their bits.
+    // From what is wanted back: through affected nets freely, through others by their bits. The amounts are by where they
+    // flow to first.
     let mut flow: BTreeMap<(Vertex, Vertex), u32> = BTreeMap::new();
-    let mut total = 0;
-    loop {
-        let mut came: BTreeMap<Vertex, Vertex> = BTreeMap::new();
+    let at = |(net, through): Vertex| 2 * net.index() + usize::from(through);
+    for _ in 0..=most {
+        // Whence each vertex was reached; itself where the way begins.
+        let mut came: Vec<Option<Vertex>> = vec![None; 2 * design.nets.len()];
         let mut todo: Vec<Vertex> = wanted.iter().map(|net| (*net, false)).collect();
-        let mut seen: BTreeSet<Vertex> = todo.iter().copied().collect();
+        todo.iter().for_each(|&vertex| came[at(vertex)] = Some(vertex));
+        let mut seen = todo.clone();
         let mut end = None;
         while let Some(vertex) = todo.pop() {
             let (net, through) = vertex;
@@ -40,12 +43,13 @@ pub(super) fn smallest_cut(
                 break;
             }
             let mut visit = |next: Vertex, room: bool| {
-                if room && seen.insert(next) {
-                    came.insert(next, vertex);
+                if room && came[at(next)].is_none() {
+                    came[at(next)] = Some(vertex);
                     todo.push(next);
+                    seen.push(next);
                 }
             };
-            let used = |from, to| flow.get(&(from, to)).copied().unwrap_or(0);
+            let used = |from, to| flow.get(&(to, from)).copied().unwrap_or(0);
             let (near, far) = ((net, false), (net, true));
             if through {
                 operands(net).into_iter().for_each(|operand| visit((operand, false), true));
@@ -54,35 +58,25 @@ pub(super) fn smallest_cut(
                 let free = affected.contains(&net);
                 visit(far, free || used(near, far) < bits(net));
                 // Back along what flows here already.
-                let back: Vec<Vertex> = flow
-                    .iter()
-                    .filter(|((_, to), amount)| *to == near && **amount > 0)
-                    .map(|((from, _), _)| *from)
-                    .collect();
-                back.into_iter().for_each(|from| visit(from, true));
+                let (first, last) = ((NetId(0), false), (NetId(u32::MAX), true));
+                let here = flow.range((near, first)..=(near, last));
+                here.for_each(|((_, from), amount)| visit(*from, *amount > 0));
             }
         }
-        let Some(end) = end else {
+        let Some(mut end) = end else {
             // What was seen on this side only is the cut.
             let cut = seen
-                .iter()
-                .filter(|(net, through)| !through && !seen.contains(&(*net, true)))
-                .map(|(net, _)| *net);
-            return Some(cut.collect());
+                .into_iter()
+                .filter(|&(net, through)| !through && came[at((net, true))].is_none());
+            return Some(cut.map(|(net, _)| net).collect());
         };
-        total += 1;
-        if total > most {
-            return None;
-        }
-        let mut at = end;
-        while let Some(&from) = came.get(&at) {
-            let against = flow.get(&(at, from)).copied().unwrap_or(0);
-            if against > 0 {
-                flow.insert((at, from), against - 1);
-            } else {
-                *flow.entry((from, at)).or_default() += 1;
+        while let Some(from) = came[at(end)].filter(|from| *from != end) {
+            match flow.get_mut(&(from, end)).filter(|against| **against > 0) {
+                Some(against) => *against -= 1,
+                None => *flow.entry((end, from)).or_default() += 1,
             }
-            at = from;
+            end = from;
         }
     }
+    None
 }

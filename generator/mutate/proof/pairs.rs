@@ -220,14 +220,22 @@ pub(super) fn chosen(select: Pairs, lines: u32, inputs: &[(Pairs, NetId)]) -> Pa
     let input = |number: u64| inputs[(number as usize).min(inputs.len() - 1)];
     let mut all = Pairs([0; 4]);
     for sound in 0..1 << lines {
-        for mutant in 0..1 << lines {
-            let both = Pairs::constant(sound, lines).across(Pairs::constant(mutant, lines));
-            if select.and(both) != both {
-                continue;
-            }
-            let (sound, mutant) = (input(sound), input(mutant));
+        // The bits that the mutant can have beside this pattern, as 0 and as 1.
+        let beside =
+            |pair: usize| (select.0[pair] & !sound | select.0[pair + 1] & sound) & mask(lines);
+        let [zeros, ones] = [beside(0), beside(2)];
+        if zeros | ones != mask(lines) {
+            continue;
+        }
+        let mut either = zeros & ones;
+        loop {
+            let (sound, mutant) = (input(sound), input(ones & !zeros | either));
             let alike = sound.1 == mutant.1;
             all = all.or(if alike { mutant.0 } else { sound.0.across(mutant.0) });
+            if either == 0 {
+                break;
+            }
+            either = (either - 1) & zeros & ones;
         }
     }
     all

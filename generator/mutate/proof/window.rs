@@ -5,7 +5,7 @@
 //! every value of its interval.
 
 use std::borrow::Cow;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::sync::OnceLock;
 
 use super::cut::smallest_cut;
@@ -16,13 +16,20 @@ use crate::hdl::netlist::{Design, Driver, NetId, Op, Pipeline, RomId, eval};
 use crate::mutate::fault::Site;
 
 /// Values that are evaluated together.
-const LANES: usize = 512;
+const LANES: usize = 128;
 
 /// A net in all lanes.
 type Lanes = [u64; LANES];
 
+/// The lanes of nets, by their numbers; of a mutant those of its own.
+type Values = Vec<Option<Box<Lanes>>>;
+
 /// The most combinations that are tried, as a power of two.
 const BITS: u32 = 22;
+
+/// How far the next lanes that are tried lie behind those before, in lanes: prime, so that it comes to all, and large, as
+/// values beside each other tend to be alike in what they show.
+const STRIDE: u64 = 40_009;
 
 /// Windows of one design.
 pub(super) struct Windows<'a> {
@@ -123,7 +130,7 @@ impl<'a> Windows<'a> {
         let address = self.design.rom(rom).address;
         let mut read = BTreeSet::new();
         self.try_all(&[address].into(), &BTreeSet::new(), None, |values, _, count| {
-            read.extend(&values[&address][..count]);
+            read.extend(&of(values, None, address)[..count]);
             true
         })?;
         Some(read)
@@ -132,12 +139,19 @@ impl<'a> Windows<'a> {
     /// Whether what leaves some neighbourhood of the net is the same with the fault.
     fn stays_inside(&self, net: NetId, site: &Site) -> bool {
         // Short of multipliers first: beyond them is more to try.
-        self.stays_within(net, site, false) || self.stays_within(net, site, true)
+        let mut tried = Vec::new();
+        [false, true].into_iter().any(|through| self.stays_within(net, site, through, &mut tried))
     }
 
-    /// Tries all nets that the net reaches within some number of cells, fewer before more; with multipliers or
-    /// without.
-    fn stays_within(&self, net: NetId, site: &Site, through: bool) -> bool {
+    /// Tries all nets that the net reaches within some number of cells, fewer before more, but for those that were `tried`;
+    /// with multipliers or without.
+    fn stays_within(
+        &self,
+        net: NetId,
+        site: &Site,
+        through: bool,
+        tried: &mut Vec<BTreeSet<NetId>>,
+    ) -> bool {
         let mut affected = BTreeSet::from([net]);
         loop {
             let beyond: BTreeSet<NetId> = affected
@@ -152,13 +166,18 @@ impl<'a> Windows<'a> {
             };
             let leaving: Vec<NetId> = affected.iter().copied().filter(leaves).collect();
             let fault = Some((net, site));
-            let same = self.try_all(&affected, &affected, fault, |sound, mutant, count| {
-                let is_same = |net: &NetId| sound[net][..count] == mutant[net][..count];
-                leaving.iter().all(is_same)
-            });
-            if same == Some(true) {
+            let is_new = !tried.contains(&affected);
+            let stays = || {
+                self.try_all(&affected, &affected, fault, |sound, mutant, count| {
+                    let lanes = |own, net| &of(sound, own, net)[..count];
+                    let is_same = |net: &NetId| lanes(None, *net) == lanes(Some(mutant), *net);
+                    leaving.iter().all(is_same)
+                })
+            };
+            if is_new && stays() == Some(true) {
                 return true;
             }
+            tried.push(affected.clone());
             if beyond.is_empty() {
                 return false;
             }
@@ -182,7 +201,7 @@ impl<'a> Windows<'a> {
         wanted: &BTreeSet<NetId>,
         affected: &BTreeSet<NetId>,
         fault: Option<(NetId, &Site)>,
-        mut holds: impl FnMut(&BTreeMap<NetId, Lanes>, &BTreeMap<NetId, Lanes>, usize) -> bool,
+        mut holds: impl FnMut(&Values, &Values, usize) -> bool,
     ) -> Option<bool> {
         // The words at fault are all that the net brings that matters.
         let words = match fault {
@@ -213,8 +232,10 @@ impl<'a> Windows<'a> {
         }
         let steps: Vec<NetId> =
             self.order.iter().copied().filter(|net| inside.contains(net)).collect();
-        let (mut sound, mut mutant) = (BTreeMap::new(), BTreeMap::new());
-        for from in (0..total).step_by(LANES) {
+        let [mut sound, mut mutant] = [(); 2].map(|()| vec![None; self.design.nets.len()]);
+        let chunks = total.div_ceil(LANES as u64);
+        for chunk in 0..chunks {
+            let from = chunk * STRIDE % chunks * LANES as u64;
             let count = (total - from).min(LANES as u64) as usize;
             let mut place = 1;
             for &net in &cut {
@@ -226,16 +247,16 @@ impl<'a> Windows<'a> {
                     None => std::array::from_fn(|lane| format.bits(low + i128::from(number(lane)))),
                     Some((_, before, words)) => {
                         let word = |lane: usize| words[number(lane) as usize];
-                        mutant.insert(net, std::array::from_fn(|lane| word(lane).1));
+                        put(&mut mutant, net, std::array::from_fn(|lane| word(lane).1));
                         std::array::from_fn(|lane| before[word(lane).0])
                     }
                 };
-                sound.insert(net, values);
+                put(&mut sound, net, values);
                 place *= size;
             }
             for &net in &steps {
                 let value = self.evaluate(net, &self.design.net(net).driver, &sound, None);
-                sound.insert(net, value);
+                put(&mut sound, net, value);
                 if let Some((at, site)) = fault
                     && affected.contains(&net)
                 {
@@ -249,7 +270,7 @@ impl<'a> Windows<'a> {
                     {
                         value = value.map(|bits| how.applied(bits, *bit));
                     }
-                    mutant.insert(net, value);
+                    put(&mut mutant, net, value);
                 }
             }
             if !holds(&sound, &mutant, count) {
@@ -271,13 +292,10 @@ impl<'a> Windows<'a> {
         &self,
         net: NetId,
         driver: &Driver,
-        sound: &BTreeMap<NetId, Lanes>,
-        mutant: Option<&BTreeMap<NetId, Lanes>>,
+        sound: &Values,
+        mutant: Option<&Values>,
     ) -> Lanes {
-        let of = |net: NetId| match mutant.and_then(|mutant| mutant.get(&net)) {
-            Some(lanes) => lanes,
-            None => &sound[&net],
-        };
+        let of = |net: NetId| of(sound, mutant, net);
         match driver {
             Driver::Constant(bits) => [*bits; LANES],
             Driver::Op(op) => {
@@ -288,4 +306,18 @@ impl<'a> Windows<'a> {
             _ => *of(net),
         }
     }
+}
+
+/// Keeps the lanes of a net.
+fn put(values: &mut Values, net: NetId, lanes: Lanes) {
+    match &mut values[net.index()] {
+        Some(held) => **held = lanes,
+        empty => *empty = Some(Box::new(lanes)),
+    }
+}
+
+/// The lanes of a net: what the mutant has of its own before what the fault-free design has.
+fn of<'v>(sound: &'v Values, mutant: Option<&'v Values>, net: NetId) -> &'v Lanes {
+    let own = mutant.and_then(|mutant| mutant[net.index()].as_deref());
+    own.or(sound[net.index()].as_deref()).expect("a net stands behind its operands")
 }

@@ -18,7 +18,7 @@ use crate::evidence::hardware::{self, FamilyUsage, Synthesis};
 use crate::package::{LineClocks, Timing, WorkedExample};
 use crate::render::{self, BACKGROUND, BuiltIn, Light, Material, Scene, Settings, View};
 use crate::synth;
-use crate::tools::synthesis::FAMILIES;
+use crate::target::FAMILIES;
 use waves::Waves;
 
 /// A side of the picture of a highlight, in pixels.

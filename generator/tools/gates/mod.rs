@@ -9,7 +9,7 @@ use std::time::Duration;
 use anyhow::{Context, Result, bail};
 
 use super::sources::Sources;
-use super::synthesis::Family;
+use crate::target::Family;
 use crate::tools::Tool;
 
 /// Models of the ECP5 cells for which Yosys has none.
@@ -17,7 +17,7 @@ const ECP5: &str = include_str!("ecp5.v");
 
 /// Whether all cells to which devices are mapped have a model: in Yosys, or here.
 pub fn is_simulated(family: &Family) -> bool {
-    matches!(family.name, "ice40" | "ecp5")
+    matches!(family.name(), "ice40" | "ecp5")
 }
 
 /// The flat netlist of the module `top`, as Verilog, with the contents of the ROMs.
@@ -77,7 +77,7 @@ pub fn around(
 pub fn models(yosys: &Tool, family: &Family) -> Result<Vec<(String, String)>> {
     let shipped = shipped(yosys, family)?;
     let mut files = Vec::new();
-    let shipped = match family.name {
+    let shipped = match family.name() {
         // Default values of ports are beyond Icarus Verilog 11, and a netlist from synthesis needs none.
         "ice40" => format!("`define NO_ICE40_DEFAULT_ASSIGNMENTS\n{shipped}"),
         "ecp5" => {
@@ -96,7 +96,7 @@ fn shipped(yosys: &Tool, family: &Family) -> Result<String> {
     let tool = yosys.path().canonicalize();
     let tool = tool.with_context(|| format!("cannot find `{}`", yosys.path().display()))?;
     let installation = tool.parent().and_then(Path::parent).unwrap_or(Path::new("/"));
-    let models = installation.join(format!("share/yosys/{}/cells_sim.v", family.name));
+    let models = installation.join(format!("share/yosys/{}/cells_sim.v", family.name()));
     fs::read_to_string(&models).with_context(|| {
         format!("cannot read `{}`, the models of cells that belong to `{yosys}`", models.display())
     })

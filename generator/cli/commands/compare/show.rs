@@ -11,7 +11,8 @@ use crate::cli::{Output, failure, say, tables};
 use crate::evidence::comparison::{ANGLES, ANGLES_PER_DEGREE, Accuracy, Multiplier, Spread};
 use crate::golden::contract;
 use crate::synth::{Frequency, Rate, TARGETS, Target, tools};
-use crate::tools::synthesis::{FAMILIES, Usage};
+use crate::target::FAMILIES;
+use crate::tools::synthesis::Usage;
 
 /// Prints everything in the form that was asked for.
 pub fn show(
@@ -258,7 +259,7 @@ fn as_csv(arguments: &Arguments, entries: &[Entry]) -> Vec<Vec<String>> {
     if synthesised {
         for family in &FAMILIES {
             heading
-                .extend(["luts", "dsps", "block_rams"].map(|it| format!("{}_{it}", family.name)));
+                .extend(["luts", "dsps", "block_rams"].map(|it| format!("{}_{it}", family.name())));
         }
     }
     let measured = entries.iter().any(|entry| entry.record.is_some());
@@ -353,7 +354,7 @@ fn entry_json(entry: &Entry) -> Value {
             }
             Err(_) => Value::Null,
         };
-        let families = FAMILIES.iter().map(|family| family.name.to_owned());
+        let families = FAMILIES.iter().map(|family| family.name().to_owned());
         value["synthesis"] = Value::Object(families.zip(entry.usage.iter().map(taken)).collect());
     }
     if entry.record.is_some() {

@@ -1,0 +1,77 @@
+//! Delays of the operations of a graph on a target.
+
+use super::graph::{Cell, Graph, NodeId};
+use crate::hdl::netlist::Op;
+use crate::target::Timing;
+
+/// Nanoseconds from the operands of a cell to its value, when operands have these widths.
+pub fn delay_of<N: Copy>(timing: &Timing, op: &Op<N>, width: &impl Fn(N) -> u32) -> f64 {
+    // Look-up tables have four inputs.
+    let levels = |inputs: u32| {
+        let bits = u32::BITS - (inputs.max(2) - 1).leading_zeros();
+        timing.logic * f64::from(bits.div_ceil(2))
+    };
+    match op {
+        Op::Relabel(_) | Op::Extend(_) | Op::Slice { .. } | Op::Concat(_) | Op::Not(_) => 0.0,
+        Op::And(..) | Op::Or(..) | Op::Xor(..) => timing.logic,
+        Op::Add { a, .. } | Op::Sub(a, _) => timing.chain(width(*a)),
+        Op::Less(a, _) => timing.chain(width(*a)) + 0.4 * timing.logic,
+        Op::Mul(..) => timing.product,
+        Op::Equal(a, _) => levels(2 * width(*a)),
+        Op::Any(a) | Op::All(a) => levels(width(*a)),
+        Op::Mux { select, inputs } => levels(inputs.len() as u32 + width(*select)),
+    }
+}
+
+impl Timing {
+    /// Nanoseconds from the operands of a node to its value.
+    pub fn delay(&self, graph: &Graph, id: NodeId) -> f64 {
+        match &graph.node(id).cell {
+            Cell::Operand(_) => self.input,
+            Cell::Constant(_) | Cell::Unknown(_) => 0.0,
+            Cell::Read { address, .. } => {
+                if self.is_block(graph, id) {
+                    self.block
+                } else {
+                    self.word(graph.width(*address))
+                }
+            }
+            Cell::Op(op) => delay_of(self, op, &|operand| graph.width(operand)),
+        }
+    }
+
+    /// Nanoseconds that a register behind a node takes beyond those of any other.
+    ///
+    /// Synthesis makes a mux with a constant the set or the reset of the register behind it. Its select goes through a
+    /// look-up table with the clock enable first, and then a longer way.
+    pub fn setup(&self, graph: &Graph, id: NodeId) -> f64 {
+        let constant = |input: &NodeId| graph.constant_of(*input).is_some();
+        match &graph.node(id).cell {
+            Cell::Op(Op::Mux { inputs, .. })
+                if graph.width(id) > 1 && inputs.iter().any(constant) =>
+            {
+                self.logic
+            }
+            _ => 0.0,
+        }
+    }
+
+    /// The select of a mux of a value and a constant, which takes no look-up tables before a register.
+    pub fn reset_by(&self, graph: &Graph, id: NodeId) -> Option<NodeId> {
+        let Cell::Op(Op::Mux { select, inputs }) = &graph.node(id).cell else { return None };
+        let constants = inputs.iter().filter(|input| graph.constant_of(**input).is_some()).count();
+        (graph.width(id) > 1 && inputs.len() == 2 && constants == 1).then_some(*select)
+    }
+
+    /// Whether a node is a read of a block memory, which takes a clock.
+    pub fn is_block(&self, graph: &Graph, id: NodeId) -> bool {
+        match graph.node(id).cell {
+            Cell::Read { address, .. } => {
+                let words = graph.node(address).range.1 + 1;
+                u64::try_from(words)
+                    .is_ok_and(|words| words * u64::from(graph.width(id)) >= self.block_bits)
+            }
+            _ => false,
+        }
+    }
+}

