@@ -24,7 +24,7 @@ use super::{Statement, Statements, Task};
 use crate::base::fixed::exp2;
 use crate::formula::{Enclosure, Formula, Function, Kind, Operator, parse};
 use crate::hdl::netlist::NetId;
-use crate::hdl::pipeline::{Cell, NodeId, Op, Walked};
+use crate::hdl::pipeline::{Cell, NodeId, Op, WalkRegister};
 
 /// Words in a script: what Gappa takes grows with the square.
 const WORDS: usize = 8;
@@ -53,7 +53,7 @@ struct Word {
 ///
 /// # Errors
 /// A formula or netlist that is no table of a power of a cosine, at an angle that is walked along.
-pub fn statements(task: &Task, walk: &[Walked]) -> Result<Vec<Statement>, String> {
+pub fn statements(task: &Task, walk: &[WalkRegister]) -> Result<Vec<Statement>, String> {
     let bound = task.bound.ok_or("a table is stated by segment with a stated bound alone")?;
     if task.contract.highlight().is_none() {
         return Err("a line is stated of highlights alone".to_owned());
@@ -100,14 +100,14 @@ struct Walk {
 
 impl Walk {
     /// The walk whose only register begins with an operand, to which another is added modulo its format.
-    fn new(task: &Task, walk: &[Walked]) -> Result<Self, String> {
+    fn new(task: &Task, walk: &[WalkRegister]) -> Result<Self, String> {
         let graph = task.graph();
         let other = || "its points walk on by more than a sum".to_owned();
         let operand = |id: NodeId| match graph.node(id).cell {
             Cell::Operand(at) => Some(task.design.net(task.unrolled.operands[at]).name.clone()),
             _ => None,
         };
-        let [Walked { first, before, next }] = *walk else { return Err(other()) };
+        let [WalkRegister { first, before, next }] = *walk else { return Err(other()) };
         let Cell::Op(Op::Add { a, b, carry: None }) = graph.node(next).cell else {
             return Err(other());
         };

@@ -7,14 +7,14 @@ use anyhow::Result;
 
 use super::Comparison;
 use super::facts::{extended, shifted};
-use super::solver::Said;
+use super::solver::Outcome;
 use super::term::{Id, Term};
 use super::wholes::agree;
 use crate::base::fixed::MAX_WIDTH;
 
 /// How a factor is made of one of the pipeline's: the same, or its lowest bits, so many.
 #[derive(Clone, Copy)]
-enum Made {
+enum Factor {
     Same,
     Lowest(u32),
 }
@@ -47,14 +47,14 @@ impl Comparison<'_> {
         Ok(true)
     }
 
-    fn made(&mut self, factor: Id, of: Id) -> Result<Option<Made>> {
+    fn made(&mut self, factor: Id, of: Id) -> Result<Option<Factor>> {
         if self.same(factor, of)? {
-            return Ok(Some(Made::Same));
+            return Ok(Some(Factor::Same));
         }
         let Some((bits, false)) = extended(&self.terms, of) else { return Ok(None) };
         let width = self.terms.width(bits);
         let low = self.terms.slice(factor, 0, width);
-        Ok(self.same(low, bits)?.then_some(Made::Lowest(width)))
+        Ok(self.same(low, bits)?.then_some(Factor::Lowest(width)))
     }
 
     /// Whether two terms of one width are equal for all operands.
@@ -66,12 +66,12 @@ impl Comparison<'_> {
         let mut differ = [self.terms.not(equal)];
         self.terms.replace(&self.divided, &mut differ);
         let said = self.solver.ask(&mut self.terms, &differ, &self.products, false)?;
-        Ok(matches!(said, Said::Never))
+        Ok(matches!(said, Outcome::Unsatisfiable))
     }
 
     /// Notes what the product of `factor` and `other` is by that of `part` and `other`: the same, or that and the product of the
     /// bits above, which is one by 0, 1 or -1.
-    fn note(&mut self, factor: Id, part: Id, made: Made, other: Id) {
+    fn note(&mut self, factor: Id, part: Id, made: Factor, other: Id) {
         let terms = &mut self.terms;
         let product = terms.make(Term::Product(factor, other), MAX_WIDTH);
         let lower = terms.make(Term::Product(part, other), MAX_WIDTH);
@@ -79,8 +79,8 @@ impl Comparison<'_> {
             return;
         }
         let mut sum = [match made {
-            Made::Same => lower,
-            Made::Lowest(places) => {
+            Factor::Same => lower,
+            Factor::Lowest(places) => {
                 let upper = terms.slice(factor, places, MAX_WIDTH - places);
                 let upper = terms.sign_extended(upper, MAX_WIDTH);
                 let upper = terms.make(Term::Product(upper, other), MAX_WIDTH);

@@ -32,10 +32,10 @@ use crate::base::fixed::mask;
 use crate::hdl::netlist::{Checkpoint, Design, NetId, Role};
 use crate::tools::Tool;
 use carry_out::{Execution, Product, State};
-use solver::{Said, Solver};
+use solver::{Outcome, Solver};
 use term::{Id, Term, Terms};
 use trial::Pair;
-use wholes::Wholes;
+use wholes::Candidates;
 
 pub use text::{TextProof, TextVerdict, compare_text};
 
@@ -169,7 +169,7 @@ fn differs(pair: &Pair<'_>, operands: &[u64]) -> Result<Option<Difference>> {
 }
 
 /// A way through the microprogram.
-struct Way {
+struct Branch {
     /// The bits that operands decided, and their values.
     conditions: Vec<(Id, bool)>,
     state: State,
@@ -300,7 +300,7 @@ impl<'p> Comparison<'p> {
     }
 
     /// After the clock that takes `start`, with all operands.
-    fn start(&mut self, core: &Execution<'_>) -> Way {
+    fn start(&mut self, core: &Execution<'_>) -> Branch {
         let mut state = core.power_up(&mut self.terms);
         for point in [false, true] {
             let now = u64::from(point);
@@ -317,16 +317,16 @@ impl<'p> Comparison<'p> {
             state = core.edge(&mut self.terms, &state, &values);
         }
         let visits = vec![0; core.design.control.microprogram.len()];
-        Way { conditions: Vec::new(), state, visits, clocks: 0 }
+        Branch { conditions: Vec::new(), state, visits, clocks: 0 }
     }
 
     /// Executes the microprogram to the results, or to where operands decide: the ways from there are added to `ways`.
     fn follow(
         &mut self,
         core: &Execution<'_>,
-        mut way: Way,
+        mut way: Branch,
         stages: &[Vec<Id>],
-        ways: &mut Vec<Way>,
+        ways: &mut Vec<Branch>,
     ) -> Result<Answer> {
         let control = &core.design.control;
         let sequencer = [control.address.index(), control.run.index()];
@@ -362,7 +362,7 @@ impl<'p> Comparison<'p> {
     }
 
     /// Both ways from where a register of the sequencer depends on operands, as far as they can be gone.
-    fn fork(&mut self, way: Way, undecided: Id, ways: &mut Vec<Way>) -> Result<Answer> {
+    fn fork(&mut self, way: Branch, undecided: Id, ways: &mut Vec<Branch>) -> Result<Answer> {
         let condition = match *self.terms.term(undecided) {
             Term::Choice(condition, ..) => condition,
             _ if self.terms.width(undecided) == 1 => undecided,
@@ -372,13 +372,13 @@ impl<'p> Comparison<'p> {
             let mut conditions = way.conditions.clone();
             conditions.push((condition, value));
             let wanted = self.holding(&conditions);
-            if let Said::Never = self.ask(wanted)? {
+            if let Outcome::Unsatisfiable = self.ask(wanted)? {
                 continue;
             }
             let mut state = way.state.clone();
             state.assume(&mut self.terms, condition, value);
             let visits = way.visits.clone();
-            ways.push(Way { conditions, state, visits, clocks: way.clocks });
+            ways.push(Branch { conditions, state, visits, clocks: way.clocks });
         }
         Ok(Answer::Equal)
     }
@@ -394,7 +394,7 @@ impl<'p> Comparison<'p> {
     fn lemmas(
         &mut self,
         core: &Execution<'_>,
-        way: &mut Way,
+        way: &mut Branch,
         address: usize,
         stages: &[Vec<Id>],
     ) -> Result<Answer> {
@@ -422,7 +422,7 @@ impl<'p> Comparison<'p> {
         Ok(Answer::Equal)
     }
 
-    fn results(&mut self, way: &Way, values: &[Id], stages: &[Vec<Id>]) -> Result<Answer> {
+    fn results(&mut self, way: &Branch, values: &[Id], stages: &[Vec<Id>]) -> Result<Answer> {
         self.proof.ways += 1;
         for (_, staged, own) in &self.pair.outputs {
             let staged = stages[self.pair.latency][staged.index()];
@@ -453,7 +453,7 @@ impl<'p> Comparison<'p> {
         self.parts.retain(|&it| matches!(self.terms.term(it), Term::Product(..)));
         self.parts.sort();
         self.parts.dedup();
-        let wholes = Wholes::new(&self.terms, &nets, divided.values());
+        let wholes = Candidates::new(&self.terms, &nets, divided.values());
         let mut pending: Vec<Id> = divided.keys().copied().collect();
         pending.sort();
         while let Some(&product) = pending.last() {
@@ -479,7 +479,7 @@ impl<'p> Comparison<'p> {
                 let equal = self.terms.equal(low, net);
                 let differ = self.terms.not(equal);
                 let said = self.solver.ask(&mut self.terms, &[differ], &self.products, false)?;
-                if let Said::Never = said {
+                if let Outcome::Unsatisfiable = said {
                     whole = self.terms.with_low(whole, net);
                 }
             }
@@ -489,12 +489,12 @@ impl<'p> Comparison<'p> {
     }
 
     /// Whether terms can all be 1: with the products divided as the pipeline has them, and else with all that is known of parts.
-    fn ask(&mut self, wanted: Vec<Id>) -> Result<Said> {
+    fn ask(&mut self, wanted: Vec<Id>) -> Result<Outcome> {
         self.divide_by_lowest(&wanted)?;
         let mut divided = wanted.clone();
         self.terms.replace(&self.divided, &mut divided);
         match self.solver.ask(&mut self.terms, &divided, &self.products, false)? {
-            Said::Never => Ok(Said::Never),
+            Outcome::Unsatisfiable => Ok(Outcome::Unsatisfiable),
             _ => self.solver.ask(&mut self.terms, &wanted, &self.products, true),
         }
     }
@@ -508,9 +508,9 @@ impl<'p> Comparison<'p> {
         let mut wanted = self.holding(conditions);
         wanted.push(differ);
         match self.ask(wanted)? {
-            Said::Never => Ok(Answer::Equal),
-            Said::Nothing(open) => Ok(Answer::Open(open)),
-            Said::For(values) => {
+            Outcome::Unsatisfiable => Ok(Answer::Equal),
+            Outcome::Undecided(open) => Ok(Answer::Open(open)),
+            Outcome::Satisfiable(values) => {
                 let of = |operand: &Id| {
                     values.iter().find(|(id, _)| id == operand).map_or(0, |&(_, bits)| bits)
                 };

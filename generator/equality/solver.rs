@@ -14,13 +14,13 @@ use crate::base::transient::Directory;
 use crate::tools::{LimitReached, Tool};
 
 /// The solver's answer on terms that are asked to be 1 together.
-pub enum Said {
+pub enum Outcome {
     /// They never are.
-    Never,
+    Unsatisfiable,
     /// They are for these values of unknowns, as far as products and memories are not known.
-    For(Vec<(Id, u64)>),
+    Satisfiable(Vec<(Id, u64)>),
     /// Neither.
-    Nothing(Open),
+    Undecided(Open),
 }
 
 /// An SMT solver, and how long it may take.
@@ -50,7 +50,7 @@ impl<'a> Solver<'a> {
         wanted: &[Id],
         products: &[Product],
         parts: bool,
-    ) -> Result<Said> {
+    ) -> Result<Outcome> {
         self.asked += 1;
         let facts = facts::about(terms, wanted, products, parts);
         let script = script(terms, wanted, &facts);
@@ -59,13 +59,13 @@ impl<'a> Solver<'a> {
         let left = self.end.saturating_duration_since(Instant::now());
         let run = match self.tool.run(["question.smt2"], self.dir.path(), left) {
             Ok(run) => run,
-            Err(error) if error.is::<LimitReached>() => return Ok(Said::Nothing(Open::Limit)),
+            Err(error) if error.is::<LimitReached>() => return Ok(Outcome::Undecided(Open::Limit)),
             Err(error) => return Err(error),
         };
         match run.output.lines().next().map(str::trim) {
-            Some("unsat") => Ok(Said::Never),
-            Some("sat") => Ok(Said::For(values(terms, &run.output))),
-            Some("unknown") => Ok(Said::Nothing(Open::Unknown)),
+            Some("unsat") => Ok(Outcome::Unsatisfiable),
+            Some("sat") => Ok(Outcome::Satisfiable(values(terms, &run.output))),
+            Some("unknown") => Ok(Outcome::Undecided(Open::Unknown)),
             _ => bail!("`{}` does not answer: {}", self.tool, run.output.trim()),
         }
     }

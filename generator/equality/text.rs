@@ -16,7 +16,7 @@ use super::Open;
 use super::carry_out::{Execution, Product};
 use super::cells::Values;
 use super::module::{Held, Memory, Module, Read};
-use super::solver::{Said, Solver};
+use super::solver::{Outcome, Solver};
 use super::term::{Id, Term, Terms};
 use super::wholes::samples;
 use crate::base::fixed::mask;
@@ -388,7 +388,7 @@ impl Comparison<'_> {
             let Some(&net) = alike.get(&key(&self.terms, *column)) else { continue };
             let equal = self.terms.equal(*column, net);
             let differ = self.terms.not(equal);
-            if let Said::Never = self.ask(&[differ])? {
+            if let Outcome::Unsatisfiable = self.ask(&[differ])? {
                 *column = net;
                 self.proof.registers += 1;
             }
@@ -433,9 +433,9 @@ impl Comparison<'_> {
             return ended(TextVerdict::Different(difference));
         }
         match self.ask(&wanted)? {
-            Said::Never => Ok(()),
-            Said::Nothing(open) => ended(TextVerdict::Open(open)),
-            Said::For(found) => {
+            Outcome::Unsatisfiable => Ok(()),
+            Outcome::Undecided(open) => ended(TextVerdict::Open(open)),
+            Outcome::Satisfiable(found) => {
                 let found = found.into_iter().collect();
                 match self.difference(&wanted, both, what, &found) {
                     Some(difference) => ended(TextVerdict::Different(difference)),
@@ -445,9 +445,9 @@ impl Comparison<'_> {
         }
     }
 
-    fn ask(&mut self, wanted: &[Id]) -> Result<Said> {
+    fn ask(&mut self, wanted: &[Id]) -> Result<Outcome> {
         match self.solver.ask(&mut self.terms, wanted, &self.products, false)? {
-            Said::Never => Ok(Said::Never),
+            Outcome::Unsatisfiable => Ok(Outcome::Unsatisfiable),
             _ => self.solver.ask(&mut self.terms, wanted, &self.products, true),
         }
     }

@@ -12,13 +12,13 @@ use crate::base::fixed::MAX_WIDTH;
 const SAMPLES: usize = 4;
 
 /// Values of terms for numbers at random in place of the unknowns: terms that may be equal.
-pub struct Wholes {
+pub struct Candidates {
     values: Vec<HashMap<Id, u64>>,
     /// The first net of these values, extended by zeros or by its sign bit.
     nets: HashMap<Vec<u64>, Id>,
 }
 
-impl Wholes {
+impl Candidates {
     pub fn new<'i>(terms: &Terms, nets: &'i [Id], others: impl Iterator<Item = &'i Id>) -> Self {
         let cone = terms.cone(nets.iter().chain(others).copied());
         let values: Vec<HashMap<Id, u64>> = samples(terms, &cone).collect();

@@ -32,7 +32,7 @@ const KEPT: usize = 32;
 const SEED: u64 = 4;
 
 /// The pipeline without a fault.
-pub(super) struct Beside {
+pub(super) struct PointSearch {
     sound: Arc<Program>,
     /// How many inputs there are, and which are high after a clock of reset: a point comes and one goes on every clock.
     inputs: usize,
@@ -54,7 +54,7 @@ struct Stage {
 /// Raw values of the operands.
 type Point = Vec<i64>;
 
-impl Beside {
+impl PointSearch {
     /// # Errors
     /// A pipeline that is not of this contract, or cannot be simulated.
     pub(super) fn new(

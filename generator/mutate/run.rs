@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use anyhow::{Context, Result};
 use rayon::prelude::*;
 
-use super::beside::Beside;
+use super::beside::PointSearch;
 use super::coverage::{Coverage, Operands, Place};
 use super::fault::{Fault, Site};
 use super::held::{self, Tried};
@@ -38,7 +38,8 @@ pub fn run<'f>(
     let lockstep = core.lockstep(core::TEST_SEED)?;
     let sound = plant::bare(&core.design);
     let pipeline = sound.pipeline.as_ref();
-    let beside = pipeline.map(|it| Beside::new(&sound, it, core.contract.as_ref())).transpose()?;
+    let beside =
+        pipeline.map(|it| PointSearch::new(&sound, it, core.contract.as_ref())).transpose()?;
     let bench = Bench {
         core,
         sound,
@@ -65,7 +66,7 @@ pub fn run<'f>(
 struct Bench<'a> {
     core: &'a Core,
     sound: Design,
-    beside: Option<Beside>,
+    beside: Option<PointSearch>,
     model: Box<dyn Model>,
     prover: Option<Prover<'a>>,
     /// The words that the default test reads, with the places.

@@ -1,6 +1,6 @@
 //! ECP5: Yosys and nextpnr-ecp5, which times multipliers without registers and block RAMs.
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 use serde_json::Value;
 
 use super::figures::{Figures, Step};
@@ -21,7 +21,9 @@ pub fn measure(
 ) -> Result<Figures> {
     let workspace = Workspace::new(yosys, subject)?;
     let (usage, netlist) = workspace.synthesise(Target::Ecp5)?;
-    no_registers_in_blocks(&netlist)?;
+    netlist.check_timed("MULT18X18D", is_timed, |is| {
+        format!("has registers inside ({is}), which nextpnr does not time")
+    })?;
     done();
     // All are as fast.
     let fitting = ECP5.chips.iter().find(|chip| chip.lack(usage.taken()).is_empty());
@@ -32,22 +34,11 @@ pub fn measure(
     figures.routed(subject, done, |seed| route(nextpnr, &workspace, &netlist, chip, seed))
 }
 
-/// Makes sure that no delay is left out: nextpnr-ecp5 does not time the inside of a multiplier with a register before its
-/// product.
-fn no_registers_in_blocks(netlist: &Netlist) -> Result<()> {
-    for (name, cell) in netlist.cells("MULT18X18D") {
-        let parameters = cell["parameters"].as_object().into_iter().flatten();
-        for (parameter, value) in parameters {
-            let clocked = parameter.starts_with("REG_") && parameter.ends_with("_CLK");
-            // To the register at the output the way through the multiplier is timed.
-            if clocked && parameter != "REG_OUTPUT_CLK" && value != "NONE" {
-                bail!(
-                    "the DSP block `{name}` has registers inside ({parameter} is {value}), which nextpnr does not time"
-                );
-            }
-        }
-    }
-    Ok(())
+/// Whether nextpnr-ecp5 times a multiplier with this parameter: not its inside, with a register before its product, but the way
+/// to the register at its output.
+fn is_timed(parameter: &str, value: &Value) -> bool {
+    let clocked = parameter.starts_with("REG_") && parameter.ends_with("_CLK");
+    !clocked || parameter == "REG_OUTPUT_CLK" || value == "NONE"
 }
 
 fn route(

@@ -5,7 +5,7 @@
 
 use std::collections::BTreeMap;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 use serde_json::Value;
 
 use super::figures::{Figures, Step};
@@ -32,7 +32,9 @@ pub fn measure(
 ) -> Result<Figures> {
     let workspace = Workspace::new(yosys, subject)?;
     let (usage, netlist) = workspace.synthesise(Target::Ice40)?;
-    only_multipliers(&netlist)?;
+    netlist.check_timed("SB_MAC16", is_pure, |is| {
+        format!("is more than a multiplier ({is}), which icetime cannot time")
+    })?;
     done();
     let mut figures = Figures::new(Target::Ice40, DEVICE, usage.into());
     let lack = CHIP.lack(usage.taken()).into_iter().map(|(at, wanted, there)| {
@@ -45,25 +47,14 @@ pub fn measure(
         .routed(subject, done, |seed| route(nextpnr, icetime, subject, &workspace, &netlist, seed))
 }
 
-/// Makes sure that the delay of no DSP block is left out.
-fn only_multipliers(netlist: &Netlist) -> Result<()> {
-    for (name, cell) in netlist.cells("SB_MAC16") {
-        let parameters = cell["parameters"].as_object().into_iter().flatten();
-        for (parameter, value) in parameters {
-            let value = value.as_str().unwrap_or_default();
-            let pure = match parameter.as_str() {
-                "TOPOUTPUT_SELECT" | "BOTOUTPUT_SELECT" => value.ends_with("11"),
-                "A_SIGNED" | "B_SIGNED" => true,
-                _ => !value.contains('1'),
-            };
-            if !pure {
-                bail!(
-                    "the DSP block `{name}` is more than a multiplier ({parameter} is {value}), which icetime cannot time"
-                );
-            }
-        }
+/// Whether a parameter leaves a DSP block a multiplier and nothing else.
+fn is_pure(parameter: &str, value: &Value) -> bool {
+    let value = value.as_str().unwrap_or_default();
+    match parameter {
+        "TOPOUTPUT_SELECT" | "BOTOUTPUT_SELECT" => value.ends_with("11"),
+        "A_SIGNED" | "B_SIGNED" => true,
+        _ => !value.contains('1'),
     }
-    Ok(())
 }
 
 fn route(

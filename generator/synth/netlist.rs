@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use serde_json::{Map, Value};
 
 use super::figures::{Step, rounded};
@@ -71,9 +71,24 @@ impl Netlist {
         Ok(Self { names, registers: registers.collect(), cells: cells.clone() })
     }
 
-    /// The cells of a kind.
-    pub fn cells<'a>(&'a self, kind: &'a str) -> impl Iterator<Item = (&'a String, &'a Value)> {
-        self.cells.iter().filter(move |(_, cell)| cell["type"] == kind)
+    /// Makes sure that the delay of no DSP block is left out: each parameter of the cells of a kind is one that is `timed`.
+    ///
+    /// # Errors
+    /// One is not; `why` says what that means.
+    pub fn check_timed(
+        &self,
+        kind: &str,
+        timed: impl Fn(&str, &Value) -> bool,
+        why: impl Fn(&str) -> String,
+    ) -> Result<()> {
+        for (name, cell) in self.cells.iter().filter(|(_, cell)| cell["type"] == kind) {
+            let mut parameters = cell["parameters"].as_object().into_iter().flatten();
+            if let Some((parameter, value)) = parameters.find(|(it, value)| !timed(it, value)) {
+                let is = format!("{parameter} is {}", value.as_str().unwrap_or_default());
+                bail!("the DSP block `{name}` {}", why(&is));
+            }
+        }
+        Ok(())
     }
 
     /// The register that a flip-flop is a bit of, in the description's names.

@@ -160,7 +160,7 @@ impl Operand {
 }
 
 /// A predicted signal, with the bits of its net.
-struct Shown {
+struct Signal {
     name: String,
     output: bool,
     slot: Slot,
@@ -171,7 +171,7 @@ struct Shown {
 #[derive(Default)]
 pub struct Frame {
     operands: Vec<Operand>,
-    shown: Vec<Shown>,
+    shown: Vec<Signal>,
     slots: usize,
     flags: Vec<Slot>,
     logic: Vec<(Slot, Value)>,
@@ -188,7 +188,7 @@ impl Frame {
 
     fn shown(&mut self, name: String, format: Format, output: bool) -> Slot {
         let slot = self.hidden();
-        self.shown.push(Shown { name, output, slot, format });
+        self.shown.push(Signal { name, output, slot, format });
         slot
     }
 
@@ -215,7 +215,7 @@ impl Frame {
     pub fn shows(&mut self, name: &str, register: Slot) {
         let of = self.shown.iter().find(|shown| shown.slot == register);
         let format = of.expect("a register that is shown").format;
-        self.shown.push(Shown { name: name.to_owned(), output: true, slot: register, format });
+        self.shown.push(Signal { name: name.to_owned(), output: true, slot: register, format });
     }
 
     /// An output of one bit that is 1 in the microinstructions that assert it.

@@ -7,6 +7,7 @@ pub use keys::{operands, products, slots};
 pub use multiplied::Products;
 
 use std::borrow::Cow;
+use std::ops::Deref;
 use std::sync::OnceLock;
 
 use super::contract::{self, COSINE, ErrorShare};
@@ -123,6 +124,15 @@ pub struct Highlight {
     bound: OnceLock<Bound>,
 }
 
+/// What a reflectance says of control operands is asked of the contract too.
+impl Deref for Highlight {
+    type Target = dyn Reflectance;
+
+    fn deref(&self) -> &Self::Target {
+        &*self.reflectance
+    }
+}
+
 impl Highlight {
     /// The contract of a reflectance with these control operands, in the order in which it takes them.
     pub fn new(
@@ -147,28 +157,10 @@ impl Highlight {
         self.products.f
     }
 
-    /// As [`Reflectance::f`].
-    #[inline]
-    pub fn f(&self, control: &[i64]) -> i64 {
-        self.reflectance.f(control)
-    }
-
     /// The raw output for a raw f and a raw colour operand.
     #[inline]
     pub fn colour(&self, f: i64, colour: i64) -> i64 {
         self.products.narrow.apply(f * colour)
-    }
-
-    /// As [`Reflectance::reference`].
-    #[inline]
-    pub fn reference(&self, control: &[i64]) -> f64 {
-        self.reflectance.reference(control)
-    }
-
-    /// As [`Reflectance::references`].
-    #[inline]
-    pub fn references(&self, control: &[i64]) -> [f64; 2] {
-        self.reflectance.references(control)
     }
 
     /// As [`Reflectance::expressions`].
@@ -212,16 +204,6 @@ impl Highlight {
             let colour = colour as f64 * exp2(-operand.format.frac);
             f.map(|f| f * colour)
         }));
-    }
-
-    /// As [`Reflectance::peak`].
-    pub fn peak(&self, control: &[i64]) -> Option<Vec<i64>> {
-        self.reflectance.peak(control)
-    }
-
-    /// As [`Reflectance::line`].
-    pub fn line(&self, first: &[i64], last: &[i64]) -> Vec<i64> {
-        self.reflectance.line(first, last)
     }
 
     /// As [`Reflectance::at`].

@@ -15,12 +15,12 @@ pub struct Products {
     pub(super) narrow: Narrow,
     pub(super) operands: Vec<Operand>,
     pub(super) outputs: Vec<Output>,
-    made: Made,
+    schedule: Schedule,
 }
 
 /// When products are made.
 #[derive(Clone, Copy, Debug)]
-enum Made {
+enum Schedule {
     /// Whatever f and the colours are: outputs are logic.
     AtOnce,
     /// Each in a microinstruction.
@@ -73,20 +73,20 @@ impl Products {
             narrow: Narrow::new(f.frac as u32, format, rounding),
             operands: operands.into_iter().map(operand).collect(),
             outputs: outputs.into_iter().map(|name| Output { name, format }).collect(),
-            made: Made::AtOnce,
+            schedule: Schedule::AtOnce,
         }
     }
 
     /// Makes the products one after the other, a microinstruction each, if `in_turn`; each at once otherwise.
     #[must_use]
     pub fn in_turn(self, in_turn: bool) -> Self {
-        Self { made: if in_turn { Made::InTurn } else { Made::AtOnce }, ..self }
+        Self { schedule: if in_turn { Schedule::InTurn } else { Schedule::AtOnce }, ..self }
     }
 
     /// Makes the products at every rising edge if `at_edges`; at once otherwise.
     #[must_use]
     pub fn at_edges(self, at_edges: bool) -> Self {
-        Self { made: if at_edges { Made::AtEdges } else { Made::AtOnce }, ..self }
+        Self { schedule: if at_edges { Schedule::AtEdges } else { Schedule::AtOnce }, ..self }
     }
 
     /// Their operands and outputs in a clock model that has the raw f in a slot, and the microinstructions that make the
@@ -96,15 +96,15 @@ impl Products {
         for (operand, output) in self.operands.iter().zip(&self.outputs) {
             let (colour, narrow) = (frame.operand(&operand.name, operand.format), self.narrow);
             let product = move |s: &State| narrow.apply(s[f] * s[colour]);
-            match self.made {
-                Made::AtOnce => frame.output(&output.name, output.format, product),
-                Made::InTurn => {
+            match self.schedule {
+                Schedule::AtOnce => frame.output(&output.name, output.format, product),
+                Schedule::InTurn => {
                     let name = format!("{}_intensity", operand.name);
                     let held = frame.register(&name, output.format);
                     frame.shows(&output.name, held);
                     program.push(step(move |s| s[held] = product(s)));
                 }
-                Made::AtEdges => {
+                Schedule::AtEdges => {
                     let held = frame.hidden();
                     frame.every_edge(move |s| s[held] = product(s));
                     frame.output(&output.name, output.format, move |s| s[held]);

@@ -28,7 +28,8 @@ pub use delay::delay_of;
 pub use graph::{Cell, Graph, Node, NodeId, Op};
 use schedule::{Refusal, Unreachable};
 pub use unroll::{
-    Cycle, Held, Line, Unrolled, Walked, any_cycle, carried, unroll, unroll_in_powers, unroll_line,
+    Cycle, Held, Line, Unrolled, WalkRegister, any_cycle, carried, unroll, unroll_in_powers,
+    unroll_line,
 };
 
 /// The goal of the schedule.

@@ -16,7 +16,7 @@ mod line;
 
 use clock::{Clock, State, label};
 pub use cycle::{Cycle, Held, any_cycle};
-pub use line::{Line, Walked, unroll_line};
+pub use line::{Line, WalkRegister, unroll_line};
 
 use super::graph::{Cell, Graph, Label, NodeId, Op};
 use super::possible;

@@ -19,7 +19,7 @@ pub(super) struct Order<'a> {
 }
 
 /// A fault, and what the fault-free design has on every net in the microinstruction.
-pub(super) type Beside<'s> = (&'s Site, &'s [Pairs]);
+pub(super) type Injected<'s> = (&'s Site, &'s [Pairs]);
 
 impl<'a> Order<'a> {
     /// `None` for a design with a combinational loop.
@@ -39,7 +39,7 @@ impl<'a> Order<'a> {
     }
 
     /// All nets in a microinstruction: those of the fault-free design, or of the mutant beside it.
-    pub(super) fn settle(&self, at: usize, state: &State, fault: Option<Beside>) -> Vec<Pairs> {
+    pub(super) fn settle(&self, at: usize, state: &State, fault: Option<Injected>) -> Vec<Pairs> {
         let design = self.design;
         let mut nets = vec![Pairs::constant(0, 0); design.nets.len()];
         let mut intervals = vec![(0, 0); design.nets.len()];
@@ -121,7 +121,7 @@ impl<'a> Order<'a> {
     }
 
     /// The word that a ROM has at its address.
-    fn read(&self, id: RomId, nets: &[Pairs], fault: Option<Beside>) -> Pairs {
+    fn read(&self, id: RomId, nets: &[Pairs], fault: Option<Injected>) -> Pairs {
         let rom = self.design.rom(id);
         let width = self.design.width(rom.data);
         let words = rom.words.iter().map(|&word| Pairs::constant(word, width));
@@ -151,7 +151,7 @@ impl<'a> Order<'a> {
     }
 
     /// Returns the state after the clock.
-    pub(super) fn next(&self, nets: &[Pairs], fault: Option<Beside>) -> State {
+    pub(super) fn next(&self, nets: &[Pairs], fault: Option<Injected>) -> State {
         let design = self.design;
         let of = |net: NetId| nets[net.index()];
         let one = Pairs::constant(1, 1);

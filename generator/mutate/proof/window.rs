@@ -6,7 +6,9 @@
 
 use std::borrow::Cow;
 use std::collections::BTreeSet;
-use std::sync::OnceLock;
+use std::sync::{Mutex, OnceLock};
+
+use rayon::prelude::*;
 
 use super::cut::smallest_cut;
 use super::interval;
@@ -27,8 +29,8 @@ type Values = Vec<Option<Box<Lanes>>>;
 /// The most combinations that are tried, as a power of two.
 const BITS: u32 = 22;
 
-/// How far the next lanes that are tried lie behind those before, in lanes: prime, so that it comes to all, and large, as
-/// values beside each other tend to be alike in what they show.
+/// How far apart lanes that are tried one after the other lie: prime, so that all are tried, and large, as values beside each
+/// other tend to be alike in what they show.
 const STRIDE: u64 = 40_009;
 
 /// Windows of one design.
@@ -109,7 +111,15 @@ impl<'a> Windows<'a> {
     pub(super) fn proves(&self, site: &Site) -> bool {
         match site {
             Site::Words(rom, words) if *rom != self.design.control.rom => {
-                let read = self.read[rom.index()].get_or_init(|| self.words_read(*rom));
+                let known = &self.read[rom.index()];
+                // Not while others wait for it: what is tried at the same time may ask for it too.
+                let read = match known.get() {
+                    Some(read) => read,
+                    None => {
+                        let read = self.words_read(*rom);
+                        known.get_or_init(|| read)
+                    }
+                };
                 let is_read = |(word, _): &(usize, u64)| {
                     read.as_ref().is_none_or(|read| read.contains(&(*word as u64)))
                 };
@@ -128,12 +138,14 @@ impl<'a> Windows<'a> {
     /// The words of a ROM that may be read.
     fn words_read(&self, rom: RomId) -> Option<BTreeSet<u64>> {
         let address = self.design.rom(rom).address;
-        let mut read = BTreeSet::new();
+        let read = Mutex::new(BTreeSet::new());
         self.try_all(&[address].into(), &BTreeSet::new(), None, |values, _, count| {
-            read.extend(&of(values, None, address)[..count]);
-            true
+            read.lock().is_ok_and(|mut read| {
+                read.extend(&of(values, None, address)[..count]);
+                true
+            })
         })?;
-        Some(read)
+        read.into_inner().ok()
     }
 
     /// Whether what leaves some neighbourhood of the net is the same with the fault.
@@ -201,7 +213,7 @@ impl<'a> Windows<'a> {
         wanted: &BTreeSet<NetId>,
         affected: &BTreeSet<NetId>,
         fault: Option<(NetId, &Site)>,
-        mut holds: impl FnMut(&Values, &Values, usize) -> bool,
+        holds: impl Fn(&Values, &Values, usize) -> bool + Sync,
     ) -> Option<bool> {
         // The words at fault are all that the net brings that matters.
         let words = match fault {
@@ -232,9 +244,9 @@ impl<'a> Windows<'a> {
         }
         let steps: Vec<NetId> =
             self.order.iter().copied().filter(|net| inside.contains(net)).collect();
-        let [mut sound, mut mutant] = [(); 2].map(|()| vec![None; self.design.nets.len()]);
+        let nothing = || [(); 2].map(|()| vec![None; self.design.nets.len()]);
         let chunks = total.div_ceil(LANES as u64);
-        for chunk in 0..chunks {
+        let all = (0..chunks).into_par_iter().map_init(nothing, |[sound, mutant], chunk| {
             let from = chunk * STRIDE % chunks * LANES as u64;
             let count = (total - from).min(LANES as u64) as usize;
             let mut place = 1;
@@ -247,16 +259,16 @@ impl<'a> Windows<'a> {
                     None => std::array::from_fn(|lane| format.bits(low + i128::from(number(lane)))),
                     Some((_, before, words)) => {
                         let word = |lane: usize| words[number(lane) as usize];
-                        put(&mut mutant, net, std::array::from_fn(|lane| word(lane).1));
+                        put(mutant, net, std::array::from_fn(|lane| word(lane).1));
                         std::array::from_fn(|lane| before[word(lane).0])
                     }
                 };
-                put(&mut sound, net, values);
+                put(sound, net, values);
                 place *= size;
             }
             for &net in &steps {
-                let value = self.evaluate(net, &self.design.net(net).driver, &sound, None);
-                put(&mut sound, net, value);
+                let value = self.evaluate(net, &self.design.net(net).driver, sound, None);
+                put(sound, net, value);
                 if let Some((at, site)) = fault
                     && affected.contains(&net)
                 {
@@ -264,20 +276,18 @@ impl<'a> Windows<'a> {
                         Site::Driver(_, driver) if at == net => driver,
                         _ => &self.design.net(net).driver,
                     };
-                    let mut value = self.evaluate(net, driver, &sound, Some(&mutant));
+                    let mut value = self.evaluate(net, driver, sound, Some(mutant));
                     if let Site::Bit(_, bit, how) = site
                         && at == net
                     {
                         value = value.map(|bits| how.applied(bits, *bit));
                     }
-                    put(&mut mutant, net, value);
+                    put(mutant, net, value);
                 }
             }
-            if !holds(&sound, &mutant, count) {
-                return Some(false);
-            }
-        }
-        Some(true)
+            holds(sound, mutant, count)
+        });
+        Some(all.all(|holds| holds))
     }
 
     fn operands(&self, net: NetId) -> Vec<NetId> {

@@ -24,12 +24,12 @@ pub struct Line {
     /// The first point. The others differ from it in the walk.
     pub unrolled: Unrolled,
     /// The registers of the walk.
-    pub walk: Vec<Walked>,
+    pub walk: Vec<WalkRegister>,
 }
 
 /// A register of the walk, by values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Walked {
+pub struct WalkRegister {
     /// The value that the first point writes.
     pub first: NodeId,
     /// The value that it holds before another point is written.
@@ -103,7 +103,8 @@ impl Points<'_> {
         self.executor.determined(&results, "cannot be a pipeline")?;
         self.executor.unrolled.results = results;
         let walk = held(&begun).into_iter().zip(before).zip(held(&gone));
-        let walk = walk.map(|((first, before), next)| Walked { first, before, next }).collect();
+        let walk =
+            walk.map(|((first, before), next)| WalkRegister { first, before, next }).collect();
         Ok(Line { unrolled: self.executor.unrolled, walk })
     }
 
