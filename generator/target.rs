@@ -334,11 +334,6 @@ impl Timing {
         TIMINGS.iter().find(|timing| timing.name == name)
     }
 
-    /// Nanoseconds of a word of a ROM in look-up tables: beyond four bits of address, a mux for each.
-    pub fn word(&self, address: u32) -> f64 {
-        self.logic * f64::from(address.max(5) - 3) * 0.8
-    }
-
     /// Nanoseconds of an adder of so many bits.
     pub fn chain(&self, width: u32) -> f64 {
         self.carry + self.carry_bit * f64::from(width)

@@ -186,6 +186,7 @@ fn period(design: &Design, family: &Family) -> f64 {
     let delays = &family.timing;
     let order = design.levelise().unwrap_or_default();
     let mut arrival = vec![0.0_f64; design.nets.len()];
+    let levels = |inputs: u32| delays.logic * f64::from(inputs.max(2).ilog2().div_ceil(2).max(1));
     let mut longest = 0.0_f64;
     let registers = (0..design.registers.len()).map(|at| RegId(at as u32));
     let inside = registers.filter_map(|register| design.multiplier(register));
@@ -201,10 +202,16 @@ fn period(design: &Design, family: &Family) -> f64 {
             Driver::Op(Op::Mul(a, b)) if blocks(family, design.width(*a), design.width(*b)) > 1 => {
                 delays.product + delays.chain(design.width(id) / 2)
             }
+            // As at the last fit: fewer levels than the schedules of pipelines count.
+            Driver::Op(Op::Equal(a, _)) => levels(2 * design.width(*a)),
+            Driver::Op(Op::Any(a) | Op::All(a)) => levels(design.width(*a)),
+            Driver::Op(Op::Mux { inputs, .. }) => levels(inputs.len() as u32),
+            Driver::Op(Op::Less(a, _)) => delays.chain(design.width(*a)),
             Driver::Op(op) => delay_of(delays, op, &|operand| design.width(operand)),
             Driver::Rom(rom) => {
                 let rom = design.rom(*rom);
-                if rom.synchronous { delays.block } else { delays.word(design.width(rom.address)) }
+                let address = design.width(rom.address).saturating_sub(2).max(1);
+                if rom.synchronous { delays.block } else { levels(2 * address) }
             }
             Driver::Undriven
             | Driver::Input

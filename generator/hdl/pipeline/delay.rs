@@ -33,7 +33,8 @@ impl Timing {
                 if self.is_block(graph, id) {
                     self.block
                 } else {
-                    self.word(graph.width(*address))
+                    // Beyond four bits of address, a mux for each.
+                    self.logic * f64::from(graph.width(*address).max(5) - 3) * 0.8
                 }
             }
             Cell::Op(op) => delay_of(self, op, &|operand| graph.width(operand)),
