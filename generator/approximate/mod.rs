@@ -2,14 +2,17 @@
 //!
 //! The domain is cut into [`Segments`]; a table has the coefficients of each, and Horner's rule carries the polynomial out
 //! in integers. [`find`] chooses degree, segments, coefficients and widths; [`Piecewise::prove`] then computes every
-//! operand and sets the result against the formula, whose own error of evaluation is in the bound.
+//! operand and sets the result against the formula, whose own error of evaluation is in the bound. Of more operands than
+//! can be computed it takes intervals within segments.
 
 mod minimax;
+mod samples;
 mod search;
 mod segments;
 
 #[cfg(test)]
 mod tests;
+mod wide;
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -20,6 +23,7 @@ use rayon::prelude::*;
 use crate::base::fixed::{Format, exp2};
 use crate::formula::{Enclosure, Fault, Formula};
 
+pub use samples::Samples;
 pub use search::Wish;
 pub use segments::{Layout, Place, Segments};
 
@@ -39,11 +43,20 @@ choices! {
     }
 }
 
+/// The values of a function.
+#[derive(Clone, Debug)]
+pub enum Curve {
+    /// Those of a formula of the operand x.
+    Formula(Formula),
+    /// Those of samples, between which nothing is stated.
+    Samples(Samples),
+}
+
 /// A function on a domain, and the formats that its operand and result have.
 #[derive(Clone, Debug)]
 pub struct Function {
-    /// The formula that is approximated, of the operand x.
-    pub formula: Formula,
+    /// The values that are approximated.
+    pub curve: Curve,
     /// The raw operands, first and last.
     pub domain: (i64, i64),
     /// The operand's format.
@@ -89,7 +102,8 @@ impl Step {
     /// Returns the addend of the next coefficient: the product of a sum and an offset of `rest` bits, both cut.
     #[inline]
     pub fn product(self, sum: i64, offset: i64, rest: u32) -> i64 {
-        (sum * (offset >> (rest - self.offset))) >> self.dropped
+        let product = i128::from(sum) * i128::from(offset >> (rest - self.offset));
+        (product >> self.dropped) as i64
     }
 }
 
@@ -125,9 +139,48 @@ impl Function {
     /// The part of the formula that has no value there.
     pub fn limits(&self, raw: i64) -> Result<Enclosure, Fault> {
         let unit = exp2(self.fraction as i32);
-        let x = Enclosure::exactly(self.operand.to_f64(raw.into()));
-        let Enclosure { low, high } = self.formula.enclose(&[("x", x)])?;
+        let Enclosure { low, high } = match &self.curve {
+            Curve::Formula(formula) => {
+                let x = Enclosure::exactly(self.operand.to_f64(raw.into()));
+                formula.enclose(&[("x", x)])?
+            }
+            Curve::Samples(samples) => samples.limits(raw),
+        };
         Ok(Enclosure::between(low * unit, high * unit))
+    }
+
+    /// Whether the value of a raw operand of the domain is stated.
+    pub fn is_stated(&self, raw: i64) -> bool {
+        match &self.curve {
+            Curve::Formula(_) => true,
+            Curve::Samples(samples) => samples.has(raw),
+        }
+    }
+
+    /// The largest error at a raw operand. Between samples a result only stays near those beside it.
+    fn allowed(&self, raw: i64) -> f64 {
+        match &self.curve {
+            Curve::Samples(samples) if !samples.has(raw) => {
+                self.error + samples.spread(raw) * exp2(self.fraction as i32)
+            }
+            _ => self.error,
+        }
+    }
+
+    /// Whether there are more operands than can be computed.
+    pub fn is_wide(&self) -> bool {
+        self.domain.1.abs_diff(self.domain.0) >> MOST_BITS != 0
+    }
+
+    /// How the bound was proved, as the beginning of a sentence.
+    pub fn proof(&self) -> &'static str {
+        match &self.curve {
+            Curve::Samples(_) => "Every sample was computed, and between them nothing is stated",
+            Curve::Formula(_) if self.is_wide() => {
+                "The error was enclosed at all operands, by intervals within each segment"
+            }
+            Curve::Formula(_) => "Every operand of the domain was computed",
+        }
     }
 
     /// The raw operand whose number is 0, and the bits of a number.
@@ -198,33 +251,43 @@ impl Piecewise {
         self.words.len() as u64 * u64::from(width)
     }
 
-    /// Computes every operand of the domain, and gives the largest error against the limits of the function: no operand
-    /// is further off, whatever its exact value.
+    /// Proves a bound of the error against the limits of the function, over every operand of the domain that it states: no
+    /// such operand is further off, whatever its exact value.
     ///
     /// # Errors
     /// An operand whose sums leave their formats, whose result is further off than the function allows, or where the
-    /// function has no value.
+    /// function has no value; a proof that takes too long.
     pub fn prove(&self, function: &Function) -> Result<f64, Refusal> {
         let (first, last) = self.domain;
-        let of = |raw: i64| -> Result<f64, Refusal> {
-            let sums = self.sums_of(raw);
-            if let Some((sum, format)) =
-                sums.iter().zip(&self.sums).find(|(sum, format)| !format.holds(i128::from(**sum)))
-            {
-                let message = format!("at the operand {raw} a sum is {sum}, which is not {format}");
-                return Err(Refusal::new("result.fraction", message, "change the formats"));
+        let of = |raw: i64| self.error_at(function, raw);
+        let larger = |a: f64, b: f64| Ok(a.max(b));
+        match &function.curve {
+            Curve::Formula(_) if function.is_wide() => self.prove_by_segments(function),
+            Curve::Samples(samples) if function.is_wide() => {
+                samples.operands().map(of).try_fold(0.0, |most, error| larger(most, error?))
             }
-            let limits = function.limits(raw).map_err(|fault| function.refusal(raw, &fault))?;
-            let result = sums[0] as f64;
-            // A difference may be rounded down.
-            let error = (result - limits.low).abs().max((result - limits.high).abs()).next_up();
-            if error > function.error {
-                let message = format!("at the operand {raw} the result is {error:.4} units off");
-                return Err(Refusal::new("result.error", message, "allow a larger error"));
-            }
-            Ok(error)
-        };
-        (first..=last).into_par_iter().map(of).try_reduce(|| 0.0, |a, b| Ok(a.max(b)))
+            _ => (first..=last).into_par_iter().map(of).try_reduce(|| 0.0, larger),
+        }
+    }
+
+    /// The largest error of the result of a raw operand; 0 where nothing is stated.
+    fn error_at(&self, function: &Function, raw: i64) -> Result<f64, Refusal> {
+        let sums = self.sums_of(raw);
+        if let Some((sum, format)) =
+            sums.iter().zip(&self.sums).find(|(sum, format)| !format.holds(i128::from(**sum)))
+        {
+            let message = format!("at the operand {raw} a sum is {sum}, which is not {format}");
+            return Err(Refusal::new("result.fraction", message, "change the formats"));
+        }
+        let limits = function.limits(raw).map_err(|fault| function.refusal(raw, &fault))?;
+        let result = sums[0] as f64;
+        // A difference may be rounded down.
+        let error = (result - limits.low).abs().max((result - limits.high).abs()).next_up();
+        if error > function.allowed(raw) {
+            let message = format!("at the operand {raw} the result is {error:.4} units off");
+            return Err(Refusal::new("result.error", message, "allow a larger error"));
+        }
+        Ok(if function.is_stated(raw) { error } else { 0.0 })
     }
 }
 

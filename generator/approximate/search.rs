@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use super::minimax::minimax;
 use super::{Function, Layout, MOST_BITS, Piecewise, Refusal, Segments, Step};
 use crate::base::fixed::{Format, MAX_WIDTH, exp2};
+use crate::base::interval::Interval;
 
 /// The choices that a user makes of an approximation; the search makes the others.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -31,8 +32,14 @@ const ADDRESS: u32 = 16;
 /// The most operands that the search looks at; of more, these are taken evenly.
 const HELD: u64 = 1 << 22;
 
-/// By how much the search is stricter where it does not look at every operand.
-const STRICTER: f64 = 0.01;
+/// The same, of more operands than can be computed.
+const HELD_OF_MANY: u64 = 1 << 18;
+
+/// The most bits of an operand's number.
+const WIDEST: u32 = 46;
+
+/// By how much the search is stricter where it does not look at every operand: the next of these where a proof fails.
+const STRICTER: [f64; 4] = [0.01, 0.05, 0.12, 0.25];
 
 /// Fraction bits of coefficients beyond those of the result, where the search begins.
 const GENEROUS: i32 = 8;
@@ -56,14 +63,12 @@ const NEAREST: [f64; 14] =
 /// Gives the approximation of least cost, proved.
 pub(super) fn search(function: &Function, wish: Wish) -> Result<Piecewise, Refusal> {
     let span = function.domain.1.abs_diff(function.domain.0);
-    if span >> MOST_BITS != 0 {
+    if span >> WIDEST != 0 {
         let bits = u64::BITS - span.leading_zeros();
         return Err(Refusal::new(
             "operand.fraction",
-            format!(
-                "operands of the domain have {bits} bits; the bound is proved by computing every operand, up to {MOST_BITS} bits"
-            ),
-            format!("at most {}", function.operand.frac - (bits - MOST_BITS) as i32),
+            format!("operands of the domain have {bits} bits, more than {WIDEST}"),
+            format!("at most {}", function.operand.frac - (bits - WIDEST) as i32),
         ));
     }
     if let Some(found) = attempt(function, wish)? {
@@ -93,7 +98,21 @@ pub(super) fn search(function: &Function, wish: Wish) -> Result<Piecewise, Refus
 
 /// Gives the approximation of least cost, proved, if there is one.
 fn attempt(function: &Function, wish: Wish) -> Result<Option<Piecewise>, Refusal> {
-    let Some(seen) = Seen::new(function)? else { return Ok(None) };
+    let mut unproved = None;
+    for stricter in STRICTER {
+        let Some(seen) = Seen::new(function, stricter)? else { break };
+        let Some(found) = cheapest(&seen, wish) else { break };
+        match found.prove(function) {
+            Ok(bound) => return Ok(Some(Piecewise { bound, ..found })),
+            Err(refusal) if seen.stride == 1 => return Err(refusal),
+            Err(refusal) => unproved = Some(refusal),
+        }
+    }
+    unproved.map_or(Ok(None), Err)
+}
+
+/// Gives the approximation of least cost that is right at every operand that is looked at.
+fn cheapest(seen: &Seen, wish: Wish) -> Option<Piecewise> {
     let mut best: Option<(f64, Piecewise)> = None;
     // Those first that are rarely far from the best, so that others are seldom searched to their end.
     for degree in [2, 3, 1, 0].into_iter().filter(|it| wish.degree.is_none_or(|own| own == *it)) {
@@ -109,7 +128,7 @@ fn attempt(function: &Function, wish: Wish) -> Result<Option<Piecewise>, Refusal
             if cut.words() > most(&best) {
                 continue;
             }
-            if let Some(found) = Table::new(&seen, cut).narrowest(degree as usize) {
+            if let Some(found) = Table::new(seen, cut).narrowest(degree as usize) {
                 let cost = base + found.rom_bits() as f64 / BITS_A_CELL;
                 if best.as_ref().is_none_or(|(least, _)| cost < *least) {
                     best = Some((cost, found));
@@ -117,9 +136,7 @@ fn attempt(function: &Function, wish: Wish) -> Result<Option<Piecewise>, Refusal
             }
         }
     }
-    let Some((_, found)) = best else { return Ok(None) };
-    let bound = found.prove(function)?;
-    Ok(Some(Piecewise { bound, ..found }))
+    best.map(|(_, found)| found)
 }
 
 /// The values of a function at the operands that the search looks at.
@@ -194,13 +211,16 @@ impl Widths {
 }
 
 impl<'f> Seen<'f> {
-    /// Evaluates the function; none if an operand has no result that is right.
-    fn new(function: &'f Function) -> Result<Option<Self>, Refusal> {
+    /// Evaluates the function; none if an operand has no result that is right. Where it does not look at every operand, less
+    /// error is allowed by `stricter`.
+    fn new(function: &'f Function, stricter: f64) -> Result<Option<Self>, Refusal> {
         let (first, last) = function.domain;
         let (origin, bits) = function.numbering();
         let count = (last - first) as u64 + 1;
-        let stride = count.div_ceil(HELD) as i64;
-        let error = if stride > 1 { function.error - STRICTER } else { function.error };
+        let held = if function.is_wide() { HELD_OF_MANY } else { HELD };
+        // An odd one, so that the low bits take every value.
+        let stride = if count > held { count.div_ceil(held) as i64 | 1 } else { 1 };
+        let stricter = if stride > 1 { stricter } else { 0.0 };
         let of = |at: u64| {
             let raw = (first + at as i64 * stride).min(last);
             let limits = function.limits(raw).map_err(|fault| function.refusal(raw, &fault))?;
@@ -209,6 +229,7 @@ impl<'f> Seen<'f> {
                 let remedy = "fewer fraction bits, or another domain";
                 return Err(Refusal::new("result.fraction", message, remedy));
             }
+            let error = function.allowed(raw) - stricter;
             let nearest = (limits.middle() + 0.5).floor() as i64;
             // Nearer than the error, whatever the exact value is.
             let low = (limits.high - error).floor() as i64 + 1;
@@ -492,27 +513,26 @@ impl<'s> Table<'s> {
             bound: f64::INFINITY,
         };
         let (low, high) = function.domain;
-        let none = vec![(i64::MAX, i64::MIN); widths.guard.len()];
-        let with = |mut ends: Vec<(i64, i64)>, sums: &[(i64, i64)]| {
+        let none = vec![(i128::MAX, i128::MIN); widths.guard.len()];
+        let with = |mut ends: Vec<Interval>, sums: &[Interval]| {
             for (end, sum) in ends.iter_mut().zip(sums) {
                 *end = (end.0.min(sum.0), end.1.max(sum.1));
             }
             ends
         };
-        let ends = (low..=high)
-            .into_par_iter()
-            .fold(
-                || none.clone(),
-                |ends, raw| {
-                    let sums: Vec<(i64, i64)> =
-                        found.sums_of(raw).into_iter().map(|sum| (sum, sum)).collect();
-                    with(ends, &sums)
-                },
-            )
-            .reduce(|| none.clone(), |a, b| with(a, &b));
+        let ends = if function.is_wide() {
+            let walks = (0..found.words.len()).filter_map(|word| found.walk(word));
+            walks.fold(none, |ends, walk| with(ends, &walk.sums))
+        } else {
+            let of = |ends, raw| {
+                let sums = found.sums_of(raw).into_iter().map(i128::from);
+                with(ends, &sums.map(|sum| (sum, sum)).collect::<Vec<_>>())
+            };
+            let folded = (low..=high).into_par_iter().fold(|| none.clone(), of);
+            folded.reduce(|| none.clone(), |a, b| with(a, &b))
+        };
         for (k, (low, high)) in ends.iter().enumerate().skip(1) {
-            found.sums[k] =
-                Format::holding((*low).into(), (*high).into(), found.coefficients[k].frac);
+            found.sums[k] = Format::holding(*low, *high, found.coefficients[k].frac);
         }
         let widest = found
             .steps

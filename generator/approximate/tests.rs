@@ -1,6 +1,6 @@
 //! Approximations are proved, and a wrong coefficient is not.
 
-use super::{Function, Layout, Outside, Wish, find};
+use super::{Curve, Function, Layout, Outside, Samples, Wish, find};
 use crate::base::fixed::{Format, exp2};
 use crate::formula::parse;
 
@@ -10,7 +10,7 @@ fn function(text: &str, (from, to): (f64, f64), fraction: i32, error: f64) -> Fu
     let raw = |value: f64| (value * exp2(fraction)) as i64;
     let domain = (raw(from), raw(to) - 1);
     Function {
-        formula: parse(text).unwrap(),
+        curve: Curve::Formula(parse(text).unwrap()),
         domain,
         operand: Format::holding(domain.0.into(), domain.1.into(), fraction),
         outside: Outside::Clamp,
@@ -87,6 +87,70 @@ fn what_cannot_be_had_is_refused_with_what_can() {
     assert_eq!(near.key, "result.error");
     assert!(near.message.starts_with("degree 1 does not keep an error of 0.5 units"), "{near:?}");
     assert!(near.remedy.starts_with("0.51 is reached"), "{near:?}");
-    let wide = refused(&function("x", (0.0, 4.0), 26, 1.0), Wish::default());
-    assert_eq!((wide.key, wide.remedy.as_str()), ("operand.fraction", "at most 24"));
+    let wide = Function { domain: (0, 1 << 48), ..function("x", (0.0, 4.0), 26, 1.0) };
+    let wide = refused(&wide, Wish::default());
+    assert_eq!((wide.key, wide.remedy.as_str()), ("operand.fraction", "at most 23"));
+}
+
+/// The bound over intervals is that of every operand or a little more, and a wrong coefficient breaks it.
+#[test]
+fn a_bound_over_intervals_holds_at_every_operand() {
+    for (text, degree) in [
+        ("exp(-x)", 0),
+        ("exp(-x)", 1),
+        ("sin(2 * x) / (1 + x ^ 2)", 2),
+        ("log2(1 + x) * tanh(x) + atan(x) - erf(x) / 3", 3),
+        ("max(abs(x - 0.3), x ^ 1.5 / 2) + (x + 0.5) % 2", 1),
+        ("cos(x) - sqrt(x + 0.01) + ln(x + 2) / tan(x + 0.1)", 2),
+        ("if(x < 0.5, x, 1 - x) + 2 ^ -x", 1),
+    ] {
+        let it = Function { fraction: 8, ..function(text, (0.0, 1.0), 13, 1.0) };
+        let found = find(&it, Wish { degree: Some(degree), layout: None }).unwrap();
+        let bound = found.prove_by_segments(&it).unwrap();
+        assert!((found.bound..=1.0).contains(&bound), "{text}: {bound} for {}", found.bound);
+        for k in 0..=degree as usize {
+            let unit = 1i64 << (found.coefficients[k].frac - 8).max(0);
+            let mut wrong = (*found).clone();
+            wrong.words[1][k] += (2 * unit) << k;
+            let refusal = wrong.prove_by_segments(&it).unwrap_err();
+            assert!(["result.error", "result.fraction"].contains(&refusal.key), "{refusal:?}");
+        }
+    }
+}
+
+#[test]
+fn more_operands_than_can_be_computed_have_a_bound() {
+    let it = Function { fraction: 14, ..function("exp(-x)", (0.0, 1.0), 28, 1.0) };
+    let found = find(&it, Wish { degree: Some(2), layout: Some(Layout::Uniform) }).unwrap();
+    assert!(it.is_wide() && found.bound <= 1.0);
+    let mut largest: f64 = 0.0;
+    for raw in (0..1i64 << 28).step_by(4099) {
+        let value = libm::exp(-(raw as f64) / exp2(28)) * exp2(14);
+        largest = largest.max((found.result(raw) as f64 - value).abs());
+    }
+    assert!(largest <= found.bound && largest > 0.6, "{largest} of {}", found.bound);
+}
+
+/// The square of every third operand: right there, and near elsewhere.
+#[test]
+fn samples_are_met_and_a_wrong_coefficient_is_refused() {
+    let points: Vec<String> =
+        (0..=85).map(|k| format!("{},{}", 3 * k, f64::from(9 * k * k) / 65536.0)).collect();
+    let samples = |error| Function {
+        curve: Curve::Samples(Samples::read(&points.join(" "), 0, (0, 255)).unwrap()),
+        fraction: 10,
+        error,
+        ..function("x", (0.0, 256.0), 0, 1.0)
+    };
+    for degree in 0..=3 {
+        let it = samples(1.0);
+        let found = find(&it, Wish { degree: Some(degree), layout: None }).unwrap();
+        let off = |raw: i64| (found.result(raw) as f64 - (raw * raw) as f64 / 64.0).abs();
+        let at_samples = (0..=85).map(|k| off(3 * k)).fold(0.0, f64::max);
+        assert!(at_samples < 1.0 && (found.bound - at_samples).abs() < 1e-9, "degree {degree}");
+        assert!((0..=255).map(off).fold(0.0, f64::max) < 30.0, "degree {degree}");
+        let mut wrong = (*found).clone();
+        wrong.words[0][0] += 3i64 << (found.coefficients[0].frac - 10);
+        assert_eq!(wrong.prove(&it).unwrap_err().key, "result.error");
+    }
 }

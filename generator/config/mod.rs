@@ -13,6 +13,7 @@ mod keys;
 mod module_name;
 mod nearest;
 mod parse;
+mod points;
 mod problems;
 mod read;
 mod sample;

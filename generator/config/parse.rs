@@ -9,6 +9,7 @@ use toml::de::{DeTable, DeValue, Error};
 
 use super::module_name;
 use super::nearest::{listed, nearest};
+use super::points;
 use super::problems::{Problems, STANDARD_INPUT, Violation, out_of_range, quoted, shown};
 use super::schema::{Key, Kind, Schema};
 use super::text_pattern::TextPattern;
@@ -45,6 +46,7 @@ pub(super) fn located(
     let (document, errors) = DeTable::parse_recoverable(text);
     let mut reader = Reader {
         text,
+        directory: Path::new(file_name).parent().unwrap_or(Path::new("")),
         newlines: text.match_indices('\n').map(|(offset, _)| offset).collect(),
         problems,
         broken: BTreeSet::new(),
@@ -59,6 +61,8 @@ pub(super) fn located(
 
 struct Reader<'t> {
     text: &'t str,
+    /// Where the files are that it names.
+    directory: &'t Path,
     /// Where its lines end.
     newlines: Vec<usize>,
     problems: Problems,
@@ -264,7 +268,18 @@ impl Reader<'_> {
         draft: &mut Draft<'s>,
     ) {
         self.problems.locate(key.name, span.clone());
-        match converted(key, value) {
+        let found = match (&key.kind, value.get_ref()) {
+            (Kind::Text(TextPattern::Samples), DeValue::String(path))
+                if path.is_empty() || path.ends_with(".csv") =>
+            {
+                let points = points::read(&self.directory.join(&**path));
+                points.map(Value::Text).map_err(|(message, remedy)| {
+                    vec![Violation { message, remedy, ..key.violation(String::new()) }]
+                })
+            }
+            _ => converted(key, value),
+        };
+        match found {
             Ok(value) => draft.give(key, Some(value)),
             Err(violations) => {
                 draft.give(key, None);

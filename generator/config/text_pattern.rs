@@ -13,10 +13,15 @@ pub enum TextPattern {
     /// Letters, digits, blanks and the signs of a formula, of which its reader says whether it is one. It alone may have
     /// signs that XML writes otherwise.
     Formula,
+    /// Measured points `x,y x,y`, or nothing. A file may write the path of a CSV file, whose points are read.
+    Samples,
 }
 
 /// The most characters of a formula.
 const LONGEST_FORMULA: usize = 500;
+
+/// The most characters of samples.
+const LONGEST_SAMPLES: usize = 1 << 20;
 
 /// The most characters of a name or a licence.
 const LONGEST: usize = 60;
@@ -42,6 +47,10 @@ impl TextPattern {
                     && text.chars().count() <= LONGEST_FORMULA
                     && text.chars().all(good)
             }
+            TextPattern::Samples => {
+                let good = |c: char| c.is_ascii_digit() || " .,+-eE".contains(c);
+                text.len() <= LONGEST_SAMPLES && text.chars().all(good)
+            }
             TextPattern::Version => {
                 let numbers: Vec<&str> = text.split('.').collect();
                 numbers.len() == 3 && numbers.into_iter().all(is_number)
@@ -55,6 +64,7 @@ impl TextPattern {
             TextPattern::Name => "^[A-Za-z][A-Za-z0-9._-]{0,59}$",
             TextPattern::Licence => "^[A-Za-z(][A-Za-z0-9 .+()-]{0,59}$",
             TextPattern::Formula => "^[A-Za-z0-9 ._+*/%^(),<>=−·×-]{1,500}$",
+            TextPattern::Samples => "^([0-9 .,+eE-]*|.+[.]csv)$",
             TextPattern::Version => "^(0|[1-9][0-9]{0,3})(\\.(0|[1-9][0-9]{0,3})){2}$",
         }
     }
@@ -70,6 +80,9 @@ impl TextPattern {
             }
             TextPattern::Formula => {
                 "a formula of at most 500 characters, as \"1 / sqrt(x)\", or a number"
+            }
+            TextPattern::Samples => {
+                "the path of a CSV file, from the configuration's directory, or points as \"0,0 1,0.5\""
             }
             TextPattern::Version => "a version of three numbers up to 9999, as \"1.0.0\"",
         }
@@ -102,6 +115,11 @@ mod tests {
                 TextPattern::Formula,
                 vec!["1 / sqrt(x)", "if(x <= 2, -x, 3 · x^2 % 4)"],
                 vec!["", "x; y", "a\"b", "$x", "x\n"],
+            ),
+            (
+                TextPattern::Samples,
+                vec!["", "0,0 1,-0.5e-3"],
+                vec!["points.csv", "0;1", "x,y", "0,0\n1,1"],
             ),
             (
                 TextPattern::Licence,

@@ -14,8 +14,8 @@ use crate::keys::function::{Keys, found};
 /// # Panics
 /// If the check of the schema has not accepted the configuration.
 pub fn describe(d: &Designer, config: &Config) {
-    let (_, it) = found(config).expect("a configuration that is checked");
-    d.about(about(&Keys::of(config), &it));
+    let (function, it) = found(config).expect("a configuration that is checked");
+    d.about(about(&Keys::of(config), function.proof(), &it));
     let (first, last) = it.domain;
     let operand = match it.outside {
         Outside::Clamp => {
@@ -217,8 +217,9 @@ fn table<'d>(d: &'d Designer, address: Signal<'d>, it: &Piecewise) -> Vec<Signal
     signals
 }
 
-fn about(keys: &Keys, it: &Piecewise) -> About {
-    let Keys { formula, from, to, .. } = keys;
+fn about(keys: &Keys, proof: &str, it: &Piecewise) -> About {
+    let Keys { from, to, .. } = keys;
+    let formula = if keys.samples.is_empty() { &keys.formula } else { "samples(x)" };
     let ends = if keys.to_included { "both ends included" } else { "the end not included" };
     let shape = match it.degree() {
         0 => format!("A table of {} results", it.words.len()),
@@ -236,7 +237,11 @@ fn about(keys: &Keys, it: &Piecewise) -> About {
         source: "The configuration".to_owned(),
         notes: vec![
             format!("The domain is x from {from} to {to}, {ends}.").into(),
-            format!("{shape}. Every operand of the domain was computed: no result is further off than {:.4} units of the last place.", it.bound).into(),
+            format!(
+                "{shape}. {proof}: no result is further off than {:.4} units of the last place.",
+                it.bound
+            )
+            .into(),
         ],
     }
 }

@@ -6,6 +6,7 @@ pub mod chart;
 pub mod claims;
 pub mod comparison;
 pub mod curves;
+pub mod domain;
 pub mod hardware;
 pub mod measure;
 pub mod overview;

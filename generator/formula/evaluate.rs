@@ -49,7 +49,7 @@ impl Formula {
     }
 }
 
-fn unary(function: Function, a: Enclosure) -> Result<Enclosure, String> {
+pub(super) fn unary(function: Function, a: Enclosure) -> Result<Enclosure, String> {
     let at = || words(a);
     Ok(match function {
         Function::Negate => -a,
@@ -81,7 +81,7 @@ fn unary(function: Function, a: Enclosure) -> Result<Enclosure, String> {
     })
 }
 
-fn binary(operator: Operator, a: Enclosure, b: Enclosure) -> Result<Enclosure, String> {
+pub(super) fn binary(operator: Operator, a: Enclosure, b: Enclosure) -> Result<Enclosure, String> {
     Ok(match operator {
         Operator::Add => a + b,
         Operator::Sub => a - b,

@@ -7,6 +7,7 @@ mod enclosure;
 mod evaluate;
 mod parse;
 mod print;
+mod slope;
 
 use std::fmt;
 use std::ops::Range;

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use super::device::{self, Formula};
 use super::frame::{Frame, idle, step_by};
 use super::{Contract, Model, Term};
-use crate::approximate::{Function, Outside, Piecewise};
+use crate::approximate::{Curve, Function, Outside, Piecewise};
 use crate::base::fixed::exp2;
 use crate::config::Config;
 use crate::keys::function::found;
@@ -57,16 +57,18 @@ pub fn contract(config: &Config) -> Box<dyn Contract> {
     device(&it).contract(Stated { function, bound })
 }
 
-/// The formula with the bound that was proved at every operand.
+/// The function with the bound that was proved.
 struct Stated {
     function: Function,
     bound: f64,
 }
 
 impl Formula for Stated {
+    /// No number where nothing is stated.
     fn exact(&self, operands: &[f64]) -> Vec<f64> {
         let raw = (operands[0] * exp2(self.function.operand.frac)) as i64;
-        let value = self.function.limits(raw).map_or(f64::NAN, |limits| limits.middle());
+        let limits = self.function.limits(raw).ok().filter(|_| self.function.is_stated(raw));
+        let value = limits.map_or(f64::NAN, |limits| limits.middle());
         vec![value * exp2(-(self.function.fraction as i32))]
     }
 
@@ -76,13 +78,36 @@ impl Formula for Stated {
             Term { key: "result.fraction", what: "rounding of the result", units: rounding },
             Term {
                 key: "result.error",
-                what: "the polynomials and their roundings, at every operand",
+                what: match self.function.curve {
+                    Curve::Formula(_) => "the polynomials and their roundings, at every operand",
+                    Curve::Samples(_) => "the polynomials and their roundings, at every sample",
+                },
                 units: self.bound - rounding,
             },
         ]
     }
 
     fn expressions(&self) -> Vec<String> {
-        vec![self.function.formula.python()]
+        match &self.function.curve {
+            Curve::Formula(formula) => vec![formula.python()],
+            Curve::Samples(_) => Vec::new(),
+        }
+    }
+
+    /// A sample.
+    fn hint(&self, unit: &mut dyn FnMut() -> f64) -> Option<Vec<i64>> {
+        let Curve::Samples(samples) = &self.function.curve else { return None };
+        let number = (unit() * samples.operands().len() as f64) as usize;
+        samples.operands().nth(number).map(|raw| vec![raw])
+    }
+
+    fn remarks(&self) -> Vec<String> {
+        match &self.function.curve {
+            Curve::Formula(_) => Vec::new(),
+            Curve::Samples(samples) => vec![format!(
+                "The bound is proved at the {} samples; of the operands between them nothing is stated.",
+                samples.operands().len()
+            )],
+        }
     }
 }

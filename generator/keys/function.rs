@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use crate::approximate::{Function, Layout, Outside, Piecewise, Refusal, Wish, find};
+use crate::approximate::{
+    Curve, Function, Layout, Outside, Piecewise, Refusal, Samples, Wish, find,
+};
 use crate::base::fixed::{Format, MAX_WIDTH, exp2};
 use crate::config::{Config, Key, Problems, Schema, TextPattern};
 use crate::formula::{Enclosure, Fault, parse};
@@ -12,6 +14,10 @@ keys! {
     pub struct Keys {
         formula: String = Key::text("function.formula", "1 / sqrt(x)", TextPattern::Formula,
             "The function of the operand x."),
+        samples: String = Key::text("function.samples", "", TextPattern::Samples,
+            "Measured points in place of a formula: the path of a CSV file with x and the result in each line, or the points \
+             themselves. The error is against the points; between them nothing is stated.")
+            .joined_later(),
         from: String = Key::text("function.from", "1", TextPattern::Formula,
             "The smallest operand of the domain."),
         to: String = Key::text("function.to", "4", TextPattern::Formula, "The end of the domain."),
@@ -41,6 +47,15 @@ pub fn schema() -> Schema {
 }
 
 fn check(config: &Config, problems: &mut Problems) {
+    let [formula, samples] = ["function.formula", "function.samples"];
+    if config.text(samples).is_empty() && problems.gives(samples) {
+        // They could not be read, which the reader has said; the formula's default is not in their place.
+        return;
+    }
+    if !config.text(samples).is_empty() && problems.gives(formula) {
+        let message = format!("there are both `{formula}` and `{samples}`");
+        return problems.push(formula, message, "keep one of the two");
+    }
     if let Err(refusal) = found(config) {
         problems.push_within(refusal.key, refusal.place, refusal.message, refusal.remedy);
     }
@@ -62,8 +77,6 @@ pub fn found(config: &Config) -> Result<(Function, Arc<Piecewise>), Refusal> {
 }
 
 fn function(keys: &Keys) -> Result<Function, Refusal> {
-    let formula = parse(&keys.formula).and_then(|formula| formula.of_operand("x"));
-    let formula = formula.map_err(|fault| misread("function.formula", fault))?;
     let fraction = keys.operand as i32;
     let ends = [("function.from", &keys.from), ("function.to", &keys.to)];
     let [from, to] = ends.map(|(key, text)| end(key, text));
@@ -89,8 +102,14 @@ fn function(keys: &Keys) -> Result<Function, Refusal> {
         let remedy = "scale the operand so that it is, or \"clamp\" or \"anything\"";
         return Err(Refusal::new("function.outside", message, remedy));
     }
+    let curve = if keys.samples.is_empty() {
+        let formula = parse(&keys.formula).and_then(|formula| formula.of_operand("x"));
+        Curve::Formula(formula.map_err(|fault| misread("function.formula", fault))?)
+    } else {
+        Curve::Samples(Samples::read(&keys.samples, keys.operand, (first, last))?)
+    };
     Ok(Function {
-        formula,
+        curve,
         domain: (first, last),
         operand: Format::holding(first.into(), last.into(), fraction),
         outside: keys.outside,

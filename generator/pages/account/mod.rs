@@ -345,7 +345,7 @@ pub fn keys(schema: &Schema, config: &Config) -> Table {
     let mut table = Table::of("key | value | accepts | what it governs");
     let changed = |key: &&Key| *config.value(key.name) != key.default;
     for key in schema.keys.iter().chain(shared_keys().iter().filter(changed)) {
-        let (now, default) = (config.value(key.name).toml(), key.default.toml());
+        let [now, default] = [config.value(key.name), &key.default].map(|it| shortened(it.toml()));
         let value = match config.applies(schema, key.name) {
             false => "–".to_owned(),
             true if now == default => code(&now),
@@ -361,6 +361,15 @@ pub fn keys(schema: &Schema, config: &Config) -> Table {
         table.row([code(key.name), value, key.accepts(), format!("{}{only}", key.doc)]);
     }
     table
+}
+
+/// A text of at most so many characters as a cell has room for.
+fn shortened(text: String) -> String {
+    const ROOM: usize = 520;
+    match text.char_indices().nth(ROOM) {
+        None => text,
+        Some((end, _)) => format!("{} … ({} characters)", &text[..end], text.chars().count()),
+    }
 }
 
 /// A value in six decimals, without the zeros at their end.

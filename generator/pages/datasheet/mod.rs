@@ -13,7 +13,9 @@ use anyhow::Result;
 
 use crate::core::{Core, Through};
 use crate::cosim::exhaustive::{Backing, Record};
+use crate::evidence::chart::Chart;
 use crate::evidence::curves::{self, DeviceCurves};
+use crate::evidence::domain;
 use crate::evidence::hardware::{self, FamilyUsage, Synthesis};
 use crate::package::{LineClocks, Timing, WorkedExample};
 use crate::render::{self, BACKGROUND, BuiltIn, Light, Material, Scene, Settings, View};
@@ -58,6 +60,8 @@ struct Measured {
     line: Option<LineClocks>,
     waves: Waves,
     curves: DeviceCurves,
+    /// Of a function of one operand, its own.
+    over_domain: Vec<Chart>,
     /// None of a device that a picture has not the operands for.
     highlight: Option<Highlight>,
     synthesis: Option<(String, Vec<FamilyUsage>)>,
@@ -109,6 +113,7 @@ pub fn datasheet(subject: &Subject, done: &(dyn Fn() + Sync)) -> Result<Datashee
         line: core.line()?,
         waves: Waves::record(core)?,
         curves,
+        over_domain: domain::charts(contract),
         highlight,
         synthesis: synthesis?,
     };

@@ -52,6 +52,7 @@ struct Page<'a> {
     proof: Option<ProofView>,
     remarks: Vec<String>,
     figures: Vec<Figure<'a>>,
+    over_domain: bool,
     highlight: Option<HighlightView>,
     record: Option<RecordView>,
     synthesis: Option<&'a (String, Vec<FamilyUsage>)>,
@@ -131,7 +132,8 @@ pub fn page(subject: &Subject, measured: &Measured) -> Result<String> {
         example: &measured.example,
         line: measured.line.as_ref(),
     };
-    let charts: Vec<(&Chart, &str)> = measured.curves.charts.iter().map(|it| (it, "")).collect();
+    let charts = measured.curves.charts.iter().chain(&measured.over_domain);
+    let charts: Vec<(&Chart, &str)> = charts.map(|it| (it, "")).collect();
     let wavedrom = measured.waves.wavedrom()?;
     let page = Page {
         version: env!("CARGO_PKG_VERSION"),
@@ -173,6 +175,7 @@ pub fn page(subject: &Subject, measured: &Measured) -> Result<String> {
         }),
         remarks: contract.remarks().iter().map(|it| html(it)).collect(),
         figures: figures(&charts)?,
+        over_domain: !measured.over_domain.is_empty(),
         highlight: measured.highlight.as_ref().map(|highlight| HighlightView {
             data: STANDARD.encode(&highlight.png),
             ball: STANDARD.encode(&highlight.ball),

@@ -1,0 +1,165 @@
+//! The proof of a bound where operands are too many to compute each: by intervals within segments.
+//!
+//! With the real number t in place of the offset, a word is a polynomial P, and the result lags behind P(t) by what its
+//! roundings drop, which is known of a whole segment. The distance from the function to P is that in the middle of an interval, and at
+//! most the derivative times the way from there. Where that is too much the interval is halved, down to single operands.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use rayon::prelude::*;
+
+use super::{Curve, Function, Piecewise, Refusal};
+use crate::base::fixed::exp2;
+use crate::base::interval::{self, Interval};
+use crate::formula::Enclosure;
+
+/// Intervals that are looked at before the proof is given up.
+const MOST: u64 = 1 << 20;
+
+/// Operands that are computed one by one rather than as an interval.
+const FEW: i64 = 4;
+
+/// The sums of a segment between their limits.
+pub(super) struct Walk {
+    /// The sum from each coefficient on, in units of its last place.
+    pub sums: Vec<Interval>,
+    /// By how much the result lags behind the polynomial, in units of the result.
+    lag: Enclosure,
+}
+
+impl Piecewise {
+    /// The operands of the domain that read a word, first and last.
+    fn operands_of(&self, word: usize) -> Option<(i64, i64)> {
+        let (from, count) = self.segments.numbers(word);
+        let low = (self.origin + from as i64).max(self.domain.0);
+        let high = (self.origin + (from + count - 1) as i64).min(self.domain.1);
+        (low <= high).then_some((low, high))
+    }
+
+    /// Fraction bits that a coefficient has beyond the result.
+    fn beyond(&self, k: usize) -> i32 {
+        self.coefficients[k].frac - self.sums[0].frac
+    }
+
+    /// The sums of all operands that read a word, if there are any.
+    pub(super) fn walk(&self, word: usize) -> Option<Walk> {
+        let (low, high) = self.operands_of(word)?;
+        let [a, b] = [low, high].map(|raw| self.place(raw).offset);
+        let (low, high) = (a.min(b), a.max(b));
+        let (rest, top) = (self.segments.rest(), self.degree());
+        let exact = |k: usize| i128::from(self.words[word][k]);
+        let way = self.way(low).hull(self.way(high));
+        let mut sums = vec![(0, 0); top + 1];
+        sums[top] = (exact(top), exact(top));
+        let mut lag = Enclosure::exactly(0.0);
+        for (k, step) in self.steps.iter().enumerate().rev() {
+            let cut = rest - step.offset;
+            let offsets = (i128::from(low >> cut), i128::from(high >> cut));
+            let (least, most) = interval::product(sums[k + 1], offsets);
+            sums[k] = (exact(k) + (least >> step.dropped), exact(k) + (most >> step.dropped));
+            let (least, most) = sums[k + 1];
+            let above = Enclosure::between((least as f64).next_down(), (most as f64).next_up())
+                * Enclosure::exactly(exp2(-self.beyond(k + 1)));
+            let cut_off = (exp2(cut as i32) - 1.0) * exp2(-(rest as i32));
+            let dropped = exp2(-self.beyond(k)) * (1.0 - exp2(-(step.dropped as i32)));
+            lag = lag * way
+                + above * Enclosure::between(0.0, cut_off)
+                + Enclosure::between(0.0, dropped);
+        }
+        let last = Enclosure::between(0.0, 1.0 - exp2(-self.beyond(0)));
+        Some(Walk { sums, lag: lag + last })
+    }
+
+    /// The way through a segment that an offset stands for, from its middle, of its length.
+    fn way(&self, offset: i64) -> Enclosure {
+        Enclosure::exactly(offset as f64 * exp2(-(self.segments.rest() as i32)))
+    }
+
+    /// The polynomial of a word and its derivative, in units of the result.
+    fn polynomial(&self, word: usize, way: Enclosure) -> (Enclosure, Enclosure) {
+        let zero = Enclosure::exactly(0.0);
+        let words = self.words[word].iter().enumerate().rev();
+        words.fold((zero, zero), |(value, slope), (k, &coefficient)| {
+            let coefficient = Enclosure::exactly(coefficient as f64 * exp2(-self.beyond(k)));
+            (value * way + coefficient, slope * way + value)
+        })
+    }
+
+    /// Proves the bound over intervals, as [`Piecewise::prove`] does over operands.
+    ///
+    /// # Errors
+    /// As of [`Piecewise::prove`]; or the proof takes too long.
+    pub(super) fn prove_by_segments(&self, function: &Function) -> Result<f64, Refusal> {
+        let left = AtomicU64::new(MOST);
+        let of = |word: usize| {
+            let Some(walk) = self.walk(word) else { return Ok(0.0) };
+            for (sum, format) in walk.sums.iter().zip(&self.sums).skip(1) {
+                if !format.holds(sum.0) || !format.holds(sum.1) {
+                    let message = format!("a sum of the word {word} is not {format}");
+                    return Err(Refusal::new("result.fraction", message, "change the formats"));
+                }
+            }
+            let mut bound: f64 = 0.0;
+            let mut open: Vec<(i64, i64)> = self.operands_of(word).into_iter().collect();
+            while let Some((low, high)) = open.pop() {
+                if left.fetch_sub(1, Ordering::Relaxed) <= 1 {
+                    left.store(0, Ordering::Relaxed);
+                    return Err(unproved());
+                }
+                if high - low < FEW {
+                    for raw in low..=high {
+                        bound = bound.max(self.error_at(function, raw)?);
+                    }
+                    continue;
+                }
+                match self.error_between(function, word, (low, high), walk.lag) {
+                    Some(whole) if whole <= function.error => bound = bound.max(whole),
+                    _ => {
+                        let middle = low + (high - low) / 2;
+                        open.extend([(low, middle), (middle + 1, high)]);
+                    }
+                }
+            }
+            Ok(bound)
+        };
+        (0..self.words.len()).into_par_iter().map(of).try_reduce(|| 0.0, |a, b| Ok(a.max(b)))
+    }
+
+    /// The largest error of some operands of a word; none where the formula may jump among them or have no derivative, or where a
+    /// result may leave its format.
+    fn error_between(
+        &self,
+        function: &Function,
+        word: usize,
+        (low, high): (i64, i64),
+        lag: Enclosure,
+    ) -> Option<f64> {
+        let Curve::Formula(formula) = &function.curve else { return None };
+        let middle = low + (high - low) / 2;
+        let [from, to] = [low, high].map(|raw| self.operand.to_f64(raw.into()));
+        let (_, slope) = formula.slope("x", Enclosure::between(from, to)).ok()?;
+        let [first, here, last] = [low, middle, high].map(|raw| self.place(raw).offset);
+        let (value, _) = self.polynomial(word, self.way(here));
+        let (_, lean) =
+            self.polynomial(word, self.way(first.min(last)).hull(self.way(first.max(last))));
+        // From an operand to the next.
+        let step = (last - first) / (high - low).max(1);
+        let lean = lean * self.way(step);
+        let unit = exp2(function.fraction as i32 - self.operand.frac);
+        let reach = Enclosure::between((low - middle) as f64, (high - middle) as f64);
+        let apart = function.limits(middle).ok()? - value
+            + (slope * Enclosure::exactly(unit) - lean) * reach;
+        let error = apart + lag;
+        let results = value + lean * reach - lag;
+        let format = self.sums[0];
+        let inside = results.low > format.min_raw() as f64 - 1.0
+            && results.high < format.max_raw() as f64 + 1.0;
+        inside.then_some(error.low.abs().max(error.high.abs()))
+    }
+}
+
+/// The proof takes too long.
+fn unproved() -> Refusal {
+    let message = format!("the bound is not proved with 2^{} intervals", MOST.ilog2());
+    Refusal::new("result.error", message, "allow a larger error, or fewer operand.fraction bits")
+}

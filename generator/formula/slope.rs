@@ -1,0 +1,125 @@
+//! The derivative of a formula, with limits that certainly hold it.
+
+use super::evaluate::{binary, unary};
+use super::{Comparison, Enclosure, Fault, Formula, Function, Kind, Operator};
+
+/// The limits of a value and of its derivative.
+#[derive(Clone, Copy)]
+struct Pair {
+    value: Enclosure,
+    slope: Enclosure,
+}
+
+impl Formula {
+    /// The limits of the value and of the derivative to an operand within its limits. At a corner the derivative is between those of
+    /// both sides.
+    ///
+    /// # Errors
+    /// A part that has no value, may jump, or is infinitely steep.
+    pub fn slope(&self, operand: &str, limits: Enclosure) -> Result<(Enclosure, Enclosure), Fault> {
+        self.pair(operand, limits).map(|it| (it.value, it.slope))
+    }
+
+    fn pair(&self, operand: &str, limits: Enclosure) -> Result<Pair, Fault> {
+        let fault = |message: String| Fault::new(self.span.clone(), message);
+        let pair = match &self.kind {
+            Kind::Number(..) | Kind::Constant(..) => {
+                Pair { value: self.enclose(&[])?, slope: Enclosure::exactly(0.0) }
+            }
+            Kind::Operand(_) | Kind::Word(..) => {
+                Pair { value: self.enclose(&[(operand, limits)])?, slope: Enclosure::exactly(1.0) }
+            }
+            Kind::Unary(function, a) => {
+                let a = a.pair(operand, limits)?;
+                let value = unary(*function, a.value).map_err(fault)?;
+                Pair { value, slope: of_unary(*function, a, value) }
+            }
+            Kind::Binary(operator, a, b) => {
+                let (a, b) = (a.pair(operand, limits)?, b.pair(operand, limits)?);
+                let value = binary(*operator, a.value, b.value).map_err(fault)?;
+                match of_binary(*operator, a, b, value) {
+                    Some(slope) => Pair { value, slope },
+                    None => return Err(fault("this may jump".to_owned())),
+                }
+            }
+            Kind::If(Comparison { left, right, or_equal }, yes, no) => {
+                let [left, right] = [left, right].map(|it| it.enclose(&[(operand, limits)]));
+                let difference = left? - right?;
+                if difference.low > 0.0 || *or_equal && difference.low == 0.0 {
+                    yes.pair(operand, limits)?
+                } else if difference.high < 0.0 || !*or_equal && difference.high == 0.0 {
+                    no.pair(operand, limits)?
+                } else {
+                    return Err(fault("this may jump".to_owned()));
+                }
+            }
+        };
+        if !pair.value.is_finite() || !pair.slope.is_finite() {
+            return Err(fault("this is infinitely steep".to_owned()));
+        }
+        Ok(pair)
+    }
+}
+
+fn of_unary(function: Function, a: Pair, value: Enclosure) -> Enclosure {
+    let Pair { value: at, slope } = a;
+    let number = Enclosure::exactly;
+    let one = number(1.0);
+    // The nearest f64 and its neighbours.
+    let about = |value: f64| Enclosure::between(value.next_down(), value.next_up());
+    let steep = Enclosure::between(f64::NEG_INFINITY, f64::INFINITY);
+    match function {
+        Function::Negate => -slope,
+        Function::Abs if at.low >= 0.0 => slope,
+        Function::Abs if at.high <= 0.0 => -slope,
+        Function::Abs => slope.hull(-slope),
+        Function::Sqrt if value.low <= 0.0 => steep,
+        Function::Sqrt => slope / (number(2.0) * value),
+        Function::Exp => value * slope,
+        Function::Exp2 => value * about(std::f64::consts::LN_2) * slope,
+        Function::Ln => slope / at,
+        Function::Log2 => slope / (at * about(std::f64::consts::LN_2)),
+        Function::Sin => at.wave(libm::cos) * slope,
+        Function::Cos => -(at.wave(libm::sin) * slope),
+        Function::Tan => (one + value.times_itself(2)) * slope,
+        Function::Atan => slope / (one + at.times_itself(2)),
+        Function::Tanh => (one - value.times_itself(2)) * slope,
+        Function::Erf => {
+            let bell = (-at.times_itself(2)).rising(libm::exp);
+            about(std::f64::consts::FRAC_2_SQRT_PI) * bell * slope
+        }
+    }
+}
+
+/// None where the value may jump.
+fn of_binary(operator: Operator, a: Pair, b: Pair, value: Enclosure) -> Option<Enclosure> {
+    let number = Enclosure::exactly;
+    Some(match operator {
+        Operator::Add => a.slope + b.slope,
+        Operator::Sub => a.slope - b.slope,
+        Operator::Mul => a.slope * b.value + a.value * b.slope,
+        Operator::Div => (a.slope - value * b.slope) / b.value,
+        Operator::Min if a.value.high < b.value.low => a.slope,
+        Operator::Min if b.value.high < a.value.low => b.slope,
+        Operator::Max if a.value.high < b.value.low => b.slope,
+        Operator::Max if b.value.high < a.value.low => a.slope,
+        Operator::Min | Operator::Max => a.slope.hull(b.slope),
+        Operator::Mod => {
+            let times = a.value / b.value;
+            if times.low.floor() != times.high.floor() {
+                return None;
+            }
+            a.slope - number(times.low.floor()) * b.slope
+        }
+        Operator::Power if b.slope == number(0.0) => {
+            let less = b.value - number(1.0);
+            let below = binary(Operator::Power, a.value, less).ok()?;
+            b.value * below * a.slope
+        }
+        Operator::Power if a.value.low > 0.0 => {
+            let logarithm = a.value.rising(libm::log);
+            value * (b.slope * logarithm + b.value * a.slope / a.value)
+        }
+        Operator::Power => return None,
+    })
+}
