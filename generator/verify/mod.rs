@@ -21,7 +21,7 @@ use serde::Serialize;
 use crate::base::input;
 use crate::core::Core;
 use crate::package::{self, OutputFile};
-use crate::tools::Tool;
+use crate::tools::{LimitReached, Tool};
 
 /// A configuration to be verified.
 pub struct Subject<'a> {
@@ -273,7 +273,11 @@ impl Check {
         let limit = subject.effort.time_limit;
         let finding = (tools.iter().try_for_each(|tool| tool.ensure_works(limit)))
             .and_then(|()| (self.run)(subject, &tools, progress))
-            .unwrap_or_else(|error| Finding::default().failures(vec![format!("{error:#}")]));
+            .unwrap_or_else(|error| match error.downcast_ref::<LimitReached>() {
+                // A tool that was stopped has found no failure.
+                Some(_) => Finding::without(Verdict::LimitReached, format!("{error:#}")),
+                None => Finding::default().failures(vec![format!("{error:#}")]),
+            });
         (versions, finding)
     }
 }

@@ -20,9 +20,7 @@ use crate::target::{FAMILIES, Family};
 use crate::tools::gates;
 use crate::tools::gates::cells::{LIBERTY, Start};
 use crate::tools::synthesis::synthesise;
-use crate::tools::{
-    LimitReached, Limits, PROOF_LIMITS, Simulator, elaborate, lint, prove, run_bench,
-};
+use crate::tools::{Limits, PROOF_LIMITS, Simulator, elaborate, lint, prove, run_bench};
 
 /// Results of a bench, and with full effort.
 const POINTS: [u64; 2] = [200, 20_000];
@@ -353,12 +351,7 @@ pub const FORMAL: Check = Check {
         }
         proofs.sort();
         for module in &proofs {
-            if let Err(error) = prove(&flat, module, limits) {
-                return match error.downcast_ref::<LimitReached>() {
-                    Some(_) => Ok(Finding::without(Verdict::LimitReached, format!("{error:#}"))),
-                    None => Err(error),
-                };
-            }
+            prove(&flat, module, limits)?;
         }
         let files: Vec<String> =
             proofs.iter().map(|module| format!("{module}_formal.sv")).collect();
