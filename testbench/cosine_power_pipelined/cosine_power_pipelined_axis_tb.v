@@ -141,9 +141,9 @@ module cosine_power_pipelined_axis_tb #(
             was_reset = !aresetn && clock > 0;
             waited = waited + 1;
             if (aresetn && m_axis_tvalid && m_axis_tready) begin
-                waited = 0;
                 check(taken < PASSES * RECEIVED, "a transfer too many");
                 if (taken < PASSES * RECEIVED) begin
+                    waited = 0;
                     want = received[taken % RECEIVED];
                     check(m_axis_tdata === want[23:0], "m_axis_tdata");
                     check(m_axis_tuser === taken_users[0:0], "m_axis_tuser");
