@@ -4,6 +4,7 @@ use crate::common::cases;
 use crate::config_device::{lamp, schemas};
 use glint::config::{Config, Schema, commented, parse, read, sample};
 use glint::core::Core;
+use glint::keys::presets::DEVICE as FUNCTION;
 use glint::registry::Registry;
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -51,9 +52,13 @@ fn value() -> impl Strategy<Value = String> {
     })
 }
 
-/// A file for a device of the catalogue in which keys have any values.
+/// A file for a device of the catalogue in which keys have any values; seldom for a function, whose widths the reader
+/// searches for.
 fn settings() -> impl Strategy<Value = String> {
-    let devices: Vec<Schema> = Registry::catalogue().schemas();
+    let is_function = |schema: &Schema| schema.device == FUNCTION;
+    let (functions, highlights): (Vec<_>, Vec<_>) =
+        Registry::catalogue().schemas().into_iter().partition(is_function);
+    let devices: Vec<Schema> = highlights.into_iter().cycle().take(250).chain(functions).collect();
     let setting = (any::<prop::sample::Index>(), value(), 0..40u8);
     (prop::sample::select(devices), vec(setting, 0..8)).prop_map(|(schema, settings)| {
         let mut text = format!("device = \"{}\"\n", schema.device);

@@ -13,7 +13,7 @@ const ROOMS: [(&str, &str); 30] = [
     ("target", ""),
     ("config", "base target"),
     ("formula", ""),
-    ("approximate", "base choices config formula"),
+    ("approximate", "base formula"),
     ("keys", "base config formula approximate"),
     ("golden", "base config keys formula approximate"),
     ("hdl/netlist", "base target"),
