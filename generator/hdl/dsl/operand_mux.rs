@@ -86,8 +86,12 @@ impl Designer {
         let [a, b] = [first, second].map(|bus| bus.out.format());
         let (out, excess) = match (a.signed, b.signed) {
             // Below a sign alone there are no bits.
-            (true, false) if a.width() > 1 => self.unsigned_core(name, [first, second], |low| (low, second.out)),
-            (false, true) if b.width() > 1 => self.unsigned_core(name, [second, first], |low| (first.out, low)),
+            (true, false) if a.width() > 1 => {
+                self.unsigned_core(name, [first, second], |low| (low, second.out))
+            }
+            (false, true) if b.width() > 1 => {
+                self.unsigned_core(name, [second, first], |low| (first.out, low))
+            }
             _ => (self.mul(name, first.out, second.out), None),
         };
         SharedProduct {
