@@ -10,6 +10,7 @@ use crate::hdl::dsl::Designer;
 use crate::hdl::netlist::Design;
 use crate::hdl::pipeline;
 use crate::keys;
+use crate::target;
 
 /// The key that asks for registers behind the results.
 const OUTPUT_REGISTERED: &str = "output.registered";
@@ -59,7 +60,7 @@ impl Device {
     /// The mistakes of the description; a pipeline that cannot be made.
     pub fn design(&self, config: &Config) -> Result<Design, Diagnostics> {
         let sequential = self.sequential(config)?;
-        match pipeline::options(config) {
+        match pipelining(config) {
             None => Ok(sequential),
             Some(options) => {
                 let design = pipeline::pipeline(&sequential, &options)?;
@@ -216,4 +217,23 @@ impl Registry {
     pub fn schemas(&self) -> Vec<Schema> {
         self.0.iter().map(|device| (device.schema)()).collect()
     }
+}
+
+/// Returns the options of a configuration; none if its architecture is sequential.
+fn pipelining(config: &Config) -> Option<pipeline::Options> {
+    let keys = Shared::of(config);
+    (keys.architecture == "pipelined").then(|| pipeline::Options {
+        target: target::Timing::named(&keys.target).unwrap_or(&target::TIMINGS[0]),
+        goal: match keys.stages {
+            0 => pipeline::Goal::ClockMhz(keys.pipeline_clock_mhz),
+            stages => pipeline::Goal::Stages(stages as usize),
+        },
+        registered: keys.multipliers == "registered",
+        stall: keys.stall == "ready",
+        side: keys.side,
+        delays: match keys.delays.as_str() {
+            "registers" => pipeline::Delays::Registers,
+            _ => pipeline::Delays::Memory,
+        },
+    })
 }

@@ -75,8 +75,9 @@ use crate::hdl::verilog::plan::Plan;
 use crate::hdl::verilog::{module, pipeline, top};
 use artifact::{Artifacts, Job, Kind};
 
+pub use crate::hdl::netlist::Timing;
 pub use crate::observation::{
-    Computation, ContractFacts, LineClocks, Linear, Quantity, Shown, Timing, Vectors, WorkedExample,
+    Computation, ContractFacts, LineClocks, Linear, Quantity, Shown, Vectors, WorkedExample,
 };
 pub use cocotb::driver;
 pub use instance::instance;
@@ -225,7 +226,7 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
 fn verilog(job: &Job, plan: &Plan, files: &mut Artifacts) -> Result<()> {
     let (naming, origin, top_file) = (job.naming, job.inputs.origin(), format!("{}.v", job.name()));
     if let Some(pipeline) = &job.design.pipeline {
-        files.add(Kind::Rtl, top_file, pipeline::module(plan, naming, pipeline, &origin)?);
+        files.add(Kind::Rtl, top_file, pipeline::module(plan, naming, pipeline, &origin));
         return Ok(());
     }
     let control = Interface::new(plan, Partition::Control);

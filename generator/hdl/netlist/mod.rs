@@ -26,6 +26,7 @@ pub mod microcode;
 mod needed;
 mod pipeline;
 pub mod termination;
+mod timing;
 mod verify;
 
 use crate::base::diagnostic::{Diagnostic, SourceLocation};
@@ -41,6 +42,7 @@ pub use held::register_held;
 pub use needed::setting_of;
 pub use pipeline::{Checkpoint, Multiplier, Pipeline, Stage};
 pub use termination::latest_done;
+pub use timing::Timing;
 
 macro_rules! id {
     ($(#[$doc:meta])* $name:ident) => {

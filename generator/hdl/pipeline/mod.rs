@@ -20,9 +20,8 @@ mod tests;
 mod unroll;
 
 use crate::base::diagnostic::{Diagnostic, Diagnostics};
-use crate::config::{Config, Shared};
 use crate::hdl::netlist::Design;
-use crate::target::{TIMINGS, Timing};
+use crate::target::Timing;
 
 pub use delay::delay_of;
 pub use graph::{Cell, Graph, Node, NodeId, Op};
@@ -65,25 +64,6 @@ pub struct Options {
     pub side: u32,
     /// The storage of values on their way.
     pub delays: Delays,
-}
-
-/// Returns the options of a configuration; none if its architecture is sequential.
-pub fn options(config: &Config) -> Option<Options> {
-    let keys = Shared::of(config);
-    (keys.architecture == "pipelined").then(|| Options {
-        target: Timing::named(&keys.target).unwrap_or(&TIMINGS[0]),
-        goal: match keys.stages {
-            0 => Goal::ClockMhz(keys.pipeline_clock_mhz),
-            stages => Goal::Stages(stages as usize),
-        },
-        registered: keys.multipliers == "registered",
-        stall: keys.stall == "ready",
-        side: keys.side,
-        delays: match keys.delays.as_str() {
-            "registers" => Delays::Registers,
-            _ => Delays::Memory,
-        },
-    })
 }
 
 /// The pipeline of a sequential design.

@@ -3,8 +3,7 @@
 use super::naming::Naming;
 use super::text::comment;
 use crate::base::fixed::Format;
-use crate::hdl::netlist::{Design, NetId, Partition, Pipeline, Role, Sequence};
-use crate::observation::Timing;
+use crate::hdl::netlist::{Design, NetId, Partition, Pipeline, Role, Sequence, Timing};
 
 /// The facts of a file's header beyond the design.
 #[derive(Clone, Copy)]

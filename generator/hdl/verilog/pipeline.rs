@@ -1,7 +1,5 @@
 //! The module of a pipeline: the handshake, then a section for every stage.
 
-use askama::Template;
-
 use super::delays;
 use super::header::{self, Origin};
 use super::interface::Interface;
@@ -13,23 +11,11 @@ use super::text::{ascii, comment, literal};
 use super::writer;
 use crate::hdl::netlist::{Design, Driver, NetId, Partition, Pipeline, Role};
 
-/// The module of delay lines.
-#[derive(Template)]
-#[template(path = "delay.v")]
-struct Delay {
-    name: String,
-}
+/// The module of delay lines, under the name `delay`.
+const DELAY: &str = include_str!("delay.v");
 
-/// The text of the module, and of that of its delay lines.
-///
-/// # Errors
-/// A template that cannot be filled.
-pub fn module(
-    plan: &Plan,
-    naming: &Naming,
-    pipeline: &Pipeline,
-    origin: &Origin,
-) -> askama::Result<String> {
+/// Returns the text of the module, and of that of its delay lines.
+pub fn module(plan: &Plan, naming: &Naming, pipeline: &Pipeline, origin: &Origin) -> String {
     let design = plan.design;
     let interface = Interface::new(plan, Partition::Datapath);
     let mut builder = Builder::new(plan, naming, &interface, Partition::Datapath);
@@ -60,16 +46,16 @@ pub fn module(
     stages.extend(writer::section("Results", results));
     let delay = match plan.delays.is_empty() {
         true => String::new(),
-        false => Delay { name: naming.delay() }.render()? + "\n",
+        false => DELAY.replace("module delay", &format!("module {}", naming.delay())),
     };
-    Ok(writer::module(
+    writer::module(
         header::top(design, origin),
         &design.name,
         &parameters(naming, &interface.roms),
         builder.ports(),
         [writer::section("Constants", builder.constants()), stages, builder.unused()].concat(),
         &delay,
-    ))
+    )
 }
 
 /// Returns the valid bits of the stages and their enables: a shift register in place of the bits of the netlist.

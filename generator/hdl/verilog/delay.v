@@ -2,7 +2,7 @@
 // Values on their way, WORDS + 1 registers long. A slot of a small memory gives the value that it
 // holds and takes a new one; its turn comes again when all others have had theirs.
 /* verilator lint_off DECLFILENAME */
-module ${ name }$ #(
+module delay #(
     parameter WIDTH  = 8,
     parameter WORDS  = 2,
     parameter BITS   = 1,  // of the number of a slot
