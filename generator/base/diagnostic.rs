@@ -22,17 +22,17 @@ pub struct Diagnostic {
 }
 
 impl Diagnostic {
-    pub(crate) fn new(message: String, location: SourceLocation) -> Self {
+    pub fn new(message: String, location: SourceLocation) -> Self {
         Self { message, location, notes: Vec::new(), key: None, nearest: None }
     }
 
     /// Makes it a problem of a configuration's key, with a remedy.
-    pub(crate) fn of_key(mut self, key: &'static str, remedy: String) -> Self {
+    pub fn of_key(mut self, key: &'static str, remedy: String) -> Self {
         self.key = Some((key, remedy));
         self
     }
 
-    pub(crate) fn note(mut self, note: String, location: SourceLocation) -> Self {
+    pub fn note(mut self, note: String, location: SourceLocation) -> Self {
         self.notes.push((note, location));
         self
     }

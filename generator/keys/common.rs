@@ -59,7 +59,7 @@ impl Colours {
     }
 
     /// Words of four bits.
-    #[cfg(test)]
+    #[doc(hidden)]
     pub fn small() -> Self {
         Self { bits: 4, multipliers: 3 }
     }
@@ -81,7 +81,7 @@ impl Operands {
     }
 
     /// Words of four bits, small enough to follow by hand.
-    #[cfg(test)]
+    #[doc(hidden)]
     pub fn small() -> Self {
         Self {
             cosine: Cosine { fraction: 4, signed: false },
@@ -108,7 +108,7 @@ impl Intensity {
     }
 
     /// Words of four bits.
-    #[cfg(test)]
+    #[doc(hidden)]
     pub fn small() -> Self {
         let (rounding, output_rounding) = (Rounding::Truncate, Rounding::Nearest);
         Self { fraction: 4, rounding, output_rounding }
@@ -132,7 +132,7 @@ impl Domain {
     }
 
     /// The exponents of four bits.
-    #[cfg(test)]
+    #[doc(hidden)]
     pub fn small() -> Self {
         Self { least: 1, most: 15 }
     }

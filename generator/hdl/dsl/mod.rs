@@ -72,7 +72,7 @@ macro_rules! described {
     };
 }
 
-#[cfg(test)]
+#[doc(hidden)]
 pub mod fixture;
 mod narrow;
 mod operand_mux;

@@ -23,56 +23,52 @@ pub fn delay_of<N: Copy>(timing: &Timing, op: &Op<N>, width: &impl Fn(N) -> u32)
     }
 }
 
-impl Timing {
-    /// Nanoseconds from the operands of a node to its value.
-    pub fn delay(&self, graph: &Graph, id: NodeId) -> f64 {
-        match &graph.node(id).cell {
-            Cell::Operand(_) => self.input,
-            Cell::Constant(_) | Cell::Unknown(_) => 0.0,
-            Cell::Read { address, .. } => {
-                if self.is_block(graph, id) {
-                    self.block
-                } else {
-                    // Beyond four bits of address, a mux for each.
-                    self.logic * f64::from(graph.width(*address).max(5) - 3) * 0.8
-                }
+/// Nanoseconds from the operands of a node to its value.
+pub fn node_delay(timing: &Timing, graph: &Graph, id: NodeId) -> f64 {
+    match &graph.node(id).cell {
+        Cell::Operand(_) => timing.input,
+        Cell::Constant(_) | Cell::Unknown(_) => 0.0,
+        Cell::Read { address, .. } => {
+            if is_block(timing, graph, id) {
+                timing.block
+            } else {
+                // Beyond four bits of address, a mux for each.
+                timing.logic * f64::from(graph.width(*address).max(5) - 3) * 0.8
             }
-            Cell::Op(op) => delay_of(self, op, &|operand| graph.width(operand)),
         }
+        Cell::Op(op) => delay_of(timing, op, &|operand| graph.width(operand)),
     }
+}
 
-    /// Nanoseconds that a register behind a node takes beyond those of any other.
-    ///
-    /// Synthesis makes a mux with a constant the set or the reset of the register behind it. Its select goes through a
-    /// look-up table with the clock enable first, and then a longer way.
-    pub fn setup(&self, graph: &Graph, id: NodeId) -> f64 {
-        let constant = |input: &NodeId| graph.constant_of(*input).is_some();
-        match &graph.node(id).cell {
-            Cell::Op(Op::Mux { inputs, .. })
-                if graph.width(id) > 1 && inputs.iter().any(constant) =>
-            {
-                self.logic
-            }
-            _ => 0.0,
+/// Nanoseconds that a register behind a node takes beyond those of any other.
+///
+/// Synthesis makes a mux with a constant the set or the reset of the register behind it. Its select goes through a
+/// look-up table with the clock enable first, and then a longer way.
+pub fn setup(timing: &Timing, graph: &Graph, id: NodeId) -> f64 {
+    let constant = |input: &NodeId| graph.constant_of(*input).is_some();
+    match &graph.node(id).cell {
+        Cell::Op(Op::Mux { inputs, .. }) if graph.width(id) > 1 && inputs.iter().any(constant) => {
+            timing.logic
         }
+        _ => 0.0,
     }
+}
 
-    /// The select of a mux of a value and a constant, which takes no look-up tables before a register.
-    pub fn reset_by(&self, graph: &Graph, id: NodeId) -> Option<NodeId> {
-        let Cell::Op(Op::Mux { select, inputs }) = &graph.node(id).cell else { return None };
-        let constants = inputs.iter().filter(|input| graph.constant_of(**input).is_some()).count();
-        (graph.width(id) > 1 && inputs.len() == 2 && constants == 1).then_some(*select)
-    }
+/// The select of a mux of a value and a constant, which takes no look-up tables before a register.
+pub fn reset_by(graph: &Graph, id: NodeId) -> Option<NodeId> {
+    let Cell::Op(Op::Mux { select, inputs }) = &graph.node(id).cell else { return None };
+    let constants = inputs.iter().filter(|input| graph.constant_of(**input).is_some()).count();
+    (graph.width(id) > 1 && inputs.len() == 2 && constants == 1).then_some(*select)
+}
 
-    /// Whether a node is a read of a block memory, which takes a clock.
-    pub fn is_block(&self, graph: &Graph, id: NodeId) -> bool {
-        match graph.node(id).cell {
-            Cell::Read { address, .. } => {
-                let words = graph.node(address).range.1 + 1;
-                u64::try_from(words)
-                    .is_ok_and(|words| words * u64::from(graph.width(id)) >= self.block_bits)
-            }
-            _ => false,
+/// Whether a node is a read of a block memory, which takes a clock.
+pub fn is_block(timing: &Timing, graph: &Graph, id: NodeId) -> bool {
+    match graph.node(id).cell {
+        Cell::Read { address, .. } => {
+            let words = graph.node(address).range.1 + 1;
+            u64::try_from(words)
+                .is_ok_and(|words| words * u64::from(graph.width(id)) >= timing.block_bits)
         }
+        _ => false,
     }
 }

@@ -11,6 +11,7 @@ use std::collections::BTreeSet;
 
 use microlp::{ComparisonOp, OptimizationDirection, Problem, SolveOutcome};
 
+use super::delay;
 use super::graph::{Cell, Graph, Node, NodeId, Op};
 use crate::target::{Registered, Timing};
 
@@ -145,7 +146,7 @@ impl<'a> Problems<'a> {
         };
         let delay = nodes().map(|id| match product(id) {
             Some(registered) => registered.output,
-            None => target.delay(graph, id),
+            None => delay::node_delay(target, graph, id),
         });
         let mut delay: Vec<f64> = delay.collect();
         // Look-up tables and sums take an inverter with them, a multiplier does not. Where its clock is short one that others
@@ -159,12 +160,12 @@ impl<'a> Problems<'a> {
                 delay[id.index()] = target.logic;
             }
         }
-        let setup = nodes().map(|id| target.setup(graph, id)).collect();
-        let reset_by = nodes().map(|id| target.reset_by(graph, id));
+        let setup = nodes().map(|id| delay::setup(target, graph, id)).collect();
+        let reset_by = nodes().map(|id| delay::reset_by(graph, id));
         let reset_by = reset_by.map(|it| it.map(|select| held(graph, results, select))).collect();
         let clocked = nodes().map(|id| match product(id) {
             Some(registered) => Some(registered.product),
-            None => target.is_block(graph, id).then_some(target.address),
+            None => delay::is_block(target, graph, id).then_some(target.address),
         });
         let clocked = clocked.collect();
         Self { graph, target, live, results, users, delay, setup, reset_by, clocked }
@@ -247,7 +248,7 @@ impl<'a> Problems<'a> {
     /// their own: where the way to a multiplier has no room, the value of a memory takes one near each.
     fn registers_between(&self, from: NodeId, user: NodeId, most: f64) -> usize {
         let product = matches!(self.graph.node(user).cell, Cell::Op(Op::Mul(..)));
-        let far = product && self.target.is_block(self.graph, from);
+        let far = product && delay::is_block(self.target, self.graph, from);
         1 + usize::from(far && self.delay[user.index()] + self.target.logic > most)
     }
 
