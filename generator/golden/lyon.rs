@@ -12,11 +12,14 @@ use super::Model;
 use super::frame::{Clocked, Frame, idle, step, step_by};
 use super::highlight::{self, Products};
 use super::narrow::Narrow;
+use easy_ext::ext;
+
 use crate::base::fixed::Format;
 use crate::config::Config;
 use crate::keys::lyon::{Keys, Scale};
 
 /// Formats and constants that follow from the keys.
+#[ext(Derived)]
 impl Keys {
     fn products(&self) -> Products {
         highlight::products(&self.colours, &self.f)

@@ -11,6 +11,8 @@ mod tests;
 pub use clock_model::model;
 pub use contract::contract;
 
+use easy_ext::ext;
+
 use super::highlight::{self, Products};
 use super::narrow::Narrow;
 use super::sine::{self, Sine, TableScheme};
@@ -29,6 +31,7 @@ fn keys_of(config: &Config) -> Keys {
 }
 
 /// Formats and words that follow from the keys.
+#[ext(Derived)]
 impl Keys {
     fn products(&self) -> Products {
         highlight::products(&self.operands.colours, &self.f)

@@ -1,6 +1,6 @@
 //! The accuracy contract of `lyon`.
 
-use super::{Arithmetic, Keys, Scale};
+use super::{Arithmetic, Derived as _, Keys, Scale};
 use crate::base::fixed::{Rounding, exp2};
 use crate::config::Config;
 use crate::golden::contract::{self as shared, ErrorShare};

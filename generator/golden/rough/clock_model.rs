@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{Arithmetic, Keys, keys_of};
+use super::{Arithmetic, Derived as _, Keys, keys_of};
 use crate::base::fixed::Format;
 use crate::config::Config;
 use crate::golden::Model;

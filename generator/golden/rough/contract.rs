@@ -1,6 +1,8 @@
 //! The accuracy contract of `rough`.
 
-use super::{Arithmetic, Keys, Kind, bound, keys_of};
+use easy_ext::ext;
+
+use super::{Arithmetic, Derived as _, Keys, Kind, bound, keys_of};
 use crate::base::fixed::{Format, exp2};
 use crate::config::Config;
 use crate::golden::contract::{self as shared, ErrorShare};
@@ -18,8 +20,10 @@ pub fn contract(config: &Config) -> Box<dyn Contract> {
     Box::new(Highlight::new(Arithmetic::new(keys), control, products))
 }
 
+/// Domains and units that follow from the keys.
+#[ext(Domains)]
 impl Keys {
-    fn ulp(&self) -> f64 {
+    pub(super) fn ulp(&self) -> f64 {
         exp2(-(self.operands.cosine.fraction as i32))
     }
 
@@ -30,7 +34,7 @@ impl Keys {
         (((cosine / self.ulp()).ceil() as i64).min(largest), largest)
     }
 
-    fn control(&self) -> Vec<Operand> {
+    pub(super) fn control(&self) -> Vec<Operand> {
         let (largest, cos_gamma) = (self.largest_cosine(), self.cos_gamma_format());
         let lowest = if cos_gamma.signed { -largest } else { 0 };
         let sign = "1: the deviation is taken from the angle; 0: added to it";
@@ -48,7 +52,7 @@ impl Keys {
     }
 
     #[inline]
-    fn clamped(&self, cosine: i64) -> i64 {
+    pub(super) fn clamped(&self, cosine: i64) -> i64 {
         cosine.clamp(0, self.largest_cosine())
     }
 }

@@ -11,8 +11,9 @@
 
 use std::collections::BTreeMap;
 
-use super::Arithmetic;
 use super::analysis::{Analysis, BIN, SLACK};
+use super::contract::Domains as _;
+use super::{Arithmetic, Derived as _};
 use crate::base::fixed::exp2;
 use crate::golden::highlight::Reflectance;
 

@@ -1,6 +1,7 @@
 //! `rough` worked by hand in words of a few bits.
 
 use super::clock_model::clocked;
+use super::contract::Domains as _;
 use super::*;
 use crate::base::fixed::Rounding;
 use crate::golden::highlight::Reflectance;
