@@ -157,6 +157,16 @@ pub struct Family {
 }
 
 impl Family {
+    /// The commands of Yosys that map the module `top`, and what it instantiates, to cells of the family.
+    pub fn script(&self, top: &str) -> String {
+        format!(
+            "{}hierarchy -check -top {top}; {}{} -top {top}",
+            self.library,
+            self.prepare.replace("{top}", top),
+            self.command
+        )
+    }
+
     /// For scripts: `ice40`.
     pub const fn name(&self) -> &'static str {
         self.timing.name

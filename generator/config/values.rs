@@ -143,7 +143,7 @@ impl Config {
     }
 
     /// Replaces a value. The caller answers for its range.
-    pub(crate) fn set(&mut self, key: &str, value: Value) {
+    pub fn set(&mut self, key: &str, value: Value) {
         if let Some(slot) = self.values.iter_mut().find(|(name, _)| *name == key) {
             slot.1 = value;
         }

@@ -9,18 +9,6 @@ use super::Tool;
 use super::sources::Sources;
 use crate::target::{Family, Kinds};
 
-impl Family {
-    /// The commands of Yosys that map the module `top`, and what it instantiates, to cells of the family.
-    pub fn script(&self, top: &str) -> String {
-        format!(
-            "{}hierarchy -check -top {top}; {}{} -top {top}",
-            self.library,
-            self.prepare.replace("{top}", top),
-            self.command
-        )
-    }
-}
-
 /// The resources that a design takes, before placement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Usage {

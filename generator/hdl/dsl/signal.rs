@@ -340,7 +340,7 @@ impl Designer {
     /// `low` in place of the low bits of the constant `high`, which must be zero there: an address made
     /// of a constant and a prefix, by wiring.
     #[track_caller]
-    pub(crate) fn beside<'d>(
+    pub fn beside<'d>(
         &'d self,
         high: Signal<'d>,
         low: Signal<'d>,
