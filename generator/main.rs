@@ -3,5 +3,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    glint::cli::run(&glint::registry::Registry::catalogue())
+    glint::cli::run(&glint::registry::Registry::shipped())
 }

@@ -196,6 +196,17 @@ impl Registry {
         ])
     }
 
+    /// The catalogue, and the devices that make colours of normals, which have no records beside the code.
+    pub fn shipped() -> Self {
+        let mut all = Self::catalogue();
+        all.0.extend(of_catalogue![
+            normaliser: "normaliser", "(x, y, z)/sqrt(x^2 + y^2 + z^2), by a table of inverse roots";
+            dot_product: "dot-product", "max(0, N.H) of two unit vectors, the cosine that highlights start from";
+            shading: "shading", "ambient + diffuse*N.L + specular*highlight, from normals of any length";
+        ]);
+        all
+    }
+
     /// The registry with one device more.
     #[must_use]
     pub fn with(mut self, device: Device) -> Self {

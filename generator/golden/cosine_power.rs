@@ -121,6 +121,12 @@ impl Reflectance for Arithmetic {
         vec![contract::where_it_faces(&format!("{base} ** {power}"))]
     }
 
+    /// n·base^(m − 1) with a base of at most 1. At 0 it is (1 − n/m)^m, from where it would fall to 0 at once below n = m.
+    fn slope(&self) -> Option<f64> {
+        let (least, most) = self.keys.domain.exponents();
+        (least >= i64::from(self.keys.power)).then_some(most as f64)
+    }
+
     /// Every quantity here lies in 0 … 1, hardware's and formula's alike, so by the mean value
     /// theorem an error ε before a power p grows to at most p·ε.
     ///

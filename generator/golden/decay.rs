@@ -251,6 +251,12 @@ impl Reflectance for Arithmetic {
         }
     }
 
+    /// n·c^(n − 1), for cosⁿγ.
+    fn slope(&self) -> Option<f64> {
+        let (least, most) = self.params.keys.domain.exponents();
+        (least > 0 && self.params.function == Function::Logarithm).then_some(most as f64)
+    }
+
     fn expressions(&self) -> Vec<String> {
         vec![contract::where_it_faces(match self.params.function {
             Function::Logarithm => "cos_gamma ** exponent",

@@ -36,7 +36,7 @@
 //! assert_eq!((raw, exact), (vec![10], vec![[0.66015625; 2]]));
 //! ```
 
-use super::frame::{Clocked, Frame, Microinstruction};
+use super::frame::{Clocked, Frame, Microinstruction, idle};
 use super::{Bound, Contract, Model, Operand, Output, Sweep, Term};
 
 /// More clocks than any computation takes.
@@ -69,6 +69,19 @@ impl Frame {
         let outputs = self.results().map(|(name, format)| Output { name: name.to_owned(), format });
         let outputs = outputs.collect();
         Device { model: self.model(program), operands, outputs }
+    }
+
+    /// The device that executes its parts in the order in which they were stated, and has its outputs in registers.
+    ///
+    /// # Panics
+    /// Never: registers can be put behind a program without conditions on its results.
+    pub fn dataflow(mut self) -> Device {
+        let device = match std::mem::take(&mut self.parts) {
+            parts if parts.is_empty() => self.device([idle(), idle().valid().end()]),
+            parts => self.device(parts.into_iter().chain([idle().valid().end()])),
+        };
+        let model = device.model.registered().expect("a program that ends with its results");
+        Device { model, ..device }
     }
 }
 

@@ -11,6 +11,7 @@ pub mod cosine_squared;
 pub mod curve;
 pub mod decay;
 pub mod device;
+pub mod dot_product;
 pub mod formulas;
 pub mod frame;
 pub mod function;
@@ -20,11 +21,13 @@ pub mod highlight;
 pub mod line;
 pub mod lyon;
 pub mod narrow;
+pub mod normaliser;
 pub mod pipeline;
 pub mod quad_cosine;
 pub mod quadratic;
 pub mod rough;
 pub mod schlick;
+pub mod shading;
 pub mod sine;
 pub mod threshold;
 
@@ -69,6 +72,11 @@ pub trait Model: CloneModel + Send + Sync {
     ///
     /// A device of a [`frame::Frame`] has it; for any other its author writes it, or there is none.
     fn with_operand_buffers(&self) -> Option<Box<dyn Model>> {
+        None
+    }
+
+    /// The model of a [`frame::Frame`], which alone can be a part of another.
+    fn clocked(&self) -> Option<&frame::Clocked> {
         None
     }
 

@@ -104,6 +104,12 @@ impl Reflectance for Arithmetic {
         vec![contract::where_it_faces("cos_gamma / (exponent * (1 - cos_gamma) + cos_gamma)")]
     }
 
+    /// n/(n − nc + c)², largest at an end: n at 1, 1/n at 0, where it is 0 as beyond.
+    fn slope(&self) -> Option<f64> {
+        let (least, most) = self.0.domain.exponents();
+        (least > 0).then_some(most as f64)
+    }
+
     /// Dividend and divisor are exact, so that nothing but the quotient's own last bit is lost: it is
     /// truncated, and 1.0 becomes the largest fraction. Both are at most an ulp below the formula.
     fn shares(&self) -> Vec<ErrorShare> {

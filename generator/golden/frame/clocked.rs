@@ -12,19 +12,21 @@ const HANDSHAKE: [&str; 5] = ["valid", "busy", "done", "run", "word_address"];
 
 /// The constant part of a model.
 #[derive(Clone)]
-struct Fixed {
-    program: Vec<Microinstruction>,
-    operands: Vec<Operand>,
-    shown: Vec<(Slot, u64)>,
+pub(super) struct Fixed {
+    pub(super) program: Vec<Microinstruction>,
+    pub(super) operands: Vec<Operand>,
+    /// The outputs first.
+    pub(super) shown: Vec<(Slot, u64)>,
+    pub(super) outputs: usize,
     /// Outputs that are logic.
-    logic: Vec<(Slot, Value)>,
-    edges: Vec<Does>,
+    pub(super) logic: Vec<(Slot, Value)>,
+    pub(super) edges: Vec<Does>,
     /// Results with the registers that take them.
-    taken: Vec<(Slot, Slot)>,
+    pub(super) taken: Vec<(Slot, Slot)>,
     /// The buffer of each operand; empty where the operand registers take the writes.
     buffers: Vec<Slot>,
     flags: Vec<Slot>,
-    valid_delay: u32,
+    pub(super) valid_delay: u32,
     inputs: Vec<String>,
     signals: Vec<String>,
 }
@@ -36,14 +38,14 @@ struct Fixed {
 /// not.
 #[derive(Clone)]
 pub struct Clocked {
-    fixed: Arc<Fixed>,
+    pub(super) fixed: Arc<Fixed>,
     /// A point is in flight: also the output `busy`.
     run: bool,
     /// The microinstruction in force; 0 when idle.
     address: usize,
     /// Whether the microinstructions of the latest clocks said `valid`, the latest in bit 0.
     pulses: u64,
-    state: State,
+    pub(super) state: Box<State>,
     values: Box<[u64]>,
 }
 
@@ -65,6 +67,7 @@ impl Frame {
             inputs: ["rst_n", "start"].map(str::to_owned).into_iter().chain(inputs).collect(),
             signals: HANDSHAKE.map(str::to_owned).into_iter().chain(signals).collect(),
             shown: self.shown.iter().map(|it| (it.slot, mask(it.format.width()))).collect(),
+            outputs: self.shown.iter().filter(|it| it.output).count(),
             program,
             operands: self.operands,
             logic: self.logic,
@@ -116,7 +119,7 @@ impl Clocked {
             run: false,
             address: 0,
             pulses: 0,
-            state: State(vec![0; slots].into()),
+            state: vec![0; slots].into(),
             values: vec![0; fixed.signals.len()].into(),
             fixed: Arc::new(fixed),
         };
@@ -127,6 +130,36 @@ impl Clocked {
     /// Whether `valid` is high.
     pub fn is_valid(&self) -> bool {
         self.values[0] == 1
+    }
+
+    /// The device with registers behind the results that are logic. These are taken in the microinstruction that was to set
+    /// `valid`, and one more sets it; where `valid` comes later than a microinstruction says, in every clock.
+    pub(in crate::golden) fn registered(&self) -> Option<Self> {
+        let mut it = Fixed::clone(&self.fixed);
+        let mut slots = self.state.len();
+        for at in 0..it.shown.len() {
+            let (slot, mask) = it.shown[at];
+            if it.logic.iter().any(|(logic, _)| *logic == slot) {
+                let register = Slot(slots);
+                slots += 1;
+                it.taken.push((slot, register));
+                it.shown[at].0 = register;
+                it.shown.push((register, mask));
+                it.signals.push(format!("{}_reg", it.signals[HANDSHAKE.len() + at]));
+            }
+        }
+        if slots == self.state.len() {
+            return Some(self.clone());
+        }
+        if it.valid_delay > 0 {
+            it.valid_delay += 1;
+            it.program.last_mut()?.next = Next::Following;
+            it.program.push(idle().end());
+            it.program.iter_mut().for_each(|it| it.takes_results = true);
+        } else {
+            it.program = taking(&it.program)?;
+        }
+        Some(Self::at_power_up(it, slots))
     }
 
     /// Updates the visible values; skips those that follow the registers if they are `still`.
@@ -211,39 +244,17 @@ impl Model for Clocked {
         &self.values
     }
 
-    /// Results are taken in the microinstruction that was to set `valid`, and one more sets it. Where
-    /// `valid` comes later than a microinstruction says, they are taken in every clock.
     fn with_output_registers(&self) -> Option<Box<dyn Model>> {
-        let mut it = Fixed::clone(&self.fixed);
-        let mut slots = self.state.0.len();
-        for at in 0..it.shown.len() {
-            let (slot, mask) = it.shown[at];
-            if it.logic.iter().any(|(logic, _)| *logic == slot) {
-                let register = Slot(slots);
-                slots += 1;
-                it.taken.push((slot, register));
-                it.shown[at].0 = register;
-                it.shown.push((register, mask));
-                it.signals.push(format!("{}_reg", it.signals[HANDSHAKE.len() + at]));
-            }
-        }
-        if slots == self.state.0.len() {
-            return Some(Box::new(self.clone()));
-        }
-        if it.valid_delay > 0 {
-            it.valid_delay += 1;
-            it.program.last_mut()?.next = Next::Following;
-            it.program.push(idle().end());
-            it.program.iter_mut().for_each(|it| it.takes_results = true);
-        } else {
-            it.program = taking(&it.program)?;
-        }
-        Some(Box::new(Self::at_power_up(it, slots)))
+        Some(Box::new(self.registered()?))
+    }
+
+    fn clocked(&self) -> Option<&Clocked> {
+        Some(self)
     }
 
     fn with_operand_buffers(&self) -> Option<Box<dyn Model>> {
         let mut it = Fixed::clone(&self.fixed);
-        let mut slots = self.state.0.len();
+        let mut slots = self.state.len();
         for operand in &it.operands {
             let register = it.shown.iter().find(|(shown, _)| *shown == operand.slot);
             it.buffers.push(Slot(slots));

@@ -25,6 +25,7 @@
 //! ```
 
 mod clocked;
+mod part;
 
 #[cfg(test)]
 mod tests;
@@ -33,6 +34,7 @@ use std::ops::{Index, IndexMut};
 use std::sync::Arc;
 
 pub use clocked::Clocked;
+pub use part::Part;
 
 use crate::base::fixed::Format;
 
@@ -40,23 +42,22 @@ use crate::base::fixed::Format;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Slot(usize);
 
-/// The raw values of operands, registers and outputs.
-#[derive(Clone, Debug)]
-pub struct State(Box<[i64]>);
+/// The raw values of operands, registers and outputs. Those of a part stand together, in the order of its own model.
+pub type State = [i64];
 
 impl Index<Slot> for State {
     type Output = i64;
 
     #[inline]
     fn index(&self, slot: Slot) -> &i64 {
-        &self.0[slot.0]
+        &self[slot.0]
     }
 }
 
 impl IndexMut<Slot> for State {
     #[inline]
     fn index_mut(&mut self, slot: Slot) -> &mut i64 {
-        &mut self.0[slot.0]
+        &mut self[slot.0]
     }
 }
 
@@ -177,6 +178,8 @@ pub struct Frame {
     logic: Vec<(Slot, Value)>,
     edges: Vec<Does>,
     valid_delay: u32,
+    /// The microinstructions of the parts, in the order of execution.
+    pub(super) parts: Vec<Microinstruction>,
 }
 
 impl Frame {

@@ -66,6 +66,12 @@ pub trait Reflectance: Send + Sync {
         first.to_vec()
     }
 
+    /// A proven limit of the formula's slope in the cosine over the domain, from −1 to 1; none where it jumps, or nobody stated
+    /// one.
+    fn slope(&self) -> Option<f64> {
+        None
+    }
+
     /// As [`Contract::length`].
     fn length(&self) -> Option<&str> {
         None

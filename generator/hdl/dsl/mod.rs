@@ -74,6 +74,7 @@ macro_rules! described {
 
 #[doc(hidden)]
 pub mod fixture;
+mod instance;
 mod narrow;
 mod operand_mux;
 mod output_registers;
@@ -90,6 +91,7 @@ use std::collections::{HashMap, HashSet};
 use std::panic::Location;
 use std::sync::atomic::{AtomicU64, Ordering};
 
+pub use instance::Instance;
 pub use operand_mux::{OperandMux, SharedProduct};
 pub use program::{
     Program, Setting, Step, end, hold, jump_if, loop_while, next, step, valid, wait_for_start,
@@ -118,6 +120,8 @@ pub struct Designer {
     inner: RefCell<Inner>,
     /// Tells its handles from those of another.
     serial: u64,
+    /// Of how many descriptions it is a part.
+    depth: u32,
     start: NetId,
     idle: NetId,
     run: NetId,
@@ -138,6 +142,8 @@ pub(crate) struct Inner {
     design: Design,
     views: HashMap<NetId, SelectedProduct>,
     program: Option<Program>,
+    /// The microinstructions of the parts, in the order of execution.
+    parts: Vec<Step>,
     /// The fields that a microinstruction sets.
     picked: HashSet<FieldId>,
     /// Select lines of which no choice need be made.
@@ -171,6 +177,7 @@ impl Designer {
             design: Design::empty(name),
             views: HashMap::new(),
             program: None,
+            parts: Vec::new(),
             picked: HashSet::new(),
             partly_used: HashSet::new(),
             valid: None,
@@ -187,6 +194,7 @@ impl Designer {
         let mut designer = Self {
             inner: RefCell::new(inner),
             serial: DESIGNERS.fetch_add(1, Ordering::Relaxed),
+            depth: 0,
             start: NetId(0),
             idle: NetId(0),
             run: NetId(0),
@@ -328,7 +336,12 @@ impl Designer {
     /// it, so that operands written together with `start` have settled.
     #[track_caller]
     pub fn microprogram(&self, steps: impl IntoIterator<Item = Step>) {
-        let program = Program { steps: steps.into_iter().collect(), location: Location::caller() };
+        self.program(steps.into_iter().collect(), false);
+    }
+
+    #[track_caller]
+    fn program(&self, steps: Vec<Step>, of_parts: bool) {
+        let program = Program { steps, of_parts, location: Location::caller() };
         if self.inner.borrow_mut().program.replace(program).is_some() {
             self.error("a second microprogram".to_owned());
         }
@@ -401,6 +414,7 @@ impl Designer {
         if let Some(mut program) = program {
             let location = program.location;
             self.located(location, || {
+                self.with_parts(&mut program);
                 if self.with(|inner| inner.registers_outputs) {
                     output_registers::insert(&self, &mut program);
                 }

@@ -178,6 +178,8 @@ pub fn step(name: &str, settings: impl IntoIterator<Item = Setting>) -> Step {
 /// A microprogram as it was written.
 pub struct Program {
     pub(crate) steps: Vec<Step>,
+    /// It is that of the parts.
+    pub(crate) of_parts: bool,
     pub(crate) location: SourceLocation,
 }
 

@@ -10,6 +10,7 @@ use std::collections::{HashMap, HashSet};
 use super::SelectedProduct;
 use crate::base::diagnostic::Diagnostic;
 use crate::hdl::netlist::{Design, FieldId, NetId};
+pub(super) use operands::read_by;
 pub(super) use unused::warnings;
 
 /// Every rule that `design` breaks; `views` are the products that a selection gives their meaning, `picked` the select

@@ -26,7 +26,7 @@ pub(super) fn used(design: &Design) -> HashSet<NetId> {
 }
 
 /// The nets on which a net depends, within a clock or through a register or a memory.
-pub(super) fn read_by(design: &Design, id: NetId) -> Vec<NetId> {
+pub(in crate::hdl::dsl) fn read_by(design: &Design, id: NetId) -> Vec<NetId> {
     match design.net(id).driver {
         Driver::Register(register) => {
             let register = design.register(register);

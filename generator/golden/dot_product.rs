@@ -1,12 +1,12 @@
 //! The golden model and the contract, from the formula.
 
-use super::Keys;
-use glint::config::Config;
-use glint::fixed::{Format, Rounding, exp2};
-use glint::golden::device::{self, Formula};
-use glint::golden::frame::{Frame, idle, step};
-use glint::golden::narrow::{Narrow, rounding_error};
-use glint::golden::{Contract, Model, Sweep, Term};
+use super::device::{self, Formula};
+use super::frame::{Frame, idle, step};
+use super::narrow::{Narrow, rounding_error};
+use super::{Contract, Model, Sweep, Term};
+use crate::base::fixed::{Format, Rounding, exp2};
+use crate::config::Config;
+use crate::keys::dot_product::Keys;
 
 /// A sum of products to a cosine of 0 ... 1.
 #[derive(Clone, Copy)]
@@ -69,7 +69,7 @@ impl Cosine {
 }
 
 /// The unit vector of a direction; the zero vector stays.
-fn unit_vector(vector: [f64; 3]) -> [f64; 3] {
+pub(super) fn unit_vector(vector: [f64; 3]) -> [f64; 3] {
     let now = vector.map(|it| it * it).iter().sum::<f64>().sqrt();
     vector.map(|it| if now == 0.0 { 0.0 } else { it / now })
 }

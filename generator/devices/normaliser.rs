@@ -1,15 +1,16 @@
 //! The description: a squarer, a shifter, a table, and a multiplier.
 
-use super::Keys;
-use glint::config::Config;
-use glint::dsl::{About, Designer, Signal, end, step, valid};
-use glint::fixed::{Format, Overflow, Rounding};
+use crate::base::fixed::{Format, Overflow, Rounding};
+use crate::config::Config;
+use crate::hdl::dsl::{About, Designer, Signal, end, step, valid};
+use crate::keys::normaliser::Keys;
 
 /// An unsigned integer of so many bits.
 fn integer(bits: i32) -> Format {
     Format::unsigned(bits, 0)
 }
 
+/// The device.
 pub fn describe(d: &Designer, config: &Config) {
     d.about(About {
         device: "normaliser".into(),

@@ -2,13 +2,14 @@
 
 use std::sync::Arc;
 
-use super::Keys;
-use glint::config::Config;
-use glint::fixed::{Format, exp2, mask};
-use glint::golden::device::{self, Formula};
-use glint::golden::frame::{Frame, Slot, idle, step, step_by};
-use glint::golden::narrow::{Narrow, rounding_error};
-use glint::golden::{Contract, Model, Sweep, Term};
+use super::device::{self, Formula};
+use super::dot_product::unit_vector;
+use super::frame::{Frame, Slot, idle, step, step_by};
+use super::narrow::{Narrow, rounding_error};
+use super::{Contract, Model, Sweep, Term};
+use crate::base::fixed::{Format, exp2, mask};
+use crate::config::Config;
+use crate::keys::normaliser::Keys;
 
 /// The most that the sum of squares can be: each component is at least −2.0.
 const FARTHEST: i64 = 12;
@@ -138,8 +139,7 @@ pub fn contract(config: &Config) -> Box<dyn Contract> {
 
 impl Formula for Normaliser {
     fn exact(&self, vector: &[f64]) -> Vec<f64> {
-        let length = vector.iter().map(|component| component * component).sum::<f64>().sqrt();
-        vector.iter().map(|it| if length == 0.0 { 0.0 } else { it / length }).collect()
+        unit_vector([vector[0], vector[1], vector[2]]).into()
     }
 
     /// Let m be the mantissa, 1 ≤ m < 4, f = 1/√m and r what stands for it, u the last place of r.

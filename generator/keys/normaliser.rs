@@ -1,30 +1,11 @@
-//! A device with several signed outputs: a vector of any length to the unit vector of its direction.
-//!
-//! ```text
-//! (x, y, z) / sqrt(x² + y² + z²)
-//! ```
-//!
-//! The sum of squares is shifted until it is from 1 to 4 (leading zeros by pairs, which halve under the root), a table
-//! with straight segments gives the inverse of its root, and three products with the components, shifted as far,
-//! are the result. Of the zero vector, which has no direction, it makes zeros.
-//!
-//! ```sh
-//! cargo run --release --example normaliser -- new normaliser > n.toml
-//! cargo run --release --example normaliser -- cosim n.toml --simulator verilator
-//! cargo run --release --example normaliser -- eval n.toml x=0.3 y=-0.4 z=0
-//! ```
+//! The keys of `normaliser`.
 
-mod description;
-mod golden;
+use crate::base::fixed::Rounding;
+use crate::config::{Config, Key, Problems, Schema};
 
-use std::process::ExitCode;
-
-use glint::config::{Config, Key, Problems, Schema};
-use glint::fixed::Rounding;
-use glint::registry::{Device, Registry};
-
-glint::keys! {
-    struct Keys {
+keys! {
+    /// The keys of a configuration.
+    pub struct Keys {
         fraction: u32 = Key::integer("vector.fraction", 14, 2..=14,
             "Fraction bits of a component, s1.F."),
         address: u32 = Key::integer("table.address", 9, 3..=12,
@@ -37,7 +18,8 @@ glint::keys! {
     }
 }
 
-fn schema() -> Schema {
+/// The keys of the device.
+pub fn schema() -> Schema {
     Schema { device: "normaliser", keys: Keys::keys(), check }
 }
 
@@ -65,18 +47,4 @@ fn check(config: &Config, problems: &mut Problems) {
             format!("at most {inverse}, or a larger inverse.fraction"),
         );
     }
-}
-
-/// The device.
-pub const NORMALISER: Device = Device {
-    name: "normaliser",
-    summary: "(x, y, z)/sqrt(x^2 + y^2 + z^2), by a table of inverse roots",
-    schema,
-    describe: description::describe,
-    model: golden::model,
-    contract: golden::contract,
-};
-
-fn main() -> ExitCode {
-    glint::cli::run(&Registry::empty().with(NORMALISER))
 }

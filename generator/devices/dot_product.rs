@@ -1,10 +1,11 @@
 //! The description: a multiplier, an adder, and what comes between 0 and 1.
 
-use super::Keys;
-use glint::config::Config;
-use glint::dsl::{About, Designer, end, step, valid};
-use glint::fixed::{Format, Overflow, Rounding};
+use crate::base::fixed::{Format, Overflow, Rounding};
+use crate::config::Config;
+use crate::hdl::dsl::{About, Designer, end, step, valid};
+use crate::keys::dot_product::Keys;
 
+/// The device.
 pub fn describe(d: &Designer, config: &Config) {
     d.about(About {
         device: "dot-product".into(),

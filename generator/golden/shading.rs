@@ -1,0 +1,195 @@
+//! `shading`: ambient, diffuse and specular light of a normal of any length, from the models of its parts.
+
+use super::device::{self, Formula};
+use super::dot_product::unit_vector;
+use super::frame::{Frame, Slot, State};
+use super::narrow::Narrow;
+use super::{Contract, Model, Sweep, Term, blinn, cosine_power, dot_product, formulas, normaliser, schlick};
+use crate::base::fixed::{Rounding, exp2};
+use crate::config::Config;
+use crate::keys::shading::{Highlight, Keys, Parts};
+
+/// The parts, one after the other, and the sum behind them.
+fn device(keys: &Keys, parts: &Parts) -> device::Device {
+    let mut frame = Frame::default();
+    let normal = ["nx", "ny", "nz"].map(|name| frame.operand(name, keys.normal_format()));
+    let mut vector = |names: [&str; 3]| names.map(|it| frame.operand(it, keys.light_format()));
+    let [light, half] = [["lx", "ly", "lz"], ["hx", "hy", "hz"]].map(&mut vector);
+    let exponent = frame.operand("exponent", keys.exponent_format());
+    let [ambient, diffuse, specular] = ["ambient", "diffuse", "specular"].map(|kind| {
+        ["red", "green", "blue"]
+            .map(|it| frame.operand(&format!("{kind}_{it}"), keys.colour_format()))
+    });
+
+    /// An operand of a part: a value so many places to the left.
+    fn left(
+        (name, slot, places): (&'static str, Slot, u32),
+    ) -> (&'static str, impl Fn(&State) -> i64 + Send + Sync) {
+        (name, move |s: &State| s[slot] << places)
+    }
+    let given = [("x", normal[0], 0), ("y", normal[1], 0), ("z", normal[2], 0)].map(left);
+    let unit = frame.part("unit", &*normaliser::model(&parts.normaliser), given);
+    let [nx, ny, nz] = ["unit_x_out", "unit_y_out", "unit_z_out"].map(|name| unit.out(name));
+    let mut cosine = |name: &str, [x, y, z]: [Slot; 3]| {
+        let scale = keys.unit - keys.light;
+        let unit = [("nx", nx, 0), ("ny", ny, 0), ("nz", nz, 0)];
+        let other = [("hx", x, scale), ("hy", y, scale), ("hz", z, scale)];
+        let given = unit.into_iter().chain(other).map(left);
+        frame.part(name, &*dot_product::model(&parts.cosine), given).out("cosine_out")
+    };
+    let facing = cosine("diffuse_cosine", light);
+    let cos_gamma = cosine("specular_cosine", half);
+    let [red, green, blue] = specular.map(|slot| (slot, Keys::GUARD));
+    let given = [
+        ("cos_gamma", cos_gamma, 0),
+        ("exponent", exponent, 0),
+        ("red", red.0, red.1),
+        ("green", green.0, green.1),
+        ("blue", blue.0, blue.1),
+    ];
+    let highlight = frame.part("highlight", &*(part(keys).model)(&parts.highlight), given.map(left));
+
+    let sum = Narrow::new(keys.cosine, keys.colour_format(), Rounding::Nearest);
+    let places = (keys.cosine, keys.cosine - Keys::GUARD);
+    for (at, name) in ["red_out", "green_out", "blue_out"].into_iter().enumerate() {
+        let (ambient, diffuse, shine) = (ambient[at], diffuse[at], highlight.out(name));
+        frame.output(name, keys.colour_format(), move |s| {
+            sum.apply((s[ambient] << places.0) + s[diffuse] * s[facing] + (s[shine] << places.1))
+        });
+    }
+    frame.dataflow().domain("exponent", keys.least(), keys.most)
+}
+
+/// What there is of a highlight: model, contract, and its formula of cosine and n.
+struct Part {
+    model: fn(&Config) -> Box<dyn Model>,
+    contract: fn(&Config) -> Box<dyn Contract>,
+    formula: fn(f64, f64) -> f64,
+}
+
+fn part(keys: &Keys) -> Part {
+    let (model, contract, formula): (fn(&_) -> _, fn(&_) -> _, fn(f64, f64) -> f64) =
+        match keys.highlight {
+            Highlight::CosinePower => (
+                cosine_power::model,
+                cosine_power::contract,
+                |c, n| formulas::cosine_power(c, n, 16),
+            ),
+            Highlight::Blinn => (blinn::model, blinn::contract, formulas::blinn),
+            Highlight::Schlick => (schlick::model, schlick::contract, formulas::schlick),
+        };
+    Part { model, contract, formula }
+}
+
+fn parts(keys: &Keys) -> Parts {
+    keys.parts().unwrap_or_else(|(part, _)| panic!("`{part}` is checked"))
+}
+
+/// The golden model.
+///
+/// # Panics
+/// If the check of the schema has not accepted the configuration.
+pub fn model(config: &Config) -> Box<dyn Model> {
+    let keys = Keys::of(config);
+    device(&keys, &parts(&keys)).model()
+}
+
+/// The accuracy contract.
+///
+/// # Panics
+/// As [`model`].
+pub fn contract(config: &Config) -> Box<dyn Contract> {
+    let keys = Keys::of(config);
+    let parts = parts(&keys);
+    let device = device(&keys, &parts);
+    let highlight = (part(&keys).contract)(&parts.highlight);
+    let errors = Errors {
+        unit: error(&*normaliser::contract(&parts.normaliser)),
+        cosine: error(&*dot_product::contract(&parts.cosine)),
+        highlight: error(&*highlight) * exp2(-(Keys::GUARD as i32)),
+        slope: highlight.highlight().and_then(|it| it.slope()),
+    };
+    device.contract(Shading { formula: part(&keys).formula, errors, keys })
+}
+
+/// The proved bound of a part, as a value.
+fn error(contract: &dyn Contract) -> f64 {
+    contract.bound().units * exp2(-contract.outputs()[0].format.frac)
+}
+
+/// What is proved of the parts.
+struct Errors {
+    /// Of a component of the unit normal.
+    unit: f64,
+    /// Of a cosine.
+    cosine: f64,
+    /// Of a colour's highlight, in units of a result.
+    highlight: f64,
+    /// The steepest of the highlight's formula.
+    slope: Option<f64>,
+}
+
+/// The formula.
+struct Shading {
+    keys: Keys,
+    formula: fn(f64, f64) -> f64,
+    errors: Errors,
+}
+
+impl Formula for Shading {
+    fn exact(&self, v: &[f64]) -> Vec<f64> {
+        let unit = unit_vector([v[0], v[1], v[2]]);
+        let cosine = |at: usize| {
+            let products = (0..3).map(|axis| unit[axis] * v[at + axis].clamp(-1.0, 1.0));
+            products.sum::<f64>().clamp(0.0, 1.0)
+        };
+        let (facing, f) = (cosine(3), (self.formula)(cosine(6), v[9]));
+        let most = exp2(self.keys.colour_bits as i32) - 1.0;
+        let colour = |at: usize| (v[10 + at] + v[13 + at] * facing + v[16 + at] * f).min(most);
+        (0..3).map(colour).collect()
+    }
+
+    /// An error of an operand of a part grows by the part's slope in it, and the part adds its own.
+    ///
+    /// - A cosine is N·L with |L| ≤ 1 in each component, clamped: its slope in a component of N is at most 1, three times.
+    /// - A colour is diffuse·cosine + specular·f(cosine), saturated: its slopes are at most the largest colour, and that times
+    ///   the slope of f.
+    fn terms(&self) -> Vec<Term> {
+        let Errors { unit, cosine, highlight, slope } = self.errors;
+        let Some(slope) = slope else { return Vec::new() };
+        let colours = (exp2(self.keys.colour_bits as i32) - 1.0) * (1.0 + slope);
+        let term = |key, what, units| Term { key, what, units };
+        vec![
+            term("unit.fraction", "the unit normal, through both cosines", 3.0 * unit * colours),
+            term("cosine.fraction", "the cosines, through the colours", cosine * colours),
+            term("highlight", "the highlight", highlight),
+            term("colour.bits", "rounding of the results", 0.5),
+        ]
+    }
+
+    /// A light anywhere, a half vector as near to the normal as the exponent asks for, and dull colours, whose sum does not saturate.
+    fn hint(&self, unit: &mut dyn FnMut() -> f64) -> Option<Vec<i64>> {
+        let Keys { normal, light, colour_bits, most, .. } = self.keys;
+        let mut centred = || [(); 3].map(|()| 2.0 * unit() - 1.0);
+        let direction = unit_vector(centred());
+        let [to_light, off] = [unit_vector(centred()), centred()];
+        let n = self.keys.least() as f64 + unit() * (most - self.keys.least()) as f64;
+        let (length, away) = (0.25 + 1.5 * unit(), unit() * 2.0 / n.sqrt());
+        let half = unit_vector([0, 1, 2].map(|axis| direction[axis] + away * off[axis]));
+        let raw = |value: f64, fraction: u32| (value * exp2(fraction as i32)).round() as i64;
+        let mut operands: Vec<i64> = direction.map(|it| raw(it * length, normal)).into();
+        operands.extend([to_light, half].concat().into_iter().map(|it| raw(it, light)));
+        operands.push(n.round() as i64);
+        let third = exp2(colour_bits as i32) / 3.0;
+        operands.extend((0..9).map(|_| (unit() * third) as i64));
+        Some(operands)
+    }
+
+    /// Normals of a half circle under one light, with every exponent that is a power of two.
+    fn sweep(&self) -> Option<Sweep> {
+        let most = 1 << self.keys.normal;
+        let mut sweep = Sweep::ranges([("nx", (-most, most)), ("exponent", (4, 7))]);
+        sweep.omits = "normals out of one plane, other lights and half vectors".to_owned();
+        Some(sweep)
+    }
+}

@@ -1,0 +1,345 @@
+//! Descriptions that use others: parts whose operands are signals, and a control unit that is made for them.
+//!
+//! A part is a whole design. What it is made of stands in the design that uses it, under the name of the instance. Its
+//! microinstructions are executed one part after the other, in the order of the instances; the microinstruction before its first
+//! loads its operand registers. Ports, sequencer and handshake of its own it does not have.
+
+use std::collections::HashMap;
+use std::panic::Location;
+
+use super::program::{Program, Setting, Step, end, jump_if, step, valid};
+use super::rules::read_by;
+use super::{Designer, Signal};
+use crate::base::cone;
+use crate::base::diagnostic::{Diagnostic, Diagnostics, SourceLocation};
+use crate::base::fixed::Format;
+use crate::hdl::netlist::{
+    Design, Driver, Field, FieldId, FieldKind, Net, NetId, Op, RegisterKind, Role, Rom, Sequence,
+};
+
+/// The most parts within parts: an instance of itself would have no end.
+const DEEPEST: u32 = 8;
+
+/// A part of a description: its results.
+pub struct Instance<'d> {
+    designer: &'d Designer,
+    name: String,
+    /// None where the part has mistakes, which are reported.
+    outputs: Option<Vec<(String, Signal<'d>)>>,
+}
+
+impl<'d> Instance<'d> {
+    /// The result of this name, held in a register until the part computes again.
+    #[track_caller]
+    pub fn out(&self, output: &str) -> Signal<'d> {
+        let outputs = self.outputs.as_deref().unwrap_or_default();
+        if let Some((_, signal)) = outputs.iter().find(|(name, _)| name == output) {
+            return *signal;
+        }
+        if self.outputs.is_some() {
+            let names: Vec<&str> = outputs.iter().map(|(name, _)| name.as_str()).collect();
+            self.designer.error(format!(
+                "`{}` has no output `{output}`: it has {}",
+                self.name,
+                names.join(", ")
+            ));
+        }
+        self.designer.raw_constant("nothing", 0, Format::BIT)
+    }
+}
+
+impl Designer {
+    /// A part: the description `describe` under the name `name`, with a signal for each of its operands. Its results are in
+    /// registers. A description with parts has no microprogram of its own: [`Designer::dataflow`].
+    ///
+    /// ```
+    /// use glint::dsl::{Designer, end, step, valid};
+    /// use glint::fixed::Format;
+    ///
+    /// fn square(d: &Designer) {
+    ///     let x = d.operand("x", Format::unsigned(4, 0));
+    ///     let square = d.register("square", Format::unsigned(8, 0));
+    ///     square.takes(d.mul("product", x.q(), x.q()));
+    ///     d.output("square_out", square.q());
+    ///     d.microprogram([
+    ///         step("idle", []),
+    ///         step("multiply", [square.load()]),
+    ///         step("result", [valid(), end()]),
+    ///     ]);
+    /// }
+    ///
+    /// let d = Designer::new("sum_of_squares");
+    /// let squared = ["a", "b"].map(|name| {
+    ///     let operand = d.operand(name, Format::unsigned(4, 0));
+    ///     d.instance(&format!("{name}_squared"), square, &[("x", operand.q())]).out("square_out")
+    /// });
+    /// d.output("sum_out", d.add("sum", squared[0], squared[1]));
+    /// d.dataflow();
+    /// let design = d.finish().unwrap();
+    /// assert!(design.find("a_squared_square").is_some() && design.find("b_squared_square").is_some());
+    /// ```
+    #[track_caller]
+    pub fn instance<'d>(
+        &'d self,
+        name: &str,
+        describe: impl FnOnce(&Designer),
+        operands: &[(&str, Signal<'d>)],
+    ) -> Instance<'d> {
+        let wrong = Instance { designer: self, name: name.to_owned(), outputs: None };
+        if self.depth == DEEPEST {
+            self.error(format!(
+                "`{name}` is a part of a part, {DEEPEST} deep: is a description an instance of itself?"
+            ));
+            return wrong;
+        }
+        let part = Designer { depth: self.depth + 1, ..Designer::new(name) };
+        describe(&part);
+        part.register_outputs();
+        part.keep_operand_logic();
+        let design = match part.finish() {
+            Ok(design) => design,
+            Err(Diagnostics(mistakes)) => {
+                let location = Location::caller();
+                for mistake in mistakes {
+                    self.report(mistake.note(format!("in the part `{name}`"), location));
+                }
+                return wrong;
+            }
+        };
+        if let Some(why) = unfit(&design) {
+            self.error(format!("`{name}` is no part: {why}"));
+            return wrong;
+        }
+        let given: Vec<&str> = operands.iter().map(|(operand, _)| *operand).collect();
+        let asked = design.ports.iter().filter(|it| matches!(it.role, Role::Operand { .. }));
+        let asked: Vec<&str> = asked.map(|it| design.net(it.net).name.as_str()).collect();
+        let same = given.len() == asked.len() && asked.iter().all(|it| given.contains(it));
+        if !same {
+            self.error(format!(
+                "`{name}` has the operands {}, and is given {}",
+                asked.join(", "),
+                given.join(", ")
+            ));
+            return wrong;
+        }
+        let mut signals = HashMap::new();
+        for &(operand, signal) in operands {
+            let port = design.find(operand).unwrap_or(NetId(0));
+            let what = format!("operand `{operand}` of `{name}`");
+            let Some(fitted) = self.fitted(self.own(signal), design.net(port).format, &what) else {
+                return wrong;
+            };
+            signals.insert(port, fitted);
+        }
+        let load = self.add_field(&format!("{name}_operands_load"), 1, FieldKind::Enable);
+        let (nets, fields) = (HashMap::new(), HashMap::new());
+        Placed { designer: self, name, design: &design, nets, fields }.place(&signals, load, Location::caller())
+    }
+
+    /// States that the parts are the microprogram: they are executed in the order of their instances, and then the outputs are
+    /// loaded into registers. What stands between parts is logic.
+    #[track_caller]
+    pub fn dataflow(&self) {
+        self.register_outputs();
+        self.program(Vec::new(), true);
+    }
+
+    /// The microprogram of the parts, where there are such or none was written.
+    pub(super) fn with_parts(&self, program: &mut Program) {
+        let mut parts = self.with(|inner| std::mem::take(&mut inner.parts));
+        if program.of_parts {
+            if parts.is_empty() {
+                parts.push(Step { location: program.location, ..step("idle", []) });
+            }
+            parts.push(Step { location: program.location, ..step("result", [valid(), end()]) });
+            program.steps = parts;
+        } else if let Some(first) = parts.get(2) {
+            let message = "a description with parts has a microprogram of its own: state `dataflow()` in its place";
+            let found = Diagnostic::new(message.to_owned(), program.location);
+            self.report(found.note("the first part".to_owned(), first.location));
+        }
+    }
+}
+
+/// The reason why a design cannot be a part.
+fn unfit(design: &Design) -> Option<String> {
+    let control = &design.control;
+    let Some(valid) = control.fields.iter().position(|field| field.name == "valid_word") else {
+        return Some("its `valid` follows a signal, for several results".to_owned());
+    };
+    let mut shown = false;
+    for (at, it) in control.microprogram.iter().enumerate() {
+        shown |= it.values[valid] == 1;
+        let why = match it.sequence {
+            Sequence::WaitStart => "waits for `start`",
+            Sequence::LoopWhile { to, .. } if shown && to <= at => "goes back for another result",
+            _ => continue,
+        };
+        return Some(format!("the microinstruction `{}` {why}", it.name));
+    }
+    None
+}
+
+/// A design that becomes a part of another.
+struct Placed<'d, 'p> {
+    designer: &'d Designer,
+    name: &'p str,
+    design: &'p Design,
+    nets: HashMap<NetId, NetId>,
+    fields: HashMap<FieldId, FieldId>,
+}
+
+impl<'d> Placed<'d, '_> {
+    /// Puts nets, registers, memories and microinstructions behind those that are there; the field `load` loads the operands.
+    fn place(
+        mut self,
+        operands: &HashMap<NetId, NetId>,
+        load: FieldId,
+        location: SourceLocation,
+    ) -> Instance<'d> {
+        let (d, design) = (self.designer, self.design);
+        let ports = design.ports.iter().filter(|port| port.role == Role::Result);
+        let shown = ports.map(|port| (design.net(port.net).name.clone(), register(design, port.net)));
+        let shown: Vec<(String, NetId)> = shown.collect();
+        for id in kept(design, &shown) {
+            self.net(id);
+        }
+        let driver = |driver: &Driver| match driver {
+            Driver::Op(op) => Driver::Op(op.map(|id| self.nets[id])),
+            Driver::Field(field) => Driver::Field(self.fields[field]),
+            // Registers and memories drive their nets when they are made.
+            Driver::Register(_) | Driver::Rom(_) => Driver::Undriven,
+            other => other.clone(),
+        };
+        for (id, placed) in &self.nets {
+            let driver = match operands.get(id) {
+                Some(operand) => Driver::Op(Op::Relabel(*operand)),
+                None => driver(&design.net(*id).driver),
+            };
+            d.with(|inner| inner.design.nets[placed.index()].driver = driver);
+        }
+        let load_net = d.field_net(load).id();
+        for register in design.registers.iter().filter(|it| self.nets.contains_key(&it.q)) {
+            let (kind, enable) = match register.kind {
+                RegisterKind::Operand => (RegisterKind::Architectural, Some(load_net)),
+                kind => (kind, register.enable.map(|enable| self.nets[&enable])),
+            };
+            d.with(|inner| {
+                let made = inner.design.add_register(self.nets[&register.q], kind);
+                (made.data, made.enable) = (register.data.map(|data| self.nets[&data]), enable);
+            });
+        }
+        for rom in design.roms.iter().filter(|it| self.nets.contains_key(&it.data)) {
+            let placed = Rom {
+                name: self.named(&rom.name),
+                address: self.nets[&rom.address],
+                data: self.nets[&rom.data],
+                enable: rom.enable.map(|enable| self.nets[&enable]),
+                block: None,
+                ..rom.clone()
+            };
+            d.with(|inner| inner.design.add_rom(placed));
+        }
+        self.program(load, location);
+        let outputs = shown.into_iter().map(|(name, id)| (name, d.signal(self.nets[&id])));
+        let outputs = Some(outputs.collect());
+        Instance { designer: d, name: self.name.to_owned(), outputs }
+    }
+
+    fn named(&self, name: &str) -> String {
+        format!("{}_{name}", self.name)
+    }
+
+    /// Puts a net into the whole, and the field that drives it.
+    fn net(&mut self, id: NetId) {
+        let (d, net) = (self.designer, self.design.net(id).clone());
+        let name = self.named(&net.name);
+        let placed = d.with(|inner| {
+            inner.names.insert(name.clone());
+            inner.design.add_net(Net { name: name.clone(), block: None, ..net.clone() })
+        });
+        self.nets.insert(id, placed);
+        if let Driver::Field(field) = net.driver {
+            let kind = self.design.control.fields[field.index()].kind.clone();
+            let own = d.with(|inner| {
+                let fields = &mut inner.design.control.fields;
+                fields.push(Field { name, net: placed, kind, lines: Vec::new() });
+                let own = FieldId(fields.len() as u32 - 1);
+                // What is not used was said of the part.
+                inner.partly_used.insert(own);
+                own
+            });
+            self.fields.insert(field, own);
+        }
+    }
+
+    /// Puts the microinstructions behind those of the parts that are there, the last of which loads the operands.
+    fn program(&self, load: FieldId, location: SourceLocation) {
+        let (d, control) = (self.designer, &self.design.control);
+        let named = |at: usize| format!("{}: {}", self.name, control.microprogram[at].name);
+        let set = |field: FieldId, value: u64, what: &str| {
+            Setting::field(d, field, value, format!("{}.{what}", self.name))
+        };
+        let steps = control.microprogram.iter().enumerate().map(|(at, it)| {
+            let mut fields: Vec<_> = self.fields.iter().collect();
+            fields.sort_unstable();
+            let is_select = |field: FieldId| {
+                matches!(control.fields[field.index()].kind, FieldKind::Select(_))
+            };
+            let stated = fields.into_iter().filter_map(|(field, own)| {
+                let value = it.values[field.index()];
+                let name = &control.fields[field.index()].name;
+                (value != 0 || is_select(*field)).then(|| set(*own, value, name))
+            });
+            let jump = match it.sequence {
+                Sequence::LoopWhile { condition, to } => {
+                    let condition = d.signal(self.nets[&condition]);
+                    Some(jump_if(condition, &named(to)))
+                }
+                _ => None,
+            };
+            let mut step = step(&named(at), stated.chain(jump));
+            step.location = it.location;
+            step
+        });
+        let steps: Vec<Step> = steps.collect();
+        d.with(|inner| {
+            if inner.parts.is_empty() {
+                inner.parts =
+                    ["idle", "operands"].map(|name| Step { location, ..step(name, []) }).into();
+            }
+        });
+        let load = set(load, 1, "operands.load");
+        d.with(|inner| {
+            inner.parts.last_mut().into_iter().for_each(|it| it.settings.push(load.clone()));
+            inner.parts.extend(steps);
+        });
+    }
+}
+
+/// The register that a result shows.
+fn register(design: &Design, port: NetId) -> NetId {
+    match design.net(port).driver {
+        Driver::Op(Op::Relabel(of)) => register(design, of),
+        _ => port,
+    }
+}
+
+/// The nets on which results and the program depend, but for the handshake, in order.
+fn kept(design: &Design, shown: &[(String, NetId)]) -> Vec<NetId> {
+    let leads = |id: NetId| match design.net(id).driver {
+        Driver::Field(_) => Vec::new(),
+        Driver::Register(it) if design.register(it).kind == RegisterKind::Operand => {
+            design.register(it).data.into_iter().collect()
+        }
+        _ => read_by(design, id),
+    };
+    let conditions = design.control.microprogram.iter().filter_map(|it| match it.sequence {
+        Sequence::LoopWhile { condition, .. } => Some(condition),
+        _ => None,
+    });
+    let kept = cone::reached(shown.iter().map(|(_, id)| *id).chain(conditions), leads);
+    let mut kept: Vec<NetId> = kept.into_iter().collect();
+    kept.sort_unstable();
+    kept
+}
