@@ -3,12 +3,13 @@
 //! A device is a [`registry::Device`]: keys ([`config::Schema`]), a description ([`dsl`]), a golden model
 //! ([`golden::Model`]) and a contract ([`golden::Contract`]). `cli::run` makes a command line of a
 //! registry, whether its devices are the catalogue's or your own. Complete devices outside the library, to be read
-//! from top to bottom, are `examples/fresnel`, which multiplies colours, and `examples/dot_product` and
-//! `examples/normaliser`, which do not.
+//! from top to bottom, are `examples/fresnel`, which multiplies colours, and `examples/smoothstep`, which does
+//! not.
 //!
 //! | to | see |
 //! |---|---|
 //! | describe a datapath and its microprogram | [`dsl`], [`hdl::blocks`] |
+//! | make it of others | [`dsl::Designer::instance`], [`golden::frame::Frame::part`] |
 //! | predict it, clock by clock and by its formula | [`golden::device`], [`golden::highlight`] |
 //! | state its keys, and read a configuration | [`config`] |
 //! | simulate a design in the program | [`hdl::sim::Simulator`] |

@@ -1,4 +1,4 @@
-//! The devices of the seeds: one file each, with its description and nothing else.
+//! The devices: one file each, with its description and nothing else.
 
 pub mod blinn;
 mod common;

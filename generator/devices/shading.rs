@@ -24,7 +24,9 @@ pub fn describe<'d>(d: &'d Designer, config: &Config) {
     let material = |kind: &str| {
         ["red", "green", "blue"].map(|colour| {
             let name = format!("{kind}_{colour}");
-            d.operand(&name, keys.colour_format()).doc(&format!("{kind} {colour} of the material")).q()
+            d.operand(&name, keys.colour_format())
+                .doc(&format!("{kind} {colour} of the material"))
+                .q()
         })
     };
     let [ambient, diffuse, specular] = ["ambient", "diffuse", "specular"].map(material);
@@ -42,8 +44,8 @@ pub fn describe<'d>(d: &'d Designer, config: &Config) {
     };
     let facing = cosine("diffuse_cosine", light);
     let cos_gamma = cosine("specular_cosine", half);
-    let [red, green, blue] =
-        specular.map(|it| it.with_fraction(Keys::GUARD as i32).shift_left(Keys::GUARD as i32));
+    let guard = keys.guard() as i32;
+    let [red, green, blue] = specular.map(|it| it.with_fraction(guard).shift_left(guard));
     let given = [
         ("cos_gamma", cos_gamma),
         ("exponent", exponent),
@@ -60,7 +62,7 @@ pub fn describe<'d>(d: &'d Designer, config: &Config) {
 
     for (at, colour) in ["red", "green", "blue"].into_iter().enumerate() {
         let output = format!("{colour}_out");
-        let shine = highlight.out(&output).shift_right(Keys::GUARD as i32);
+        let shine = highlight.out(&output).shift_right(guard);
         let matt = d.mul(&format!("{colour}_diffuse"), diffuse[at], facing);
         let lit = d.add(&format!("{colour}_lit"), matt, shine);
         let sum = d.add(&format!("{colour}_sum"), lit, ambient[at]);

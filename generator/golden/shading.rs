@@ -4,7 +4,10 @@ use super::device::{self, Formula};
 use super::dot_product::unit_vector;
 use super::frame::{Frame, Slot, State};
 use super::narrow::Narrow;
-use super::{Contract, Model, Sweep, Term, blinn, cosine_power, dot_product, formulas, normaliser, schlick};
+use super::{
+    Axis, Contract, Model, Sweep, Term, Values, blinn, cosine_power, dot_product, formulas,
+    normaliser, schlick,
+};
 use crate::base::fixed::{Rounding, exp2};
 use crate::config::Config;
 use crate::keys::shading::{Highlight, Keys, Parts};
@@ -39,7 +42,7 @@ fn device(keys: &Keys, parts: &Parts) -> device::Device {
     };
     let facing = cosine("diffuse_cosine", light);
     let cos_gamma = cosine("specular_cosine", half);
-    let [red, green, blue] = specular.map(|slot| (slot, Keys::GUARD));
+    let [red, green, blue] = specular.map(|slot| (slot, keys.guard()));
     let given = [
         ("cos_gamma", cos_gamma, 0),
         ("exponent", exponent, 0),
@@ -47,10 +50,11 @@ fn device(keys: &Keys, parts: &Parts) -> device::Device {
         ("green", green.0, green.1),
         ("blue", blue.0, blue.1),
     ];
-    let highlight = frame.part("highlight", &*(part(keys).model)(&parts.highlight), given.map(left));
+    let highlight =
+        frame.part("highlight", &*(part(keys).model)(&parts.highlight), given.map(left));
 
     let sum = Narrow::new(keys.cosine, keys.colour_format(), Rounding::Nearest);
-    let places = (keys.cosine, keys.cosine - Keys::GUARD);
+    let places = (keys.cosine, keys.cosine - keys.guard());
     for (at, name) in ["red_out", "green_out", "blue_out"].into_iter().enumerate() {
         let (ambient, diffuse, shine) = (ambient[at], diffuse[at], highlight.out(name));
         frame.output(name, keys.colour_format(), move |s| {
@@ -70,11 +74,9 @@ struct Part {
 fn part(keys: &Keys) -> Part {
     let (model, contract, formula): (fn(&_) -> _, fn(&_) -> _, fn(f64, f64) -> f64) =
         match keys.highlight {
-            Highlight::CosinePower => (
-                cosine_power::model,
-                cosine_power::contract,
-                |c, n| formulas::cosine_power(c, n, 16),
-            ),
+            Highlight::CosinePower => (cosine_power::model, cosine_power::contract, |c, n| {
+                formulas::cosine_power(c, n, 16)
+            }),
             Highlight::Blinn => (blinn::model, blinn::contract, formulas::blinn),
             Highlight::Schlick => (schlick::model, schlick::contract, formulas::schlick),
         };
@@ -106,7 +108,7 @@ pub fn contract(config: &Config) -> Box<dyn Contract> {
     let errors = Errors {
         unit: error(&*normaliser::contract(&parts.normaliser)),
         cosine: error(&*dot_product::contract(&parts.cosine)),
-        highlight: error(&*highlight) * exp2(-(Keys::GUARD as i32)),
+        highlight: error(&*highlight) * exp2(-(keys.guard() as i32)),
         slope: highlight.highlight().and_then(|it| it.slope()),
     };
     device.contract(Shading { formula: part(&keys).formula, errors, keys })
@@ -185,11 +187,60 @@ impl Formula for Shading {
         Some(operands)
     }
 
-    /// Normals of a half circle under one light, with every exponent that is a power of two.
+    /// Normals of one plane under one light, which the viewer is at, with four exponents.
     fn sweep(&self) -> Option<Sweep> {
-        let most = 1 << self.keys.normal;
-        let mut sweep = Sweep::ranges([("nx", (-most, most)), ("exponent", (4, 7))]);
-        sweep.omits = "normals out of one plane, other lights and half vectors".to_owned();
-        Some(sweep)
+        let Keys { normal, light, colour_bits, most, .. } = self.keys;
+        let (one, to_light, white) = (1 << normal, 1 << light, (1 << colour_bits) - 1);
+        let vectors = [("ny", 0), ("nz", one / 2)].into_iter();
+        let lights =
+            [("lx", 0), ("ly", 0), ("lz", to_light), ("hx", 0), ("hy", 0), ("hz", to_light)];
+        let fixed = |(name, value): (&str, i64)| Axis {
+            name: name.to_owned(),
+            values: Values::List(vec![value]),
+        };
+        let material = [("ambient", white / 8), ("diffuse", white / 2), ("specular", white / 3)];
+        let material = material.into_iter().flat_map(|(kind, value)| {
+            ["red", "green", "blue"].map(|colour| fixed((&format!("{kind}_{colour}"), value)))
+        });
+        let exponents = Values::List([8, 4, 2, 1].map(|part| (most / part).max(16)).into());
+        let mut axes = vec![Axis { name: "nx".to_owned(), values: Values::Range(-one, one) }];
+        axes.extend(vectors.chain(lights).map(fixed));
+        axes.push(Axis { name: "exponent".to_owned(), values: exponents });
+        axes.extend(material);
+        Some(Sweep {
+            axes,
+            omits: "normals out of one plane, other lights and materials".to_owned(),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::Value;
+    use crate::golden::Bound;
+    use crate::keys::shading::schema;
+
+    /// The largest error of a unit normal of 14 fraction bits, half of whose error is what its rounding leaves, is beyond the bound
+    /// that a part with a false claim would give, and within the one that it gives.
+    #[test]
+    fn the_bound_of_the_whole_falls_with_that_of_a_part() {
+        let keys = [("unit.fraction", 14), ("domain.exponent_max", 1000)];
+        let keys = keys.map(|(key, value)| (key.to_owned(), Value::Integer(value)));
+        let config = Config::from_values(&schema(), "coarse", keys.into()).expect("sound keys");
+        let (keys, whole) = (Keys::of(&config), contract(&config));
+        let errors = Errors { unit: 0.0, cosine: 2e-7, highlight: 0.1, slope: Some(1000.0) };
+        let claimed = Shading { formula: part(&keys).formula, errors, keys };
+        let claimed = Bound::of(claimed.terms()).units;
+        // A linear congruential generator.
+        let mut at = 1u64;
+        let mut unit = || {
+            at = at.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (at >> 11) as f64 * exp2(-53)
+        };
+        let points =
+            (0..4000).map(|_| whole.largest_error(&whole.hint(&mut unit).expect("a point")));
+        let worst = points.fold(0.0, f64::max);
+        assert!(worst > claimed && worst < whole.bound().units, "{claimed} {worst}");
     }
 }

@@ -70,9 +70,6 @@ pub struct Parts {
 }
 
 impl Keys {
-    /// Fraction bits of a highlight in units of a result.
-    pub const GUARD: u32 = 2;
-
     /// The format of a component of the normal.
     pub fn normal_format(&self) -> Format {
         Format::signed(1, self.normal as i32)
@@ -93,6 +90,11 @@ impl Keys {
         Format::unsigned(self.exponent_bits as i32, 0)
     }
 
+    /// Fraction bits of a highlight in units of a result, as far as its colours have bits.
+    pub fn guard(&self) -> u32 {
+        (12 - self.colour_bits).min(4)
+    }
+
     /// The smallest n for which the accuracy contract is stated: below the power of W it jumps at a right angle.
     pub fn least(&self) -> i64 {
         if self.highlight == Highlight::CosinePower { 16 } else { 1 }
@@ -108,9 +110,14 @@ impl Keys {
             Config::from_values(&schema, "part", keys.iter().map(value).collect())
                 .map_err(|why| (schema.device, why))
         };
-        let [normal, unit, cosine, exponent, colour] =
-            [self.normal, self.unit, self.cosine, self.exponent_bits, self.colour_bits + Self::GUARD]
-                .map(i64::from);
+        let [normal, unit, cosine, exponent, colour] = [
+            self.normal,
+            self.unit,
+            self.cosine,
+            self.exponent_bits,
+            self.colour_bits + self.guard(),
+        ]
+        .map(i64::from);
         let normaliser = make(
             normaliser::schema(),
             &[

@@ -8,11 +8,11 @@ mod fresnel;
 mod smoothstep;
 
 use crate::common::cores::all_configurations;
-use crate::devices::{dot_product, normaliser};
 use glint::config::{Config, parse};
 use glint::core::Core;
 use glint::hdl::netlist::{Design, Driver, NetId, Op, Partition};
 use glint::pages::account::blocks::{BlockKind, Blocks};
+use glint::registry::Registry;
 
 #[test]
 fn every_operator_is_in_one_block_with_its_inputs() {
@@ -22,14 +22,11 @@ fn every_operator_is_in_one_block_with_its_inputs() {
 }
 
 #[test]
-fn so_is_every_operator_of_the_examples() {
-    let devices = [
-        fresnel::FRESNEL,
-        dot_product::DOT_PRODUCT,
-        normaliser::NORMALISER,
-        smoothstep::SMOOTHSTEP,
-    ];
-    for device in devices {
+fn so_is_every_operator_of_the_examples_and_of_composed_devices() {
+    let devices = [fresnel::FRESNEL, smoothstep::SMOOTHSTEP];
+    let composed = Registry::shipped();
+    let composed = composed.devices().iter().rev().take(3);
+    for device in composed.copied().chain(devices) {
         let schema = (device.schema)();
         let pipelined = format!(
             "device = \"{}\"\nname = \"core\"\narchitecture = \"pipelined\"\n",

@@ -1,15 +1,7 @@
-//! Devices of `examples/` that are no highlights: they have several outputs, with a sign, and multiply no colour.
+//! Devices that are no highlights: unit vectors, their cosines, and the colours that are made of both.
 
 use std::ops::ControlFlow;
 
-#[allow(dead_code)]
-#[path = "../../examples/dot_product/main.rs"]
-pub mod dot_product;
-#[allow(dead_code)]
-#[path = "../../examples/normaliser/main.rs"]
-pub mod normaliser;
-
-use dot_product::DOT_PRODUCT;
 use glint::config::{Config, Problems, Schema, parse, sample};
 use glint::core::Core;
 use glint::cosim::exhaustive::{Clocks, Proof, Shard, State};
@@ -19,10 +11,13 @@ use glint::fixed::Format;
 use glint::golden::Contract;
 use glint::golden::device::{self, Formula};
 use glint::golden::frame::{Frame, idle, step as execute};
-use glint::registry::Device;
-use normaliser::NORMALISER;
+use glint::registry::{Device, Registry};
 
-const DEVICES: [Device; 2] = [DOT_PRODUCT, NORMALISER];
+const NAMES: [&str; 3] = ["dot-product", "normaliser", "shading"];
+
+fn named(name: &str) -> Device {
+    *Registry::shipped().device(name).expect("a device")
+}
 
 fn default(device: Device) -> Core {
     let config = device.defaults();
@@ -42,7 +37,17 @@ fn errors(contract: &dyn Contract, operands: &[i64], formula: impl Fn(&[f64]) ->
 }
 
 fn dot(v: &[f64]) -> Vec<f64> {
-    vec![(v[0] * v[3] + v[1] * v[4] + v[2] * v[5]).clamp(0.0, 1.0)]
+    let at = |place: usize| v[place].clamp(-1.0, 1.0);
+    vec![(at(0) * at(3) + at(1) * at(4) + at(2) * at(5)).clamp(0.0, 1.0)]
+}
+
+/// By the default, W of power 16.
+fn shading(v: &[f64]) -> Vec<f64> {
+    let unit = unit(&v[..3]);
+    let [facing, cosine] = [3, 6].map(|at| dot(&[&unit[..], &v[at..at + 3]].concat())[0]);
+    let base = (v[9] / 16.0 * (cosine - 1.0) + 1.0).max(0.0);
+    let f = if cosine > 0.0 { base.powi(16) } else { 0.0 };
+    (10..13).map(|at| (v[at] + v[at + 3] * facing + v[at + 6] * f).min(255.0)).collect()
 }
 
 fn unit(v: &[f64]) -> Vec<f64> {
@@ -52,7 +57,7 @@ fn unit(v: &[f64]) -> Vec<f64> {
 
 #[test]
 fn schemas_are_sound_and_defaults_are_proven() {
-    for device in DEVICES {
+    for device in NAMES.map(named) {
         assert_eq!((device.schema)().mistakes(), Vec::<String>::new());
         let core = default(device);
         assert!(core.contract.highlight().is_none());
@@ -63,9 +68,9 @@ fn schemas_are_sound_and_defaults_are_proven() {
 
 #[test]
 fn random_configurations_agree_on_every_clock() {
-    for device in DEVICES {
+    for device in NAMES.map(named) {
         let schema = (device.schema)();
-        for seed in 0..24 {
+        for seed in 0..if device.name == "shading" { 6 } else { 24 } {
             let config = sample(&schema, seed);
             let what = config.to_toml(&schema);
             let core =
@@ -82,8 +87,12 @@ fn random_configurations_agree_on_every_clock() {
 /// All vectors of a grid and of a fine corner, against the formulas written out here.
 #[test]
 fn the_bounds_hold() {
-    for device in DEVICES {
-        let formula = if device.name == DOT_PRODUCT.name { dot } else { unit };
+    for device in NAMES.map(named) {
+        let formula = match device.name {
+            "dot-product" => dot,
+            "normaliser" => unit,
+            _ => shading,
+        };
         let core = default(device);
         let contract = core.contract.as_ref();
         let bound = contract.bound().units;
@@ -110,10 +119,11 @@ fn the_bounds_hold() {
 /// Every vector of a narrow normaliser at every clock, and its contract for every sum of squares.
 #[test]
 fn a_narrow_normaliser_is_proved() {
+    let normaliser = named("normaliser");
     let keys = "[vector]\nfraction = 2\n[table]\naddress = 3\n[inverse]\nfraction = 6\n[output]\nfraction = 2\n";
     let text = format!("device = \"normaliser\"\nname = \"narrow\"\n{keys}");
-    let config = parse("narrow.toml", &text, &[(NORMALISER.schema)()]).expect("a configuration");
-    let core = Core::new(NORMALISER, config).unwrap_or_else(|error| panic!("{error:#}"));
+    let config = parse("narrow.toml", &text, &[(normaliser.schema)()]).expect("a configuration");
+    let core = Core::new(normaliser, config).unwrap_or_else(|error| panic!("{error:#}"));
     let contract = core.contract.as_ref();
     let job = core.job().expect("model and design fit");
     let mut state = State::new("", Shard::WHOLE);
@@ -135,12 +145,13 @@ fn a_narrow_normaliser_is_proved() {
 /// The worked example shows something, and hints lie within the domain.
 #[test]
 fn examples_come_from_hints() {
-    for device in DEVICES {
+    for device in NAMES.map(named) {
         let core = default(device);
         let example = trial::example(&core.design, core.contract.as_ref()).expect("an example");
         for output in &example.outputs {
             let magnitude = output.value.abs();
-            assert!(magnitude > 0.0 && magnitude < 1.0, "{}: {output:?}", device.name);
+            let most = if device.name == "shading" { 255.0 } else { 1.0 };
+            assert!(magnitude > 0.0 && magnitude < most, "{}: {output:?}", device.name);
         }
         for (operand, quantity) in core.contract.operands().iter().zip(&example.operands) {
             let (low, high) = operand.domain;
@@ -151,7 +162,7 @@ fn examples_come_from_hints() {
 
 #[test]
 fn vectors_by_hand() {
-    let core = default(NORMALISER);
+    let core = default(named("normaliser"));
     let mut raw = Vec::new();
     // (0.6, 0, −0.8) has length 1; in 2^-14: 9830.4 and −13107.2. The zero vector stays.
     for (operands, expected) in [
@@ -164,7 +175,7 @@ fn vectors_by_hand() {
         core.contract.results(&operands, 0, &mut raw);
         assert_eq!(raw, expected, "{operands:?}");
     }
-    let core = default(DOT_PRODUCT);
+    let core = default(named("dot-product"));
     for (operands, expected) in [
         // (0.5, 0.5, 0)·(1, 0, 0); the other way round it is 0; beyond 1 it is 1.
         ([8192, 8192, 0, 16384, 0, 0], 8192),

@@ -9,7 +9,7 @@ use std::panic::Location;
 
 use super::program::{Program, Setting, Step, end, jump_if, step, valid};
 use super::rules::read_by;
-use super::{Designer, Signal};
+use super::{Designer, Inner, Signal};
 use crate::base::cone;
 use crate::base::diagnostic::{Diagnostic, Diagnostics, SourceLocation};
 use crate::base::fixed::Format;
@@ -92,6 +92,11 @@ impl Designer {
             ));
             return wrong;
         }
+        let load = format!("{name}_operands_load");
+        if self.with(|inner| inner.names.contains(&load)) {
+            self.error(format!("two parts are named `{name}`"));
+            return wrong;
+        }
         let part = Designer { depth: self.depth + 1, ..Designer::new(name) };
         describe(&part);
         part.register_outputs();
@@ -131,9 +136,13 @@ impl Designer {
             };
             signals.insert(port, fitted);
         }
-        let load = self.add_field(&format!("{name}_operands_load"), 1, FieldKind::Enable);
+        let load = self.add_field(&load, 1, FieldKind::Enable);
         let (nets, fields) = (HashMap::new(), HashMap::new());
-        Placed { designer: self, name, design: &design, nets, fields }.place(&signals, load, Location::caller())
+        Placed { designer: self, name, design: &design, nets, fields }.place(
+            &signals,
+            load,
+            Location::caller(),
+        )
     }
 
     /// States that the parts are the microprogram: they are executed in the order of their instances, and then the outputs are
@@ -144,10 +153,11 @@ impl Designer {
         self.program(Vec::new(), true);
     }
 
-    /// The microprogram of the parts, where there are such or none was written.
+    /// The microprogram of the parts, where [`Designer::dataflow`] asks for it.
     pub(super) fn with_parts(&self, program: &mut Program) {
         let mut parts = self.with(|inner| std::mem::take(&mut inner.parts));
         if program.of_parts {
+            self.with(delayed).into_iter().for_each(|it| self.report(it));
             if parts.is_empty() {
                 parts.push(Step { location: program.location, ..step("idle", []) });
             }
@@ -159,6 +169,24 @@ impl Designer {
             self.report(found.note("the first part".to_owned(), first.location));
         }
     }
+}
+
+/// What takes a clock of its own between parts, which nothing waits for.
+fn delayed(inner: &mut Inner) -> Vec<Diagnostic> {
+    let Inner { design, placed, .. } = inner;
+    let registers = design.registers.iter().filter(|it| it.kind == RegisterKind::Internal);
+    let roms = design.roms.iter().filter(|it| it.synchronous).map(|it| it.data);
+    let nets = registers.map(|it| it.q).chain(roms).filter(|id| !placed.contains(id));
+    let found = nets.map(|id| {
+        let net = design.net(id);
+        let message = format!(
+            "`{}` follows its input by a clock, which a dataflow does not wait for: read the memory at once, leave the \
+             register out, or make a part of it",
+            net.name
+        );
+        Diagnostic::new(message, net.location)
+    });
+    found.collect()
 }
 
 /// The reason why a design cannot be a part.
@@ -199,7 +227,8 @@ impl<'d> Placed<'d, '_> {
     ) -> Instance<'d> {
         let (d, design) = (self.designer, self.design);
         let ports = design.ports.iter().filter(|port| port.role == Role::Result);
-        let shown = ports.map(|port| (design.net(port.net).name.clone(), register(design, port.net)));
+        let shown =
+            ports.map(|port| (design.net(port.net).name.clone(), register(design, port.net)));
         let shown: Vec<(String, NetId)> = shown.collect();
         for id in kept(design, &shown) {
             self.net(id);
@@ -256,7 +285,9 @@ impl<'d> Placed<'d, '_> {
         let name = self.named(&net.name);
         let placed = d.with(|inner| {
             inner.names.insert(name.clone());
-            inner.design.add_net(Net { name: name.clone(), block: None, ..net.clone() })
+            let id = inner.design.add_net(Net { name: name.clone(), block: None, ..net.clone() });
+            inner.placed.insert(id);
+            id
         });
         self.nets.insert(id, placed);
         if let Driver::Field(field) = net.driver {
@@ -283,9 +314,8 @@ impl<'d> Placed<'d, '_> {
         let steps = control.microprogram.iter().enumerate().map(|(at, it)| {
             let mut fields: Vec<_> = self.fields.iter().collect();
             fields.sort_unstable();
-            let is_select = |field: FieldId| {
-                matches!(control.fields[field.index()].kind, FieldKind::Select(_))
-            };
+            let is_select =
+                |field: FieldId| matches!(control.fields[field.index()].kind, FieldKind::Select(_));
             let stated = fields.into_iter().filter_map(|(field, own)| {
                 let value = it.values[field.index()];
                 let name = &control.fields[field.index()].name;

@@ -144,6 +144,8 @@ pub(crate) struct Inner {
     program: Option<Program>,
     /// The microinstructions of the parts, in the order of execution.
     parts: Vec<Step>,
+    /// The nets of the parts.
+    placed: HashSet<NetId>,
     /// The fields that a microinstruction sets.
     picked: HashSet<FieldId>,
     /// Select lines of which no choice need be made.
@@ -178,6 +180,7 @@ impl Designer {
             views: HashMap::new(),
             program: None,
             parts: Vec::new(),
+            placed: HashSet::new(),
             picked: HashSet::new(),
             partly_used: HashSet::new(),
             valid: None,

@@ -1,5 +1,6 @@
 //! Every mistake that a description can make, with the message that names signals and source line.
 
+mod instances;
 mod microprogram;
 
 use std::panic::Location;

@@ -1,0 +1,93 @@
+//! Mistakes of descriptions that use others.
+
+use super::{BYTE, Found, finish};
+use glint::dsl::{Designer, Signal, end, step, valid};
+use glint::fixed::Format;
+
+/// Its operand, a clock later.
+fn held(d: &Designer) {
+    let x = d.operand("x", BYTE);
+    let y = d.register("y", BYTE);
+    y.takes(x.q());
+    d.output("y_out", y.q());
+    d.microprogram([step("idle", []), step("load", [y.load()]), step("result", [valid(), end()])]);
+}
+
+/// A dataflow of an operand, right but for what `describe` makes of it.
+#[track_caller]
+fn dataflow(describe: impl for<'d> FnOnce(&'d Designer, Signal<'d>) -> Signal<'d>) -> Found {
+    let d = Designer::new("device");
+    let a = d.operand("a", BYTE).q();
+    d.output("a_out", describe(&d, a));
+    d.dataflow();
+    finish(d)
+}
+
+#[test]
+fn a_right_dataflow_has_no_mistakes() {
+    dataflow(|_, a| a).are([]);
+    dataflow(|d, a| d.instance("part", held, &[("x", a)]).out("y_out")).are([]);
+}
+
+#[test]
+fn operands_and_results_of_parts_go_by_name_and_format() {
+    dataflow(|d, a| {
+        d.instance("none", held, &[]);
+        d.instance("wrong", held, &[("z", a)]);
+        d.instance("wide", held, &[("x", a.with_fraction(12))]);
+        d.instance("part", held, &[("x", a)]);
+        d.instance("part", held, &[("x", a)]);
+        d.instance("right", held, &[("x", a)]).out("z_out");
+        a
+    })
+    .are([
+        "`none` has the operands x, and is given ",
+        "`wrong` has the operands x, and is given z",
+        "operand `x` of `wide` is u0.8, but `a_reg_scaled` is u0.12 with values from 0 to 4080 ulp: narrow it or change the format",
+        "two parts are named `part`",
+        "`right` has no output `z_out`: it has y_out",
+    ]);
+}
+
+#[test]
+fn a_part_has_one_result_and_no_mistakes() {
+    fn itself(d: &Designer) {
+        let x = d.operand("x", BYTE).q();
+        d.output("y_out", d.instance("own", itself, &[("x", x)]).out("y_out"));
+        d.dataflow();
+    }
+    dataflow(|d, a| {
+        d.instance("endless", itself, &[("x", a)]);
+        a
+    })
+    .are(["`own` is a part of a part, 8 deep: is a description an instance of itself?"]);
+    dataflow(|d, a| {
+        let waits = |d: &Designer| {
+            let x = d.operand("x", BYTE).q();
+            d.output("y_out", x);
+            let wait = step("wait", [glint::dsl::wait_for_start()]);
+            d.microprogram([step("idle", []), wait, step("result", [valid(), end()])]);
+        };
+        d.instance("waits", waits, &[("x", a)]);
+        a
+    })
+    .are(["`waits` is no part: the microinstruction `wait` waits for `start`"]);
+}
+
+#[test]
+fn nothing_stands_beside_a_dataflow_that_takes_clocks() {
+    dataflow(|d, a| d.pipeline("later", a)).are([
+        "`later` follows its input by a clock, which a dataflow does not wait for: read the memory at once, leave the \
+         register out, or make a part of it",
+    ]);
+    let d = Designer::new("device");
+    let a = d.operand("a", Format::unsigned(0, 8)).q();
+    d.output("a_out", d.instance("part", held, &[("x", a)]).out("y_out"));
+    d.microprogram([step("idle", []), step("result", [valid(), end()])]);
+    let found = d.finish().unwrap_err().to_string();
+    assert!(
+        found
+            .contains("a description with parts has a microprogram of its own: state `dataflow()`"),
+        "{found}"
+    );
+}
