@@ -106,7 +106,8 @@ fn the_bounds_hold() {
                     // A linear congruential generator, its magnitude by octaves.
                     at = at.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
                     let (low, high) = operand.domain;
-                    ((at >> 40) as i64 % (high - low + 1) + low) >> (at >> 33 & 7)
+                    (((at >> 40) as i64 % (high - low + 1) + low) >> (at >> 33 & 7))
+                        .clamp(low, high)
                 })
                 .collect();
             worst = worst.max(errors(contract, &operands, formula));
