@@ -1,7 +1,6 @@
 //! Statements for Gappa: proved of the devices as they are, refused of a smaller bound and of faulty hardware.
 
 #[allow(dead_code)]
-#[allow(dead_code)]
 #[path = "../../examples/smoothstep/main.rs"]
 mod smoothstep;
 

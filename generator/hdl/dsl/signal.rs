@@ -340,12 +340,7 @@ impl Designer {
     /// `low` in place of the low bits of the constant `high`, which must be zero there: an address made
     /// of a constant and a prefix, by wiring.
     #[track_caller]
-    pub fn beside<'d>(
-        &'d self,
-        high: Signal<'d>,
-        low: Signal<'d>,
-        format: Format,
-    ) -> Signal<'d> {
+    pub fn beside<'d>(&'d self, high: Signal<'d>, low: Signal<'d>, format: Format) -> Signal<'d> {
         let low_bits = low.format().width();
         let (from, to) = (high.range().0, high.range().0 + low.range().1);
         if low_bits == format.width() {

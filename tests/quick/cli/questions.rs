@@ -96,7 +96,7 @@ fn every_device_is_listed() {
     let value = Workspace::new().glint(["list", "--json"]).json();
     let names: Vec<&Value> =
         value["devices"].as_array().unwrap().iter().map(|device| &device["name"]).collect();
-    let registry = Registry::catalogue();
+    let registry = Registry::shipped();
     let all: Vec<&str> = registry.devices().iter().map(|device| device.name).collect();
     assert_eq!(names, all);
 }
