@@ -17,22 +17,22 @@ pub fn describe(d: &Designer, config: &Config) {
             "Components beyond -1 and 1 are taken for these.".into(),
         ],
     });
-    let Keys { fraction, kept, rounding } = Keys::of(config);
-    let (fraction, kept) = (fraction as i32, kept as i32);
-    let component = |name: &str, vector: &str| {
+    let Keys { fraction, other, kept, rounding } = Keys::of(config);
+    let [fraction, other, kept] = [fraction, other, kept].map(|bits| bits as i32);
+    let component = |name: &str, fraction: i32, vector: &str| {
         let axis = &name[1..];
         d.operand_clamped(name, Format::signed(1, fraction), -1.0, 1.0)
             .doc(&format!("{axis} of the {vector}"))
     };
-    let normal = ["nx", "ny", "nz"].map(|name| component(name, "normal"));
-    let half = ["hx", "hy", "hz"].map(|name| component(name, "half vector"));
+    let normal = ["nx", "ny", "nz"].map(|name| component(name, fraction, "normal"));
+    let half = ["hx", "hy", "hz"].map(|name| component(name, other, "half vector"));
 
     let first = d.mux("first", normal.map(|it| it.q()));
     let second = d.mux("second", half.map(|it| it.q()));
     let product = d.mul("product", first.out(), second.out());
 
     // Three products of at most 1.0: from -3.0 to 3.0. The adder could reach 5.0, but the program does not.
-    let sums = Format::signed(2, 2 * fraction);
+    let sums = Format::signed(2, fraction + other);
     let sum = d.register("sum", sums).doc("the products so far");
     let zero = d.constant("nothing", 0.0, sums);
     let so_far = d.mux("so_far", [sum.q(), zero]);

@@ -36,9 +36,7 @@ pub fn describe<'d>(d: &'d Designer, config: &Config) {
     let unit = d.instance("unit", |d| normaliser::describe(d, &parts.normaliser), &given);
     let unit = ["unit_x_out", "unit_y_out", "unit_z_out"].map(|name| unit.out(name));
     let cosine = |name: &str, other: [Signal<'d>; 3]| {
-        let second = other.map(|it| it.with_fraction(keys.unit as i32));
-        let [nx, ny, nz] = unit;
-        let [hx, hy, hz] = second;
+        let ([nx, ny, nz], [hx, hy, hz]) = (unit, other);
         let given = [("nx", nx), ("ny", ny), ("nz", nz), ("hx", hx), ("hy", hy), ("hz", hz)];
         d.instance(name, |d| dot_product::describe(d, &parts.cosine), &given).out("cosine_out")
     };

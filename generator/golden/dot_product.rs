@@ -24,13 +24,14 @@ impl Limited {
 /// The operations of each microinstruction.
 fn device(config: &Config) -> device::Device {
     let Cosine { keys, limited } = Cosine::new(config);
-    let (fraction, kept) = (keys.fraction as i32, keys.kept as i32);
-    let one = 1 << fraction;
+    let [fraction, other, kept] = [keys.fraction, keys.other, keys.kept].map(|bits| bits as i32);
     let mut frame = Frame::default();
-    let mut component = |name| frame.clamped(name, Format::signed(1, fraction), -one, one);
-    let [nx, ny, nz] = ["nx", "ny", "nz"].map(&mut component);
-    let [hx, hy, hz] = ["hx", "hy", "hz"].map(&mut component);
-    let sum = frame.register("sum", Format::signed(2, 2 * fraction));
+    let mut component = |name, fraction: i32| {
+        frame.clamped(name, Format::signed(1, fraction), -(1 << fraction), 1 << fraction)
+    };
+    let [nx, ny, nz] = ["nx", "ny", "nz"].map(|name| component(name, fraction));
+    let [hx, hy, hz] = ["hx", "hy", "hz"].map(|name| component(name, other));
+    let sum = frame.register("sum", Format::signed(2, fraction + other));
     let cosine = frame.register("cosine", Format::unsigned(1, kept));
     frame.shows("cosine_out", cosine);
     frame.device([
@@ -63,7 +64,7 @@ impl Cosine {
     fn new(config: &Config) -> Self {
         let keys = Keys::of(config);
         let wide = Format::unsigned(2, keys.kept as i32);
-        let rounded = Narrow::new(2 * keys.fraction, wide, keys.rounding);
+        let rounded = Narrow::new(keys.products(), wide, keys.rounding);
         Self { limited: Limited { rounded, one: 1 << keys.kept }, keys }
     }
 }
@@ -90,12 +91,12 @@ impl Formula for Cosine {
     /// The products and their sum are exact, and rounded once. To clamp to 0 … 1 brings two values no further
     /// apart, and both ends are values of the output, so that the rest of the way changes nothing.
     fn terms(&self) -> Vec<Term> {
-        let error = rounding_error(2 * self.keys.fraction, self.keys.kept, self.keys.rounding);
+        let error = rounding_error(self.keys.products(), self.keys.kept, self.keys.rounding);
         let units = match self.keys.rounding {
             // What is cut has at least the last place of a product, which it keeps below a whole unit.
             Rounding::Truncate => {
                 error * exp2(self.keys.kept as i32)
-                    - exp2(self.keys.kept as i32 - 2 * self.keys.fraction as i32)
+                    - exp2(self.keys.kept as i32 - self.keys.products() as i32)
             }
             Rounding::Nearest => error * exp2(self.keys.kept as i32),
         };
@@ -120,19 +121,21 @@ impl Formula for Cosine {
                 across[axis] + small * off[axis]
             }
         });
-        let one = exp2(self.keys.fraction as i32);
-        let raw = [normal, unit_vector(half)].concat().into_iter();
-        Some(raw.map(|component| (component * one).round() as i64).collect())
+        let raw = |vector: [f64; 3], fraction: u32| {
+            vector.map(|component| (component * exp2(fraction as i32)).round() as i64)
+        };
+        let Keys { fraction, other, .. } = self.keys;
+        Some([raw(normal, fraction), raw(unit_vector(half), other)].concat())
     }
 
     /// The sum determines the result.
     fn sweep(&self) -> Option<Sweep> {
-        let most = 3 << (2 * self.keys.fraction);
+        let most = 3 << self.keys.products();
         Some(Sweep::ranges([("sum of the products", (-most, most))]))
     }
 
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
-        let exact = place[0] as f64 * exp2(self.keys.kept as i32 - 2 * self.keys.fraction as i32);
+        let exact = place[0] as f64 * exp2(self.keys.kept as i32 - self.keys.products() as i32);
         let one = exp2(self.keys.kept as i32);
         Some((self.limited.apply(place[0]) as f64 - exact.clamp(0.0, one)).abs())
     }

@@ -34,10 +34,8 @@ fn device(keys: &Keys, parts: &Parts) -> device::Device {
     let unit = frame.part("unit", &*normaliser::model(&parts.normaliser), given);
     let [nx, ny, nz] = ["unit_x_out", "unit_y_out", "unit_z_out"].map(|name| unit.out(name));
     let mut cosine = |name: &str, [x, y, z]: [Slot; 3]| {
-        let scale = keys.unit - keys.light;
-        let unit = [("nx", nx, 0), ("ny", ny, 0), ("nz", nz, 0)];
-        let other = [("hx", x, scale), ("hy", y, scale), ("hz", z, scale)];
-        let given = unit.into_iter().chain(other).map(left);
+        let given = [("nx", nx), ("ny", ny), ("nz", nz), ("hx", x), ("hy", y), ("hz", z)];
+        let given = given.map(|(name, slot)| left((name, slot, 0)));
         frame.part(name, &*dot_product::model(&parts.cosine), given).out("cosine_out")
     };
     let facing = cosine("diffuse_cosine", light);
@@ -72,15 +70,19 @@ struct Part {
 }
 
 fn part(keys: &Keys) -> Part {
-    let (model, contract, formula): (fn(&_) -> _, fn(&_) -> _, fn(f64, f64) -> f64) =
-        match keys.highlight {
-            Highlight::CosinePower => (cosine_power::model, cosine_power::contract, |c, n| {
-                formulas::cosine_power(c, n, 16)
-            }),
-            Highlight::Blinn => (blinn::model, blinn::contract, formulas::blinn),
-            Highlight::Schlick => (schlick::model, schlick::contract, formulas::schlick),
-        };
-    Part { model, contract, formula }
+    match keys.highlight {
+        Highlight::CosinePower => Part {
+            model: cosine_power::model,
+            contract: cosine_power::contract,
+            formula: |c, n| formulas::cosine_power(c, n, 16),
+        },
+        Highlight::Blinn => {
+            Part { model: blinn::model, contract: blinn::contract, formula: formulas::blinn }
+        }
+        Highlight::Schlick => {
+            Part { model: schlick::model, contract: schlick::contract, formula: formulas::schlick }
+        }
+    }
 }
 
 fn parts(keys: &Keys) -> Parts {

@@ -122,12 +122,14 @@ impl Keys {
             normaliser::schema(),
             &[
                 ("vector.fraction", normal),
-                ("table.address", 10),
-                ("inverse.fraction", 24),
+                ("table.address", 11),
+                ("inverse.fraction", 21),
                 ("output.fraction", unit),
             ],
         )?;
-        let cosines = [("vector.fraction", unit), ("output.fraction", cosine)];
+        let light = i64::from(self.light);
+        let cosines =
+            [("vector.fraction", unit), ("half.fraction", light), ("output.fraction", cosine)];
         let (schema, fraction) = match self.highlight {
             Highlight::CosinePower => (cosine_power::schema(), 18),
             Highlight::Blinn => (blinn::schema(), 18),
