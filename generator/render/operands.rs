@@ -12,7 +12,7 @@ use crate::base::fixed::{Format, Overflow, Rounding, exp2};
 use crate::golden::{Contract, Operand};
 
 /// A point that a light shines on.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Point {
     /// N·H of the smooth surface.
     pub cos_gamma: f64,
@@ -26,6 +26,23 @@ pub struct Point {
     pub cos_shaded: f64,
     /// The colour of the light times the specular coefficient, 0 … 1.
     pub colour: Vector,
+    /// What a device that computes all of the light takes.
+    pub surface: Surface,
+}
+
+/// A surface under one light.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Surface {
+    /// The normal as it was interpolated, of any length.
+    pub normal: Vector,
+    /// The unit vector to the light.
+    pub light: Vector,
+    /// The unit half vector.
+    pub half: Vector,
+    /// The ambient light that it gives back, 0 … 1.
+    pub ambient: Vector,
+    /// The share of the light that it scatters, 0 … 1.
+    pub diffuse: Vector,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,6 +59,12 @@ enum Quantity {
     DeltaZeta,
     Length,
     Amplitude,
+    Normal(usize),
+    Light(usize),
+    Half(usize),
+    Ambient(usize),
+    Diffuse(usize),
+    Specular(usize),
     /// A constant for every point.
     Given(f64),
 }
@@ -67,6 +90,29 @@ const OF_POINTS: [(&str, Quantity); 11] = [
     ("blue", Quantity::Colour(2)),
 ];
 
+/// And of one that computes all of the light.
+const OF_SURFACES: [(&str, Quantity); 19] = [
+    ("nx", Quantity::Normal(0)),
+    ("ny", Quantity::Normal(1)),
+    ("nz", Quantity::Normal(2)),
+    ("lx", Quantity::Light(0)),
+    ("ly", Quantity::Light(1)),
+    ("lz", Quantity::Light(2)),
+    ("hx", Quantity::Half(0)),
+    ("hy", Quantity::Half(1)),
+    ("hz", Quantity::Half(2)),
+    ("exponent", Quantity::Exponent),
+    ("ambient_red", Quantity::Ambient(0)),
+    ("ambient_green", Quantity::Ambient(1)),
+    ("ambient_blue", Quantity::Ambient(2)),
+    ("diffuse_red", Quantity::Diffuse(0)),
+    ("diffuse_green", Quantity::Diffuse(1)),
+    ("diffuse_blue", Quantity::Diffuse(2)),
+    ("specular_red", Quantity::Specular(0)),
+    ("specular_green", Quantity::Specular(1)),
+    ("specular_blue", Quantity::Specular(2)),
+];
+
 /// And of one that walks a line of points, for a colour at a time.
 const OF_LINES: [(&str, Quantity); 5] = [
     ("zeta_start", Quantity::ZetaStart),
@@ -86,6 +132,8 @@ pub struct Feed {
     scales: [f64; 3],
     /// The most intervals of a line, if it computes lines.
     longest: Option<usize>,
+    /// It computes all of the light.
+    surfaces: bool,
 }
 
 /// The exponents that a device takes, if it takes any.
@@ -114,7 +162,12 @@ impl Feed {
     /// # Errors
     /// As of [`Feed::new`]; an operand that the device does not have, or a value beyond its domain.
     pub fn with(device: &str, contract: &dyn Contract, given: &[(String, f64)]) -> Result<Self> {
-        let names: &[(&str, Quantity)] = if walks_lines(contract) { &OF_LINES } else { &OF_POINTS };
+        let surfaces = contract.operands().iter().any(|it| it.name == OF_SURFACES[10].0);
+        let names: &[(&str, Quantity)] = match (walks_lines(contract), surfaces) {
+            (true, _) => &OF_LINES,
+            (false, true) => &OF_SURFACES,
+            (false, false) => &OF_POINTS,
+        };
         let mut unknown = Vec::new();
         let mut operands = Vec::new();
         for operand in contract.operands() {
@@ -143,7 +196,8 @@ impl Feed {
                 "--operand {name}: the device `{device}` has no such operand"
             );
         }
-        let mut feed = Self { operands, channels: [0; 3], scales: [0.0; 3], longest: None };
+        let mut feed =
+            Self { operands, channels: [0; 3], scales: [0.0; 3], longest: None, surfaces };
         if walks_lines(contract) {
             for (name, quantity) in OF_LINES {
                 ensure!(
@@ -157,6 +211,16 @@ impl Feed {
         let control = contract.operands().iter().filter(|operand| !operand.colour);
         let control = control.count();
         for (channel, name) in ["red", "green", "blue"].into_iter().enumerate() {
+            if surfaces {
+                let outputs = contract.outputs();
+                let output = outputs.iter().position(|it| it.name == format!("{name}_out"));
+                let Some(output) = output else {
+                    bail!("the device `{device}` has no output `{name}_out`");
+                };
+                feed.channels[channel] = output;
+                feed.scales[channel] = 255.0 / outputs[output].format.max_raw() as f64;
+                continue;
+            }
             let wanted = match feed.longest {
                 None => Quantity::Colour(channel),
                 Some(_) => Quantity::Amplitude,
@@ -179,6 +243,11 @@ impl Feed {
     /// The number of operands.
     pub fn operand_count(&self) -> usize {
         self.operands.len()
+    }
+
+    /// Whether the device computes all of the light, and not the highlight alone.
+    pub fn shades(&self) -> bool {
+        self.surfaces
     }
 
     /// Whether the device takes dγ, and so the smooth normal's angle.
@@ -231,6 +300,12 @@ impl Feed {
             Quantity::Difference(axis) => point.difference.0[axis],
             // From 0 to the largest, which is full colour.
             Quantity::Colour(channel) => point.colour.0[channel] * format.to_f64(i128::from(high)),
+            Quantity::Normal(axis) => point.surface.normal.0[axis],
+            Quantity::Light(axis) => point.surface.light.0[axis],
+            Quantity::Half(axis) => point.surface.half.0[axis],
+            Quantity::Ambient(at) => point.surface.ambient.0[at] * format.to_f64(high.into()),
+            Quantity::Diffuse(at) => point.surface.diffuse.0[at] * format.to_f64(high.into()),
+            Quantity::Specular(at) => point.colour.0[at] * format.to_f64(high.into()),
             Quantity::Given(value) => value,
             // Not of a point.
             Quantity::Amplitude | Quantity::ZetaStart | Quantity::DeltaZeta | Quantity::Length => {

@@ -1,14 +1,14 @@
 //! The host's part of shading: what a point is, its ambient and diffuse light, and what the device is to
 //! compute for it.
 //!
-//! All of it is f64. The device computes the specular term alone.
+//! All of it is f64. Most devices compute the specular term alone; one that takes normals computes the rest too.
 
 use std::f64::consts::{PI, TAU};
 
 use anyhow::Result;
 
 use super::camera::Camera;
-use super::operands::{Feed, Point};
+use super::operands::{self, Feed, Point};
 use super::scene::{Light, Object, Scene, Shape};
 use super::vector::Vector;
 use super::visibility::Hit;
@@ -73,6 +73,8 @@ struct Surface {
     colour: Vector,
     smooth: Vector,
     perturbed: Vector,
+    /// The normal of the shaded surface, of any length.
+    interpolated: Vector,
     toward_eye: Vector,
 }
 
@@ -133,17 +135,34 @@ impl Shader<'_> {
         };
         for (at, surface) in surfaces.iter().enumerate() {
             let material = &self.material;
-            let mut light_sum = Vector::new(1.0, 1.0, 1.0) * material.ambient;
+            let white = Vector::new(1.0, 1.0, 1.0);
+            let (mut ambient, mut light_sum) = (white * material.ambient, Vector::default());
+            if !self.feed.shades() {
+                std::mem::swap(&mut ambient, &mut light_sum);
+            }
             let mut computed = 0;
             for (number, light) in self.scene.lights.iter().enumerate() {
                 let facing = surface.perturbed.dot(light.direction).max(0.0);
-                light_sum = light_sum + light.colour * (material.diffuse * facing);
+                let scattered = light.colour * material.diffuse;
+                if !self.feed.shades() {
+                    light_sum = light_sum + scattered * facing;
+                }
                 if !surface.is_lit(light) {
                     continue;
                 }
                 let specular = light.colour * material.specular;
                 let half = surface.half(light);
-                let point = point(surface.smooth, surface.perturbed, half, specular);
+                let mut point = point(surface.smooth, surface.perturbed, half, specular);
+                if self.feed.shades() {
+                    point.surface = operands::Surface {
+                        normal: surface.interpolated,
+                        light: light.direction,
+                        half,
+                        // It is computed with the first light.
+                        ambient: surface.colour.times(std::mem::take(&mut ambient)),
+                        diffuse: surface.colour.times(scattered),
+                    };
+                }
                 match &mut shaded.places {
                     None => {
                         let (raw, beyond) = self.feed.raw(&point, material.exponent);
@@ -158,10 +177,12 @@ impl Shader<'_> {
                         point.cos_shaded,
                         f64::from(material.exponent),
                     );
-                    shaded.exact.push(point.colour * (f * 255.0));
+                    let it = &point.surface;
+                    let rest = it.ambient + it.diffuse * facing;
+                    shaded.exact.push(rest * 255.0 + point.colour * (f * 255.0));
                 }
             }
-            let base = surface.colour.times(light_sum) * 255.0;
+            let base = surface.colour.times(light_sum + ambient) * 255.0;
             shaded.samples.push((base, computed));
         }
         Ok(())
@@ -200,23 +221,23 @@ impl Shader<'_> {
         let along = self.camera.outward(ray);
         let place = self.camera.eye() + along * hit.depth;
         let toward_eye = (-along).unit().unwrap_or_default();
-        let (smooth, perturbed) = self.normals(object, hit, place, toward_eye);
-        Surface { colour: object.colour, smooth, perturbed, toward_eye }
+        let [smooth, perturbed, interpolated] = self.normals(object, hit, place, toward_eye);
+        Surface { colour: object.colour, smooth, perturbed, interpolated, toward_eye }
     }
 
-    /// The normals of the smooth and of the perturbed surface, both toward the eye.
+    /// The normals of the smooth and of the perturbed surface, both toward the eye, and the latter as it was interpolated.
     fn normals(
         &self,
         object: &Object,
         hit: &Hit,
         place: Vector,
         toward_eye: Vector,
-    ) -> (Vector, Vector) {
+    ) -> [Vector; 3] {
         // The surface's own side, for the interpolated normal may lean away from the eye.
-        let (normal, side) = match &object.shape {
+        let (normal, mixed, side) = match &object.shape {
             Shape::Ball { middle, .. } => {
                 let normal = (place - *middle).unit().unwrap_or(toward_eye);
-                (normal, normal)
+                (normal, normal, normal)
             }
             Shape::Mesh(mesh) => {
                 let [a, b, c] = mesh.triangles[hit.triangle as usize]
@@ -225,21 +246,22 @@ impl Shader<'_> {
                 let mixed = a * (1.0 - second - third) + b * second + c * third;
                 let [p, q, r] = mesh.corners(hit.triangle as usize);
                 let side = (q - p).cross(r - p).unit().unwrap_or(toward_eye);
-                (mixed.unit().unwrap_or(side), side)
+                (mixed.unit().unwrap_or(side), mixed, side)
             }
         };
         let side = if side.dot(toward_eye) < 0.0 { -side } else { side };
         let sign = if normal.dot(side) < 0.0 { -1.0 } else { 1.0 };
-        let perturbed = match &self.scene.relief {
-            None => normal,
+        let (perturbed, mixed) = match &self.scene.relief {
+            None => (normal, mixed),
             Some(relief) => {
                 let (texture, gradients) = texture(object, hit, normal);
                 let [along_u, along_v] = relief.rise(texture[0], texture[1]);
                 let slope = gradients[0] * along_u + gradients[1] * along_v;
-                (normal - slope).unit().unwrap_or(normal)
+                let perturbed = (normal - slope).unit().unwrap_or(normal);
+                (perturbed, perturbed)
             }
         };
-        (normal * sign, perturbed * sign)
+        [normal, perturbed, mixed].map(|it| it * sign)
     }
 }
 
@@ -264,6 +286,7 @@ pub fn point(smooth: Vector, perturbed: Vector, half: Vector, colour: Vector) ->
         difference: perturbed - half,
         cos_shaded,
         colour,
+        ..Point::default()
     }
 }
 

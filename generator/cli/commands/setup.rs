@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use anyhow::Result;
+use anyhow::{Result, ensure};
 use clap::Args;
 use csv::StringRecord;
 use serde_json::{Map, Value, json};
@@ -188,6 +188,11 @@ impl<'a> Host<'a> {
     fn new(one: &'a Loaded) -> Result<Self> {
         let contract = one.core.contract.as_ref();
         let feed = Feed::new(one.core.device.name, contract)?;
+        ensure!(
+            !feed.shades(),
+            "the operands of `{}` are vectors and colours themselves: there is nothing to set up",
+            one.core.device.name
+        );
         Ok(Self { one, feed, line: render::walks_lines(contract) })
     }
 
@@ -419,6 +424,7 @@ impl<'a> Host<'a> {
                 difference: along(-dgamma) - along(gamma),
                 cos_shaded: libm::cos(gamma + dgamma),
                 colour,
+                ..Point::default()
             }
         } else {
             let (normal, half) = self.pair(given, ["normal", "half", "light", "view"])?;

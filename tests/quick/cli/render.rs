@@ -80,11 +80,13 @@ fn every_engine_draws_the_same_pixels() {
     dir.write("bumps.png", bumps());
     dir.write("quad.toml", "device = \"quad-cosine\"\n");
     dir.write("squared.toml", "device = \"cosine-squared\"\n");
+    dir.write("shading.toml", "device = \"shading\"\n");
     for (config, more) in [
         ("power.toml", &["--height", "bumps.png"][..]),
         ("rough.toml", &["--height", "bumps.png"]),
         ("quad.toml", &["--shape", "torus"]),
         ("squared.toml", &[]),
+        ("shading.toml", &["--shape", "torus", "--height", "bumps.png"]),
     ] {
         let mut pictures = Vec::new();
         let all = ["golden", "rust-hdl", "verilator"];
@@ -254,6 +256,18 @@ fn comparison_measures_the_picture() {
     // W(80, γ) with m = 16 is up to 0.018 from cos⁸⁰γ: 3 levels at k_s = 0.7, of two lights.
     assert!((1..=7).contains(&largest), "{told}");
     assert!(number(&told["compare"], "psnr") > 40.0, "{told}");
+    assert_within_bound(&told["compare"]);
+}
+
+/// Operands are quantised, so that two lights at n = 80 are a few levels from f64; each is within the bound of the device.
+#[test]
+fn a_device_that_takes_normals_computes_all_of_the_light() {
+    let text = "device = \"shading\"\nhighlight = \"blinn\"\n";
+    let dir = Workspace::with("shading.toml", text);
+    let arguments = ["shading.toml", "--compare", "--json", "--shape", "torus"];
+    let told = dir.glint(render(&arguments)).good().json();
+    assert!(told["compare"]["largest_difference"].as_u64().expect("a level") <= 4, "{told}");
+    assert!(number(&told["compare"], "psnr") > 50.0, "{told}");
     assert_within_bound(&told["compare"]);
 }
 
