@@ -6,6 +6,7 @@
 //! can be computed it takes intervals within segments.
 
 mod minimax;
+mod reduction;
 mod samples;
 mod search;
 mod segments;
@@ -23,9 +24,13 @@ use rayon::prelude::*;
 use crate::base::fixed::{Format, exp2};
 use crate::formula::{Enclosure, Fault, Formula};
 
+pub use reduction::{Identity, Reduction, Restore, Rule};
 pub use samples::Samples;
 pub use search::Wish;
 pub use segments::{Layout, Place, Segments};
+
+/// The coefficients of a polynomial of the largest degree.
+const MOST_SUMS: usize = 4;
 
 /// The most bits of an operand of which every value is computed.
 pub const MOST_BITS: u32 = 26;
@@ -116,7 +121,9 @@ pub struct Piecewise {
     pub domain: (i64, i64),
     /// The result of other operands.
     pub outside: Outside,
-    /// The raw operand whose number is 0.
+    /// How operands become the polynomial's.
+    pub reduction: Option<Reduction>,
+    /// The polynomial's raw operand whose number is 0.
     pub origin: i64,
     /// How numbers choose words.
     pub segments: Segments,
@@ -126,8 +133,10 @@ pub struct Piecewise {
     pub words: Vec<Vec<i64>>,
     /// The cuts of the product that is added to coefficient k.
     pub steps: Vec<Step>,
-    /// The formats of the sums from coefficient k on; the first is that of the result.
+    /// The formats of the sums from coefficient k on; the first is that of the polynomial.
     pub sums: Vec<Format>,
+    /// The format of the result, which is the polynomial where nothing is reduced.
+    pub result: Format,
     /// The proved bound of the error, in units of the last place of the result.
     pub bound: f64,
 }
@@ -194,17 +203,24 @@ impl Function {
 }
 
 impl Piecewise {
-    /// The names of the registers with the sums, the result's first.
-    pub const REGISTERS: [&str; 3] = ["result", "sum1", "sum2"];
+    /// The names of the registers with the sums, the polynomial's first.
+    pub fn registers(&self) -> [&'static str; 3] {
+        [if self.reduction.is_some() { "polynomial" } else { "result" }, "sum1", "sum2"]
+    }
 
     /// The polynomial's degree.
     pub fn degree(&self) -> usize {
         self.coefficients.len() - 1
     }
 
+    /// The polynomial's operand for a raw operand of the domain, and how its result comes of the polynomial.
+    fn reduced(&self, raw: i64) -> (i64, Restore) {
+        self.reduction.as_ref().map_or((raw, Restore::default()), |it| it.reduce(raw))
+    }
+
     /// The number of a raw operand within the domain.
     pub fn number(&self, raw: i64) -> u64 {
-        (raw - self.origin) as u64 & ((1 << self.segments.bits) - 1)
+        (self.reduced(raw).0 - self.origin) as u64 & ((1 << self.segments.bits) - 1)
     }
 
     /// Where a raw operand lies. Beyond the words that the domain reads it is the last.
@@ -225,12 +241,12 @@ impl Piecewise {
         (self.coefficients[0].frac - self.sums[0].frac) as u32
     }
 
-    /// All sums of a raw operand, with nothing cut off at the top: the result first.
-    fn sums_of(&self, raw: i64) -> Vec<i64> {
+    /// All sums of a raw operand, with nothing cut off at the top: the polynomial first.
+    fn sums_of(&self, raw: i64) -> [i64; MOST_SUMS] {
         let place = self.place(raw);
-        let mut sums = vec![0; self.coefficients.len()];
+        let mut sums = [0; MOST_SUMS];
         let mut above = 0;
-        for k in (0..sums.len()).rev() {
+        for k in (0..self.coefficients.len()).rev() {
             above = self.sum(k, place, above);
             sums[k] = above;
         }
@@ -240,9 +256,12 @@ impl Piecewise {
 
     /// The result of a raw operand.
     pub fn result(&self, raw: i64) -> i64 {
-        let place = self.place(raw);
-        let sum = (0..self.coefficients.len()).rev().fold(0, |above, k| self.sum(k, place, above));
-        sum >> self.guard()
+        self.restored(raw, self.sums_of(raw)[0])
+    }
+
+    /// The result of a raw operand, of the polynomial there.
+    pub fn restored(&self, raw: i64, polynomial: i64) -> i64 {
+        self.reduced(raw).1.result(polynomial)
     }
 
     /// Bits of the table.
@@ -273,14 +292,14 @@ impl Piecewise {
     /// The largest error of the result of a raw operand; 0 where nothing is stated.
     fn error_at(&self, function: &Function, raw: i64) -> Result<f64, Refusal> {
         let sums = self.sums_of(raw);
-        if let Some((sum, format)) =
-            sums.iter().zip(&self.sums).find(|(sum, format)| !format.holds(i128::from(**sum)))
-        {
+        let result = self.restored(raw, sums[0]);
+        let mut all = sums.iter().zip(&self.sums).chain([(&result, &self.result)]);
+        if let Some((sum, format)) = all.find(|(sum, format)| !format.holds(i128::from(**sum))) {
             let message = format!("at the operand {raw} a sum is {sum}, which is not {format}");
             return Err(Refusal::new("result.fraction", message, "change the formats"));
         }
         let limits = function.limits(raw).map_err(|fault| function.refusal(raw, &fault))?;
-        let result = sums[0] as f64;
+        let result = result as f64;
         // A difference may be rounded down.
         let error = (result - limits.low).abs().max((result - limits.high).abs()).next_up();
         if error > function.allowed(raw) {

@@ -7,7 +7,10 @@
 use rayon::prelude::*;
 
 use super::minimax::minimax;
-use super::{Function, Layout, MOST_BITS, Piecewise, Refusal, Segments, Step};
+use super::reduction::KEY;
+use super::{
+    Function, Identity, Layout, MOST_BITS, MOST_SUMS, Piecewise, Reduction, Refusal, Segments, Step,
+};
 use crate::base::fixed::{Format, MAX_WIDTH, exp2};
 use crate::base::interval::Interval;
 
@@ -18,6 +21,8 @@ pub struct Wish {
     pub degree: Option<u32>,
     /// How segments are laid.
     pub layout: Option<Layout>,
+    /// The identity by which operands are reduced.
+    pub identity: Identity,
 }
 
 /// The largest degree.
@@ -30,7 +35,13 @@ const FITTED: i64 = 40;
 const ADDRESS: u32 = 16;
 
 /// The most operands that the search looks at; of more, these are taken evenly.
-const HELD: u64 = 1 << 22;
+const HELD: u64 = 1 << 25;
+
+/// The most operands by which degree, segments and widths are chosen.
+const CHOOSING: usize = 1 << 16;
+
+/// The most operands by which widths are widened, before all have their say.
+const WIDENING: usize = 1 << 20;
 
 /// The same, of more operands than can be computed.
 const HELD_OF_MANY: u64 = 1 << 18;
@@ -98,6 +109,9 @@ pub(super) fn search(function: &Function, wish: Wish) -> Result<Piecewise, Refus
 
 /// Gives the approximation of least cost, proved, if there is one.
 fn attempt(function: &Function, wish: Wish) -> Result<Option<Piecewise>, Refusal> {
+    if wish.identity != Identity::None {
+        return attempt_reduced(function, wish);
+    }
     let mut unproved = None;
     for stricter in STRICTER {
         let Some(seen) = Seen::new(function, stricter)? else { break };
@@ -111,32 +125,67 @@ fn attempt(function: &Function, wish: Wish) -> Result<Option<Piecewise>, Refusal
     unproved.map_or(Ok(None), Err)
 }
 
+/// Fraction bits of a polynomial beyond those of the result, and whether the largest size has a number of its own: these are
+/// tried one after the other where operands are reduced.
+fn variants(identity: Identity) -> &'static [(u32, bool)] {
+    match identity {
+        Identity::Odd | Identity::Even => &[(0, false), (0, true)],
+        Identity::Octaves | Identity::Exponent => {
+            &[(0, false), (2, false), (4, false), (6, false), (8, false)]
+        }
+        Identity::Quadrants | Identity::None => &[(0, false)],
+    }
+}
+
+/// As [`attempt`], of operands that are reduced.
+fn attempt_reduced(function: &Function, wish: Wish) -> Result<Option<Piecewise>, Refusal> {
+    if function.is_wide() {
+        let message = format!("the domain has more than 2^{MOST_BITS} operands to be computed");
+        return Err(Refusal::new(KEY, message, "\"none\", or fewer operand.fraction bits"));
+    }
+    for &(guard, wider) in variants(wish.identity) {
+        let (reduction, inner) = Reduction::of(wish.identity, function, guard, wider)?;
+        let Some(seen) = Seen::reduced(function, &reduction, &inner)? else { continue };
+        if let Some(found) = cheapest(&seen, wish) {
+            return found.prove(function).map(|bound| Some(Piecewise { bound, ..found }));
+        }
+    }
+    Ok(None)
+}
+
 /// Gives the approximation of least cost that is right at every operand that is looked at.
 fn cheapest(seen: &Seen, wish: Wish) -> Option<Piecewise> {
-    let mut best: Option<(f64, Piecewise)> = None;
+    let few = seen.thinned(CHOOSING);
+    let mut found: Vec<(f64, Segments, Widths)> = Vec::new();
+    let mut least = f64::INFINITY;
     // Those first that are rarely far from the best, so that others are seldom searched to their end.
     for degree in [2, 3, 1, 0].into_iter().filter(|it| wish.degree.is_none_or(|own| own == *it)) {
-        let most = |best: &Option<(f64, Piecewise)>| {
+        let most = |least: f64| {
             // The constant alone has as many bits as the result.
             let word = f64::from(seen.result.width()) / BITS_A_CELL;
-            best.as_ref().map_or(1 << ADDRESS, |(cost, _)| {
-                ((cost - STEP * f64::from(degree)) / word).max(0.0) as usize
-            })
+            (((least - STEP * f64::from(degree)) / word).max(0.0) as usize).min(1 << ADDRESS)
         };
-        for cut in seen.cuts(degree, wish.layout, most(&best)) {
+        for cut in few.cuts(degree, wish.layout, most(least)) {
             let base = STEP * f64::from(degree) + OCTAVE * f64::from(cut.octaves);
-            if cut.words() > most(&best) {
+            if cut.words() > most(least) {
                 continue;
             }
-            if let Some(found) = Table::new(seen, cut).narrowest(degree as usize) {
-                let cost = base + found.rom_bits() as f64 / BITS_A_CELL;
-                if best.as_ref().is_none_or(|(least, _)| cost < *least) {
-                    best = Some((cost, found));
-                }
+            let table = Table::new(&few, cut);
+            if let Some((widths, words)) = table.narrowest(degree as usize) {
+                let cost = base + table.bits(&widths, &words) as f64 / BITS_A_CELL;
+                least = least.min(cost);
+                found.push((cost, cut, widths));
             }
         }
     }
-    best.map(|(_, found)| found)
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let more = seen.thinned(WIDENING);
+    found.into_iter().find_map(|(_, cut, widths)| {
+        let (widths, _) = Table::new(&more, cut).settled(widths)?;
+        let table = Table::new(seen, cut);
+        let (widths, words) = table.settled(widths)?;
+        table.finished(&widths, words)
+    })
 }
 
 /// The values of a function at the operands that the search looks at.
@@ -146,9 +195,39 @@ struct Seen<'f> {
     bits: u32,
     /// From an operand to the next that is looked at.
     stride: i64,
-    /// The results that are right, lowest and highest, of each operand that is looked at.
+    /// The polynomials that are right, lowest and highest, of each operand that is looked at.
     right: Vec<(i64, i64)>,
+    /// The polynomial's format.
     result: Format,
+    /// The function of the operands that were reduced to these, and the format of its results.
+    whole: Option<(&'f Function, &'f Reduction, Format)>,
+}
+
+/// The results that are right of some operands, and between which numbers the nearest are.
+struct Nearest {
+    right: Vec<(i64, i64)>,
+    nearest: (i64, i64),
+}
+
+impl Default for Nearest {
+    fn default() -> Self {
+        Self { right: Vec::new(), nearest: (i64::MAX, i64::MIN) }
+    }
+}
+
+impl Nearest {
+    fn with(mut self, it: Result<(i64, i64, i64), Refusal>) -> Result<Self, Refusal> {
+        let (nearest, low, high) = it?;
+        self.right.push((low, high));
+        self.nearest = (self.nearest.0.min(nearest), self.nearest.1.max(nearest));
+        Ok(self)
+    }
+
+    fn and(mut self, mut other: Self) -> Self {
+        self.right.append(&mut other.right);
+        let (low, high) = other.nearest;
+        Self { nearest: (self.nearest.0.min(low), self.nearest.1.max(high)), ..self }
+    }
 }
 
 /// A segment in the search.
@@ -210,6 +289,25 @@ impl Widths {
     }
 }
 
+impl Function {
+    /// The result that is nearest at a raw operand, and the lowest and the highest that are right where less error is allowed
+    /// by `stricter`.
+    fn right(&self, raw: i64, stricter: f64) -> Result<(i64, i64, i64), Refusal> {
+        let limits = self.limits(raw).map_err(|fault| self.refusal(raw, &fault))?;
+        if limits.low.abs().max(limits.high.abs()) > exp2(48) {
+            let message = format!("at the operand {raw} the result has more than 48 bits");
+            let remedy = "fewer fraction bits, or another domain";
+            return Err(Refusal::new("result.fraction", message, remedy));
+        }
+        let error = self.allowed(raw) - stricter;
+        let nearest = (limits.middle() + 0.5).floor() as i64;
+        // Nearer than the error, whatever the exact value is.
+        let low = (limits.high - error).floor() as i64 + 1;
+        let high = (limits.low + error).ceil() as i64 - 1;
+        Ok((nearest, low, high))
+    }
+}
+
 impl<'f> Seen<'f> {
     /// Evaluates the function; none if an operand has no result that is right. Where it does not look at every operand, less
     /// error is allowed by `stricter`.
@@ -221,34 +319,67 @@ impl<'f> Seen<'f> {
         // An odd one, so that the low bits take every value.
         let stride = if count > held { count.div_ceil(held) as i64 | 1 } else { 1 };
         let stricter = if stride > 1 { stricter } else { 0.0 };
-        let of = |at: u64| {
-            let raw = (first + at as i64 * stride).min(last);
-            let limits = function.limits(raw).map_err(|fault| function.refusal(raw, &fault))?;
-            if limits.low.abs().max(limits.high.abs()) > exp2(48) {
-                let message = format!("at the operand {raw} the result has more than 48 bits");
-                let remedy = "fewer fraction bits, or another domain";
-                return Err(Refusal::new("result.fraction", message, remedy));
-            }
-            let error = function.allowed(raw) - stricter;
-            let nearest = (limits.middle() + 0.5).floor() as i64;
-            // Nearer than the error, whatever the exact value is.
-            let low = (limits.high - error).floor() as i64 + 1;
-            let high = (limits.low + error).ceil() as i64 - 1;
-            Ok((nearest, low, high))
-        };
+        let of = |at: u64| function.right((first + at as i64 * stride).min(last), stricter);
         let seen = count.div_ceil(stride as u64) + u64::from(stride > 1);
-        let all: Vec<(i64, i64, i64)> =
-            (0..seen).into_par_iter().map(of).collect::<Result<_, _>>()?;
-        let low = all.iter().map(|it| it.0).min().unwrap_or(0);
-        let high = all.iter().map(|it| it.0).max().unwrap_or(0);
+        let all = (0..seen).into_par_iter().map(of).try_fold(Nearest::default, Nearest::with);
+        let all = all.try_reduce(Nearest::default, |a, b| Ok(a.and(b)))?;
+        let (low, high) = all.nearest;
         let result = Format::holding(low.into(), high.into(), function.fraction as i32);
         let (least, most) = (result.min_raw() as i64, result.max_raw() as i64);
-        let right: Vec<(i64, i64)> =
-            all.iter().map(|&(_, low, high)| (low.max(least), high.min(most))).collect();
+        let mut right = all.right;
+        right.iter_mut().for_each(|it| *it = (it.0.max(least), it.1.min(most)));
         if right.iter().any(|(low, high)| low > high) {
             return Ok(None);
         }
-        Ok(Some(Self { function, origin, bits, stride, right, result }))
+        Ok(Some(Self { function, origin, bits, stride, right, result, whole: None }))
+    }
+
+    /// Evaluates a function whose operands are reduced: a polynomial is right with which the results of all operands are that
+    /// are reduced to its own.
+    fn reduced(
+        whole: &'f Function,
+        reduction: &'f Reduction,
+        inner: &'f Function,
+    ) -> Result<Option<Self>, Refusal> {
+        let Some(mut seen) = Self::new(inner, 0.0)? else { return Ok(None) };
+        let all = (seen.result.min_raw() as i64, seen.result.max_raw() as i64);
+        seen.right.fill(all);
+        let (first, last) = whole.domain;
+        let nearest = (first..=last).into_par_iter().map(|raw| whole.right(raw, 0.0));
+        let ends = nearest.map(|it| it.map(|(nearest, ..)| (nearest, nearest)));
+        let (low, high) =
+            ends.try_reduce(|| (i64::MAX, i64::MIN), |a, b| Ok((a.0.min(b.0), a.1.max(b.1))))?;
+        let result = Format::holding(low.into(), high.into(), whole.fraction as i32);
+        let (least, most) = (result.min_raw() as i64, result.max_raw() as i64);
+        for from in (first..=last).step_by(CHOOSING) {
+            let of = |raw: i64| {
+                let (_, low, high) = whole.right(raw, 0.0)?;
+                let (number, restore) = reduction.reduce(raw);
+                Ok((number as usize, restore.polynomials((low.max(least), high.min(most)))))
+            };
+            let some: Vec<_> = (from..=last.min(from + CHOOSING as i64 - 1))
+                .into_par_iter()
+                .map(of)
+                .collect::<Result<_, Refusal>>()?;
+            for (number, (low, high)) in some {
+                let right = &mut seen.right[number];
+                *right = (right.0.max(low), right.1.min(high));
+                if right.0 > right.1 {
+                    return Ok(None);
+                }
+            }
+        }
+        seen.whole = Some((whole, reduction, result));
+        Ok(Some(seen))
+    }
+
+    /// No more than `most` of the operands or so, taken evenly.
+    fn thinned(&self, most: usize) -> Self {
+        // An odd one, so that the low bits take every value.
+        let by = if self.right.len() > most { self.right.len() / most | 1 } else { 1 };
+        let last = self.right.last().filter(|_| by > 1);
+        let right = self.right.iter().step_by(by).chain(last).copied().collect();
+        Self { stride: self.stride * by as i64, right, ..*self }
     }
 
     fn raw(&self, seen: usize) -> i64 {
@@ -362,10 +493,8 @@ impl<'s> Table<'s> {
     }
 
     /// The narrowest coefficients and offsets, if any are right.
-    fn narrowest(&self, degree: usize) -> Option<Piecewise> {
-        let guard = if degree == 0 { 0 } else { GENEROUS };
-        let rest = self.cut.rest();
-        let generous = Widths { guard: vec![guard; degree + 1], offset: vec![rest; degree] };
+    fn narrowest(&self, degree: usize) -> Option<(Widths, Words)> {
+        let generous = self.generous(degree);
         let mut words = self.words(&generous)?;
         // How far each can go alone; together they need about a bit more.
         let mut widths = generous.clone();
@@ -398,7 +527,37 @@ impl<'s> Table<'s> {
                 }
             }
         }
-        self.finished(&widths, words)
+        Some((widths, words))
+    }
+
+    /// The widths with which the search begins.
+    fn generous(&self, degree: usize) -> Widths {
+        let guard = if degree == 0 { 0 } else { GENEROUS };
+        Widths { guard: vec![guard; degree + 1], offset: vec![self.cut.rest(); degree] }
+    }
+
+    /// Widths that were chosen by fewer operands, a bit wider where these are not right, and the words with them.
+    fn settled(&self, mut widths: Widths) -> Option<(Widths, Words)> {
+        let generous = self.generous(widths.offset.len());
+        let wider = |widths: &Widths, at| {
+            let wider = widths.with(at, 1)?.no_wider(&generous);
+            (wider != *widths).then_some(wider)
+        };
+        loop {
+            let one_wider = (0..generous.count()).filter_map(|at| wider(&widths, at));
+            for some in [widths.clone()].into_iter().chain(one_wider) {
+                if let Some(words) = self.words(&some) {
+                    return Some((some, words));
+                }
+            }
+            let before = widths.clone();
+            for at in 0..generous.count() {
+                widths = wider(&widths, at).unwrap_or(widths);
+            }
+            if widths == before {
+                return None;
+            }
+        }
     }
 
     /// The words of a table with these widths, if there are such with which every operand that is looked at is right.
@@ -478,13 +637,31 @@ impl<'s> Table<'s> {
         Some(if least == i64::MIN { 0 } else { least + (most - least) / 2 })
     }
 
+    /// The formats of the coefficients, the constant first.
+    fn formats(&self, widths: &Widths, words: &Words) -> Vec<Format> {
+        let fraction = self.seen.function.fraction as i32;
+        let format = |(k, guard): (usize, &i32)| {
+            let (low, high) = words.iter().flatten().fold((i64::MAX, i64::MIN), |ends, word| {
+                (ends.0.min(word[k]), ends.1.max(word[k]))
+            });
+            Format::holding(low.into(), high.into(), fraction + guard)
+        };
+        widths.guard.iter().enumerate().map(format).collect()
+    }
+
+    /// Bits of the table.
+    fn bits(&self, widths: &Widths, words: &Words) -> u64 {
+        let width: u32 = self.formats(widths, words).iter().map(|format| format.width()).sum();
+        words.len() as u64 * u64::from(width)
+    }
+
     /// The approximation with these words, if its nets are not too wide.
     fn finished(&self, widths: &Widths, words: Words) -> Option<Piecewise> {
-        let function = self.seen.function;
-        let fraction = function.fraction as i32;
+        let Seen { result: polynomial, whole, .. } = self.seen;
+        let function = whole.map_or(self.seen.function, |it| it.0);
+        let coefficients = self.formats(widths, &words);
         // A word that no operand of the domain reads has what stands before or behind it.
-        let first = words.iter().flatten().next()?.clone();
-        let mut before = first;
+        let mut before = words.iter().flatten().next()?.clone();
         let words: Vec<Vec<i64>> = words
             .into_iter()
             .map(|word| {
@@ -492,29 +669,23 @@ impl<'s> Table<'s> {
                 before.clone()
             })
             .collect();
-        let holding = |values: &mut dyn Iterator<Item = i64>, fraction: i32| {
-            let (low, high) = values
-                .fold((i64::MAX, i64::MIN), |(low, high), value| (low.min(value), high.max(value)));
-            Format::holding(low.into(), high.into(), fraction)
-        };
-        let formats = widths.guard.iter().enumerate();
-        let formats = formats
-            .map(|(k, guard)| holding(&mut words.iter().map(|word| word[k]), fraction + guard));
         let mut found = Piecewise {
             operand: function.operand,
             domain: function.domain,
             outside: function.outside,
+            reduction: whole.map(|it| it.1.clone()),
             origin: self.seen.origin,
             segments: self.cut,
-            coefficients: formats.collect(),
+            coefficients,
             words,
             steps: widths.steps()?,
-            sums: vec![self.seen.result; widths.guard.len()],
+            sums: vec![*polynomial; widths.guard.len()],
+            result: whole.map_or(*polynomial, |it| it.2),
             bound: f64::INFINITY,
         };
         let (low, high) = function.domain;
-        let none = vec![(i128::MAX, i128::MIN); widths.guard.len()];
-        let with = |mut ends: Vec<Interval>, sums: &[Interval]| {
+        let none = [(i128::MAX, i128::MIN); MOST_SUMS];
+        let with = |mut ends: [Interval; MOST_SUMS], sums: &[Interval]| {
             for (end, sum) in ends.iter_mut().zip(sums) {
                 *end = (end.0.min(sum.0), end.1.max(sum.1));
             }
@@ -525,14 +696,13 @@ impl<'s> Table<'s> {
             walks.fold(none, |ends, walk| with(ends, &walk.sums))
         } else {
             let of = |ends, raw| {
-                let sums = found.sums_of(raw).into_iter().map(i128::from);
-                with(ends, &sums.map(|sum| (sum, sum)).collect::<Vec<_>>())
+                with(ends, &found.sums_of(raw).map(|sum| (i128::from(sum), i128::from(sum))))
             };
-            let folded = (low..=high).into_par_iter().fold(|| none.clone(), of);
-            folded.reduce(|| none.clone(), |a, b| with(a, &b))
+            let folded = (low..=high).into_par_iter().fold(|| none, of);
+            folded.reduce(|| none, |a, b| with(a, &b))
         };
-        for (k, (low, high)) in ends.iter().enumerate().skip(1) {
-            found.sums[k] = Format::holding(*low, *high, found.coefficients[k].frac);
+        for k in 1..found.sums.len() {
+            found.sums[k] = Format::holding(ends[k].0, ends[k].1, found.coefficients[k].frac);
         }
         let widest = found
             .steps

@@ -1,6 +1,6 @@
 //! Approximations are proved, and a wrong coefficient is not.
 
-use super::{Curve, Function, Layout, Outside, Samples, Wish, find};
+use super::{Curve, Function, Identity, Layout, Outside, Samples, Wish, find};
 use crate::base::fixed::{Format, exp2};
 use crate::formula::parse;
 
@@ -23,7 +23,7 @@ fn function(text: &str, (from, to): (f64, f64), fraction: i32, error: f64) -> Fu
 fn a_planted_wrong_coefficient_is_refused_at_every_degree() {
     for degree in 0..=3 {
         let it = function("exp(-x)", (0.0, 1.0), 10, 1.0);
-        let wish = Wish { degree: Some(degree), layout: None };
+        let wish = Wish { degree: Some(degree), ..Wish::default() };
         let found = find(&it, wish).unwrap();
         assert_eq!(found.degree(), degree as usize);
         assert!(found.bound < 1.0 && found.bound == found.prove(&it).unwrap());
@@ -69,8 +69,8 @@ fn results_are_right_against_libm() {
 fn steep_ends_are_cut_into_octaves() {
     for (text, layout) in [("sqrt(x)", Layout::Octaves), ("sqrt(1 - x)", Layout::Halving)] {
         let it = function(text, (0.0, 1.0), 12, 1.0);
-        let uniform = Wish { degree: Some(2), layout: Some(Layout::Uniform) };
-        let found = find(&it, Wish { degree: Some(2), layout: None }).unwrap();
+        let uniform = Wish { degree: Some(2), layout: Some(Layout::Uniform), ..Wish::default() };
+        let found = find(&it, Wish { degree: Some(2), ..Wish::default() }).unwrap();
         assert_eq!(found.segments.layout, layout, "{text}");
         let bits = find(&it, uniform).map_or(u64::MAX, |found| found.rom_bits());
         assert!(found.rom_bits() * 2 < bits, "{text}: {} of {bits}", found.rom_bits());
@@ -82,8 +82,10 @@ fn what_cannot_be_had_is_refused_with_what_can() {
     let refused = |it: &Function, wish| find(it, wish).unwrap_err();
     let pole = refused(&function("2 + 1 / x", (-1.0, 1.0), 8, 1.0), Wish::default());
     assert_eq!((pole.key, pole.place), ("function.formula", Some(4..9)));
-    let near =
-        refused(&function("exp(-x)", (0.0, 1.0), 10, 0.5), Wish { degree: Some(1), layout: None });
+    let near = refused(
+        &function("exp(-x)", (0.0, 1.0), 10, 0.5),
+        Wish { degree: Some(1), ..Wish::default() },
+    );
     assert_eq!(near.key, "result.error");
     assert!(near.message.starts_with("degree 1 does not keep an error of 0.5 units"), "{near:?}");
     assert!(near.remedy.starts_with("0.51 is reached"), "{near:?}");
@@ -105,7 +107,7 @@ fn a_bound_over_intervals_holds_at_every_operand() {
         ("if(x < 0.5, x, 1 - x) + 2 ^ -x", 1),
     ] {
         let it = Function { fraction: 8, ..function(text, (0.0, 1.0), 13, 1.0) };
-        let found = find(&it, Wish { degree: Some(degree), layout: None }).unwrap();
+        let found = find(&it, Wish { degree: Some(degree), ..Wish::default() }).unwrap();
         let bound = found.prove_by_segments(&it).unwrap();
         assert!((found.bound..=1.0).contains(&bound), "{text}: {bound} for {}", found.bound);
         for k in 0..=degree as usize {
@@ -121,7 +123,9 @@ fn a_bound_over_intervals_holds_at_every_operand() {
 #[test]
 fn more_operands_than_can_be_computed_have_a_bound() {
     let it = Function { fraction: 14, ..function("exp(-x)", (0.0, 1.0), 28, 1.0) };
-    let found = find(&it, Wish { degree: Some(2), layout: Some(Layout::Uniform) }).unwrap();
+    let found =
+        find(&it, Wish { degree: Some(2), layout: Some(Layout::Uniform), ..Wish::default() })
+            .unwrap();
     assert!(it.is_wide() && found.bound <= 1.0);
     let mut largest: f64 = 0.0;
     for raw in (0..1i64 << 28).step_by(4099) {
@@ -144,7 +148,7 @@ fn samples_are_met_and_a_wrong_coefficient_is_refused() {
     };
     for degree in 0..=3 {
         let it = samples(1.0);
-        let found = find(&it, Wish { degree: Some(degree), layout: None }).unwrap();
+        let found = find(&it, Wish { degree: Some(degree), ..Wish::default() }).unwrap();
         let off = |raw: i64| (found.result(raw) as f64 - (raw * raw) as f64 / 64.0).abs();
         let at_samples = (0..=85).map(|k| off(3 * k)).fold(0.0, f64::max);
         assert!(at_samples < 1.0 && (found.bound - at_samples).abs() < 1e-9, "degree {degree}");
@@ -152,5 +156,49 @@ fn samples_are_met_and_a_wrong_coefficient_is_refused() {
         let mut wrong = (*found).clone();
         wrong.words[0][0] += 3i64 << (found.coefficients[0].frac - 10);
         assert_eq!(wrong.prove(&it).unwrap_err().key, "result.error");
+    }
+}
+
+/// Of each identity a function: every operand of the whole domain is right against `libm`, and a wrong coefficient is refused.
+#[test]
+fn reduced_operands_serve_the_whole_domain() {
+    type Whole = (&'static str, (f64, f64), Identity, fn(f64) -> f64);
+    let cases: [Whole; 9] = [
+        ("sigmoid(x)", (-4.0, 4.0), Identity::Odd, |x| 1.0 / (1.0 + libm::exp(-x))),
+        ("x^3", (-1.0, 1.0), Identity::Odd, |x| x * x * x),
+        ("exp(-x * x)", (-2.0, 2.0), Identity::Even, |x| libm::exp(-x * x)),
+        ("cos(pi * x)", (-1.0, 1.0), Identity::Quadrants, |x| libm::cos(x * std::f64::consts::PI)),
+        ("sqrt(x)", (0.0, 64.0), Identity::Octaves, f64::sqrt),
+        ("1 / x", (0.125, 64.0), Identity::Octaves, |x| 1.0 / x),
+        ("ln(x)", (0.125, 64.0), Identity::Octaves, libm::log),
+        ("2^(x / 2)", (-4.0, 4.0), Identity::Exponent, |x| libm::exp2(x / 2.0)),
+        ("exp(-x)", (-2.0, 4.0), Identity::Exponent, |x| libm::exp(-x)),
+    ];
+    for (text, domain, identity, exact) in cases {
+        for error in [1.0, 0.55] {
+            let it = function(text, domain, 7, error);
+            let found = find(&it, Wish { identity, ..Wish::default() }).unwrap();
+            let reduction = found.reduction.as_ref().unwrap();
+            for raw in it.domain.0..=it.domain.1 {
+                let off = found.result(raw) as f64 - exact(raw as f64 / 128.0) * 128.0;
+                assert!(off.abs() <= found.bound && found.bound < error, "{text}: {raw} is {off}");
+            }
+            let mut wrong = (*found).clone();
+            wrong.words[0][0] += 8i64 << (found.guard() + reduction.guard);
+            assert_eq!(wrong.prove(&it).unwrap_err().key, "result.error", "{text}");
+        }
+    }
+    for (text, domain, identity) in [
+        ("x^2 + x", (-1.0, 1.0), Identity::Even),
+        ("exp(x)", (-1.0, 1.0), Identity::Odd),
+        ("sin(x)", (0.0, 4.0), Identity::Quadrants),
+        ("sin(x)", (0.0, 6.0), Identity::Quadrants),
+        ("1 + sqrt(x)", (1.0, 64.0), Identity::Octaves),
+        ("exp(x) - exp(-x)", (1.0, 2.0), Identity::Exponent),
+        ("1 + exp(x)", (0.0, 2.0), Identity::Exponent),
+    ] {
+        let it = function(text, domain, 8, 1.0);
+        let refusal = find(&it, Wish { identity, ..Wish::default() }).unwrap_err();
+        assert_eq!(refusal.key, "approximation.reduction", "{text}");
     }
 }

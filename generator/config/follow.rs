@@ -16,7 +16,8 @@ use super::values::{Config, Value};
 pub fn follow(schema: &Schema, config: &Config, given: &BTreeSet<&str>) -> Config {
     let mut config = config.clone();
     let mut left = complaints(schema, &config);
-    let mut free: Vec<&Key> = schema.keys.iter().filter(|key| !given.contains(key.name)).collect();
+    let own = schema.keys.iter().filter(|key| key.drawn.is_none());
+    let mut free: Vec<&Key> = own.filter(|key| !given.contains(key.name)).collect();
     while !left.is_empty() {
         // The key that the device complains of comes first where several would do.
         free.sort_by_key(|key| !left.contains(&key.name.to_owned()));

@@ -45,7 +45,8 @@ pub struct Key {
     pub only_when: Option<(&'static str, &'static str)>,
     /// At its default it is not written, as a shared key: digests of configurations from before there was the key hold.
     pub joined_later: bool,
-    /// Random configurations draw an integer from this range rather than from the whole one.
+    /// Random configurations draw an integer from this range rather than from the whole one, and it follows no other key: elsewhere
+    /// a configuration is costly.
     pub drawn: Option<(i64, i64)>,
 }
 

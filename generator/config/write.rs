@@ -46,7 +46,9 @@ pub fn commented_values(schema: &Schema, config: &Config) -> String {
                 rule += &format!("; only with {other} = {needed}");
             }
             text += &comment(&sentence(&rule));
-            let off = if config.applies(schema, key.name) { "" } else { "# " };
+            // No samples are no path.
+            let on = config.applies(schema, key.name) && value != "\"\"";
+            let off = if on { "" } else { "# " };
             text += &format!("{off}{} = {value}\n", key.table_and_leaf().1);
         }
     }

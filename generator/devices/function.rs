@@ -1,5 +1,7 @@
 //! `function` — a formula of one operand: a table of coefficients, and Horner's rule on one multiplier.
 
+mod reduction;
+
 use std::ops::Range;
 
 use crate::approximate::{Layout, Outside, Piecewise};
@@ -7,6 +9,7 @@ use crate::base::fixed::{Format, MAX_WIDTH, Overflow, Rounding};
 use crate::config::Config;
 use crate::hdl::dsl::{Designer, Signal, end, step, valid};
 use crate::hdl::netlist::About;
+use crate::hdl::pipeline::options;
 use crate::keys::function::{Keys, found};
 
 /// The device.
@@ -25,9 +28,15 @@ pub fn describe(d: &Designer, config: &Config) {
         Outside::Wrap | Outside::Anything => d.operand("x", it.operand),
     };
     let x = operand.doc("the operand").q();
-    let number = number(d, x, &it);
+    let (number, restoring) = match &it.reduction {
+        None => (number(d, x, &it), None),
+        Some(reduction) => {
+            let (number, restoring) = reduction::reduced(d, x, &it, reduction);
+            (number, Some(restoring))
+        }
+    };
     let (address, offset) = place(d, number, &it);
-    let coefficients = table(d, address, &it);
+    let coefficients = table(d, address, &it, is_split(config, &it));
     let degree = it.degree();
 
     // The offsets that each step multiplies, and the sums that it leaves.
@@ -38,7 +47,8 @@ pub fn describe(d: &Designer, config: &Config) {
             offset.bits(it.segments.rest() - step.offset, Format::signed(-1, width))
         })
         .collect();
-    let registers: Vec<_> = Piecewise::REGISTERS
+    let registers: Vec<_> = it
+        .registers()
         .iter()
         .zip(&it.sums)
         .take(degree.max(1))
@@ -84,15 +94,29 @@ pub fn describe(d: &Designer, config: &Config) {
         registers[k].takes(kept);
         let load = registers[k].load();
         let name = match k {
+            0 if it.reduction.is_some() => "polynomial <- all coefficients".to_owned(),
             0 => "result <- the polynomial".to_owned(),
             _ => format!("sum{k} <- coefficients from {k} on"),
         };
         let pick = shared.as_ref().map(|(factors, _)| factors.pick(factor(k)));
         steps.push(step(&name, pick.into_iter().chain([load])));
     }
+    let mut result = registers[0];
+    if let Some(restoring) = restoring {
+        result = d.register("result", it.result);
+        result.takes(restoring.result(d, registers[0].q(), it.result));
+        steps.push(step("result <- the polynomial", [result.load()]));
+    }
     steps.push(step("result", [valid(), end()]));
-    d.output("result_out", registers[0].q());
+    d.output("result_out", result.q());
     d.microprogram(steps);
+}
+
+/// An operand's raw value.
+fn whole(x: Signal) -> Signal {
+    let Format { signed, .. } = x.format();
+    let int = x.format().width() as i32 - i32::from(signed);
+    x.read_as(Format { int, frac: 0, ..x.format() })
 }
 
 /// The operand's number within the domain, without a sign.
@@ -107,14 +131,12 @@ fn number<'d>(d: &'d Designer, x: Signal<'d>, it: &Piecewise) -> Signal<'d> {
             x.read_as(integer(width))
         };
     }
-    let whole =
-        x.read_as(Format { int: width - i32::from(x.format().signed), frac: 0, ..x.format() });
     let first = d.raw_constant(
         "first",
         it.origin.into(),
         Format::holding(it.origin.into(), it.origin.into(), 0),
     );
-    let number = d.sub("number", whole, first);
+    let number = d.sub("number", whole(x), first);
     if number.format() == integer(bits) { number } else { number.bits(0, integer(bits)) }
 }
 
@@ -174,16 +196,22 @@ fn place<'d>(
     (word, offset)
 }
 
-/// The coefficients of the segment, the constant first, which come a clock after the address. They stand side by side in
-/// words of as many bits as a net may have.
-fn table<'d>(d: &'d Designer, address: Signal<'d>, it: &Piecewise) -> Vec<Signal<'d>> {
+/// Whether each coefficient has a table of its own: in a pipeline the address then waits in place of the coefficient, which
+/// is wider. A block memory has all.
+fn is_split(config: &Config, it: &Piecewise) -> bool {
+    options(config).is_some_and(|pipeline| it.rom_bits() < pipeline.target.block_bits)
+}
+
+/// The coefficients of the segment, the constant first, which come a clock after the address. They are in tables of their own
+/// where these are `split`, or stand side by side in words of as many bits as a net may have.
+fn table<'d>(d: &'d Designer, address: Signal<'d>, it: &Piecewise, split: bool) -> Vec<Signal<'d>> {
     let mut parts: Vec<Range<usize>> = Vec::new();
     let width = |part: &Range<usize>| -> u32 {
         it.coefficients[part.clone()].iter().map(|format| format.width()).sum()
     };
     for k in 0..it.coefficients.len() {
         match parts.last_mut() {
-            Some(part) if width(&(part.start..k + 1)) <= MAX_WIDTH => part.end = k + 1,
+            Some(part) if !split && width(&(part.start..k + 1)) <= MAX_WIDTH => part.end = k + 1,
             _ => parts.push(k..k + 1),
         }
     }
@@ -206,9 +234,13 @@ fn table<'d>(d: &'d Designer, address: Signal<'d>, it: &Piecewise) -> Vec<Signal
         } else {
             format!("coefficients{}", part.start)
         };
-        let rom = d.rom(&name, address, format, &words, true).doc(
-            "coefficients of the segment's polynomial, that of the lowest power in the top bits",
-        );
+        let doc = match part.len() {
+            1 => "coefficient of the segment's polynomial",
+            _ => {
+                "coefficients of the segment's polynomial, that of the lowest power in the top bits"
+            }
+        };
+        let rom = d.rom(&name, address, format, &words, true).doc(doc);
         for (k, format) in part.clone().zip(formats) {
             below -= format.width();
             signals.push(rom.out().bits(below, *format).named(&format!("c{k}")));
@@ -221,6 +253,9 @@ fn about(keys: &Keys, proof: &str, it: &Piecewise) -> About {
     let Keys { from, to, .. } = keys;
     let formula = if keys.samples.is_empty() { &keys.formula } else { "samples(x)" };
     let ends = if keys.to_included { "both ends included" } else { "the end not included" };
+    let reduced = it.reduction.as_ref().map_or_else(String::new, |it| {
+        format!("Operands are reduced ({}) to {} bits. ", keys.reduction.word(), it.bits)
+    });
     let shape = match it.degree() {
         0 => format!("A table of {} results", it.words.len()),
         degree => format!(
@@ -238,7 +273,7 @@ fn about(keys: &Keys, proof: &str, it: &Piecewise) -> About {
         notes: vec![
             format!("The domain is x from {from} to {to}, {ends}.").into(),
             format!(
-                "{shape}. {proof}: no result is further off than {:.4} units of the last place.",
+                "{reduced}{shape}. {proof}: no result is further off than {:.4} units of the last place.",
                 it.bound
             )
             .into(),

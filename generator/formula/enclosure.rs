@@ -56,25 +56,27 @@ impl Enclosure {
 
     /// The hull of what `of` gives for the corners of two enclosures: the limits of a function that is monotone in each.
     fn corners(self, other: Self, of: impl Fn(f64, f64) -> Self) -> Self {
-        let [a, b, c, d] = [
-            of(self.low, other.low),
-            of(self.low, other.high),
-            of(self.high, other.low),
-            of(self.high, other.high),
-        ];
+        let first = of(self.low, other.low);
+        if self.low == self.high && other.low == other.high {
+            return first;
+        }
+        let [a, b, c, d] =
+            [first, of(self.low, other.high), of(self.high, other.low), of(self.high, other.high)];
         a.hull(b).hull(c.hull(d))
     }
 
     /// The values of a function of `libm` that never falls.
     pub(super) fn rising(self, of: fn(f64) -> f64) -> Self {
-        Self::near(of(self.low), of(self.high))
+        let low = of(self.low);
+        Self::near(low, if self.low == self.high { low } else { of(self.high) })
     }
 
     /// The values of a sine or a cosine, which is never steeper than 1.
     pub(super) fn wave(self, of: fn(f64) -> f64) -> Self {
         let middle = self.middle();
         let reach = ((self.high - middle).max(middle - self.low)).next_up();
-        let Self { low, high } = Self::near(of(middle), of(middle));
+        let value = of(middle);
+        let Self { low, high } = Self::near(value, value);
         Self { low: (low - reach).next_down().max(-1.0), high: (high + reach).next_up().min(1.0) }
     }
 

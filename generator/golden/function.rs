@@ -12,7 +12,8 @@ use crate::base::fixed::exp2;
 use crate::config::Config;
 use crate::keys::function::found;
 
-/// Registers: the operand, and the sums from each coefficient on, of which the first is the result.
+/// Registers: the operand, the sums from each coefficient on, of which the first is the result, or the polynomial from which the
+/// result comes.
 fn device(it: &Arc<Piecewise>) -> device::Device {
     let (first, last) = it.domain;
     let top = it.degree();
@@ -21,9 +22,12 @@ fn device(it: &Arc<Piecewise>) -> device::Device {
         Outside::Clamp => frame.clamped("x", it.operand, first, last),
         Outside::Wrap | Outside::Anything => frame.operand("x", it.operand),
     };
-    let registers = Piecewise::REGISTERS.iter().zip(&it.sums).take(top.max(1));
+    let names = it.registers();
+    let registers = names.iter().zip(&it.sums).take(top.max(1));
     let sums: Vec<_> = registers.map(|(name, format)| frame.register(name, *format)).collect();
-    frame.shows("result_out", sums[0]);
+    let polynomial = sums[0];
+    let restored = it.reduction.is_some().then(|| frame.register("result", it.result));
+    frame.shows("result_out", restored.unwrap_or(polynomial));
     let add = |k: usize| {
         let (own, above) = (sums[k], sums.get(k + 1).copied());
         step_by(it, move |it, s| {
@@ -35,7 +39,13 @@ fn device(it: &Arc<Piecewise>) -> device::Device {
         })
     };
     let adds = (0..top.max(1)).rev().map(add);
-    let program = [idle()].into_iter().chain(adds).chain([idle().valid().end()]);
+    let restores = restored.map(|own| {
+        step_by(it, move |it, s| {
+            let result = it.restored(s[x], s[polynomial]);
+            s[own] = it.result.raw(it.result.bits(result.into())) as i64;
+        })
+    });
+    let program = [idle()].into_iter().chain(adds).chain(restores).chain([idle().valid().end()]);
     frame.device(program.collect::<Vec<_>>()).domain("x", first, last)
 }
 

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::approximate::{
-    Curve, Function, Layout, Outside, Piecewise, Refusal, Samples, Wish, find,
+    Curve, Function, Identity, Layout, Outside, Piecewise, Refusal, Samples, Wish, find,
 };
 use crate::base::fixed::{Format, MAX_WIDTH, exp2};
 use crate::config::{Config, Key, Problems, Schema, TextPattern};
@@ -38,6 +38,11 @@ keys! {
             &["auto", "uniform", "octaves", "halving"],
             "How the domain is cut: evenly, or ever shorter toward its low end (octaves) or its high end (halving), for \
              functions that are steep there."),
+        reduction: Identity = Key::choice("approximation.reduction", "none", Identity::WORDS,
+            "The identity by which polynomials on a short domain serve the whole one: odd and even ones about 0, the quadrants of a \
+             sine, octaves (powers, roots, reciprocals, logarithms), the integer of an exponent as a shift. The bound is proved \
+             over the whole domain.")
+            .joined_later(),
     }
 }
 
@@ -71,6 +76,7 @@ pub fn found(config: &Config) -> Result<(Function, Arc<Piecewise>), Refusal> {
     let wish = Wish {
         degree: keys.degree.parse().ok(),
         layout: Layout::NAMES.iter().find(|it| it.0 == keys.segments).map(|it| it.1),
+        identity: keys.reduction,
     };
     let it = find(&function, wish)?;
     Ok((function, it))

@@ -11,6 +11,9 @@ use crate::registry::Device;
 /// Steps by which an integer is changed.
 const STEPS: [i64; 3] = [1, 2, 4];
 
+/// Tables of keys that state what is computed, and where.
+const STATEMENT: [&str; 2] = ["domain", "function"];
+
 /// Points at which formulas are compared, drawn as those of a test are: most of them where the formula is neither 0 nor flat.
 const POINTS: u32 = 600;
 
@@ -35,9 +38,10 @@ impl Space {
         let outside = Outside::new(&design, (device.contract)(base).as_ref());
         let mut space = Self { schema, free: Vec::new(), outside, slower };
         let is_free = |key: &&Key| {
-            key.table_and_leaf().0 != "domain"
-                && !fixed.contains(&key.name)
-                && alternatives(key, base.value(key.name)).into_iter().all(|value| {
+            let values = alternatives(key, base.value(key.name));
+            let states = STATEMENT.contains(&key.table_and_leaf().0);
+            !(values.is_empty() || states || fixed.contains(&key.name))
+                && values.into_iter().all(|value| {
                     // A value that does not go with the others says nothing.
                     let changed = space.with(base, &[(key.name, value)]);
                     changed.is_none_or(|config| {

@@ -6,6 +6,7 @@ pub mod divider;
 pub mod exponential;
 pub mod line;
 pub mod multipartite;
+pub mod quadrant;
 pub mod segmented;
 pub mod shift;
 pub mod squaring;

@@ -103,9 +103,7 @@ fn every_device_is_listed() {
 
 #[test]
 fn a_new_configuration_is_accepted() {
-    for (device, name) in
-        [("rough", "rough"), ("cosine-power", "cosine_power"), ("schlick", "schlick")]
-    {
+    for (device, name) in [("rough", "rough"), ("function", "my_function"), ("sin", "sin")] {
         let dir = Workspace::new();
         let text = dir.done(["new", device]);
         dir.write("file.toml", &text);

@@ -1,0 +1,408 @@
+//! Range reduction: the operand of a whole format becomes one of a short domain, and the polynomial's result there that of the operand.
+//!
+//! An identity of the formula is taken for granted here and shown nowhere: every operand of the whole format is computed and set
+//! against the formula, as without a reduction.
+
+use super::{Curve, Function, Outside, Refusal};
+use crate::base::fixed::{Format, exp2};
+use crate::formula::{Enclosure, Formula, parse};
+
+choices! {
+    /// The identity by which values elsewhere follow from those of a short domain.
+    #[derive(Default, Hash)]
+    pub enum Identity {
+        /// None is used.
+        #[default]
+        None = "none",
+        /// f(−x) = 2 f(0) − f(x).
+        Odd = "odd",
+        /// f(−x) = f(x).
+        Even = "even",
+        /// A sine of any phase: the domain is its period.
+        Quadrants = "quadrants",
+        /// f(4x) is f(x) times a power of two, or a constant more.
+        Octaves = "octaves",
+        /// f is a power with the operand in its exponent.
+        Exponent = "exponent",
+    }
+}
+
+impl Identity {
+    /// The word that a configuration has for it.
+    pub fn word(self) -> &'static str {
+        Self::WORDS[self as usize]
+    }
+}
+
+/// A reduced operand is a number of some bits.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reduction {
+    /// How it is found.
+    pub rule: Rule,
+    /// Bits of the number.
+    pub bits: u32,
+    /// Fraction bits of the polynomial beyond those of the result.
+    pub guard: u32,
+}
+
+/// How operands are reduced.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Rule {
+    /// To their size, or the largest number. What the result of a negative one is taken off, of odd functions.
+    Size(Option<i64>),
+    /// To the way from the nearer zero, in the first quadrant after a turn by some quadrants.
+    Quadrants(u32),
+    /// To what is behind the leading bit, of two octaves where they come in pairs.
+    Octaves {
+        /// Bits of the operand.
+        width: u32,
+        /// Whether the number has a bit that says which of a pair it is.
+        pairs: bool,
+        /// By the leading zeros of the operand: places to the right, and what is added before, in places of the polynomial.
+        restores: Vec<(u32, i64)>,
+    },
+    /// To the fraction of the exponent, of which the integer is a shift.
+    Exponent {
+        /// A factor that makes the operand an exponent of two, and the bits that are cut off the product.
+        scale: Option<(i64, u32)>,
+        /// The integer at which the results are largest.
+        whole: i64,
+        /// Whether it is the least.
+        falls: bool,
+    },
+}
+
+/// How the result of an operand comes of the polynomial.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Restore {
+    /// Added to the polynomial.
+    addend: i64,
+    /// Then places to the right, rounded to the nearest.
+    shift: u32,
+    /// Then taken off this.
+    centre: Option<i64>,
+    /// The operand is 0, and the result too.
+    zero: bool,
+}
+
+impl Restore {
+    /// The result.
+    pub fn result(self, polynomial: i64) -> i64 {
+        if self.zero {
+            return 0;
+        }
+        let doubled = i128::from(polynomial + self.addend) << 1;
+        let result = (((doubled >> self.shift) + 1) >> 1) as i64;
+        self.centre.map_or(result, |centre| centre - result)
+    }
+
+    /// The polynomials, lowest and highest, whose results are within limits.
+    pub(super) fn polynomials(self, (low, high): (i64, i64)) -> (i64, i64) {
+        const MOST: i128 = 1 << 60;
+        if self.zero {
+            return (-MOST as i64, MOST as i64);
+        }
+        let (low, high) = self.centre.map_or((low, high), |centre| (centre - high, centre - low));
+        // The least whose result is the limit or more.
+        let least = |limit: i64| {
+            let half = (((i128::from(limit) << 1) - 1) << self.shift).clamp(-MOST, MOST);
+            ((half + 1) >> 1) - i128::from(self.addend)
+        };
+        (least(low) as i64, (least(high + 1) - 1) as i64)
+    }
+}
+
+impl Reduction {
+    /// The number of a raw operand, and how its result comes of the polynomial there.
+    pub fn reduce(&self, raw: i64) -> (i64, Restore) {
+        let mask = (1i64 << self.bits) - 1;
+        let mirrored = |low: i64| if low == 0 { mask } else { mask + 1 - low };
+        let plain = Restore { shift: self.guard, ..Restore::default() };
+        match &self.rule {
+            Rule::Size(centre) => {
+                let centre = centre.filter(|_| raw < 0);
+                (raw.abs().min(mask), Restore { centre, ..plain })
+            }
+            Rule::Quadrants(phase) => {
+                let turned = raw + (i64::from(*phase) << self.bits);
+                let (quadrant, low) = (turned >> self.bits & 3, turned & mask);
+                let number = if quadrant & 1 == 1 { mirrored(low) } else { low };
+                (number, Restore { centre: (quadrant >= 2).then_some(0), ..plain })
+            }
+            Rule::Octaves { width, pairs, restores } => {
+                if raw == 0 {
+                    return (0, Restore { zero: true, ..plain });
+                }
+                let octave = raw.ilog2();
+                let zeros = width - 1 - octave;
+                let rest = (raw << zeros) & ((1 << (width - 1)) - 1);
+                let second = i64::from(*pairs && octave % 2 == 1);
+                let (shift, addend) = restores[zeros as usize];
+                let restore = Restore { shift: self.guard + shift, addend, ..plain };
+                (second << (width - 1) | rest, restore)
+            }
+            Rule::Exponent { scale, whole, .. } => {
+                let exponent = exponent(*scale, raw);
+                let away = (whole - (exponent >> self.bits)).unsigned_abs() as u32;
+                (exponent & mask, Restore { shift: self.guard + away, ..plain })
+            }
+        }
+    }
+
+    /// The most places by which the integer of an exponent shifts.
+    pub fn most_places(&self, (first, last): (i64, i64)) -> u32 {
+        [first, last]
+            .map(|raw| self.reduce(raw).1.shift - self.guard)
+            .into_iter()
+            .max()
+            .unwrap_or(0)
+    }
+
+    /// The reduction of a function by an identity, and the function of its numbers. With `wider` the number of a size holds the
+    /// largest of them.
+    ///
+    /// # Errors
+    /// The formula does not look as if the identity holds, or the domain does not suit it.
+    pub(super) fn of(
+        identity: Identity,
+        function: &Function,
+        guard: u32,
+        wider: bool,
+    ) -> Result<(Self, Function), Refusal> {
+        let Curve::Formula(formula) = &function.curve else {
+            return refused("samples have no identity", "\"none\"");
+        };
+        let whole = Whole { function, formula, guard };
+        let (rule, bits, text) = match identity {
+            Identity::None => return refused("there is no identity", "leave it out"),
+            Identity::Odd => whole.size(true, wider)?,
+            Identity::Even => whole.size(false, wider)?,
+            Identity::Quadrants => whole.quadrants()?,
+            Identity::Octaves => whole.octaves()?,
+            Identity::Exponent => whole.exponent()?,
+        };
+        if bits == 0 || bits > MOST {
+            let message = format!("a reduced operand has {bits} bits, and not 1 to {MOST}");
+            return refused(&message, "other fraction bits, or another domain");
+        }
+        let place = formula.span.clone();
+        let (fraction, text) = text;
+        let inner = parse(&text).map_err(|fault| Refusal::new(KEY, fault.message, "\"none\""))?;
+        let formula = formula.substitute(&Formula::operand("x"), &inner, &place);
+        let last = match rule {
+            Rule::Size(_) if wider => function.domain.0.abs().max(function.domain.1),
+            _ => (1 << bits) - 1,
+        };
+        let inner = Function {
+            curve: Curve::Formula(formula),
+            domain: (0, last),
+            operand: Format::unsigned(bits as i32 - fraction, fraction),
+            outside: Outside::Anything,
+            fraction: function.fraction + guard,
+            error: function.error * exp2(guard as i32),
+        };
+        Ok((Self { rule, bits, guard }, inner))
+    }
+}
+
+/// The exponent of two of an operand, with as many fraction bits as a number has.
+fn exponent(scale: Option<(i64, u32)>, raw: i64) -> i64 {
+    scale.map_or(raw, |(factor, cut)| (i128::from(raw) * i128::from(factor) >> cut) as i64)
+}
+
+/// The key of a reduction.
+pub(super) const KEY: &str = "approximation.reduction";
+
+/// The most bits of a reduced operand.
+const MOST: u32 = 24;
+
+/// How near to each other two values are that count as equal.
+const EQUAL: f64 = 1e-9;
+
+fn refused<T>(message: &str, remedy: &str) -> Result<T, Refusal> {
+    Err(Refusal::new(KEY, message.to_owned(), remedy))
+}
+
+/// The formula is not as the identity wants it.
+fn unlike<T>(wanted: &str) -> Result<T, Refusal> {
+    refused(&format!("the formula has no such identity: {wanted}"), "\"none\", or another")
+}
+
+fn near(a: f64, b: f64) -> bool {
+    (a - b).abs() <= EQUAL * a.abs().max(b.abs()).max(1e-3)
+}
+
+/// A rule, bits of a number, and fraction bits of it with the operand that it stands for, as a formula of the number's value.
+type Found = Result<(Rule, u32, (i32, String)), Refusal>;
+
+/// A function that is to be reduced.
+struct Whole<'f> {
+    function: &'f Function,
+    formula: &'f Formula,
+    guard: u32,
+}
+
+impl Whole<'_> {
+    fn at(&self, x: f64) -> Result<f64, Refusal> {
+        let value = self.formula.enclose(&[("x", Enclosure::exactly(x))]);
+        let raw = (x * exp2(self.function.operand.frac)) as i64;
+        value.map(Enclosure::middle).map_err(|fault| self.function.refusal(raw, &fault))
+    }
+
+    fn size(&self, odd: bool, wider: bool) -> Found {
+        let Function { domain: (first, last), operand: Format { frac, .. }, .. } = *self.function;
+        if first >= 0 || last < 0 {
+            return refused("the domain is on one side of 0", "\"none\", or change function.from");
+        }
+        let centre = if odd { 2.0 * self.at(0.0)? } else { 0.0 };
+        let ends = last.min(-first) as f64 * exp2(-frac);
+        for part in [1.0, 0.71, 0.3] {
+            let x = (ends * part * exp2(frac)).floor() * exp2(-frac);
+            let (right, left) = (self.at(x)?, self.at(-x)?);
+            if !near(left, if odd { centre - right } else { right }) {
+                return unlike(if odd {
+                    "f(-x) is not 2 f(0) - f(x)"
+                } else {
+                    "f(-x) is not f(x)"
+                });
+            }
+        }
+        let centre = (centre * exp2(self.function.fraction as i32) + 0.5).floor() as i64;
+        let largest = last.max(-first - i64::from(!wider));
+        let bits = i64::BITS - largest.leading_zeros();
+        Ok((Rule::Size(odd.then_some(centre)), bits, (frac, "x".to_owned())))
+    }
+
+    fn quadrants(&self) -> Found {
+        let Function { domain: (first, last), operand: Format { frac, .. }, .. } = *self.function;
+        let count = last - first + 1;
+        let quarter = count / 4;
+        if count < 8 || !(count as u64).is_power_of_two() || first % quarter != 0 {
+            let message = "the domain is no period of four quadrants with a power of two operands";
+            return refused(message, "scale the operand, as in sin(2 * pi * x) from 0 to 1");
+        }
+        let at = |eighths: i64| {
+            let raw = first + (eighths * quarter / 2 - first).rem_euclid(count);
+            self.at(raw as f64 * exp2(-frac))
+        };
+        let values = (0..8).map(at).collect::<Result<Vec<f64>, _>>()?;
+        let sine = |phase: usize| {
+            let of = |eighth: usize| values[(eighth + 8 - 2 * phase) % 8];
+            let whole = of(2);
+            let zero = |value: f64| value.abs() <= EQUAL * whole;
+            whole > 0.0
+                && zero(of(0))
+                && zero(of(4))
+                && [(1, 1.0), (3, 1.0), (5, -1.0), (7, -1.0)]
+                    .iter()
+                    .all(|&(eighth, sign)| near(of(eighth), sign * of(1)))
+        };
+        let Some(phase) = (0..4).find(|phase| sine(*phase)) else {
+            return unlike("its quadrants are not those of a sine");
+        };
+        let from = first + (-(phase as i64) * quarter - first).rem_euclid(count);
+        let text = format!("x + {}", from as f64 * exp2(-frac));
+        Ok((Rule::Quadrants(phase as u32), quarter.ilog2(), (frac, text)))
+    }
+
+    fn octaves(&self) -> Found {
+        let Function { domain: (first, last), operand: format, .. } = *self.function;
+        if first < 0 || last < 8 || last.ilog2() < first.max(1).ilog2() + 2 {
+            return refused("the domain has not three octaves above 0", "\"none\"");
+        }
+        let (low, high) = (first.max(1).ilog2() as i32, last.ilog2() as i32);
+        let (mut steps, mut ratios) = (Vec::new(), Vec::new());
+        for octave in [low, high - 2] {
+            for part in [1.0, 1.25, 1.625] {
+                let x = part * exp2(octave - format.frac);
+                let values = [self.at(x)?, self.at(2.0 * x)?, self.at(4.0 * x)?];
+                steps.extend([values[1] - values[0], values[2] - values[1]]);
+                ratios.push(libm::log2(values[2] / values[0]));
+            }
+        }
+        let all = |values: &[f64]| values.iter().all(|&value| near(value, values[0]));
+        let width = format.width();
+        let (step, ratio) = (steps[0], (ratios[0] + 0.5).floor());
+        let rises = ratio > 0.0;
+        let (pairs, factor, added) = if all(&steps) {
+            (false, 0.0, step)
+        } else if all(&ratios) && near(ratios[0], ratio) && self.at(exp2(low - format.frac))? > 0.0
+        {
+            (ratio % 2.0 != 0.0, ratio, 0.0)
+        } else {
+            return unlike("f(4x) is neither a power of two times f(x) nor a constant more");
+        };
+        if first == 0 && !rises {
+            return refused("0 is in no octave", "change function.from to the least operand above");
+        }
+        // The octave, or the pair, that the polynomials are of: that of the largest results.
+        let of = |octave: i32| if pairs { octave >> 1 } else { octave };
+        let own = match factor {
+            0.0 => format.frac.clamp(low, high),
+            _ => of(if rises { high } else { low }),
+        };
+        let places = if pairs { factor.abs() } else { factor.abs() / 2.0 };
+        let fraction = (self.function.fraction + self.guard) as i32;
+        let restore = |zeros: u32| {
+            let octave = (width as i32 - 1 - zeros as i32).clamp(low, high);
+            let away = of(octave) - own;
+            let addend = (added * f64::from(away) * exp2(fraction) + 0.5).floor() as i64;
+            (away.unsigned_abs() * places as u32, addend)
+        };
+        let count = 2u32 << (width - 1).max(1).ilog2();
+        let restores = (0..count).map(restore).collect();
+        let rule = Rule::Octaves { width, pairs, restores };
+        let rest = width - 1;
+        Ok(if pairs {
+            let unit = exp2(2 * own - format.frac);
+            let text = format!("if(x < 1, {unit} * (1 + x), {} * x)", 2.0 * unit);
+            (rule, rest + 1, (rest as i32, text))
+        } else {
+            (rule, rest, (rest as i32, format!("{} * (1 + x)", exp2(own - format.frac))))
+        })
+    }
+
+    fn exponent(&self) -> Found {
+        let Function { domain: (first, last), operand: Format { frac, .. }, .. } = *self.function;
+        let value = |raw: f64| raw * exp2(-frac);
+        let (from, to) = (value(first as f64), value(last as f64));
+        let logarithm = |x: f64| self.at(x).map(libm::log2);
+        let slope = (logarithm(to)? - logarithm(from)?) / (to - from);
+        for part in [0.25, 0.5, 0.875] {
+            let x = from + (to - from) * part;
+            let wanted = logarithm(from)? + slope * (x - from);
+            if !slope.is_normal() || !near(logarithm(x)?, wanted) {
+                return unlike("its logarithm is no straight line");
+            }
+        }
+        // The operand in which results double or halve.
+        let unit = 1.0 / slope.abs();
+        let power = (libm::log2(unit) + 0.5).floor();
+        let largest = self.at(from)?.max(self.at(to)?);
+        let (scale, bits) = if near(unit, exp2(power as i32)) {
+            (None, frac + power as i32)
+        } else {
+            let above = (libm::log2(largest) + 1.0).ceil().max(0.0) as i32;
+            let bits = (self.function.fraction + self.guard) as i32 + above + 2;
+            let cut = i64::BITS - first.abs().max(last.abs()).leading_zeros() + 1;
+            let factor = exp2(cut as i32 + bits - frac) / unit;
+            if factor.abs() >= exp2(40) {
+                return refused(
+                    "the operand's factor has more than 40 bits",
+                    "fewer fraction bits",
+                );
+            }
+            (Some(((factor + 0.5).floor() as i64, cut)), bits)
+        };
+        if bits < 1 || bits > MOST as i32 {
+            let message =
+                format!("the fraction of the exponent has {bits} bits, and not 1 to {MOST}");
+            return refused(&message, "other fraction bits");
+        }
+        let falls = slope < 0.0;
+        let whole = exponent(scale, if falls { first } else { last }) >> bits;
+        let unit = if scale.is_none() { exp2(power as i32) } else { unit };
+        let text = format!("{unit} * ({whole} + x)");
+        Ok((Rule::Exponent { scale, whole, falls }, bits as u32, (bits, text)))
+    }
+}

@@ -1,0 +1,41 @@
+//! Turns brought into their first quadrant.
+
+use crate::base::fixed::Format;
+use crate::hdl::dsl::{Designer, Signal};
+
+/// A turn as a way from the nearer zero of its sine.
+#[derive(Clone, Copy)]
+pub struct Quadrant<'d> {
+    /// The way, a number of a quadrant's steps.
+    pub way: Signal<'d>,
+    /// One bit: the sine is negative.
+    pub negative: Signal<'d>,
+}
+
+/// The quadrant of `turn`, an integer without a sign whose steps are a whole turn, after `ahead` more quadrants.
+#[track_caller]
+pub fn quadrant<'d>(d: &'d Designer, name: &str, turn: Signal<'d>, ahead: u32) -> Quadrant<'d> {
+    let steps = turn.format().width() - 2;
+    let number = turn.bits(steps, Format::unsigned(2, 0));
+    let number = match ahead {
+        0 => number,
+        _ => {
+            let ahead = d.raw_constant("ahead", ahead.into(), number.format());
+            d.add_modulo(&format!("{name}_number"), number, ahead, None)
+        }
+    };
+    let way = turn.bits(0, Format::unsigned(steps as i32, 0));
+    let back = mirrored(d, &format!("{name}_back"), way);
+    let way = d.choose(&format!("{name}_way"), number.bit(0), [way, back]);
+    Quadrant { way, negative: number.bit(1) }
+}
+
+/// 2^bits − `way`, and the largest number in place of 2^bits itself.
+#[track_caller]
+pub fn mirrored<'d>(d: &'d Designer, name: &str, way: Signal<'d>) -> Signal<'d> {
+    let format = way.format();
+    let zero = d.raw_constant("zero", 0, format);
+    let rest = d.sub(&format!("{name}_rest"), zero, way).bits(0, format);
+    let most = d.raw_constant("most", format.max_raw(), format);
+    d.choose(name, d.any(&format!("{name}_any"), way), [most, rest])
+}
