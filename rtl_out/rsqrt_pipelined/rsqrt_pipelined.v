@@ -22,7 +22,9 @@
 `default_nettype none
 
 module rsqrt_pipelined #(
-    parameter COEFFICIENTS_FILE = "rsqrt_pipelined_coefficients.mem"
+    parameter COEFFICIENTS_FILE = "rsqrt_pipelined_coefficients.mem",
+    parameter COEFFICIENTS1_FILE = "rsqrt_pipelined_coefficients1.mem",
+    parameter COEFFICIENTS2_FILE = "rsqrt_pipelined_coefficients2.mem"
 ) (
     input  wire        clk,
     input  wire        rst_n,       // reset, active low: drops the points on their way
@@ -54,60 +56,67 @@ module rsqrt_pipelined #(
     // Stage 1, part of: operand; table addressed; sum1 <- coefficients from 1 on
     wire x_under_s1 = x_s1 < X_LEAST;
     wire [16:0] x_reg_s1 = x_under_s1 ? X_LEAST : x_s1;  // u1.16: the operand
-    // ROM coefficients: coefficients of the segment's polynomial, that of the lowest power in the
-    // top bits
-    reg [34:0] coefficients_rom [0:15];
-    initial $readmemh(COEFFICIENTS_FILE, coefficients_rom);
-    wire [34:0] coefficients_word_s1 = coefficients_rom[x_reg_s1[15:12]];
-    reg  signed [12:0] c1_s2;          // s-5.17
-    reg         [4:0]  c2_s2;          // u-9.14
-    reg         [16:0] x_reg_s2;
-    reg                offset_top_s2;
+    // ROM coefficients2: coefficient of the segment's polynomial
+    reg [4:0] coefficients2_rom [0:15];
+    initial $readmemh(COEFFICIENTS2_FILE, coefficients2_rom);
+    wire [4:0] coefficients2_word_s1 = coefficients2_rom[x_reg_s1[15:12]];
+    reg  [16:0] x_reg_s2;
+    reg  [3:0]  number_bits_s2;
+    reg  [4:0]  coefficients2_word_s2;
+    reg         offset_top_s2;
     always @(posedge clk) if (advance) begin
         x_reg_s2 <= x_reg_s1;
-        c1_s2 <= coefficients_word_s1[17:5];
-        c2_s2 <= coefficients_word_s1[4:0];
+        number_bits_s2 <= x_reg_s1[15:12];
+        coefficients2_word_s2 <= coefficients2_word_s1;
         offset_top_s2 <= ~x_reg_s1[11];
     end
 
     // Stage 2, part of: sum1 <- coefficients from 1 on
-    wire signed [12:0] product_s2 = $signed({1'b0, c2_s2}) * $signed({offset_top_s2,
+    wire signed [12:0] product_s2 = $signed({1'b0, coefficients2_word_s2}) * $signed({offset_top_s2,
             x_reg_s2[10:5]});
     reg  signed [11:0] offset_of_step_s3;  // s-1.12
     reg  signed [7:0]  product1_s3;        // s-10.17
-    reg  signed [12:0] c1_s3;
+    reg         [3:0]  number_bits_s3;
     always @(posedge clk) if (advance) begin
-        c1_s3 <= c1_s2;
+        number_bits_s3 <= number_bits_s2;
         offset_of_step_s3 <= {offset_top_s2, x_reg_s2[10:0]};
         product1_s3 <= product_s2[11:4];
     end
 
-    // Stage 3, part of: sum1 <- coefficients from 1 on
-    wire signed [13:0] added1_s3 = {c1_s3[12], c1_s3} + {{6{product1_s3[7]}}, product1_s3};
+    // Stage 3, part of: operand; table addressed; sum1 <- coefficients from 1 on
+    // ROM coefficients1: coefficient of the segment's polynomial
+    reg [12:0] coefficients1_rom [0:15];
+    initial $readmemh(COEFFICIENTS1_FILE, coefficients1_rom);
+    wire [12:0] coefficients1_word_s3 = coefficients1_rom[number_bits_s3];
+    wire signed [13:0] added1_s3 = {coefficients1_word_s3[12], coefficients1_word_s3} +
+            {{6{product1_s3[7]}}, product1_s3};
     reg  signed [12:0] sum1_s4;            // s-5.17
+    reg         [3:0]  number_bits_s4;
     reg  signed [11:0] offset_of_step_s4;
     always @(posedge clk) if (advance) begin
+        number_bits_s4 <= number_bits_s3;
         offset_of_step_s4 <= offset_of_step_s3;
         sum1_s4 <= added1_s3[12:0];
     end
 
     // Stage 4, part of: result <- the polynomial
     wire signed [24:0] product_2_s4 = sum1_s4 * offset_of_step_s4;  // s24.0
-    wire        [16:0] c0_s5;        // u0.17
-    reg  signed [12:0] product0_s5;  // s-5.17
-    always @(posedge clk) if (advance) product0_s5 <= product_2_s4[24:12];
+    reg  signed [12:0] product0_s5;     // s-5.17
+    reg         [3:0]  number_bits_s5;
+    always @(posedge clk) if (advance) begin
+        number_bits_s5 <= number_bits_s4;
+        product0_s5 <= product_2_s4[24:12];
+    end
 
-    // Stage 5, part of: result <- the polynomial
-    wire signed [18:0] added0_s5 = {2'd0, c0_s5} + {{6{product0_s5[12]}}, product0_s5};  // s1.17
+    // Stage 5, part of: operand; table addressed; result <- the polynomial
+    // ROM coefficients: coefficient of the segment's polynomial
+    reg [16:0] coefficients_rom [0:15];
+    initial $readmemh(COEFFICIENTS_FILE, coefficients_rom);
+    wire [16:0] coefficients_word_s5 = coefficients_rom[number_bits_s5];
+    wire signed [18:0] added0_s5 = {2'd0, coefficients_word_s5} + {{6{product0_s5[12]}},
+            product0_s5};
     reg  [16:0] result_s6;  // u1.16
     always @(posedge clk) if (advance) result_s6 <= added0_s5[17:1];
-
-    // Delay lines: what nothing reads for several stages goes through small memories
-    rsqrt_pipelined_delay #(.WIDTH(17), .WORDS(3), .BITS(2)) delay_of_4 (
-        .clk(clk), .rst_n(rst_n), .enable(advance),
-        .entering(coefficients_word_s1[34:18]),
-        .leaving(c0_s5)
-    );
 
     // Results
     assign result_out = result_s6;  // u1.16
@@ -115,42 +124,6 @@ module rsqrt_pipelined #(
     // Unused bits, among them those that narrowing drops.
     wire unused = &{1'b0, x_reg_s2[16:11], product_s2[3:0], product_s2[12], added1_s3[13],
             product_2_s4[11:0], added0_s5[0], added0_s5[18]};
-endmodule
-
-// Values on their way, WORDS + 1 registers long. A slot of a small memory gives the value that it
-// holds and takes a new one; its turn comes again when all others have had theirs.
-/* verilator lint_off DECLFILENAME */
-module rsqrt_pipelined_delay #(
-    parameter WIDTH  = 8,
-    parameter WORDS  = 2,
-    parameter BITS   = 1,  // of the number of a slot
-    parameter MEMORY = 1   // 0: registers in place of the memory
-) (
-    input  wire             clk, rst_n, enable,
-    input  wire [WIDTH-1:0] entering,
-    output reg  [WIDTH-1:0] leaving
-);
-    generate
-        if (MEMORY != 0) begin : memory
-            localparam [BITS-1:0] LAST = WORDS[BITS-1:0] - 1'b1;
-            reg  [BITS-1:0]  slot;
-            reg  [WIDTH-1:0] words [0:WORDS-1];
-            // Of a power of two the number after the last is 0.
-            wire around = WORDS != 1 << BITS && slot == LAST;
-            always @(posedge clk) begin
-                if (!rst_n) slot <= {BITS{1'b0}};
-                else if (enable) slot <= around ? {BITS{1'b0}} : slot + 1'b1;
-                if (enable) begin
-                    leaving <= words[slot];
-                    words[slot] <= entering;
-                end
-            end
-        end else begin : registers
-            reg  [WIDTH*WORDS-1:0] words;
-            wire unused = &{1'b0, rst_n};
-            always @(posedge clk) if (enable) {leaving, words} <= {words, entering};
-        end
-    endgenerate
 endmodule
 
 `default_nettype wire
