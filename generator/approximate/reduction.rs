@@ -138,24 +138,24 @@ impl Reduction {
                 let rest = (raw << zeros) & ((1 << (width - 1)) - 1);
                 let second = i64::from(*pairs && octave % 2 == 1);
                 let (shift, addend) = restores[zeros as usize];
-                let restore = Restore { shift: self.guard + shift, addend, ..plain };
+                let restore = Restore { shift: self.guard + shift.min(NOTHING), addend, ..plain };
                 (second << (width - 1) | rest, restore)
             }
-            Rule::Exponent { scale, whole, .. } => {
-                let exponent = exponent(*scale, raw);
-                let away = (whole - (exponent >> self.bits)).unsigned_abs() as u32;
-                (exponent & mask, Restore { shift: self.guard + away, ..plain })
+            Rule::Exponent { scale, .. } => {
+                let shift = self.guard + self.places(raw).min(NOTHING);
+                (exponent(*scale, raw) & mask, Restore { shift, ..plain })
             }
         }
     }
 
-    /// The most places by which the integer of an exponent shifts.
-    pub fn most_places(&self, (first, last): (i64, i64)) -> u32 {
-        [first, last]
-            .map(|raw| self.reduce(raw).1.shift - self.guard)
-            .into_iter()
-            .max()
-            .unwrap_or(0)
+    /// The places by which the integer of an operand's exponent shifts.
+    pub fn places(&self, raw: i64) -> u32 {
+        match self.rule {
+            Rule::Exponent { scale, whole, .. } => {
+                (whole - (exponent(scale, raw) >> self.bits)).unsigned_abs() as u32
+            }
+            _ => 0,
+        }
     }
 
     /// The reduction of a function by an identity, and the function of its numbers. With `wider` the number of a size holds the
@@ -212,6 +212,9 @@ fn exponent(scale: Option<(i64, u32)>, raw: i64) -> i64 {
 
 /// The key of a reduction.
 pub(super) const KEY: &str = "approximation.reduction";
+
+/// So many places leave nothing of a polynomial.
+const NOTHING: u32 = 64;
 
 /// The most bits of a reduced operand.
 const MOST: u32 = 24;

@@ -163,7 +163,7 @@ fn samples_are_met_and_a_wrong_coefficient_is_refused() {
 #[test]
 fn reduced_operands_serve_the_whole_domain() {
     type Whole = (&'static str, (f64, f64), Identity, fn(f64) -> f64);
-    let cases: [Whole; 9] = [
+    let cases: [Whole; 10] = [
         ("sigmoid(x)", (-4.0, 4.0), Identity::Odd, |x| 1.0 / (1.0 + libm::exp(-x))),
         ("x^3", (-1.0, 1.0), Identity::Odd, |x| x * x * x),
         ("exp(-x * x)", (-2.0, 2.0), Identity::Even, |x| libm::exp(-x * x)),
@@ -173,6 +173,7 @@ fn reduced_operands_serve_the_whole_domain() {
         ("ln(x)", (0.125, 64.0), Identity::Octaves, libm::log),
         ("2^(x / 2)", (-4.0, 4.0), Identity::Exponent, |x| libm::exp2(x / 2.0)),
         ("exp(-x)", (-2.0, 4.0), Identity::Exponent, |x| libm::exp(-x)),
+        ("2^(99 * x)", (-4.0, 0.0), Identity::Exponent, |x| libm::exp2(99.0 * x)),
     ];
     for (text, domain, identity, exact) in cases {
         for error in [1.0, 0.55] {

@@ -6,10 +6,9 @@ use std::ops::Range;
 
 use crate::approximate::{Layout, Outside, Piecewise};
 use crate::base::fixed::{Format, MAX_WIDTH, Overflow, Rounding};
-use crate::config::Config;
+use crate::config::{Config, Shared};
 use crate::hdl::dsl::{Designer, Signal, end, step, valid};
 use crate::hdl::netlist::About;
-use crate::hdl::pipeline::options;
 use crate::keys::function::{Keys, found};
 
 /// The device.
@@ -196,10 +195,13 @@ fn place<'d>(
     (word, offset)
 }
 
+/// The fewest bits of a table that a family of FPGAs has a block memory for.
+const BLOCK: u64 = 2048;
+
 /// Whether each coefficient has a table of its own: in a pipeline the address then waits in place of the coefficient, which
 /// is wider. A block memory has all.
 fn is_split(config: &Config, it: &Piecewise) -> bool {
-    options(config).is_some_and(|pipeline| it.rom_bits() < pipeline.target.block_bits)
+    Shared::of(config).architecture == "pipelined" && it.rom_bits() < BLOCK
 }
 
 /// The coefficients of the segment, the constant first, which come a clock after the address. They are in tables of their own

@@ -87,7 +87,8 @@ pub(super) fn reduced<'d>(
             let Format { signed, .. } = exponent.format();
             let above = exponent.format().width().saturating_sub(bits);
             let number = exponent.bits(0, integer(bits.min(exponent.format().width())));
-            let most_places = reduction.most_places(it.domain);
+            let (first, last) = it.domain;
+            let most_places = reduction.places(first).max(reduction.places(last));
             let places = (most_places > 0).then(|| {
                 let format = Format { signed, int: above as i32 - i32::from(signed), frac: 0 };
                 let own = exponent.bits(bits, format);
