@@ -6,7 +6,7 @@
 //! ```
 //! use glint::fixed::Format;
 //! use glint::golden::Model;
-//! use glint::golden::frame::{Frame, idle, step};
+//! use glint::golden::frame::{Frame, State, idle, step};
 //!
 //! let byte = Format::unsigned(8, 0);
 //! let mut doubler = Frame::default();
@@ -16,8 +16,8 @@
 //!
 //! let mut frame = Frame::default();
 //! let y = frame.operand("y", byte);
-//! let twice = frame.part("twice", &doubler, [("x", move |s| s[y])]).out("x_out");
-//! let again = frame.part("again", &doubler, [("x", move |s| s[twice])]).out("x_out");
+//! let twice = frame.part("twice", &doubler, [("x", move |s: &State| s[y])]).out("x_out");
+//! let again = frame.part("again", &doubler, [("x", move |s: &State| s[twice])]).out("x_out");
 //! frame.output("y_out", byte, move |s| s[again] + s[y]);
 //! let mut model = frame.dataflow().model();
 //! model.clock(&[1, 1, 5, 1]);
