@@ -87,19 +87,19 @@ pub struct Timing {
     pub delay_memory: Option<DelayMemory>,
 }
 
-/// What a chip has.
+/// A chip and its resources.
 #[derive(Debug)]
 pub struct Chip {
     /// For people.
     pub name: &'static str,
     /// How nextpnr names it, with its package.
     pub options: &'static str,
-    /// What it has of each resource, in the order of [`Chip::lack`].
+    /// The amount of each resource, in the order of [`Chip::lack`].
     pub has: [u64; 3],
 }
 
 impl Chip {
-    /// What is wanted and what is there, of the resources of which the chip has too little: by their place among look-up
+    /// Returns the amounts wanted and there of the resources of which the chip has too little: by their place among look-up
     /// tables, DSP blocks and block RAMs.
     pub fn lack(&self, wanted: [u64; 3]) -> Vec<(usize, u64, u64)> {
         let all = wanted.into_iter().zip(self.has).enumerate();
@@ -109,7 +109,7 @@ impl Chip {
     }
 }
 
-/// What the estimate of a core's cost rests on.
+/// The figures behind the estimate of a core's cost.
 #[derive(Debug)]
 pub struct Estimate {
     /// The weights of `tune::Features`, and what every core takes.
@@ -134,7 +134,7 @@ pub type Kinds = &'static [(&'static str, u64)];
 pub struct Family {
     /// For people.
     pub title: &'static str,
-    /// What schedules and estimates of the clock know.
+    /// The delays for schedules and estimates of the clock.
     pub timing: Timing,
     /// The command of Yosys that reads the cells which a core may instantiate, or nothing.
     pub library: &'static str,
@@ -152,7 +152,7 @@ pub struct Family {
     pub flip_flops: Kinds,
     /// Chips of the family, from the smallest, which is a usual one.
     pub chips: &'static [Chip],
-    /// What the cost of a core is estimated by.
+    /// The figures by which the cost of a core is estimated.
     pub estimate: Estimate,
 }
 

@@ -51,9 +51,9 @@ choices! {
 /// The values of a function.
 #[derive(Clone, Debug)]
 pub enum Curve {
-    /// Those of a formula of the operand x.
+    /// The values of a formula of the operand x.
     Formula(Formula),
-    /// Those of samples, between which nothing is stated.
+    /// The values of samples, between which nothing is stated.
     Samples(Samples),
 }
 

@@ -234,7 +234,7 @@ impl Nearest {
 struct Piece {
     /// Its operands that are looked at, by their numbers among all such.
     seen: std::ops::Range<usize>,
-    /// Of those to which polynomials are fitted: offsets, the same as fractions of the segment, and values.
+    /// The points to which polynomials are fitted: offsets, the same as fractions of the segment, and values.
     offsets: Vec<i64>,
     at: Vec<f64>,
     values: Vec<f64>,

@@ -81,7 +81,7 @@ impl Random {
     /// A raw value from `low` to `high`: often one of its ends or close to one (or to 0, which is as good as an
     /// end).
     ///
-    /// Which of these is not to be foreseen: all are worked out, and one is taken without a branch. It is as though only
+    /// The choice cannot be foreseen: all are worked out, and one is taken without a branch. It is as though only
     /// what that one needs had been drawn.
     #[inline]
     pub fn of_domain(&mut self, (low, high): (i64, i64)) -> i64 {

@@ -18,13 +18,13 @@ pub use parse::{FUNCTIONS, parse};
 /// A part of a formula. Two are equal whose kinds are, wherever they come from.
 #[derive(Clone, Debug)]
 pub struct Formula {
-    /// What it is.
+    /// The kind of the part.
     pub kind: Kind,
     /// The bytes of the text that it came from.
     pub span: Range<usize>,
 }
 
-/// What a part of a formula is.
+/// The kinds of parts of a formula.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Kind {
     /// A number, and whether it is the number that the text states or the nearest to it.
@@ -81,19 +81,19 @@ pub enum Operator {
     Sub,
     Mul,
     Div,
-    /// What is left of the first when multiples of the second are taken away, between 0 and the second.
+    /// The rest of the first when multiples of the second are taken away, between 0 and the second.
     Mod,
     Power,
     Min,
     Max,
 }
 
-/// What is wrong with a formula, and where.
+/// A mistake in a formula, with its place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fault {
     /// The bytes of the text.
     pub span: Range<usize>,
-    /// What is wrong.
+    /// The mistake, in words.
     pub message: String,
 }
 

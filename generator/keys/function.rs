@@ -69,7 +69,7 @@ fn check(config: &Config, problems: &mut Problems) {
 /// The function that a configuration states, and its approximation.
 ///
 /// # Errors
-/// What is wrong with the formula or the domain, or why there is no approximation.
+/// A formula or domain that is wrong, or no approximation, with the reason.
 pub fn found(config: &Config) -> Result<(Function, Arc<Piecewise>), Refusal> {
     let keys = Keys::of(config);
     let function = function(&keys)?;

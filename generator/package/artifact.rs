@@ -6,7 +6,7 @@ use super::{EmitInputs, OutputFile};
 use crate::hdl::netlist::Design;
 use crate::hdl::verilog::naming::Naming;
 
-/// What a file is for, in the order in which files are listed.
+/// The purpose of a file, in the order in which files are listed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Kind {
     /// Verilog of the core, the top module first.

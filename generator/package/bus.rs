@@ -34,7 +34,7 @@ impl PartialEq for Bus {
 /// An interface of ports that tools know by its definition.
 #[derive(Debug)]
 pub struct Protocol {
-    /// What the names of its ports begin with.
+    /// The prefix of the names of its ports.
     pub name: &'static str,
     /// The name of ARM's definition for IP-XACT.
     pub amba: &'static str,

@@ -63,7 +63,7 @@ struct Latest {
     end: String,
 }
 
-/// What the commands of Yosys that make the problem depend on, alone or for SymbiYosys.
+/// The inputs of the Yosys commands that make the problem, alone or for SymbiYosys.
 pub(super) struct Script<'a> {
     pub(super) name: &'a str,
     /// The cells whose memories are cut out, as Yosys selects them.

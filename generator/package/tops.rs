@@ -43,7 +43,7 @@ pub struct Top {
     pub module: String,
     /// The interface.
     pub face: Face,
-    /// What it is, in a few words.
+    /// The purpose, in a few words.
     pub what: String,
     /// The clock, the first port.
     pub clock: String,

@@ -46,7 +46,7 @@ impl<'a> Workspace<'a> {
     /// which is left in the file [`NETLIST`].
     ///
     /// # Errors
-    /// Those of [`Sources::run`].
+    /// As of [`Sources::run`].
     pub fn synthesise(&self, target: Target) -> Result<(Usage, Netlist)> {
         let family = target.family().context("Yosys knows no such family")?;
         let top = &self.subject.design.name;

@@ -17,7 +17,7 @@ use crate::common::cores::parsed;
 /// Random configurations of each device.
 const CONFIGURATIONS: u64 = 300;
 
-/// The same of the function, each of which takes a search.
+/// Random configurations of the function, each of which takes a search.
 const FUNCTIONS: u64 = 8;
 
 /// Points of each, and places.

@@ -53,7 +53,7 @@ fn what_is_dropped_is_gone_and_off_the_list() {
     assert!(!path.exists() && !list().paths.contains(&path));
 }
 
-/// What is in use stays, and what is somebody's.
+/// Directories in use stay, and so do those of somebody else.
 #[test]
 fn what_killed_processes_have_left_goes() {
     let place = tempfile::tempdir().unwrap();

@@ -44,7 +44,7 @@ pub struct Arguments {
     /// Seed of the stimulus
     #[arg(long, value_name = "S", default_value_t = TEST_SEED)]
     seed: u64,
-    /// What simulates the hardware
+    /// The simulator of the hardware
     #[arg(long, value_enum, default_value_t = Simulator::RustHdl)]
     simulator: Simulator,
     /// Prove the accuracy contract instead: f for every combination of control operands, and every f with every

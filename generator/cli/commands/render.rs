@@ -43,7 +43,7 @@ pub struct Arguments {
     /// The PNG file to write
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
-    /// What computes the specular term
+    /// The engine that computes the specular term
     #[arg(long, value_enum, default_value_t = Through::Golden)]
     through: Through,
     /// Add the picture with Blinn's cos^n in f64 and the difference of both; print its largest value and PSNR
@@ -55,7 +55,7 @@ pub struct Arguments {
     /// Samples along each side of a pixel
     #[arg(long, value_name = "N", default_value_t = 2)]
     samples: u32,
-    /// What is shown
+    /// The object that is shown
     #[arg(long, value_enum, default_value_t = ShapeName::Sphere, conflicts_with = "mesh")]
     shape: ShapeName,
     /// Show the mesh of a Wavefront OBJ file; where it has no normals, they are computed

@@ -21,9 +21,9 @@ pub const REAL: &str = "real_";
 
 /// Compute a device's operands from vectors or angles, as a host does before it starts
 ///
-/// Of a device that walks scan lines these are the formulas (2) to (5) and (8) to (16) of seed 000: from normals N1, N2
+/// A device that walks scan lines takes the formulas (2) to (5) and (8) to (16) of seed 000: from normals N1, N2
 /// and half vectors H1, H2 at the ends of a line, gamma, P, lambda, A and C, and of these the angle at the first point
-/// and its step. Of a device that computes points: the cosine of the angle between N and H, and what else it takes.
+/// and its step. A device that computes points takes the cosine of the angle between N and H, and its other operands.
 ///
 /// The operands are in the formats of the configuration: an integer as the port takes it ("raw"), its value, and beside it
 /// the real number that was rounded. As CSV they go straight into `glint eval --batch`.

@@ -36,13 +36,13 @@ pub struct Arguments {
     /// The largest error
     #[arg(long, value_name = "E", value_parser = number)]
     error: f64,
-    /// What the error is measured in: the reflectance f, 0 to 1, or the outputs' least significant bit
+    /// The measure of the error: the reflectance f, 0 to 1, or the outputs' least significant bit
     #[arg(long, value_enum, default_value_t = ErrorUnit::Output)]
     unit: ErrorUnit,
     /// The technology that area and clock are estimated for
     #[arg(long, value_name = "TARGET", value_enum, default_value_t = Target::Ecp5)]
     target: Target,
-    /// What to minimise
+    /// The figure to minimise
     #[arg(long, value_enum, default_value_t = Objective::Area)]
     objective: Objective,
     /// The clock that the core must reach, by the estimate

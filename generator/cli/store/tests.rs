@@ -38,7 +38,7 @@ fn assert_renewed(out: &Path) {
     assert_eq!(entries, ["rtl_out", "testbench"]);
 }
 
-/// Those that are in their places already are no reason to refuse.
+/// Files that are in their places already are no reason to refuse.
 #[test]
 fn a_run_that_was_killed_between_the_moves_is_done_again() {
     for moves in 0..=3 {

@@ -130,7 +130,7 @@ pub struct Highlight {
     bound: OnceLock<Bound>,
 }
 
-/// What a reflectance says of control operands is asked of the contract too.
+/// The contract answers for its reflectance wherever only control operands matter.
 impl Deref for Highlight {
     type Target = dyn Reflectance;
 

@@ -40,7 +40,7 @@ pub struct LineBlocks {
 /// The walk: operands `delta_zeta`, `zeta_start` and `length`, the register `angle`, and the outputs
 /// `count`, `accumulate` and `write_angle` that show its control.
 ///
-/// Of `length` = l intervals it makes l + 1 points, one a clock. The angle is a signed word that wraps
+/// A line of `length` = l intervals has l + 1 points, one a clock. The angle is a signed word that wraps
 /// around, so its format must hold what a line may reach, or wrap where angles do.
 pub struct Line<'d> {
     designer: &'d Designer,

@@ -223,7 +223,7 @@ impl<'a> Executor<'a> {
     /// is one; `state` is that after the first. The loop is bounded whatever the registers `free`, with
     /// which it begins, hold.
     ///
-    /// What the condition is made of goes from iteration to iteration as if every iteration were taken: an iteration counts only where those
+    /// The values behind the condition go from iteration to iteration as if every iteration were taken: an iteration counts only where those
     /// before it were taken, and a counter needs no muxes then.
     fn iterations(
         &mut self,

@@ -12,7 +12,7 @@ use crate::package::artifact::{Artifacts, Job, Kind};
 /// The operands of a line, as far as a set-up knows them; `exponent` may be missing.
 const KNOWN: [&str; 5] = ["delta_zeta", "zeta_start", "exponent", "length", "amplitude"];
 
-/// What the three files say of a configuration.
+/// The contents of the three files of a configuration.
 struct Line<'a> {
     name: &'a str,
     prefix: String,

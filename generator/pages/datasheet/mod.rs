@@ -60,7 +60,7 @@ struct Measured {
     line: Option<LineClocks>,
     waves: Waves,
     curves: DeviceCurves,
-    /// Of a function of one operand, its own.
+    /// The charts of a function of one operand over its domain.
     over_domain: Vec<Chart>,
     /// None of a device that a picture has not the operands for.
     highlight: Option<Highlight>,
