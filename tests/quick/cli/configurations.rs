@@ -1,8 +1,8 @@
-//! Configurations that are no text, no files, or none at all.
+//! Configurations that are no text or no files.
 
 use std::fs;
 
-use crate::workspace::{COSINE_POWER, Run, Workspace};
+use crate::workspace::{COSINE_POWER, Workspace};
 
 #[test]
 fn a_file_in_another_encoding() {
@@ -23,22 +23,6 @@ fn pipes_and_devices_are_no_configurations() {
     }
 }
 
-#[test]
-fn a_configuration_may_come_from_standard_input() {
-    let dir = Workspace::with("core.toml", format!("{COSINE_POWER}name = \"piped\"\n"));
-    let with = |file: &str, arguments: &[&str]| {
-        let input = fs::File::open(dir.at(file)).expect("a file");
-        Run::of(dir.command().args(arguments).stdin(input).output())
-    };
-    with("core.toml", &["generate", "-"]).good();
-    assert!(dir.at("rtl_out/piped/piped.v").exists());
-    dir.write("nameless.toml", COSINE_POWER);
-    let run = with("nameless.toml", &["generate", "-"]);
-    run.refused(1, &["the module has no name", "--> standard input", "add `name = \"…\"`"]);
-    let run = with("core.toml", &["generate", "-", "-"]);
-    run.refused(2, &["standard input, `-`, is read once"]);
-}
-
 #[cfg(unix)]
 #[test]
 fn a_file_without_permission() {
@@ -50,12 +34,4 @@ fn a_file_without_permission() {
         1,
         &["the file cannot be read: Permission denied", "check the path and its permissions"],
     );
-}
-
-#[test]
-fn no_configuration_at_all() {
-    let dir = Workspace::new();
-    dir.glint([] as [&str; 0]).refused(1, &["cannot read `configs/`", "glint new DEVICE"]);
-    fs::create_dir(dir.at("configs")).unwrap();
-    dir.glint(["generate"]).refused(1, &["there is no configuration in `configs/`"]);
 }

@@ -11,27 +11,6 @@ use crate::workspace::{COSINE_POWER, Run, Workspace};
 
 const ROUGH: &str = "device = \"rough\"\n";
 
-#[test]
-fn the_built_in_simulator_holds_and_the_seed_decides() {
-    let dir = Workspace::with("core.toml", ROUGH);
-    let text = dir.done(["cosim", "core.toml", "--points", "50"]);
-    assert!(text.starts_with("core.toml: 50 points, ") && text.contains(": holds\n"), "{text}");
-    let run = dir.glint(["cosim", "core.toml", "--points", "50", "--json"]);
-    let value = run.json();
-    assert_eq!((run.code, &value["ok"]), (0, &Value::Bool(true)), "{run:?}");
-    let one = &value["configurations"][0];
-    assert_eq!(one["device"], "rough");
-    assert_eq!(one["points"], 50);
-    assert!(one["clocks"].as_u64() >= Some(500), "a point takes ten clocks: {one}");
-    let (error, bound) = (&one["largest_error"]["units"], &one["bound"]["units"]);
-    assert!(error.as_f64() <= bound.as_f64() && bound.as_f64() < Some(1.0), "{one}");
-    // The seed decides.
-    let again = dir.glint(["cosim", "core.toml", "--points", "50", "--json"]);
-    assert_eq!(again.out, run.out);
-    let other = dir.glint(["cosim", "core.toml", "--points", "50", "--json", "--seed", "2"]);
-    assert_ne!(other.out, run.out);
-}
-
 #[cfg(feature = "outside-tools")]
 #[test]
 fn emitted_verilog_holds_in_both_simulators() {
@@ -159,18 +138,6 @@ fn a_difference_in_verilog_is_told_with_its_place() {
     assert_eq!(again, "glint cosim core.toml --simulator icarus --seed 1 --points 9");
 }
 
-/// A sweep of other values than the contract's, in one piece and in parts.
-#[test]
-fn a_sweep_of_other_values_is_merged() {
-    let dir = Workspace::with("core.toml", COSINE_POWER);
-    let check = ["cosim", "core.toml", "--exhaustive", "--values", "exponent=7,1..9/4", "--json"];
-    let whole = dir.done(check);
-    dir.done(check.iter().chain(&["--resume", "part.json", "--shard", "1/1"]));
-    let merge = ["merge", "core.toml", "part.json", "--json", "--values", "exponent=1..9/4,7"];
-    assert_eq!(dir.done(merge), whole);
-    dir.glint(&merge[..3]).refused(1, &["of another sweep (--values)"]);
-}
-
 /// A job that is killed, resumed, and divided reports what an uninterrupted one does.
 #[test]
 fn an_exhaustive_check_in_parts_gives_the_whole() {
@@ -234,15 +201,4 @@ fn in_parts(text: &str) {
     assert!(error.contains("not of `core.toml` as it stands"), "{error}");
     let error = refused(&["cosim", "core.toml", "--exhaustive", "--resume", "gone/state.json"]);
     assert!(error.contains("gone/state.json"), "{error}");
-}
-
-#[test]
-fn one_thread_is_a_thread() {
-    let text = "device = \"cosine-power\"\npower = 2\ncosine.fraction = 8\nexponent.bits = 3\ncolour.bits = 2\nintensity.fraction = 8\n";
-    let dir = Workspace::with("core.toml", format!("{text}domain.exponent_max = 7\n"));
-    let mut command = dir.command();
-    let command =
-        command.args(["cosim", "core.toml", "--exhaustive"]).env("RAYON_NUM_THREADS", "1");
-    let run = Run::of(command.output()).good();
-    assert!(run.out.contains(" on 1 thread ("), "{}", run.out);
 }

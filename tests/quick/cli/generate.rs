@@ -1,6 +1,6 @@
 //! `generate` and the main job, when all is well and when foreign files stand in the way.
 
-use crate::workspace::{COSINE_POWER, Run, Workspace};
+use crate::workspace::{COSINE_POWER, Workspace};
 
 const FILES: [&str; 2] = ["rtl_out/core/core.v", "testbench/core/core_tb.v"];
 
@@ -13,35 +13,6 @@ fn generated() -> Workspace {
 /// Changes the configuration, so that other files would be generated.
 fn reconfigure(dir: &Workspace) {
     dir.write("core.toml", format!("{COSINE_POWER}power = 4\n"));
-}
-
-#[test]
-fn files_are_written_once_and_checked() {
-    let dir = Workspace::with("core.toml", COSINE_POWER);
-    let absent = dir.glint(["generate", "--check", "core.toml"]);
-    assert_eq!(absent.code, 1, "{absent:?}");
-    assert!(absent.out.contains("differs: rtl_out/core/core.v\n"), "{}", absent.out);
-    assert_eq!(dir.files().len(), 1, "--check wrote something");
-
-    let first = dir.glint(["generate", "core.toml"]).quiet();
-    assert!(first.out.ends_with("files written\n"));
-    let files = dir.files();
-    for name in FILES.iter().chain(&["rtl_out/core/core.json", "rtl_out/core/core.core"]) {
-        assert!(files.contains_key(*name), "no {name}");
-    }
-    assert!(dir.done(["generate", "core.toml"]).ends_with("files up to date\n"));
-    dir.done(["generate", "--check", "core.toml"]);
-    assert_eq!(dir.files(), files);
-    dir.assert_no_staging();
-
-    reconfigure(&dir);
-    let stale = dir.glint(["generate", "--check", "--json", "core.toml"]);
-    assert_eq!(stale.code, 1, "{stale:?}");
-    let different = stale.json()["different"].clone();
-    assert!(different.as_array().unwrap().contains(&"rtl_out/core/core.v".into()), "{different}");
-    assert_eq!(dir.files().len(), files.len());
-    dir.done(["generate", "core.toml"]);
-    assert_ne!(dir.files()["rtl_out/core/core.v"], files["rtl_out/core/core.v"]);
 }
 
 #[test]
@@ -77,27 +48,6 @@ fn json_lists_the_files_in_another_directory() {
     sorted.sort();
     let found: Vec<String> = dir.files().into_keys().filter(|name| name != "core.toml").collect();
     assert_eq!(found, sorted);
-}
-
-/// The driver of the benches in Python, which no manifest speaks of, is the user's once it is edited.
-#[test]
-fn an_edited_driver_stays() {
-    const DRIVER: &str = "testbench/glint_cocotb.py";
-    let dir = Workspace::with("core.toml", COSINE_POWER);
-    dir.done(["generate", "core.toml"]);
-    let driver = dir.read(DRIVER);
-    let edited = driver.replacen("import json", "import json as json", 1);
-    dir.write(DRIVER, &edited);
-    reconfigure(&dir);
-    let before = dir.files();
-    let run = dir.glint(["generate", "core.toml"]);
-    assert_eq!(run.code, 1, "{run:?}");
-    assert!(run.err.contains(DRIVER) && run.err.contains("--force"), "{run:?}");
-    assert!(run.err.contains("nothing was changed") && dir.files() == before, "{run:?}");
-    let check = dir.glint(["generate", "core.toml", "--check"]);
-    assert!(check.code == 1 && check.out.contains(DRIVER), "{check:?}");
-    dir.done(["generate", "core.toml", "--force"]);
-    assert_eq!(dir.read(DRIVER), driver);
 }
 
 #[test]
@@ -141,29 +91,6 @@ fn the_main_job_generates_and_checks_everything() {
     assert_eq!(value["configurations"][1]["config"], "configs/two.toml");
     assert_eq!(value["configurations"][1]["points"], 100_000);
     assert_eq!(value["configurations"][1]["faults"], serde_json::json!([]));
-}
-
-/// At 60 columns no line is longer, and no number is broken.
-#[test]
-fn tables_fit_the_terminal() {
-    let dir = Workspace::with("configs/a_name_of_thirty_characters_.toml", COSINE_POWER);
-    for (arguments, number) in [
-        (&[][..], "0.621"),
-        (&["compare", "--no-synthesis"], "0.00954"),
-        (&["eval", "configs/a_name_of_thirty_characters_.toml"], "1036288"),
-        (&["list"], ""),
-    ] {
-        for columns in ["80", "60"] {
-            let mut command = dir.command();
-            let run = Run::of(command.args(arguments).env("COLUMNS", columns).output());
-            let most: usize = columns.parse().expect("a number");
-            let rows = run.out.lines().filter(|line| line.starts_with('|'));
-            for row in rows {
-                assert!(row.chars().count() <= most, "{columns}: {row}");
-            }
-            assert!(run.out.contains(number), "{arguments:?} at {columns}: {}", run.out);
-        }
-    }
 }
 
 /// Links above the directories of a configuration are followed. These directories and their files are replaced, and what they

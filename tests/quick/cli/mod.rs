@@ -1,12 +1,10 @@
 //! The command line as a user meets it: the built program, in a directory of its own; messages, exit
 //! codes, and what is in the directory afterwards. What a few lines of text can say is in `transcripts/`.
 
-mod certify;
 mod compare;
 mod configurations;
 mod cosim;
 mod datasheet;
-mod describe;
 mod fuzz;
 mod generate;
 mod interrupt;
@@ -18,9 +16,7 @@ mod render;
 mod report;
 mod schedule;
 mod setup;
-mod synth;
 mod transcripts;
-mod tune;
 mod verify;
 pub mod workspace;
 mod worst;

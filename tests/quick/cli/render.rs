@@ -13,12 +13,6 @@ use crate::workspace::{COSINE_POWER, Workspace};
 /// Every line of the documentation's list of pictures that is a command.
 const PICTURES: &str = "docs/images/README.md";
 
-/// A square in the plane z = 0 with texture coordinates.
-const SQUARE: &str = "\
-v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\n\
-vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n\
-f 1/1 2/2 3/3 4/4\n";
-
 const SMALL: [&str; 4] = ["--size", "48x36", "--out", "out.png"];
 
 fn render<'a>(arguments: &[&'a str]) -> Vec<&'a str> {
@@ -104,18 +98,6 @@ fn every_engine_draws_the_same_pixels() {
     dir.assert_no_staging();
 }
 
-/// Without a height map the normals are not perturbed, and cos dγ is 1 everywhere.
-#[test]
-fn an_operand_that_is_given_is_the_same_at_every_point() {
-    let dir = Workspace::with("rough.toml", "device = \"rough\"\n");
-    let drawn = ["", "cos_dgamma=1", "cos_dgamma=0.99"].map(|operand| {
-        let given = if operand.is_empty() { vec![] } else { vec!["--operand", operand] };
-        dir.done(render(&[&["rough.toml"][..], &given].concat()));
-        picture(&dir)
-    });
-    assert!(drawn[0] == drawn[1] && drawn[0] != drawn[2]);
-}
-
 /// Every configuration that comes with Glint is understood, and stays within its bound in a picture.
 #[test]
 fn every_configuration_draws() {
@@ -140,22 +122,6 @@ fn every_configuration_draws() {
         drawn += 1;
     }
     assert!(drawn > 0, "no configuration");
-}
-
-#[test]
-fn threads_do_not_change_the_bytes() {
-    let dir = Workspace::with("power.toml", COSINE_POWER);
-    let mut pictures = Vec::new();
-    for threads in ["1", "2", "5"] {
-        let run = dir
-            .command()
-            .args(render(&["power.toml", "--shape", "group", "--compare"]))
-            .env("RAYON_NUM_THREADS", threads)
-            .output();
-        assert!(run.expect("the program runs").status.success());
-        pictures.push(picture(&dir));
-    }
-    assert!(pictures.iter().all(|picture| *picture == pictures[0]));
 }
 
 /// The pictures of the documentation are what the commands beside them give.
@@ -269,24 +235,6 @@ fn a_device_that_takes_normals_computes_all_of_the_light() {
     assert!(told["compare"]["largest_difference"].as_u64().expect("a level") <= 4, "{told}");
     assert!(number(&told["compare"], "psnr") > 50.0, "{told}");
     assert_within_bound(&told["compare"]);
-}
-
-/// Meshes: a face toward the eye, whichever way around; degenerate triangles are told of.
-#[test]
-fn a_mesh_is_seen_from_both_sides() {
-    let dir = Workspace::with("front.obj", SQUARE);
-    dir.write(
-        "back.obj",
-        SQUARE.replace("f 1/1 2/2 3/3 4/4", "f 1/1 4/4 3/3 2/2\nf 1 1 2\nf 2 3 2"),
-    );
-    dir.done(render(&["--mesh", "front.obj"]));
-    let front = picture(&dir);
-    let run = dir.glint(render(&["--mesh", "back.obj"])).good();
-    assert!(run.err.contains("2 triangles are without area and were left out"), "{run:?}");
-    assert!(front == picture(&dir));
-    let run = dir.glint(render(&["--mesh", "back.obj", "--json"]));
-    assert_eq!(run.json()["degenerate_triangles"], 2);
-    assert_eq!(run.json()["triangles"], 2);
 }
 
 /// A wavy sheet of a million triangles.

@@ -1,5 +1,4 @@
-//! `report`: the ledger for scripts, the same bytes twice, a page that needs nothing but itself, and directories
-//! that cannot be written.
+//! `report`: the ledger for scripts, the same bytes twice, and a page that needs nothing but itself.
 
 use serde_json::Value;
 
@@ -105,39 +104,7 @@ fn timings_stand_apart() {
 }
 
 #[test]
-fn what_is_not_ours_stays() {
-    for (name, text) in [("report.html", "<p>Sales, third quarter.</p>"), ("report.json", "{}")] {
-        let dir = Workspace::with(&format!("report/{name}"), text);
-        let run = report(&dir, &[]);
-        run.refused(1, &[name, "is not of Glint's making", "--out"]);
-        assert_eq!(dir.read(&format!("report/{name}")), text);
-        assert_eq!(dir.files().len(), 1);
-    }
+fn what_is_no_text_stays() {
     let dir = Workspace::with("report/report.html", [0xff, 0xfe, 0x00]);
     report(&dir, &[]).refused(1, &["is not of Glint's making"]);
-}
-
-#[test]
-fn a_directory_that_cannot_be() {
-    let dir = Workspace::with("taken", "a file");
-    report(&dir, &["--out", "taken"]).refused(1, &["cannot create the directory `taken`"]);
-    report(&dir, &["--out", "taken/deeper"]).refused(1, &["cannot create the directory"]);
-    let run = report(&dir, &["--out", "taken", "--json"]);
-    assert_eq!((run.code, run.json()["ok"] == false), (1, true), "{run:?}");
-    assert_eq!(dir.read("taken"), "a file");
-}
-
-#[cfg(unix)]
-#[test]
-fn synthesis_joins_the_ledger() {
-    let dir = Workspace::new();
-    let mut command = dir.with_yosys();
-    let run = Run::of(command.args(["report", "--json"]).output()).good();
-    let told = run.json();
-    let claims = told["claims"].as_array().expect("claims");
-    let simpler = claims.iter().find(|claim| claim["id"] == "simpler");
-    let simpler = simpler.expect("the claim of simplicity");
-    assert_eq!(simpler["verdict"], "holds", "{simpler}");
-    assert_eq!(simpler["ours"][1]["text"], "100 for 120");
-    assert!(dir.read("report/report.html").contains("Yosys 0"));
 }

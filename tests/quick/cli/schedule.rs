@@ -1,21 +1,6 @@
-//! `glint schedule`: clocks that can be reached, constraints, and drawings.
+//! `glint schedule`: the clock of a target, and constraints.
 
-use crate::workspace::{Run, Workspace};
-
-#[test]
-fn what_is_proposed_can_be_reached() {
-    let text = |clock: &str| {
-        format!(
-            "device = \"schlick\"\narchitecture = \"pipelined\"\npipeline.clock_mhz = {clock}\n"
-        )
-    };
-    let dir = Workspace::with("core.toml", text("1900"));
-    let refused = dir.glint(["schedule", "core.toml"]);
-    let nearest = refused.err.split("set pipeline.clock_mhz to ").nth(1).expect("a remedy");
-    let nearest = nearest.split(' ').next().expect("a number");
-    let dir = Workspace::with("core.toml", text(nearest));
-    dir.glint(["schedule", "core.toml", "--json"]).good();
-}
+use crate::workspace::Workspace;
 
 /// The clock follows the target where the file leaves it out, and only there.
 #[test]
@@ -27,17 +12,6 @@ fn a_clock_that_is_left_out_follows_the_target() {
     dir.write("core.toml", format!("{text}pipeline.clock_mhz = 130\n"));
     let refused = dir.glint(["schedule", "core.toml"]);
     refused.refused(1, &[&format!("set pipeline.clock_mhz to {clock} or less"), "core.toml:4:"]);
-}
-
-/// At 80 columns what a stage computes stays, and what can be spared goes.
-#[test]
-fn stages_fit_a_narrow_terminal() {
-    let text =
-        "device = \"cosine-power\"\narchitecture = \"pipelined\"\npipeline.target = \"ice40\"\n";
-    let dir = Workspace::with("core.toml", text);
-    let run = Run::of(dir.command().args(["schedule", "core.toml"]).env("COLUMNS", "80").output());
-    assert!(run.out.contains("| computes "), "{}", run.out);
-    assert!(run.out.lines().all(|line| line.chars().count() <= 80), "{}", run.out);
 }
 
 #[test]
@@ -62,20 +36,4 @@ fn constraints_have_the_clock_of_the_schedule() {
         let wanted = 1000.0 / expected.unwrap_or(stated);
         assert!(period <= wanted && wanted - period < 0.001, "{text}: {period} ns, not {wanted}");
     }
-}
-
-#[test]
-fn the_drawing_is_a_file_of_its_own_and_no_other_is_overwritten() {
-    let text = "device = \"schlick\"\narchitecture = \"pipelined\"\n";
-    let dir = Workspace::with("core.toml", text);
-    let draw = ["schedule", "core.toml", "--svg", "out"];
-    dir.done(draw);
-    let drawn = dir.read("out/core.svg");
-    let document = roxmltree::Document::parse(&drawn).expect("XML");
-    assert_eq!(document.root_element().tag_name().name(), "svg");
-    for load in ["url(", "@import", "href"] {
-        assert!(!drawn.contains(load), "{load}");
-    }
-    dir.done(draw);
-    assert_eq!(dir.read("out/core.svg"), drawn);
 }

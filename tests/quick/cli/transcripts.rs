@@ -14,10 +14,12 @@ use crate::workspace::{COSINE_POWER, Run, Workspace};
 /// Directory of the transcripts.
 const TRANSCRIPTS: &str = "tests/quick/cli/transcripts";
 
-/// A command, the exit code that it is to have, and the lines below it.
+/// A command with its environment and standard input, the exit code that it is to have, and the lines below it.
 struct Step<'t> {
     code: i32,
+    environment: Vec<(String, String)>,
     arguments: Vec<String>,
+    input: Option<String>,
     expected: Vec<&'t str>,
 }
 
@@ -50,7 +52,9 @@ fn played(text: &str) -> Vec<String> {
     let dir = Workspace::with("core.toml", COSINE_POWER);
     let mut wrong = Vec::new();
     let mut lines = text.lines().peekable();
-    let begins = |line: &str| line.starts_with("== ") || line.get(1..3) == Some("$ ");
+    let begins = |line: &str| {
+        ["== ", "=: ", "~~ "].iter().any(|it| line.starts_with(it)) || line.get(1..3) == Some("$ ")
+    };
     while let Some(line) = lines.next() {
         let mut below = Vec::new();
         while let Some(line) = lines.next_if(|line| !begins(line)) {
@@ -58,10 +62,16 @@ fn played(text: &str) -> Vec<String> {
         }
         if let Some(name) = line.strip_prefix("== ") {
             place(&dir, name, below.join("\n").trim_end());
+        } else if let Some((name, source)) = line.strip_prefix("=: ").and_then(halves) {
+            let here = Some(dir.at(source)).filter(|it| it.exists());
+            dir.write(name, fs::read(here.unwrap_or_else(|| source.into())).expect(source));
+        } else if let Some((name, change)) = line.strip_prefix("~~ ").and_then(halves) {
+            let (old, new) = change.split_once(" => ").expect("a text and another");
+            assert!(dir.read(name).contains(old), "no `{old}` in {name}");
+            dir.write(name, dir.read(name).replace(old, new));
         } else if begins(line) {
-            let code = line[..1].parse().expect("an exit code");
             below.retain(|line| !line.is_empty() && !line.starts_with("# "));
-            let step = Step { code, arguments: words(&line[3..]), expected: below };
+            let step = Step::new(line, below);
             wrong.extend(step.run(&dir).into_iter().map(|it| format!("{line}\n  {it}")));
         } else {
             assert!(line.is_empty() || line.starts_with("# "), "{line}");
@@ -74,8 +84,13 @@ fn played(text: &str) -> Vec<String> {
 fn place(dir: &Workspace, name: &str, text: &str) {
     match name.strip_prefix("tools/") {
         Some(_) => dir.script(name, text),
-        None => dir.write(name, format!("{text}\n")),
+        None => dir.write(name, format!("{text}\n").replace("\\r", "\r")),
     }
+}
+
+/// A name, and what stands behind it.
+fn halves(text: &str) -> Option<(&str, &str)> {
+    text.split_once(' ')
 }
 
 /// Words with blanks between, or with quotes around.
@@ -85,10 +100,38 @@ fn words(text: &str) -> Vec<String> {
     words.map(|it| it.get(1).or(it.get(2)).map_or("", |word| word.as_str()).to_owned()).collect()
 }
 
-impl Step<'_> {
+impl<'t> Step<'t> {
+    fn new(line: &str, expected: Vec<&'t str>) -> Self {
+        let code = line[..1].parse().expect("an exit code");
+        let mut arguments = words(&line[2..]);
+        let is_variable = |word: &&String| {
+            let name = word.split_once('=').map_or("", |(name, _)| name);
+            !name.is_empty() && name.chars().all(|it| it.is_ascii_uppercase() || it == '_')
+        };
+        let variables = arguments.iter().take_while(is_variable).count();
+        let variable = |word: String| {
+            let (name, value) = word.split_once('=').expect("a variable");
+            (name.to_owned(), value.to_owned())
+        };
+        let environment = arguments.drain(..variables).map(variable).collect();
+        let input = arguments.iter().position(|it| it == "<");
+        let input = input.map(|at| arguments.split_off(at).remove(1));
+        Self { code, environment, arguments, input, expected }
+    }
+
+    /// Runs the command with these arguments.
+    fn glint(&self, dir: &Workspace, arguments: &[String]) -> Run {
+        let mut command = dir.command();
+        command.env("PATH", dir.at("tools")).envs(self.environment.iter().cloned());
+        if let Some(input) = &self.input {
+            command.stdin(fs::File::open(dir.at(input)).expect("an input"));
+        }
+        Run::of(command.args(arguments).output())
+    }
+
     fn run(&self, dir: &Workspace) -> Vec<String> {
         let before = dir.files();
-        let run = dir.with_own_tools(&self.arguments);
+        let run = self.glint(dir, &self.arguments);
         let mut wrong = Vec::new();
         let mut check = |holds: bool, what: &str| {
             if !holds {
@@ -109,14 +152,38 @@ impl Step<'_> {
                 ">" => run.out.contains(text),
                 "x>" => !run.out.contains(text),
                 ">=" => run.out.lines().any(|line| line == text),
+                ">==" => run.out == dir.read(text),
+                "x>==" => run.out != dir.read(text),
+                "|<" => {
+                    let most = text.parse().expect("a number");
+                    let mut rows = run.out.lines().filter(|line| line.starts_with('|'));
+                    rows.all(|line| line.chars().count() <= most)
+                }
+                "@" => {
+                    dir.write(text, &run.out);
+                    true
+                }
                 "!" => run.err.contains(text),
                 "x!" => !Regex::new(text).expect("a pattern").is_match(&run.err),
                 "=" => is_at(&run.json(), text),
+                "=@" => {
+                    let (pointer, name) = halves(text).expect("a pointer and a file");
+                    at(&run.json(), pointer) == Some(&dir.read(name).into())
+                }
                 "+=" => {
                     let (name, text) = text.split_once(' ').expect("a file, a pointer, a value");
                     is_at(&dir.json(name), text)
                 }
+                "+==" => is_same(dir, text),
+                "x+==" => !is_same(dir, text),
                 "+" => has(dir, text),
+                "x+" => !has(dir, text),
+                "xml" => {
+                    let (name, tag) = halves(text).expect("a file and an element");
+                    let text = dir.read(name);
+                    let document = roxmltree::Document::parse(&text).expect("XML");
+                    document.descendants().any(|it| it.tag_name().name() == tag)
+                }
                 "-" => !dir.at(text).exists(),
                 "files" => dir.files().keys().eq(text.split(' ')),
                 _ => false,
@@ -139,8 +206,9 @@ impl Step<'_> {
     fn as_json(&self, dir: &Workspace, told: &str) -> Option<String> {
         let json = "--json".to_owned();
         let at = self.arguments.iter().position(|it| it == "--").unwrap_or(self.arguments.len());
-        let (before, after) = self.arguments.split_at(at);
-        let run: Run = dir.with_own_tools(before.iter().chain([&json]).chain(after));
+        let mut arguments = self.arguments.clone();
+        arguments.insert(at, json);
+        let run = self.glint(dir, &arguments);
         let value: Value = run.json();
         let found = value["problems"].as_array().expect("problems").iter();
         let mut found = found.flat_map(|problem| problem.as_object().expect("a problem").values());
@@ -150,10 +218,36 @@ impl Step<'_> {
     }
 }
 
-/// Returns whether JSON has a value at the pointer that stands before it.
+/// Returns the value at a pointer; in a list, a step that is no number is a text in the element, as its name.
+fn at<'j>(json: &'j Value, pointer: &str) -> Option<&'j Value> {
+    let has = |element: &Value, text: &str| {
+        element.as_object().is_some_and(|it| it.values().any(|value| value == text))
+    };
+    pointer.split('/').skip(1).try_fold(json, |value, step| match (value, step.parse::<usize>()) {
+        (Value::Array(list), Ok(at)) => list.get(at),
+        (Value::Array(list), Err(_)) => list.iter().find(|it| has(it, step)),
+        (value, _) => value.get(step),
+    })
+}
+
+/// Returns whether JSON has, at the pointer that stands before it, a value or a number within a limit.
 fn is_at(json: &Value, text: &str) -> bool {
-    let (pointer, value) = text.split_once(' ').expect("a pointer and a value");
-    json.pointer(pointer) == Some(&serde_json::from_str(value).expect("JSON"))
+    let (pointer, wanted) = halves(text).expect("a pointer and a value");
+    let found = at(json, pointer);
+    let limit = |text: &str| text.parse::<f64>().expect("a number");
+    let number = || found.and_then(Value::as_f64).expect("a number");
+    match halves(wanted) {
+        Some((">=", least)) => number() >= limit(least),
+        Some(("<=", most)) => number() <= limit(most),
+        _ => found == Some(&serde_json::from_str(wanted).expect("JSON")),
+    }
+}
+
+/// Returns whether two files have the same bytes.
+fn is_same(dir: &Workspace, names: &str) -> bool {
+    let (one, other) = halves(names).expect("two files");
+    let bytes = |name| fs::read(dir.at(name)).expect(name);
+    bytes(one) == bytes(other)
 }
 
 /// Returns whether a file has the text that stands behind its name.

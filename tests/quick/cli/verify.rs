@@ -1,8 +1,8 @@
-//! `verify`: page and record, the same whenever they are made; records of sweeps.
+//! `verify`: page and record, the same whenever they are made.
 
 use serde_json::Value;
 
-use crate::workspace::{COSINE_POWER, Workspace};
+use crate::workspace::Workspace;
 
 const WITHOUT_TOOLS: [&str; 3] = ["verify", "core.toml", "--without-tools"];
 
@@ -81,46 +81,4 @@ fn page_and_record_are_the_same_every_time_but_for_the_timings() {
     let timings = dir.json("made/core.timings.json");
     assert_eq!(timings["seconds"].as_array().map(Vec::len), Some(verdicts.len()));
     assert_eq!(dir.files().keys().filter(|it| it.starts_with("made")).count(), 3);
-}
-
-#[test]
-fn a_record_stands_for_the_sweep_of_a_contract() {
-    // At full width: its contract takes a thousand million evaluations.
-    let dir = Workspace::with("core.toml", COSINE_POWER);
-    let proof = include_str!("../../../proofs/cosine_power.json");
-    dir.write("proofs/under_any_name.json", proof);
-    let run = dir.glint(WITHOUT_TOOLS).good();
-    assert!(run.out.contains("by the record `proofs/under_any_name.json`"), "{}", run.out);
-    let found = dir.json("verification/core.json");
-    let checks = found["checks"].as_array().expect("checks");
-    let contract = checks.iter().find(|check| check["check"] == "contract").expect("a check");
-    assert_eq!(contract["verdict"], "proved");
-    assert_eq!(contract["record"], "proofs/under_any_name.json");
-
-    // The error at the place that it names is another than it says.
-    let error = "\"error\": 0.000";
-    assert!(proof.contains(error));
-    dir.write("proofs/under_any_name.json", proof.replacen(error, "\"error\": 0.0000", 1));
-    let run = dir.glint(WITHOUT_TOOLS);
-    assert_eq!(run.code, 1, "{run:?}");
-    assert!(run.out.contains("FAILS: the error of f at its recorded place is "), "{}", run.out);
-    assert!(run.out.contains("core.toml: FAILED"), "{}", run.out);
-}
-
-#[test]
-fn a_sweep_that_samples_is_passed_and_not_proved() {
-    let dir = Workspace::with("core.toml", include_str!("../../../configs/reduced/rough.toml"));
-    // Its faults take longer than all else here.
-    if cfg!(feature = "outside-tools") {
-        let run = dir.glint(WITHOUT_TOOLS);
-        assert!(run.out.contains("Golden model against the formula: passed"), "{}", run.out);
-        let not_covered = "not covered: values of cos_dgamma between the settings";
-        assert!(run.out.contains(not_covered), "{run:?}");
-        let found = dir.json("verification/rough_reduced.json");
-        assert!(verdicts(&found).contains(&("contract", "passed")), "{found}");
-    }
-    let run = dir.glint(["cosim", "core.toml", "--exhaustive"]);
-    assert!(run.out.contains(": within its bound, outside the contract"), "{}", run.out);
-    assert!(!run.out.contains("proved"), "{}", run.out);
-    assert!(run.out.contains("undecided: values of cos_dgamma between the settings"), "{run:?}");
 }

@@ -70,24 +70,6 @@ impl Workspace {
         serde_json::from_str(&self.read(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
     }
 
-    /// The program, with a Yosys that is a script and writes the statistics of a made-up netlist.
-    #[cfg(unix)]
-    pub fn with_yosys(&self) -> Command {
-        self.write("tools/what", "a Yosys that makes its figures up");
-        self.script(
-            "tools/yosys",
-            "[ \"$1\" = --version ] && echo 'Yosys 0' && exit
-top=$(echo \"$3\" | sed 's/.*hierarchy -check -top \\([a-z_]*\\).*/\\1/')
-luts=100; [ $top = schlick ] && luts=120
-echo '{\"modules\":{\"\\\\\\\\'$top'\":{\"num_cells_by_type\":{\"SB_LUT4\":'$luts',\"LUT4\":'$luts',\"LUT6\":'$luts'}}}}' >statistics.json",
-        );
-        let search = std::env::var_os("PATH").unwrap_or_default();
-        let search = std::iter::once(self.at("tools")).chain(std::env::split_paths(&search));
-        let mut command = self.command();
-        command.env("PATH", std::env::join_paths(search).expect("a search path"));
-        command
-    }
-
     /// The program, to be run here.
     pub fn command(&self) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_glint"));
@@ -97,11 +79,6 @@ echo '{\"modules\":{\"\\\\\\\\'$top'\":{\"num_cells_by_type\":{\"SB_LUT4\":'$lut
 
     pub fn glint<A: AsRef<OsStr>>(&self, arguments: impl IntoIterator<Item = A>) -> Run {
         Run::of(self.command().args(arguments).output())
-    }
-
-    /// Runs the program where no tools are but those in `tools/` here.
-    pub fn with_own_tools<A: AsRef<OsStr>>(&self, arguments: impl IntoIterator<Item = A>) -> Run {
-        Run::of(self.command().env("PATH", self.at("tools")).args(arguments).output())
     }
 
     /// Runs the program, which is expected to succeed.
