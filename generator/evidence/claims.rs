@@ -4,7 +4,10 @@ mod paper;
 mod patent;
 mod rough;
 
-use serde::Serialize;
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
+
+use serde::{Deserialize, Serialize};
 
 use super::measure::{self, Function, Region, Worst};
 use crate::golden::formulas;
@@ -76,9 +79,9 @@ pub struct Measured {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Claim {
     /// Unique, for scripts and links.
-    pub id: &'static str,
+    pub id: String,
     /// Where it stands.
-    pub source: &'static str,
+    pub source: String,
     /// The claim, in English.
     pub claim: String,
     /// The seed's figure.
@@ -97,6 +100,42 @@ impl Claim {
         let found = self.ours.iter().find(|measured| measured.key == key)?;
         Some(found.value)
     }
+}
+
+/// The texts of a claim, in `claims.toml`.
+#[derive(Clone, Default, Deserialize)]
+struct Texts {
+    source: String,
+    claim: String,
+    seed: String,
+    words: String,
+}
+
+static TEXTS: LazyLock<BTreeMap<String, Texts>> =
+    LazyLock::new(|| toml::from_str(include_str!("claims/claims.toml")).unwrap_or_default());
+
+/// Returns the claim of this name, with our figures and the verdict.
+pub fn claim(id: &str, ours: Vec<Measured>, verdict: Verdict, values: &[(&str, String)]) -> Claim {
+    instance(id, id, ours, verdict, values)
+}
+
+/// Returns a claim with the texts of a name that several share. In the texts `{name}` stands for the value of that name.
+fn instance(
+    texts: &str,
+    id: &str,
+    ours: Vec<Measured>,
+    verdict: Verdict,
+    values: &[(&str, String)],
+) -> Claim {
+    let Texts { source, claim, seed, words } = TEXTS.get(texts).cloned().unwrap_or_default();
+    let filled = |text: String| {
+        let value = |text: String, (name, value): &(&str, String)| {
+            text.replace(&format!("{{{name}}}"), value)
+        };
+        values.iter().fold(text, value)
+    };
+    let [claim, seed, words] = [claim, seed, words].map(filled);
+    Claim { id: id.to_owned(), source, claim, seed, ours, verdict, words }
 }
 
 /// An error in per cent: two digits after the point below 10 %, one from there on.

@@ -119,28 +119,11 @@ fn simpler(hardware: Option<&Hardware>) -> Claim {
             "Not measured in this report: it needs Yosys, and both devices.".to_owned(),
         ),
     };
-    Claim {
-        id: "simpler",
-        source: "seed 002, the paper on W",
-        claim: "W is simpler in hardware than Schlick's function, which divides".to_owned(),
-        seed: "yes".to_owned(),
-        ours: hardware.map_or_else(Vec::new, Hardware::measured),
-        verdict,
-        words,
-    }
+    let ours = hardware.map_or_else(Vec::new, Hardware::measured);
+    claims::claim("simpler", ours, verdict, &[("words", words)])
 }
 
 /// The claim of speed, whose figures stand apart.
 fn faster() -> Claim {
-    Claim {
-        id: "faster",
-        source: "seed 002, the paper on W",
-        claim: "W is 2.3 times as fast as Schlick's function in software".to_owned(),
-        seed: "2.3".to_owned(),
-        ours: Vec::new(),
-        verdict: Verdict::Elsewhere,
-        words: "A timing differs from run to run, so it stands apart: in the section on speed, which the option \
-                --benchmark adds."
-            .to_owned(),
-    }
+    claims::claim("faster", Vec::new(), Verdict::Elsewhere, &[])
 }

@@ -1,10 +1,10 @@
 //! The plots and tables that the captions of the seeds' figures describe, made anew.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::chart::{Chart, ChartAxis, Mark, Series, even, exponents};
 use super::claims::{percent, quad, schlick, stretched, w};
-use super::measure::{self, Function, Region};
+use super::measure::{self, Region};
 use crate::golden::formulas;
 
 /// The largest exponent of the patent.
@@ -17,7 +17,7 @@ const LARGEST_POWER: u32 = 64;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SeedPlot {
     /// `seed 000, Fig. 5`.
-    pub figure: &'static str,
+    pub figure: String,
     /// Ours.
     pub chart: Chart,
 }
@@ -62,35 +62,108 @@ fn blinn(gamma: f64, n: f64) -> f64 {
     formulas::blinn(libm::cos(gamma), n)
 }
 
-/// Functions of the angle at one exponent.
-fn over_angle(
-    figure: &'static str,
-    id: &str,
-    title: &str,
-    caption: &str,
-    n: f64,
-    degrees: f64,
-    functions: &[(&str, Function)],
-) -> SeedPlot {
-    let places = even(0.0, degrees, 120);
-    let series = functions
-        .iter()
-        .map(|(name, function)| Series {
-            name: (*name).to_owned(),
-            values: places.iter().map(|degrees| function(degrees.to_radians(), n)).collect(),
+/// A plot as `seed_plots.toml` states it.
+#[derive(Deserialize)]
+struct Stated {
+    figure: String,
+    id: String,
+    title: String,
+    caption: String,
+    over_angle: Option<(f64, f64)>,
+    over_exponent: Option<(f64, f64)>,
+    /// The range of values, where they are differences.
+    difference: Option<(f64, f64)>,
+    /// Whether the height of the inflection point is marked.
+    #[serde(default)]
+    marked: bool,
+    functions: Vec<String>,
+}
+
+#[derive(Default, Deserialize)]
+struct List {
+    plot: Vec<Stated>,
+}
+
+/// Returns the function of this name.
+fn function(name: &str) -> Box<dyn Fn(f64, f64) -> f64 + Sync> {
+    let (name, power) = name.split_once(' ').unwrap_or((name, ""));
+    let power = power.parse().unwrap_or(1);
+    match name {
+        "w" => Box::new(w(power)),
+        "stretched" => Box::new(stretched(power)),
+        "quad" => Box::new(quad),
+        "schlick" => Box::new(schlick),
+        "less" => {
+            let w = w(power);
+            Box::new(move |gamma, n| w(gamma, n) - blinn(gamma, n))
+        }
+        _ => Box::new(blinn),
+    }
+}
+
+impl Stated {
+    /// The name of each series, the function, and the region.
+    fn series(
+        &self,
+    ) -> impl Iterator<Item = (String, Box<dyn Fn(f64, f64) -> f64 + Sync>, Region)> {
+        self.functions.iter().map(|text| {
+            let mut parts = text.split(" | ");
+            let mut part = || parts.next().unwrap_or_default();
+            let (name, function) = (part().to_owned(), function(part()));
+            (name, function, part().parse().map_or(Region::Inflection, Region::Level))
         })
-        .collect();
-    let chart = Chart {
-        id: id.to_owned(),
-        title: title.to_owned(),
-        caption: caption.to_owned(),
-        x: ChartAxis::linear(GAMMA, 0.0, degrees),
-        y: ChartAxis::linear(VALUE, 0.0, 1.0),
-        places,
-        series,
-        marks: Vec::new(),
-    };
-    SeedPlot { figure, chart }
+    }
+
+    fn plot(self) -> SeedPlot {
+        let mut chart = match self.over_exponent {
+            Some((most, top)) => self.over_exponents(most, top),
+            None => self.over_angles(self.over_angle.unwrap_or_default()),
+        };
+        if let Some((low, high)) = self.difference {
+            chart.y = ChartAxis::linear("difference", low, high);
+        }
+        SeedPlot { figure: self.figure, chart }
+    }
+
+    /// Functions of the angle at one exponent.
+    fn over_angles(&self, (n, degrees): (f64, f64)) -> Chart {
+        let places = even(0.0, degrees, 120);
+        let series = self.series().map(|(name, function, _)| Series {
+            name,
+            values: places.iter().map(|degrees| function(degrees.to_radians(), n)).collect(),
+        });
+        Chart {
+            series: series.collect(),
+            id: self.id.clone(),
+            title: self.title.clone(),
+            caption: self.caption.clone(),
+            x: ChartAxis::linear(GAMMA, 0.0, degrees),
+            y: ChartAxis::linear(VALUE, 0.0, 1.0),
+            places,
+            marks: self.marked.then(|| inflection_mark(n)).into_iter().collect(),
+        }
+    }
+
+    /// Largest relative errors against n.
+    fn over_exponents(&self, most: f64, top: f64) -> Chart {
+        let places = exponents(2, most as u32, 24);
+        let series = self.series().map(|(name, function, region)| {
+            let error = |&n: &u32| measure::at(&*function, n, region).map(|it| 100.0 * it.error);
+            let values = places.iter().map(|n| error(n).unwrap_or(f64::NAN)).collect();
+            Series { name, values }
+        });
+        let series: Vec<Series> = series.collect();
+        Chart {
+            id: self.id.clone(),
+            title: self.title.clone(),
+            caption: format!("{} {}", self.caption, largest(&series, &places)),
+            x: ChartAxis::logarithmic(EXPONENT, 2.0, most),
+            y: ChartAxis::linear(ERROR, 0.0, top),
+            places: places.into_iter().map(f64::from).collect(),
+            series,
+            marks: Vec::new(),
+        }
+    }
 }
 
 /// The height of `cosⁿγ` at its inflection point.
@@ -100,43 +173,6 @@ fn inflection_mark(n: f64) -> Mark {
         label: format!("height of the inflection point of cos\u{207f}\u{3b3}, n = {n}"),
         at: blinn(edge, n),
     }
-}
-
-/// Largest relative errors against n.
-fn over_exponents(
-    figure: &'static str,
-    id: &str,
-    title: &str,
-    caption: &str,
-    axes: (ChartAxis, ChartAxis),
-    series: &[(&str, Function, Region)],
-) -> SeedPlot {
-    let low = libm::round(axes.0.range.0) as u32;
-    let high = libm::round(axes.0.range.1) as u32;
-    let places = exponents(low, high, 24);
-    let series: Vec<Series> = series
-        .iter()
-        .map(|(name, function, region)| Series {
-            name: (*name).to_owned(),
-            values: places
-                .iter()
-                .map(|&n| {
-                    measure::at(*function, n, *region).map_or(f64::NAN, |worst| 100.0 * worst.error)
-                })
-                .collect(),
-        })
-        .collect();
-    let chart = Chart {
-        id: id.to_owned(),
-        title: title.to_owned(),
-        caption: format!("{caption} {}", largest(&series, &places)),
-        x: axes.0,
-        y: axes.1,
-        places: places.into_iter().map(f64::from).collect(),
-        series,
-        marks: Vec::new(),
-    };
-    SeedPlot { figure, chart }
 }
 
 /// "The largest are ...": of each series its largest value, per cent, and where that is.
@@ -152,147 +188,8 @@ fn largest(series: &[Series], places: &[u32]) -> String {
 
 /// All plots, in the order of the seeds.
 pub fn plots() -> Vec<SeedPlot> {
-    let mut plots = patent();
-    plots.extend(paper());
-    plots
-}
-
-fn patent() -> Vec<SeedPlot> {
-    let exponents = || ChartAxis::logarithmic(EXPONENT, 2.0, f64::from(LARGEST));
-    let mut zones = over_angle(
-        "seed 000, Fig. 7",
-        "zones",
-        "The zones of a highlight",
-        "cos\u{207f}\u{3b3} for n = 35. Above the inflection point is the epicentre, where errors are seen; below it the \
-         highlight fades.",
-        35.0,
-        30.0,
-        &[("cos\u{207f}\u{3b3}", &blinn)],
-    );
-    zones.chart.marks.push(inflection_mark(35.0));
-    let (squared, sixteen) = (stretched(2), stretched(16));
-    vec![
-        zones,
-        over_exponents(
-            "seed 000, Fig. 5",
-            "cosine-squared-error",
-            "cos\u{b2}(a\u{b7}\u{3b4}) for cos\u{207f}\u{3b4}",
-            "Largest relative error of the prototype's function against n.",
-            (exponents(), ChartAxis::linear(ERROR, 0.0, 15.0)),
-            &[
-                ("to the inflection point", &squared, Region::Inflection),
-                ("where cos\u{207f}\u{3b4} \u{2265} 0.46", &squared, Region::Level(0.46)),
-            ],
-        ),
-        over_exponents(
-            "seed 000, Fig. 9",
-            "stretched-error",
-            "cos\u{1d4f}(\u{221a}(n/k)\u{b7}\u{3b4}) for cos\u{207f}\u{3b4}",
-            "Largest relative error to the inflection point against n. With the patent's k the error has a peak \
-                 wherever k changes; k = 16 alone would not do for small n.",
-            (exponents(), ChartAxis::linear(ERROR, 0.0, 5.0)),
-            &[
-                ("k = 2, 4, 16 by n", &quad, Region::Inflection),
-                ("k = 16 throughout", &sixteen, Region::Inflection),
-                ("k = 2 throughout (the prototype)", &squared, Region::Inflection),
-            ],
-        ),
-    ]
-}
-
-fn paper() -> Vec<SeedPlot> {
-    let (w2, w4, w8, w16) = (w(2), w(4), w(8), w(16));
-    let exponents = || ChartAxis::logarithmic(EXPONENT, 2.0, 250.0);
-    let mut plots = vec![
-        over_angle(
-            "seed 002, Fig. 3",
-            "w2-and-schlick",
-            "W with m = 2 and Schlick's function, n = 100",
-            &format!(
-                "Both follow cos\u{207f}\u{3b3} near the peak. W falls to 0 at {:.1} degrees; Schlick's function \
-                     fades so slowly that the highlight has a halo.",
-                libm::acos((100.0 - 2.0) / 100.0).to_degrees()
-            ),
-            100.0,
-            30.0,
-            &[("cos\u{207f}\u{3b3}", &blinn), ("W, m = 2", &w2), ("Schlick", &schlick)],
-        ),
-        over_exponents(
-            "seed 002, Fig. 4",
-            "w2-epicentre",
-            "The epicentre: W with m = 2, and Schlick's function",
-            "Largest relative error to the inflection point against n.",
-            (exponents(), ChartAxis::linear(ERROR, 0.0, 12.0)),
-            &[("W, m = 2", &w2, Region::Inflection), ("Schlick", &schlick, Region::Inflection)],
-        ),
-    ];
-    let of_power: [(_, _, Function); 3] = [
-        ("seed 002, Fig. 5", 4, &w4),
-        ("seed 002, Fig. 6", 8, &w8),
-        ("seed 002, Fig. 7", 16, &w16),
-    ];
-    for (figure, m, function) in of_power {
-        plots.push(over_angle(
-            figure,
-            &format!("w{m}-lobe"),
-            &format!("W with m = {m}, n = 35"),
-            "W stays below cos\u{207f}\u{3b3} and meets it at the peak; the greater m, the farther out they part.",
-            35.0,
-            45.0,
-            &[("cos\u{207f}\u{3b3}", &blinn), (&format!("W, m = {m}"), function)],
-        ));
-    }
-    let less = |function: Function<'_>, gamma: f64, n: f64| function(gamma, n) - blinn(gamma, n);
-    let mut differences = over_angle(
-        "seed 002, Figs. 5 to 7",
-        "w-differences",
-        "W less cos\u{207f}\u{3b3}, n = 35",
-        "What the three figures before can hardly show. With each doubling of m the difference falls to less than a half.",
-        35.0,
-        45.0,
-        &[
-            ("m = 4", &|gamma, n| less(&w4, gamma, n)),
-            ("m = 8", &|gamma, n| less(&w8, gamma, n)),
-            ("m = 16", &|gamma, n| less(&w16, gamma, n)),
-        ],
-    );
-    differences.chart.y = ChartAxis::linear("difference", -0.08, 0.02);
-    plots.push(differences);
-    let families = |region| {
-        [
-            ("W, m = 4", &w4 as Function, region),
-            ("W, m = 8", &w8, region),
-            ("W, m = 16", &w16, region),
-            ("Schlick", &schlick, region),
-        ]
-    };
-    plots.push(over_exponents(
-        "seed 002, Fig. 8",
-        "w-epicentre",
-        "The epicentre: W with m = 4, 8, 16",
-        "Largest relative error to the inflection point against n. Where n is less than m, W is on the other side of \
-         cos\u{207f}\u{3b3}, and worse than for large n.",
-        (exponents(), ChartAxis::linear(ERROR, 0.0, 12.0)),
-        &families(Region::Inflection),
-    ));
-    plots.push(over_exponents(
-        "seed 002, Fig. 8",
-        "w-epicentre-0.46",
-        "The same where cos\u{207f}\u{3b3} \u{2265} 0.46",
-        "Largest relative error down to this level against n. Three of the paper's four figures come out here: those of \
-         m = 4 and 8 and of Schlick's function.",
-        (exponents(), ChartAxis::linear(ERROR, 0.0, 25.0)),
-        &families(Region::Level(0.46)),
-    ));
-    plots.push(over_exponents(
-        "seed 002, Fig. 9",
-        "w-blooming",
-        "The blooming zone: W with m = 4, 8, 16",
-        "Largest relative error where cos\u{207f}\u{3b3} \u{2265} 0.20, against n.",
-        (exponents(), ChartAxis::linear(ERROR, 0.0, 100.0)),
-        &families(Region::Level(0.20)),
-    ));
-    plots
+    let list: List = toml::from_str(include_str!("seed_plots.toml")).unwrap_or_default();
+    list.plot.into_iter().map(Stated::plot).collect()
 }
 
 /// The patent's table 1: for each required accuracy the smallest k by n, where the error counts to the
@@ -361,6 +258,7 @@ mod tests {
 
     #[test]
     fn plots_have_what_they_need() {
+        assert_eq!(plots().len(), 12);
         for SeedPlot { chart, .. } in plots() {
             assert!(chart.series.len() <= crate::pages::plots::STYLES, "{}", chart.id);
             for series in &chart.series {

@@ -69,7 +69,7 @@ struct BenchmarkView<'a> {
 /// A chart cannot be plotted.
 pub fn page(evidence: &Evidence, benchmark: Option<&Benchmark>) -> Result<String> {
     let plots: Vec<(&Chart, &str)> =
-        evidence.plots.iter().map(|plot| (&plot.chart, plot.figure)).collect();
+        evidence.plots.iter().map(|plot| (&plot.chart, plot.figure.as_str())).collect();
     let overview: Vec<(&Chart, &str)> = evidence.overview.iter().map(|chart| (chart, "")).collect();
     let page = Page {
         marker: MARKER,

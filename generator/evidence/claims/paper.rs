@@ -3,12 +3,10 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::{
-    Claim, EPICENTRE, Measured, Verdict, error, exceeding, found, key, plain, runs, schlick,
-    to_inflection, upper, w,
+    Claim, EPICENTRE, Measured, Verdict, claim, error, exceeding, found, instance, key, plain,
+    runs, schlick, to_inflection, upper, w,
 };
 use crate::evidence::measure::{self, Function, Region};
-
-const SOURCE: &str = "seed 002, the paper on W";
 
 /// The exponents over which the paper's figures come out.
 const PAPER: std::ops::RangeInclusive<u32> = 16..=250;
@@ -39,20 +37,8 @@ pub fn claims() -> Vec<Claim> {
         blooming("w8-blooming", 8, 0.162, "16.2 %"),
         blooming("w16-blooming", 16, 0.076, "7.6 %"),
         schlick_blooming(),
-        ratio(
-            "ratio-epicentre",
-            "W with m = 16 is more than 22 times as accurate as Schlick's function before the inflection point",
-            "22 (its own table gives 22.4)",
-            22.0,
-            [Region::Inflection, EPICENTRE],
-        ),
-        ratio(
-            "ratio-blooming",
-            "W with m = 16 is more than 14 times as accurate as Schlick's function in the blooming zone",
-            "14 (its own table gives 12.9)",
-            14.0,
-            [BLOOMING, SCHLICK_BLOOMING],
-        ),
+        ratio("ratio-epicentre", 22.0, [Region::Inflection, EPICENTRE]),
+        ratio("ratio-blooming", 14.0, [BLOOMING, SCHLICK_BLOOMING]),
         multiplications(),
         ahead_of_schlick(),
     ]
@@ -99,17 +85,8 @@ fn not_negative() -> Claim {
         of("all-m", "the same, m = 2, 4, 8, 16", least(&POWERS, PI)),
     ];
     let holds = ours.iter().all(|one| one.value >= 0.0);
-    Claim {
-        id: "not-negative",
-        source: "seed 002, the paper on W, before the derivative of W",
-        claim: "W, a square, is never below 0".to_owned(),
-        seed: "«є квадратом дійсного числа, то її значення завжди не менше 0»".to_owned(),
-        ours,
-        verdict: if holds { Verdict::Holds } else { Verdict::Fails },
-        words: "It holds for every even power. The paper's list of properties calls W positive, which it is not at its \
-                zero; behind the zero it rises again, so that the devices clamp it there."
-            .to_owned(),
-    }
+    let verdict = if holds { Verdict::Holds } else { Verdict::Fails };
+    claim("not-negative", ours, verdict, &[])
 }
 
 fn zero() -> Claim {
@@ -125,17 +102,8 @@ fn zero() -> Claim {
         plain("m-16", "the largest W there, m = 16", largest(16), format!("{:.3}", largest(16))),
     ];
     let holds = ours[0].value < 1e-20;
-    Claim {
-        id: "zero",
-        source: "seed 002, the paper on W, before the derivative of W",
-        claim: "W is 0 at cos \u{3b3} = (n \u{2212} 2)/n, and least there".to_owned(),
-        seed: "«приймає нульове значення при cos(\u{3b3}) = (n \u{2212} 2)/n»".to_owned(),
-        ours,
-        verdict: if holds { Verdict::Depends } else { Verdict::Fails },
-        words: "It holds for m = 2, of which the paper speaks there, up to rounding; at n = 1 the zero is at 180\u{b0}, beyond the \
-                90\u{b0} to which the paper limits \u{3b3}. With another power it is at (n \u{2212} m)/n, and W is not 0 at (n \u{2212} 2)/n."
-            .to_owned(),
-    }
+    let verdict = if holds { Verdict::Depends } else { Verdict::Fails };
+    claim("zero", ours, verdict, &[])
 }
 
 fn falling() -> Claim {
@@ -167,17 +135,8 @@ fn falling() -> Claim {
         ),
     ];
     let holds = ours[..2].iter().all(|one| one.value <= 0.0);
-    Claim {
-        id: "falling",
-        source: "seed 002, the paper on W, the derivative of W",
-        claim: "W falls monotonically from \u{3b3} = 0 to arccos((n \u{2212} 2)/n)".to_owned(),
-        seed: "«на проміжку [0, arccos((n \u{2212} 2)/n)] монотонно спадає»".to_owned(),
-        ours,
-        verdict: if holds { Verdict::Holds } else { Verdict::Fails },
-        words: "It holds up to the zero. Behind it the parabola rises again, which the paper does not say: at 90\u{b0} it is \
-                (n/2 \u{2212} 1)\u{b2}, and would be a bright ring."
-            .to_owned(),
-    }
+    let verdict = if holds { Verdict::Holds } else { Verdict::Fails };
+    claim("falling", ours, verdict, &[])
 }
 
 /// The exponents at which some property of errors in a region fails.
@@ -193,8 +152,9 @@ fn failing(region: Region, holds: impl Fn(&dyn Fn(Function) -> f64) -> bool) -> 
 /// Whether a claim holds of the functions' errors.
 type Holds<'a> = dyn Fn(&dyn Fn(Function) -> f64) -> bool + 'a;
 
-/// A line of the ledger about all exponents: how many fail in each region.
-fn failures(regions: [Region; 3], holds: &Holds) -> (Vec<Measured>, String) {
+/// A claim about all exponents: how many fail in each region.
+fn of_all(id: &str, holds: &Holds) -> Claim {
+    let regions = [Region::Inflection, EPICENTRE, BLOOMING];
     let failing = regions.map(|region| (region, failing(region, holds)));
     let ours = failing.iter().map(|(region, failing)| {
         let text =
@@ -210,51 +170,20 @@ fn failures(regions: [Region; 3], holds: &Holds) -> (Vec<Measured>, String) {
             format!("It holds from n = {} to 1000 in every region, and fails below", last + 1)
         }
     };
-    (ours, words)
+    let verdict = if most.is_none() { Verdict::Holds } else { Verdict::Depends };
+    claim(id, ours, verdict, &[("words", words)])
 }
 
 fn better_with_power() -> Claim {
     let [first, second, third] = THREE.map(w);
-    let (ours, words) = failures([Region::Inflection, EPICENTRE, BLOOMING], &|error| {
+    of_all("better-with-power", &|error| {
         error(&first) > error(&second) && error(&second) > error(&third)
-    });
-    Claim {
-        id: "better-with-power",
-        source: "seed 002, the paper on W, before its figure 5 (n = 35)",
-        claim: "The accuracy of W grows with its power, m = 4, 8, 16".to_owned(),
-        seed: "«зі зростанням степені m \u{2026} точність наближення до ДФВЗ \u{2026} зростає»"
-            .to_owned(),
-        verdict: if ours.iter().all(|one| one.value == 0.0) {
-            Verdict::Holds
-        } else {
-            Verdict::Depends
-        },
-        ours,
-        words: format!(
-            "{words}: near n = m a smaller power is exact or nearly so. At n = 35 of its figures it holds."
-        ),
-    }
+    })
 }
 
 fn ahead_of_schlick() -> Claim {
     let three = THREE.map(w);
-    let (ours, words) = failures([Region::Inflection, EPICENTRE, BLOOMING], &|error| {
-        three.iter().all(|w| error(w) < error(&schlick))
-    });
-    Claim {
-        id: "ahead-of-schlick",
-        source: "seed 002, the paper on W, before its conclusions",
-        claim: "All three W approximate better than Schlick's function".to_owned(),
-        seed: "«усі три запропоновані функції забезпечують кращу апроксимацію, ніж функція Шліка»"
-            .to_owned(),
-        verdict: if ours.iter().all(|one| one.value == 0.0) {
-            Verdict::Holds
-        } else {
-            Verdict::Depends
-        },
-        ours,
-        words: format!("{words}: Schlick's function is exact at n = 1."),
-    }
+    of_all("ahead-of-schlick", &|error| three.iter().all(|w| error(w) < error(&schlick)))
 }
 
 /// The largest relative error of a function over the paper's exponents.
@@ -265,7 +194,7 @@ fn papers(function: Function, region: Region) -> Option<Measured> {
 }
 
 /// W and the paper's error before the inflection point.
-fn before_inflection(id: &'static str, m: u32, limit: f64, seed: &str) -> Claim {
+fn before_inflection(id: &str, m: u32, limit: f64, seed: &str) -> Claim {
     let function = w(m);
     let mut ours = found([Region::Inflection, EPICENTRE].map(|region| papers(&function, region)));
     // The paper says n = 1…250; its figures come out where n is well above m.
@@ -286,95 +215,51 @@ fn before_inflection(id: &'static str, m: u32, limit: f64, seed: &str) -> Claim 
         ),
         _ => String::new(),
     };
-    let figures: Vec<&str> = ours.iter().map(|one| one.text.as_str()).collect();
-    Claim {
-        id,
-        source: SOURCE,
-        claim: format!(
-            "W with m = {m}: largest relative error before the inflection point, n = 1…250"
-        ),
-        seed: seed.to_owned(),
-        verdict,
-        words: format!(
-            "For n \u{2265} 16 it holds at the inflection point ({}); down to level 0.46 the error is {}.{level}{small}",
-            figures.first().unwrap_or(&""),
-            figures.get(1).unwrap_or(&""),
-        ),
-        ours,
-    }
+    let figure = |at: usize| ours.get(at).map_or_else(String::new, |one| one.text.clone());
+    let values = [
+        ("m", m.to_string()),
+        ("seed", seed.to_owned()),
+        ("first", figure(0)),
+        ("second", figure(1)),
+        ("level", level),
+        ("small", small),
+    ];
+    instance("epicentre", id, ours, verdict, &values)
 }
 
 fn schlick_epicentre() -> Claim {
     let ours = found([Region::Inflection, EPICENTRE].map(|region| papers(&schlick, region)));
     let level = measure::level_of(&schlick, PAPER, 0.224).unwrap_or(f64::NAN);
-    Claim {
-        id: "schlick-epicentre",
-        source: SOURCE,
-        claim: "Schlick's function: largest relative error before the inflection point".to_owned(),
-        seed: "22.4 %".to_owned(),
-        // The larger the rival's error the better for the paper: at the true inflection point it is no such figure.
-        verdict: Verdict::Depends,
-        words: format!(
-            "It is the error where cos\u{207f}\u{3b3} \u{2265} {level:.2}, as for m = 4 and 8. At the inflection point \
-             itself Schlick's function is less than half as far off."
-        ),
-        ours,
-    }
+    // The larger the rival's error the better for the paper: at the true inflection point it is no such figure.
+    claim("schlick-epicentre", ours, Verdict::Depends, &[("level", format!("{level:.2}"))])
 }
 
 fn schlick_under_ten() -> Claim {
     let ours: Vec<Measured> = papers(&schlick, Region::Inflection).into_iter().collect();
-    Claim {
-        id: "schlick-under-ten",
-        source: SOURCE,
-        claim: "Schlick's function reproduces the epicentre with an error of at most 10 %"
-            .to_owned(),
-        seed: "10 %".to_owned(),
-        verdict: upper(&ours, 0.10),
-        words: "It holds at the inflection point, and contradicts the 22.4 % that the same paper gives for it."
-            .to_owned(),
-        ours,
-    }
+    let verdict = upper(&ours, 0.10);
+    claim("schlick-under-ten", ours, verdict, &[])
 }
 
 /// W and the paper's error in the blooming zone.
-fn blooming(id: &'static str, m: u32, limit: f64, seed: &str) -> Claim {
+fn blooming(id: &str, m: u32, limit: f64, seed: &str) -> Claim {
     let function = w(m);
     let ours: Vec<Measured> = papers(&function, BLOOMING).into_iter().collect();
     let level = measure::level_of(&function, PAPER, limit).unwrap_or(f64::NAN);
-    Claim {
-        id,
-        source: SOURCE,
-        claim: format!("W with m = {m}: largest relative error in the blooming zone"),
-        seed: seed.to_owned(),
-        verdict: upper(&ours, limit),
-        words: format!(
-            "The paper does not say where the zone ends; its figure is reached at cos\u{207f}\u{3b3} = {level:.3}. \
-             Without an end the error is 100 %, for W becomes 0 where cos\u{207f}\u{3b3} does not."
-        ),
-        ours,
-    }
+    let verdict = upper(&ours, limit);
+    let values =
+        [("m", m.to_string()), ("seed", seed.to_owned()), ("level", format!("{level:.3}"))];
+    instance("blooming", id, ours, verdict, &values)
 }
 
 fn schlick_blooming() -> Claim {
     let ours = found([BLOOMING, SCHLICK_BLOOMING].map(|region| papers(&schlick, region)));
     let level = measure::level_of(&schlick, PAPER, 0.982).unwrap_or(f64::NAN);
-    Claim {
-        id: "schlick-blooming",
-        source: SOURCE,
-        claim: "Schlick's function: largest relative error in the blooming zone".to_owned(),
-        seed: "98.2 %".to_owned(),
-        verdict: upper(&ours, 0.982),
-        words: format!(
-            "The paper's figure is reached at cos\u{207f}\u{3b3} = {level:.3}, a little farther out than for W. \
-             Farther still the error grows without limit."
-        ),
-        ours,
-    }
+    let verdict = upper(&ours, 0.982);
+    claim("schlick-blooming", ours, verdict, &[("level", format!("{level:.3}"))])
 }
 
 /// The error of Schlick's function over that of W, both in the same region.
-fn ratio(id: &'static str, claim: &str, seed: &str, least: f64, regions: [Region; 2]) -> Claim {
+fn ratio(id: &str, least: f64, regions: [Region; 2]) -> Claim {
     let best = w(16);
     let over = |region| {
         let (of_schlick, of_w) = (papers(&schlick, region)?, papers(&best, region)?);
@@ -394,21 +279,8 @@ fn ratio(id: &'static str, claim: &str, seed: &str, least: f64, regions: [Region
         count if count == ours.len() => Verdict::Holds,
         _ => Verdict::Depends,
     };
-    let why = match id {
-        "ratio-epicentre" => {
-            " The paper divides Schlick's error at level 0.46 by that of W at the inflection point."
-        }
-        _ => " Its own table, 98.2 over 7.6, does not give 14 either.",
-    };
-    Claim {
-        id,
-        source: SOURCE,
-        claim: claim.to_owned(),
-        seed: seed.to_owned(),
-        verdict,
-        words: format!("It is {} with one definition for both.{why}", figures.join(" or ")),
-        ours,
-    }
+    let figures = figures.join(" or ");
+    claim(id, ours, verdict, &[("figures", figures)])
 }
 
 fn one_per_cent() -> Claim {
@@ -419,40 +291,15 @@ fn one_per_cent() -> Claim {
         to_inflection(&function, FROM_TWO, "from-2", "m = 16"),
         to_inflection(&function, after..=250, "holding", "m = 16"),
     ]);
-    Claim {
-        id: "w16-one-per-cent",
-        source: SOURCE,
-        claim: "W with m = 16 is within 1 % before the inflection point for all n = 1…250"
-            .to_owned(),
-        seed: "1 %".to_owned(),
-        verdict: if failing.is_empty() { Verdict::Holds } else { Verdict::Fails },
-        words: format!(
-            "It fails for n = {}, and holds from n = {after} on. n = 1 has no inflection point: W is beside the \
-             cosine there.",
-            runs(&failing)
-        ),
-        ours,
-    }
+    let verdict = if failing.is_empty() { Verdict::Holds } else { Verdict::Fails };
+    let values = [("failing", runs(&failing)), ("after", after.to_string())];
+    claim("w16-one-per-cent", ours, verdict, &values)
 }
 
 fn multiplications() -> Claim {
     let squarings = 16u32.ilog2();
     let count = 1 + squarings;
-    Claim {
-        id: "multiplications",
-        source: SOURCE,
-        claim: "W with m = 16 needs four multiplications".to_owned(),
-        seed: "4".to_owned(),
-        ours: vec![plain(
-            "count",
-            "one by n (the division by m is a shift) and the squarings",
-            f64::from(count),
-            format!("{count}"),
-        )],
-        verdict: Verdict::Fails,
-        words: format!(
-            "The {squarings} squarings are four; n\u{b7}(cos \u{3b3} \u{2212} 1) is the fifth. It is saved only \
-             where n/m \u{b7} (cos \u{3b3} \u{2212} 1) comes from outside."
-        ),
-    }
+    let definition = "one by n (the division by m is a shift) and the squarings";
+    let ours = vec![plain("count", definition, f64::from(count), count.to_string())];
+    claim("multiplications", ours, Verdict::Fails, &[("squarings", squarings.to_string())])
 }

@@ -1,11 +1,10 @@
 //! The claims of seed 000, the patent of `quad-cosine`.
 
 use super::{
-    Claim, EPICENTRE, Verdict, exceeding, found, key, largest, quad, runs, stretched, to_inflection,
+    Claim, EPICENTRE, Verdict, claim, exceeding, found, key, largest, quad, runs, stretched,
+    to_inflection,
 };
 use crate::evidence::measure;
-
-const SOURCE: &str = "seed 000, the patent of quad-cosine";
 
 /// The claims, in the order of the patent.
 pub fn claims() -> Vec<Claim> {
@@ -20,19 +19,9 @@ fn quad_large() -> Claim {
         to_inflection(&quad, after..=1000, "holding", "k = 16"),
         largest(&quad, 7..=1000, EPICENTRE, &key(EPICENTRE), "k = 16"),
     ]);
-    Claim {
-        id: "quad-large",
-        source: SOURCE,
-        claim: "cos\u{1d4f}(\u{221a}(n/k)\u{b7}\u{3b4}) with k = 16 is within 0.6 % for all n > 6"
-            .to_owned(),
-        seed: "< 0.6 %".to_owned(),
-        verdict: if failing.is_empty() { Verdict::Holds } else { Verdict::Fails },
-        words: format!(
-            "It fails for n = {}, and holds at the inflection point from n = {after} to 1000.",
-            runs(&failing)
-        ),
-        ours,
-    }
+    let verdict = if failing.is_empty() { Verdict::Holds } else { Verdict::Fails };
+    let values = [("failing", runs(&failing)), ("after", after.to_string())];
+    claim("quad-large", ours, verdict, &values)
 }
 
 fn quad_small() -> Claim {
@@ -42,19 +31,8 @@ fn quad_small() -> Claim {
         to_inflection(&quad, 4..=5, "n-4-5", "k = 4"),
         to_inflection(&quad, 6..=6, "n-6", "k = 4"),
     ]);
-    Claim {
-        id: "quad-small",
-        source: SOURCE,
-        claim: "cos\u{1d4f}(\u{221a}(n/k)\u{b7}\u{3b4}) with k = 1, 2, 4 is within 1 % for n < 6"
-            .to_owned(),
-        seed: "\u{2264} 1 %".to_owned(),
-        verdict: if failing.is_empty() { Verdict::Holds } else { Verdict::Fails },
-        words: format!(
-            "It fails for n = {}. n = 1, 2 and 4 are exact, for k = n; the patent does not speak of n = 6.",
-            runs(&failing)
-        ),
-        ours,
-    }
+    let verdict = if failing.is_empty() { Verdict::Holds } else { Verdict::Fails };
+    claim("quad-small", ours, verdict, &[("failing", runs(&failing))])
 }
 
 fn four_powers() -> Claim {
@@ -65,17 +43,8 @@ fn four_powers() -> Claim {
         to_inflection(&nine, 5..=1000, "k-9-from-5", "k = 9"),
     ]);
     let served = ours[1..].iter().all(|one| one.value <= 0.01);
-    Claim {
-        id: "four-powers",
-        source: SOURCE,
-        claim: "Four functions, with k = 1, 2, 3 and 9, give 1 % for all n".to_owned(),
-        seed: "1 %".to_owned(),
-        verdict: if served { Verdict::Depends } else { Verdict::Fails },
-        words: "It holds if k = 3 serves n = 4 as well as n = 3, just so, and k = 9 serves n = 5…1000. With k = 9 from \
-                n = 4 on it does not. n = 1 and 2 are exact."
-            .to_owned(),
-        ours,
-    }
+    let verdict = if served { Verdict::Depends } else { Verdict::Fails };
+    claim("four-powers", ours, verdict, &[])
 }
 
 fn prototype() -> Claim {
@@ -87,17 +56,5 @@ fn prototype() -> Claim {
         to_inflection(&function, 2..=1000, "inflection", "at most"),
         largest(&function, 2..=1000, EPICENTRE, &key(EPICENTRE), "at most"),
     ]);
-    Claim {
-        id: "prototype",
-        source: SOURCE,
-        claim: "The prototype's cos\u{b2}(a\u{b7}\u{3b4}) is off by more than 10 % for all n"
-            .to_owned(),
-        seed: "> 10 %".to_owned(),
-        verdict: Verdict::Fails,
-        words: format!(
-            "Not at the inflection point for any n, and at n = 2 it is exact. Where cos\u{207f}\u{3b3} \u{2265} 0.46 it is so for n = {}.",
-            runs(&wide)
-        ),
-        ours,
-    }
+    claim("prototype", ours, Verdict::Fails, &[("wide", runs(&wide))])
 }

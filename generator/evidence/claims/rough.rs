@@ -1,6 +1,6 @@
 //! The claims of seed 001, the patent of `rough`.
 
-use super::{Claim, Measured, Verdict, found, plain};
+use super::{Claim, Measured, Verdict, claim, found, plain};
 use crate::config::Config;
 use crate::core::Core;
 use crate::registry::Registry;
@@ -54,20 +54,7 @@ fn inverse_code() -> Claim {
             format!("{after} ulps"),
         ),
     ];
-    Claim {
-        id: "inverse-code",
-        source: "seed 001, the patent of rough, description of adder 15",
-        claim: "The direct code of A and the inverse code of B add up to A - B - 1, which is cos \u{3b3}\u{b7}cos \
-                d\u{3b3} \u{2212} sin \u{3b3}\u{b7}sin d\u{3b3} \u{2212} 1"
-            .to_owned(),
-        seed: "«отримуємо число, що на одиницю менше від результату операції А-В»".to_owned(),
-        ours,
-        verdict: Verdict::Depends,
-        words: "It holds of codes: one less means one unit in the last place. The 1 of formula (3) is 1.0, which words \
-                that are fractions drop anyway; with it the sum is an ulp too small, and n/2 multiplies the ulp. \
-                Register 12 added by adder 31 has no such error, so the two signs of d\u{3b3} differ by it."
-            .to_owned(),
-    }
+    claim("inverse-code", ours, Verdict::Depends, &[])
 }
 
 fn second_input() -> Claim {
@@ -77,22 +64,11 @@ fn second_input() -> Claim {
             format!("words of 8 bits from which adder 31 takes one with {key} there: {place}");
         share(key, &definition, words)
     };
-    Claim {
-        id: "adder-31",
-        source: "seed 001, the patent of rough: claim, summary, description of adder 31",
-        claim: "What is on the second input of adder 31, which takes 1 from sin \u{3b3}\u{b7}sin d\u{3b3}"
-            .to_owned(),
-        seed: "claim and description: «до рівня логічної одиниці»; summary: «до рівня логічного нуля»".to_owned(),
-        ours: vec![
-            minus_one("ones", WORDS - 1, "claim and description"),
-            minus_one("zeros", 0, "summary"),
-        ],
-        verdict: Verdict::Contradictory,
-        words: "Only ones take 1 away, as the description shows («доповнюючий код 1 дорівнює 111...11»), and the device \
-                has them. The summary's sentence lacks the carry input between «рівня» and «логічного нуля»: it \
-                reads as if words had been left out."
-            .to_owned(),
-    }
+    let ours = vec![
+        minus_one("ones", WORDS - 1, "claim and description"),
+        minus_one("zeros", 0, "summary"),
+    ];
+    claim("adder-31", ours, Verdict::Contradictory, &[])
 }
 
 fn ten_clocks() -> Claim {
@@ -119,15 +95,6 @@ fn ten_clocks() -> Claim {
         ),
     ]);
     let ten = ours.iter().take(2).filter(|one| one.value == 10.0).count();
-    Claim {
-        id: "ten-clocks",
-        source: "seed 001, the patent of rough, end of the description",
-        claim: "The device needs ten clocks, as many as block 30 has cells".to_owned(),
-        seed: "«для роботи пристрою необхідно 10 тактів»".to_owned(),
-        verdict: if ten == 2 { Verdict::Holds } else { Verdict::Fails },
-        words: "The default of the device in the built-in simulator: ten words, the last of which is «Кінець». The clock \
-                that takes «Пуск» is one more; with `operands.buffered` it is the last word's, and a point takes ten."
-            .to_owned(),
-        ours,
-    }
+    let verdict = if ten == 2 { Verdict::Holds } else { Verdict::Fails };
+    claim("ten-clocks", ours, verdict, &[])
 }
