@@ -177,7 +177,6 @@ fn slope(power: u32) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::golden::Model;
 
     #[test]
     fn angles_wrap_as_the_circle_does() {
@@ -215,34 +214,5 @@ mod tests {
         assert_eq!(CosineTable::address(6, 3, 2), 3);
         assert_eq!(CosineTable::address(5, 3, 2), 2);
         assert_eq!(CosineTable::address(80, 3, 2), 3);
-    }
-
-    /// The order of events of seed 000 for l = 3, with register 8 and ROM 12 between outputs 37 and 29.
-    #[test]
-    fn a_line_of_three_intervals_event_by_event() {
-        let mut frame = Frame::default();
-        let (_, program) = walker(&mut frame, Format::signed(1, 4), 4, 2);
-        let mut model = frame.model(program);
-        // Outputs 28, 29, 34, 36, 37, then done, counter 5 and register 8.
-        let names =
-            ["busy", "valid", "count", "accumulate", "write_angle", "done", "intervals", "angle"];
-        let expected = [
-            [1, 0, 0, 0, 0, 0, 0, 0],
-            // Pulse 1 on output 37 with 36 low loads ζ(X_start) …
-            [1, 0, 0, 0, 1, 0, 0, 0],
-            // … pulses 2, 3, 4 add Δζ, and 34 counts 3 → 2 → 1 → 0.
-            [1, 0, 1, 1, 1, 0, 3, 61],
-            [1, 1, 1, 1, 1, 0, 2, 63],
-            [1, 1, 1, 1, 1, 0, 1, 1],
-            [1, 1, 0, 0, 0, 0, 0, 3],
-            [1, 1, 0, 0, 0, 1, 0, 3],
-            [0, 0, 0, 0, 0, 0, 0, 3],
-        ];
-        // Δζ = 2/16, ζ = −3/16, l = 3, written together with start.
-        model.clock(&[1, 1, 2, 1, 64 - 3, 1, 3, 1]);
-        for row in expected {
-            assert_eq!(names.map(|name| model.value(name).unwrap()), row);
-            model.clock(&[1, 0, 0, 1, 0, 1, 0, 1]);
-        }
     }
 }

@@ -222,23 +222,6 @@ pub trait Contract: Send + Sync {
     }
 }
 
-/// The named signals after an edge with the inputs `first`, and after each of those with `then` that follow; it leaves
-/// the model an edge later.
-#[cfg(test)]
-fn watch<const NAMES: usize, const CLOCKS: usize>(
-    model: &mut dyn Model,
-    names: [&str; NAMES],
-    first: &[u64],
-    then: &[u64],
-) -> [[u64; NAMES]; CLOCKS] {
-    model.clock(first);
-    [(); CLOCKS].map(|()| {
-        let values = names.map(|name| model.value(name).unwrap());
-        model.clock(then);
-        values
-    })
-}
-
 /// The distance of `value` from the nearer of two values that are right.
 #[inline]
 pub fn nearer(value: f64, right: [f64; 2]) -> f64 {

@@ -1,12 +1,11 @@
 //! The divider, through the built-in simulator: the block in a device of its own, every quotient,
-//! remainder and clock of small operands against integer division; and the edges of `schlick`.
+//! remainder and clock of small operands against integer division.
 
 use glint::dsl::{Designer, end, loop_while, step, valid};
 use glint::fixed::Format;
 use glint::hdl::blocks::divider::Divider;
 use glint::hdl::netlist::Design;
 
-use crate::common::cores::parsed;
 use crate::common::host::Host;
 
 /// A device that divides two operands.
@@ -86,48 +85,5 @@ fn fraction_points_are_aligned() {
                 }
             }
         }
-    }
-}
-
-/// Ends of both operands, and one step within them; cos γ is signed here.
-#[test]
-fn schlick_is_exact_at_its_edges() {
-    let design = parsed("edges.toml", "device = \"schlick\"\ncosine.signed = true\n").design;
-    let mut host = Host::new(&design);
-    let one = 1 << 20;
-    let negative = |raw: i64| -raw;
-    for (cosine, exponent, quotient) in [
-        // 0/0 and all that is not lit.
-        (0, 0, 0),
-        (0, 1, 0),
-        (0, 1023, 0),
-        (negative(1), 0, 0),
-        (negative(one), 1000, 0),
-        // n = 0: 1 wherever there is light, less an ulp.
-        (1, 0, 1023),
-        (one, 0, 1023),
-        // cos γ = 1.0, and what exceeds it.
-        (one, 1, 1023),
-        (one, 1023, 1023),
-        (one + 1, 1023, 1023),
-        (2 * one - 1, 1000, 1023),
-        // n = 1 is cos γ, truncated.
-        (one / 2, 1, 512),
-        (one / 2 - 1, 1, 511),
-        (1, 1, 0),
-        // 1024·(2²⁰ − 1)/(1023 + 2²⁰ − 1) = 1023.001…: the last bit is exact.
-        (one - 1, 1023, 1023),
-        // 1024·(2²⁰ − 2)/(2·1023 + 2²⁰ − 2) = 1022.005….
-        (one - 2, 1023, 1022),
-        // The divisor is a multiple of the dividend: (1/2)/(1023/2 + 1/2) = 1/1024, and just below.
-        (one / 2, 1023, 1),
-        (one / 2 - 1, 1023, 0),
-    ] {
-        let operands = [("cos_gamma", cosine), ("exponent", exponent), ("red", 255)];
-        assert_eq!(run(&mut host, &operands), 13);
-        assert_eq!(host.value("quotient"), quotient, "{cosine} with n = {exponent}");
-        assert!(host.value("quotient_divisor") > 0);
-        // To the nearest, ties upward.
-        assert_eq!(host.value("red_out"), (255 * quotient + 512) / 1024);
     }
 }

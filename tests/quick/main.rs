@@ -6,8 +6,8 @@
 mod common;
 
 mod accuracy;
-mod analogues;
 mod blocks;
+mod by_hand;
 mod cli;
 mod clocks;
 mod combinations;

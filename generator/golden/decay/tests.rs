@@ -1,7 +1,6 @@
 //! `blinn` and `gauss` worked by hand in words of a few bits.
 
 use super::*;
-use crate::golden::highlight::Reflectance;
 use crate::keys::common::{Domain, Intensity, Operands};
 
 /// C = 4, S = 6 with one range and a tail; y with 1 + 2 fraction bits; F = 6.
@@ -46,19 +45,6 @@ fn words_by_hand() {
 }
 
 #[test]
-fn f_by_hand() {
-    let contract = small(Function::Logarithm);
-    let f = |cosine, exponent| contract.f(&[cosine, exponent]);
-    // 2^−½ by the tables that `halving.rs` works out: bend −2, chord 44/64; 46. In f64 42.9.
-    assert_eq!(f(14, 3), 46);
-    // 2^−5 of what x = 0 gives, 62/64: 1.
-    assert_eq!(f(5, 3), 1);
-    // The ends: c ≤ 0; c ≥ 1.0; n = 0.
-    assert_eq!([f(0, 0), f(-3, 1), f(0, 15)], [0, 0, 0]);
-    assert_eq!([f(16, 15), f(31, 15), f(1, 0)], [63, 63, 63]);
-}
-
-#[test]
 fn gauss_by_hand() {
     let it = small(Function::Angle);
     // γ²/(4 ln 2) in 1/64 for u = 0, 1, … is 2.92, 5.90, 8.94, 12.04, 15.21: tail u = 0 … 3 (to 4): slope
@@ -69,32 +55,4 @@ fn gauss_by_hand() {
     assert_eq!(it.halvings(14, 6, 5), 7);
     assert_eq!(it.reflectance(16, 0), 63);
     assert_eq!(it.reflectance(0, 0), 0);
-}
-
-/// One point clock by clock: words 0 to 5, and idle.
-#[test]
-fn a_point_clock_by_clock() {
-    let mut model = clocked(small(Function::Logarithm));
-    // c = 14/16, n = 3, red 15, written together with start.
-    model.clock(&[1, 1, 14, 1, 3, 1, 15, 1, 0, 0, 0, 0]);
-    let names = ["run", "word_address", "decay", "halvings", "reflectance", "valid", "done"];
-    let expected = [
-        [1, 0, 0, 0, 0, 0, 0],
-        [1, 1, 0, 0, 0, 0, 0],
-        [1, 2, 12, 0, 0, 0, 0],
-        [1, 3, 12, 4, 0, 0, 0],
-        [1, 4, 12, 4, 0, 0, 0],
-        [1, 5, 12, 4, 46, 1, 1],
-        [0, 0, 12, 4, 46, 0, 0],
-    ];
-    for row in expected {
-        assert_eq!(names.map(|name| model.value(name).unwrap()), row);
-        // Writes while busy change nothing.
-        let late = row[0];
-        model.clock(&[1, 0, 1, late, 1, late, 1, late, 0, 0, 0, 0]);
-    }
-    // 46/64·15 = 10.8.
-    assert_eq!(model.value("red_out").unwrap(), 11);
-    assert_eq!(model.value("f_out").unwrap(), 46);
-    assert_eq!(model.value("cos_gamma_reg").unwrap(), 14);
 }
