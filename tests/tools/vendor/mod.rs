@@ -43,154 +43,46 @@ fn calls(dir: &Path, script: &str, arguments: &[&str], slack: &str) -> (bool, St
     (run.status.success(), output)
 }
 
-#[test]
-fn vivado_builds_a_module() {
-    let dir = cosine_power();
-    let arguments = ["cosine_power_axis", "xc7k70tfbg484-1"];
-    let (ok, calls_made) = calls(dir.path(), "cosine_power_vivado.tcl", &arguments, "0.25");
-    assert!(ok, "{calls_made}");
-    let expected = "\
-read_verilog cosine_power_axis.v
-read_verilog cosine_power.v
-read_verilog cosine_power_control.v
-read_verilog cosine_power_datapath.v
-read_mem cosine_power_control.mem
-read_xdc -mode out_of_context cosine_power_axis.xdc
-synth_design -top cosine_power_axis -part xc7k70tfbg484-1 -mode out_of_context
-opt_design
-place_design
-phys_opt_design
-route_design
-write_checkpoint run/cosine_power_axis_vivado/cosine_power_axis.dcp
-report_utilization -file run/cosine_power_axis_vivado/utilization.txt
-report_timing_summary -file run/cosine_power_axis_vivado/timing.txt
-get_timing_paths -delay_type max
-get_property SLACK path0
-cosine_power_axis on xc7k70tfbg484-1: slack 0.25 ns
-";
-    assert_eq!(calls_made, expected);
-}
-
-#[test]
-fn vivado_fails_where_it_should() {
-    let dir = cosine_power();
-    let script = "cosine_power_vivado.tcl";
-    let (ok, told) = calls(dir.path(), script, &["cosine"], "1");
-    assert!(!ok && told.contains("there is no module cosine; there are: cosine_power, "), "{told}");
-    for (slack, module) in [("-0.1", "cosine_power"), ("", "cosine_power_wb")] {
-        let (ok, told) = calls(dir.path(), script, &[module], slack);
-        assert!(!ok && told.contains(&format!("the clock of {module}.xdc is not met")), "{told}");
-    }
-    // What a run left, or anything else of that name, is not written over.
-    let (ok, told) = calls(dir.path(), script, &[], "1");
-    assert!(!ok && told.contains("run/cosine_power_vivado is there already"), "{told}");
-    assert!(!told.contains("synth_design"), "{told}");
-    // A source that is missing.
-    fs::remove_file(dir.path().join("cosine_power_control.mem")).expect("removed");
-    let (ok, told) = calls(dir.path(), script, &["cosine_power_axis"], "1");
-    assert!(!ok && told.contains("there is no "), "{told}");
-}
-
-#[test]
-fn vivado_packages_ip() {
-    let dir = cosine_power();
-    let script = "cosine_power_vivado_ip.tcl";
-    let (ok, told) = calls(dir.path(), script, &["cosine_power_axis"], "");
-    assert!(ok, "{told}");
-    for call in [
-        "add_files -norecurse cosine_power_control.mem\n",
-        "set_property top cosine_power_axis sources_1\n",
-        "ipx::package_project -root_dir run/cosine_power_axis_ip/ip -vendor glint -library ip \
-         -taxonomy /UserIP -import_files\n",
-        "set_property version 0.1 core0\n",
-        "ipx::infer_bus_interface aclk xilinx.com:signal:clock_rtl:1.0 core0\n",
-        "ipx::infer_bus_interface aresetn xilinx.com:signal:reset_rtl:1.0 core0\n",
-        "set_property value ACTIVE_LOW parameter0\n",
-        "ipx::associate_bus_interfaces -busif s_axis -clock aclk core0\n",
-        "ipx::associate_bus_interfaces -busif m_axis -clock aclk core0\n",
-        "ipx::associate_bus_interfaces -clock aclk -reset aresetn core0\n",
-    ] {
-        assert!(told.contains(call), "{call}{told}");
-    }
-    assert!(told.ends_with("ipx::save_core core0\nclose_project\n"), "{told}");
-    assert!(!told.contains("interrupt"), "{told}");
-    let (ok, told) = calls(dir.path(), script, &["cosine_power_wb"], "");
-    assert!(ok && told.contains("set_property value ACTIVE_HIGH parameter0\n"), "{told}");
-    for call in [
-        "ipx::infer_bus_interface irq xilinx.com:signal:interrupt_rtl:1.0 core0\n",
-        "set_property value LEVEL_HIGH parameter0\n",
-    ] {
-        assert!(told.contains(call), "{call}{told}");
-    }
-    assert!(
-        told.contains("infer_bus_interface wb_clk_i xilinx.com:signal:clock_rtl:1.0"),
-        "{told}"
-    );
-}
-
-#[test]
-fn quartus_builds_a_module() {
-    let dir = cosine_power();
-    let script = "cosine_power_quartus.tcl";
-    let arguments = ["cosine_power_wb", "Cyclone 10 LP", "10CL025YU256C8G"];
-    let (ok, told) = calls(dir.path(), script, &arguments, "");
-    assert!(ok, "{told}");
-    let expected = "\
-project_new cosine_power_wb
-set_global_assignment -name FAMILY {Cyclone 10 LP}
-set_global_assignment -name DEVICE 10CL025YU256C8G
-set_global_assignment -name TOP_LEVEL_ENTITY cosine_power_wb
-set_global_assignment -name VERILOG_INPUT_VERSION VERILOG_2001
-set_global_assignment -name VERILOG_FILE cosine_power_wb.v
-set_global_assignment -name VERILOG_FILE cosine_power_registers.v
-set_global_assignment -name VERILOG_FILE cosine_power.v
-set_global_assignment -name VERILOG_FILE cosine_power_control.v
-set_global_assignment -name VERILOG_FILE cosine_power_datapath.v
-set_global_assignment -name SEARCH_PATH PLACE
-set_global_assignment -name SDC_FILE cosine_power_wb.sdc
-set_instance_assignment -name VIRTUAL_PIN ON -to *
-set_instance_assignment -name VIRTUAL_PIN OFF -to wb_clk_i
-export_assignments
-execute_flow -compile
-project_close
-";
+/// Plays a case of `calls.txt`.
+fn play(case: &str) {
+    let (heading, steps) = case.split_once('\n').expect("a heading");
+    let (registers, _) = heading.split_once(':').expect("registers and a title");
+    let keys = ALL.replace("wishbone", registers);
+    let dir = emitted(&configuration_between("configs/cosine_power.toml", &keys));
     let here = dir.path().canonicalize().expect("a directory").display().to_string();
-    assert_eq!(told.replace(&here, "PLACE"), expected);
-    let (ok, told) = calls(dir.path(), script, &arguments, "");
-    assert!(!ok && told.contains("cosine_power_wb_quartus is there already"), "{told}");
+    let steps = steps.lines().filter(|line| !line.is_empty() && !line.starts_with('#'));
+    let steps: Vec<&str> = steps.collect();
+    let mut told = String::new();
+    for (at, step) in steps.iter().enumerate() {
+        let (what, text) = step.split_once(' ').expect("a step");
+        let text = text.replace("\\n", "\n");
+        match what {
+            "0$" | "1$" => {
+                let (slack, run) = match text.strip_prefix("slack=") {
+                    Some(rest) => rest.split_once(" | ").expect("a script"),
+                    None => ("", text.as_str()),
+                };
+                let words: Vec<&str> = run.split(" | ").collect();
+                let (ok, calls) = calls(dir.path(), words[0], &words[1..], slack);
+                told = calls.replace(&here, "PLACE");
+                assert_eq!(ok, what == "0$", "{heading}: {step}\n{told}");
+                let all: Vec<&str> =
+                    steps[at + 1..].iter().map_while(|step| step.strip_prefix("= ")).collect();
+                assert!(all.is_empty() || told.lines().eq(all), "{heading}: {step}\n{told}");
+            }
+            "=" => (),
+            ">" => assert!(told.contains(&text), "{heading}: {step}\n{told}"),
+            "x>" => assert!(!told.contains(&text), "{heading}: {step}\n{told}"),
+            "-" => fs::remove_file(dir.path().join(text)).expect("removed"),
+            _ => panic!("{heading}: {step}"),
+        }
+    }
 }
 
 #[test]
-fn platform_designer_gets_interfaces() {
-    let registers = ALL.replace("wishbone", "axi-lite");
-    let dir = emitted(&configuration_between("configs/cosine_power.toml", &registers));
-    let of_top = |top: &str| {
-        let (ok, told) = calls(dir.path(), &format!("{top}_hw.tcl"), &[], "");
-        assert!(ok, "{told}");
-        told
-    };
-    let told = of_top("cosine_power_axil");
-    for call in [
-        "set_module_property VERSION 0.1.0\n",
-        "add_fileset synthesis QUARTUS_SYNTH\n",
-        "add_fileset_file cosine_power_axil.v VERILOG PATH cosine_power_axil.v TOP_LEVEL_FILE\n",
-        "add_fileset_file cosine_power_control.mem OTHER PATH cosine_power_control.mem\n",
-        "add_interface_port reset aresetn reset_n Input 1\n",
-        "add_interface s_axil axi4lite end\n",
-        "add_interface_port s_axil s_axil_wdata wdata Input 32\n",
-        "add_interface_port s_axil s_axil_rvalid rvalid Output 1\n",
-        "add_interface_port irq irq irq Output 1\n",
-    ] {
-        assert!(told.contains(call), "{call}{told}");
-    }
-    let told = of_top("cosine_power_axis");
-    assert!(told.contains("add_interface s_axis axi4stream end\n"), "{told}");
-    assert!(told.contains("add_interface m_axis axi4stream start\n"), "{told}");
-    // Nine operands and results as bytes: 3 + 2 + 3 in, 3 out.
-    assert!(told.contains("add_interface_port s_axis s_axis_tdata tdata Input 64\n"), "{told}");
-    assert!(told.contains("add_interface_port m_axis m_axis_tdata tdata Output 24\n"), "{told}");
-    let told = of_top("cosine_power");
-    assert!(told.contains("add_interface_port signals cos_gamma cos_gamma Input 21\n"), "{told}");
+fn scripts_make_the_calls_that_are_stated() {
+    let cases: Vec<&str> = include_str!("calls.txt").split("\n## ").skip(1).collect();
+    cases.into_par_iter().for_each(play);
 }
 
 #[test]
