@@ -156,34 +156,3 @@ impl Reflectance for Arithmetic {
         ]
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::base::fixed::Rounding;
-
-    #[test]
-    fn f_by_hand() {
-        let contract = highlight(Keys {
-            angle_integer: 2,
-            angle_fraction: 6,
-            table_address: 3,
-            length_bits: 12,
-            stages: 2,
-            colour_bits: 8,
-            fraction: 6,
-            output_rounding: Rounding::Nearest,
-        });
-        let f = |angle| contract.f(&[0, angle, 0]);
-        // Steps of 11.25°: (1 + cos² 11.25°)/2 = 0.98097; 20/64 is step 2: (0.85355 + 0.69134)/2 = 0.77245.
-        assert_eq!(f(0), 63);
-        assert_eq!(f(20), 49);
-        assert_eq!(f(-20), 49);
-        // The last step, a right angle and beyond, to the ends of the word.
-        assert_eq!([56, 63, 64, 255, -64, -65, -256].map(f), [0; 7]);
-        assert_eq!(*contract.point(&[3, -10, 7], 4), [3, 2, 7]);
-        // s2.6 wraps at 256.
-        assert_eq!(*contract.point(&[100, 100, 7], 2), [100, -212, 7]);
-        assert_eq!(contract.colour(49, 255), 195);
-    }
-}

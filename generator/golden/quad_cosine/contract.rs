@@ -17,7 +17,7 @@ pub fn contract(config: &Config) -> Box<dyn Contract> {
     Box::new(highlight(Keys::of(config)))
 }
 
-pub(super) fn highlight(keys: Keys) -> Highlight {
+fn highlight(keys: Keys) -> Highlight {
     let mut operands = line::angle_operands(keys.angle_format()).to_vec();
     operands.push(shared::exponent_operand(
         Format::unsigned(keys.exponent_bits as i32, 0),
