@@ -302,13 +302,16 @@ fn lines_are_set_up_in_c_and_python_as_by_glint() {
         let words = |line: &[f64; 15]| line.map(|number| format!("{number:?}")).join(" ");
         fs::write(dir.join("lines"), lines.iter().map(|it| words(it) + "\n").collect::<String>())
             .expect("written");
-        fs::write(dir.join("lines.c"), IN_C.replace("NAME", name)).expect("written");
+        for program in ["lines.c", "lines.py"] {
+            let text = fs::read_to_string(Path::new("tests/tools/software").join(program));
+            let text = text.expect("a program").replace("NAME", name);
+            fs::write(dir.join(program), text).expect("written");
+        }
         let setup = format!("{name}_setup.c");
         let arguments = FLAGS.split(' ').chain(["-fno-sanitize-recover=all", "-o", "set_up"]);
         let arguments: Vec<&str> = arguments.chain(["lines.c", &setup, "-lm"]).collect();
         assert_eq!(ran("cc", &arguments, dir), "", "{name}");
         run_program(&dir.join("set_up"), dir);
-        fs::write(dir.join("lines.py"), IN_PYTHON.replace("NAME", name)).expect("written");
         ran("python", ["lines.py"], dir);
         let [in_c, in_python] =
             ["in_c", "in_python"].map(|file| fs::read_to_string(dir.join(file)).expect("written"));
@@ -389,46 +392,3 @@ fn set_up(feed: &Feed, contract: &dyn Contract, line: &[f64; 15]) -> String {
     named.sort();
     named.join(" ")
 }
-
-const IN_C: &str = r#"
-#include <stdio.h>
-#include "NAME_setup.h"
-int main(void) {
-    FILE *in = fopen("lines", "r");
-    if (freopen("in_c", "w", stdout) == NULL) return 1;
-    double v[12], intensity, exponent, points;
-    for (;;) {
-        for (int at = 0; at < 12; ++at)
-            if (fscanf(in, "%lf", &v[at]) != 1) return fclose(in);
-        if (fscanf(in, "%lf %lf %lf", &intensity, &exponent, &points) != 3) return 1;
-        NAME_line line = {intensity, (uint32_t)exponent, (uint32_t)points};
-        NAME_operands of;
-        if (NAME_setup(v, v + 3, v + 6, v + 9, line, &of) != 0) {
-            puts("refused");
-            continue;
-        }
-        printf("amplitude %ld delta_zeta %ld ", (long)of.amplitude, (long)of.delta_zeta);
-#ifdef QUAD_COSINE_EXPONENT_WIDTH
-        printf("exponent %ld ", (long)of.exponent);
-#endif
-        printf("length %ld zeta_start %ld\n", (long)of.length, (long)of.zeta_start);
-    }
-}
-"#;
-
-const IN_PYTHON: &str = r#"
-import NAME_setup as setup
-import sys
-
-sys.stdout = open("in_python", "w")
-for line in open("lines"):
-    *v, intensity, exponent, points = map(float, line.split())
-    try:
-        operands = setup.from_vectors(
-            v[0:3], v[3:6], v[6:9], v[9:12],
-            intensity=intensity, exponent=int(exponent), points=int(points))
-        assert sorted(operands) == sorted(setup.OPERANDS)
-        print(*(f"{name} {operands[name]}" for name in sorted(operands)))
-    except setup.SetupError:
-        print("refused")
-"#;
