@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use anyhow::{Result, bail};
+use serde::Deserialize;
 
 use super::{EmitInputs, Unfit};
 use crate::base::fixed::Format;
@@ -11,9 +12,6 @@ use crate::hdl::verilog::text::ascii;
 
 /// Bits of a register.
 const WORD: u32 = 32;
-
-/// `GLNT`, in the first register.
-const ID: u32 = 0x474c_4e54;
 
 /// How many registers never change; they stand first.
 pub const CONSTANTS: u32 = 4;
@@ -31,7 +29,8 @@ pub const INTERRUPT_PENDING: u32 = 7;
 const FIRST_OPERAND: u32 = 8;
 
 /// The access of software to bits of a register.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Access {
     /// They can be read.
     Read,
@@ -44,28 +43,31 @@ pub enum Access {
 }
 
 /// Bits of a register.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Deserialize)]
 pub struct Bits {
     /// Plain lower-case words.
     pub name: String,
     /// The lowest of them.
+    #[serde(default)]
     pub low: u32,
     /// How many.
     pub width: u32,
     /// The access of software to them.
     pub access: Access,
     /// Their value after a reset.
+    #[serde(default)]
     pub reset: u64,
     /// One sentence without its full stop.
     pub doc: String,
 }
 
 /// A register of 32 bits.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Deserialize)]
 pub struct Register {
     /// Plain lower-case words.
     pub name: String,
     /// In words.
+    #[serde(default)]
     pub place: u32,
     /// One sentence without its full stop.
     pub doc: String,
@@ -155,7 +157,7 @@ impl Map {
             bail!(unfit(format!("`{name}` has no {what} to put into a register"), "remove it"));
         }
         let mut registers =
-            fixed(inputs, (operands.len(), results.len()), (last_operand, place - 1));
+            fixed(inputs, (operands.len(), results.len()), (last_operand, place - 1))?;
         for operand in &operands {
             registers.extend(own(operand, Access::Write, &doc(design, &operand.name)));
         }
@@ -242,93 +244,41 @@ fn results(design: &Design, place: &mut u32) -> Vec<Placed> {
     results
 }
 
-/// The registers that every core has.
+/// The registers that every core has, in `registers.toml`.
+#[derive(Deserialize)]
+struct Fixed {
+    register: Vec<Register>,
+}
+
+/// The registers that every core has, in this one.
 fn fixed(
     inputs: &EmitInputs,
     (operands, results): (usize, usize),
     (last_operand, last): (u32, u32),
-) -> Vec<Register> {
+) -> Result<Vec<Register>> {
     let version = |part: &str| part.parse::<u64>().unwrap_or_default();
     let version = version(env!("CARGO_PKG_VERSION_MAJOR")) << 16
         | version(env!("CARGO_PKG_VERSION_MINOR")) << 8
         | version(env!("CARGO_PKG_VERSION_PATCH"));
     let hash = inputs.configuration.get(..8).unwrap_or_default();
     let hash = u64::from_str_radix(hash, 16).unwrap_or_default();
-    use Access::{Clear, Read, Trigger, Write};
-    let whole = |doc: &str, reset| vec![bits("value", (0, WORD), Read, reset, doc)];
-    let registers = [
-        ("id", "GLNT in ASCII", whole("0x474c4e54", ID.into())),
-        (
-            "version",
-            "The version of Glint",
-            whole("major, minor and patch in bytes 2, 1 and 0", version),
-        ),
-        (
-            "configuration",
-            "Tells this configuration from others",
-            whole("the first 32 bits of its SHA-256", hash),
-        ),
-        (
-            "capabilities",
-            "What the core has",
-            vec![
-                bits("operands", (0, 8), Read, operands as u64, "how many operands there are"),
-                bits("results", (8, 8), Read, results as u64, "how many results there are"),
-            ],
-        ),
-        (
-            "status",
-            "Where the core is",
-            vec![
-                bits("busy", (0, 1), Read, 0, "a computation is under way"),
-                bits("finished", (1, 1), Read, 0, "one has ended since the last start"),
-            ],
-        ),
-        (
-            "control",
-            "Starts computations",
-            vec![
-                bits(
-                    "start",
-                    (0, 1),
-                    Trigger,
-                    0,
-                    "starts a computation; waits while one is under way",
-                ),
-                bits(
-                    "start_on_write",
-                    (1, 1),
-                    Write,
-                    0,
-                    "a write to register start_word starts, too",
-                ),
-                bits(
-                    "start_word",
-                    (8, last.ilog2() + 1),
-                    Write,
-                    last_operand.into(),
-                    "the offset of a register of an operand, divided by 4",
-                ),
-            ],
-        ),
-        (
-            "interrupt_enable",
-            "What raises the interrupt",
-            vec![bits("finished", (0, 1), Write, 0, "the end of a computation does")],
-        ),
-        (
-            "interrupt_pending",
-            "What has raised the interrupt",
-            vec![bits("finished", (0, 1), Clear, 0, "a computation has ended; write 1 to clear")],
-        ),
-    ];
-    let register = |(place, (name, doc, bits)): (u32, (&str, &str, Vec<Bits>))| Register {
-        name: name.to_owned(),
-        place,
-        doc: doc.to_owned(),
-        bits,
-    };
-    (0..).zip(registers).map(register).collect()
+    let Fixed { register: mut registers } = toml::from_str(include_str!("registers.toml"))?;
+    for (place, register) in (0..).zip(&mut registers) {
+        register.place = place;
+        for bits in &mut register.bits {
+            match (register.name.as_str(), bits.name.as_str()) {
+                ("version", _) => bits.reset = version,
+                ("configuration", _) => bits.reset = hash,
+                (_, "operands") => bits.reset = operands as u64,
+                (_, "results") => bits.reset = results as u64,
+                (_, "start_word") => {
+                    (bits.reset, bits.width) = (last_operand.into(), last.ilog2() + 1);
+                }
+                _ => {}
+            }
+        }
+    }
+    Ok(registers)
 }
 
 fn bits(name: &str, (low, width): (u32, u32), access: Access, reset: u64, doc: &str) -> Bits {
