@@ -7,7 +7,9 @@ use std::io::BufReader;
 use serde_json::Value;
 use vcd::{Command, Parser, ScopeItem, Var, VarType};
 
-use crate::workspace::{COSINE_POWER, Run, Workspace};
+use crate::workspace::Workspace;
+#[cfg(feature = "outside-tools")]
+use crate::workspace::{COSINE_POWER, Run};
 
 const ROUGH: &str = "device = \"rough\"\n";
 
