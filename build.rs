@@ -8,13 +8,16 @@ use std::path::{Path, PathBuf};
 use sha2::{Digest, Sha256};
 
 /// What computes: formats, configurations, golden models, descriptions, simulator, and the proof itself.
-const SOURCES: [&str; 7] = [
+const SOURCES: [&str; 10] = [
+    "generator/approximate",
     "generator/base",
     "generator/config",
     "generator/cosim",
     "generator/devices",
+    "generator/formula",
     "generator/golden",
     "generator/hdl",
+    "generator/keys",
     "Cargo.lock",
 ];
 

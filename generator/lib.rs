@@ -31,10 +31,6 @@
 //! assert!(outcome.mismatch.is_none());
 //! ```
 
-#[macro_use]
-pub mod config;
-pub mod approximate;
-pub mod base;
 #[cfg(feature = "cli")]
 pub mod certify;
 #[cfg(feature = "cli")]
@@ -48,10 +44,6 @@ pub mod equality;
 #[cfg(feature = "cli")]
 #[doc(hidden)]
 pub mod evidence;
-pub mod formula;
-pub mod golden;
-pub mod hdl;
-pub mod keys;
 #[cfg(feature = "cli")]
 #[doc(hidden)]
 pub mod mutate;
@@ -67,7 +59,6 @@ pub mod render;
 #[cfg(feature = "cli")]
 #[doc(hidden)]
 pub mod synth;
-pub mod target;
 #[doc(hidden)]
 pub mod tools;
 #[cfg(feature = "cli")]
@@ -77,5 +68,13 @@ pub mod tune;
 #[doc(hidden)]
 pub mod verify;
 
-pub use base::fixed;
-pub use hdl::dsl;
+pub use glint_approximate as approximate;
+pub use glint_base as base;
+pub use glint_base::{fixed, target};
+pub use glint_config as config;
+pub use glint_config::{choices, keys};
+pub use glint_formula as formula;
+pub use glint_golden as golden;
+pub use glint_keys as keys;
+pub use glint_rtl as hdl;
+pub use glint_rtl::dsl;

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Delays of operations on ECP5, speed grade 6: what `generator/target.rs` says of it is of this table.
+"""Delays of operations on ECP5, speed grade 6: what `generator/base/target.rs` says of it is of this table.
 
     target/tools/venv/bin/python benches/pipeline/delays.py              three seeds
     target/tools/venv/bin/python benches/pipeline/delays.py --seeds 1

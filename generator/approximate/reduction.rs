@@ -4,10 +4,10 @@
 //! against the formula, as without a reduction.
 
 use super::{Curve, Function, Outside, Refusal};
-use crate::base::fixed::{Format, exp2};
-use crate::formula::{Enclosure, Formula, parse};
+use glint_base::fixed::{Format, exp2};
+use glint_formula::{Enclosure, Formula, parse};
 
-choices! {
+glint_config::choices! {
     /// The identity by which values elsewhere follow from those of a short domain.
     #[derive(Default, Hash)]
     pub enum Identity {

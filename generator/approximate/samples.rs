@@ -1,8 +1,8 @@
 //! Measured points in place of a formula.
 
 use super::Refusal;
-use crate::base::fixed::exp2;
-use crate::formula::{Enclosure, parse};
+use glint_base::fixed::exp2;
+use glint_formula::{Enclosure, parse};
 
 /// How many times the longer of the steps beside it a step between samples may be.
 const GAP: i64 = 4;

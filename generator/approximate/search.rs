@@ -11,8 +11,8 @@ use super::reduction::KEY;
 use super::{
     Function, Identity, Layout, MOST_BITS, MOST_SUMS, Piecewise, Reduction, Refusal, Segments, Step,
 };
-use crate::base::fixed::{Format, MAX_WIDTH, exp2};
-use crate::base::interval::Interval;
+use glint_base::fixed::{Format, MAX_WIDTH, exp2};
+use glint_base::interval::Interval;
 
 /// The choices that a user makes of an approximation; the search makes the others.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

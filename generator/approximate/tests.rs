@@ -1,8 +1,8 @@
 //! Approximations are proved, and a wrong coefficient is not.
 
 use super::{Curve, Function, Identity, Layout, Outside, Samples, Wish, find};
-use crate::base::fixed::{Format, exp2};
-use crate::formula::parse;
+use glint_base::fixed::{Format, exp2};
+use glint_formula::parse;
 
 /// A function with as many fraction bits in its result as its operand has, from one value to another that does not belong
 /// to it.

@@ -9,9 +9,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use rayon::prelude::*;
 
 use super::{Curve, Function, Piecewise, Refusal};
-use crate::base::fixed::exp2;
-use crate::base::interval::{self, Interval};
-use crate::formula::Enclosure;
+use glint_base::fixed::exp2;
+use glint_base::interval::{self, Interval};
+use glint_formula::Enclosure;
 
 /// Intervals that are looked at before the proof is given up.
 const MOST: u64 = 1 << 20;

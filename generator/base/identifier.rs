@@ -1,6 +1,6 @@
 //! Names that Verilog takes.
 
-use crate::base::keywords::is_keyword;
+use crate::keywords::is_keyword;
 
 /// Whether `name` can name a net, a ROM or a module of the emitted Verilog.
 ///

@@ -2,9 +2,9 @@
 
 use super::schema::Key;
 use super::values::Config;
-use crate::base::fixed::Rounding;
+use glint_base::fixed::Rounding;
 
-/// A type of field in a table of [`keys!`](macro@crate::keys).
+/// A type of field in a table of [`keys!`](macro@glint_keys).
 pub trait Setting: Sized {
     /// The value that a configuration has for the keys of the field.
     fn read(config: &Config, keys: &[Key]) -> Self;
@@ -14,10 +14,10 @@ pub trait Setting: Sized {
 /// reads a configuration. A field has a [`Key`] or, as another such struct, several.
 ///
 /// ```
-/// use glint::config::{Config, Key, Schema};
-/// use glint::fixed::Rounding;
+/// use glint_config::{Config, Key, Schema};
+/// use glint_base::fixed::Rounding;
 ///
-/// glint::keys! {
+/// glint_config::keys! {
 ///     struct Keys {
 ///         fraction: u32 = Key::integer("x.fraction", 12, 4..=20, "Fraction bits of x."),
 ///         rounding: Rounding = Key::rounding("x.rounding", "nearest", "How x is rounded."),
@@ -41,27 +41,27 @@ macro_rules! keys {
 
         impl $Keys {
             /// The keys, in the order in which a written file shows them.
-            $visible fn keys() -> Vec<$crate::config::Key> {
+            $visible fn keys() -> Vec<$crate::Key> {
                 let mut keys = Vec::new();
-                $(keys.extend(Vec::<$crate::config::Key>::from($key));)*
+                $(keys.extend(Vec::<$crate::Key>::from($key));)*
                 keys
             }
 
             /// The values of a configuration.
-            $visible fn of(config: &$crate::config::Config) -> Self {
-                Self { $($field: $crate::config::Setting::read(config, &Vec::from($key))),* }
+            $visible fn of(config: &$crate::Config) -> Self {
+                Self { $($field: $crate::Setting::read(config, &Vec::from($key))),* }
             }
         }
 
-        impl $crate::config::Setting for $Keys {
-            fn read(config: &$crate::config::Config, _: &[$crate::config::Key]) -> Self {
+        impl $crate::Setting for $Keys {
+            fn read(config: &$crate::Config, _: &[$crate::Key]) -> Self {
                 Self::of(config)
             }
         }
     };
 }
 
-/// Makes an enum of the words of a choice, [`Key::choice`], for a field of [`keys!`](macro@crate::keys).
+/// Makes an enum of the words of a choice, [`Key::choice`], for a field of [`keys!`](macro@glint_keys).
 #[macro_export]
 macro_rules! choices {
     (
@@ -78,8 +78,8 @@ macro_rules! choices {
             $visible const WORDS: &'static [&'static str] = &[$($word),*];
         }
 
-        impl $crate::config::Setting for $Choice {
-            fn read(config: &$crate::config::Config, keys: &[$crate::config::Key]) -> Self {
+        impl $crate::Setting for $Choice {
+            fn read(config: &$crate::Config, keys: &[$crate::Key]) -> Self {
                 match config.choice(keys[0].name) {
                     $($word => Self::$Variant,)*
                     other => unreachable!("`{}` = {other}", keys[0].name),

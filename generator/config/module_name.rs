@@ -1,7 +1,7 @@
 //! Names of Verilog modules: which are legal, and what is wrong with the others.
 
 use super::problems::{Violation, quoted};
-use crate::base::keywords::is_keyword;
+use glint_base::keywords::is_keyword;
 
 /// The longest name; the modules and files derived from it append to it.
 const LONGEST: usize = 60;

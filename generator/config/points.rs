@@ -42,7 +42,7 @@ pub(super) fn read(path: &Path) -> Result<String, (String, String)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::base::transient::Directory;
+    use glint_base::transient::Directory;
 
     #[test]
     fn lines_are_points() {

@@ -8,7 +8,7 @@ use super::parse::located;
 use super::problems::{Problems, STANDARD_INPUT};
 use super::schema::Schema;
 use super::values::Config;
-use crate::base::input;
+use glint_base::input;
 
 /// Far beyond any configuration, and far below what would exhaust the memory.
 const LARGEST: u64 = 1 << 16;

@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use super::problems::Problems;
 use super::text_pattern::TextPattern;
 use super::values::{Config, Value, is_integer};
-use crate::base::keywords::is_keyword;
+use glint_base::keywords::is_keyword;
 
 /// The keys of one device, and the conditions between them.
 #[derive(Clone, Debug)]

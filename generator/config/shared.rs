@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 
 use super::schema::{Key, Schema};
 use super::text_pattern::TextPattern;
-use crate::target::TIMING_NAMES;
+use glint_base::target::TIMING_NAMES;
 
 /// The shared keys, in the order in which a written file shows them, after those of the device.
 pub fn shared_keys() -> &'static [Key] {

@@ -2,7 +2,7 @@
 
 use super::decay::{self, Function};
 use super::{Contract, Model};
-use crate::config::Config;
+use glint_config::Config;
 
 /// The golden model.
 pub fn model(config: &Config) -> Box<dyn Model> {

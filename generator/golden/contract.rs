@@ -1,7 +1,7 @@
 //! Colour operands and the sum of a bound, for the contracts of all devices.
 
 use super::{Bound, Operand, Term};
-use crate::base::fixed::{Format, Rounding, exp2};
+use glint_base::fixed::{Format, Rounding, exp2};
 
 /// The operand cos γ, where a device has it.
 pub const COSINE: &str = "cos_gamma";

@@ -7,10 +7,10 @@ use super::frame::{Clocked, Frame, idle, step_by};
 use super::highlight::{self, Highlight, Reflectance};
 use super::narrow::{Narrow, rounding_error};
 use super::{Contract, Model};
-use crate::base::fixed::{Format, Rounding, exp2};
-use crate::config::Config;
-use crate::golden::formulas;
-use crate::keys::cosine_power::Keys;
+use crate::formulas;
+use glint_base::fixed::{Format, Rounding, exp2};
+use glint_config::Config;
+use glint_keys::cosine_power::Keys;
 
 /// The arithmetic of the device, one operation a method. f is the accumulator.
 struct Arithmetic {

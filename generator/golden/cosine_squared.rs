@@ -7,10 +7,10 @@ use super::frame::{Clocked, Frame};
 use super::highlight::{Highlight, Products, Reflectance};
 use super::line::{self, CosineTable, magnitude};
 use super::{Contract, Model, Operand, Sweep};
-use crate::base::fixed::exp2;
-use crate::config::Config;
-use crate::golden::formulas;
-use crate::keys::cosine_squared::Keys;
+use crate::formulas;
+use glint_base::fixed::exp2;
+use glint_config::Config;
+use glint_keys::cosine_squared::Keys;
 
 /// The arithmetic of the device, one operation a method.
 struct Arithmetic {

@@ -3,7 +3,7 @@
 //! The operand u is an integer of C bits. Ranges, each a quarter of the one before, are cut uniformly,
 //! and so is the tail below them; a value is a raw u0.S.
 
-use crate::base::fixed::exp2;
+use glint_base::fixed::exp2;
 
 /// The parameters of the table.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -13,10 +13,10 @@ use super::halving::{self, Halving};
 use super::highlight::{self, Highlight, Reflectance};
 use super::narrow::Narrow;
 use super::{Contract, Model};
-use crate::base::fixed::{Format, Rounding, exp2};
-use crate::config::Config;
-use crate::golden::formulas;
-use crate::keys::decay::Keys;
+use crate::formulas;
+use glint_base::fixed::{Format, Rounding, exp2};
+use glint_config::Config;
+use glint_keys::decay::Keys;
 
 /// The decay as a function of c = cos γ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

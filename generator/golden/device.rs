@@ -4,10 +4,10 @@
 //! the formula, and how far off the device may be.
 //!
 //! ```
-//! use glint::fixed::Format;
-//! use glint::golden::device::Formula;
-//! use glint::golden::frame::{Frame, idle, step};
-//! use glint::golden::{Contract, Term};
+//! use glint_base::fixed::Format;
+//! use glint_golden::device::Formula;
+//! use glint_golden::frame::{Frame, idle, step};
+//! use glint_golden::{Contract, Term};
 //!
 //! struct Formulas;
 //!

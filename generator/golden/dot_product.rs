@@ -4,9 +4,9 @@ use super::device::{self, Formula};
 use super::frame::{Frame, idle, step};
 use super::narrow::{Narrow, rounding_error};
 use super::{Contract, Model, Sweep, Term};
-use crate::base::fixed::{Format, Rounding, exp2};
-use crate::config::Config;
-use crate::keys::dot_product::Keys;
+use glint_base::fixed::{Format, Rounding, exp2};
+use glint_config::Config;
+use glint_keys::dot_product::Keys;
 
 /// A sum of products to a cosine of 0 ... 1.
 #[derive(Clone, Copy)]

@@ -7,10 +7,10 @@ use std::sync::Arc;
 use super::device::{self, Formula};
 use super::frame::{Frame, idle, step_by};
 use super::{Contract, Model, Term};
-use crate::approximate::{Curve, Function, Outside, Piecewise};
-use crate::base::fixed::exp2;
-use crate::config::Config;
-use crate::keys::function::found;
+use glint_approximate::{Curve, Function, Outside, Piecewise};
+use glint_base::fixed::exp2;
+use glint_config::Config;
+use glint_keys::function::found;
 
 /// Registers: the operand, the sums from each coefficient on, of which the first is the result, or the polynomial from which the
 /// result comes.

@@ -1,6 +1,6 @@
 //! 2^−y of a fixed-point y by added tables and a shift, computed afresh.
 
-use crate::base::fixed::{Format, Rounding, exp2};
+use glint_base::fixed::{Format, Rounding, exp2};
 
 use super::narrow::Narrow;
 

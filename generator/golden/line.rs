@@ -7,7 +7,7 @@ use std::f64::consts::FRAC_PI_2;
 use super::Operand;
 use super::contract::control;
 use super::frame::{Frame, Microinstruction, Slot, idle, step};
-use crate::base::fixed::{Format, MAX_WIDTH, exp2};
+use glint_base::fixed::{Format, MAX_WIDTH, exp2};
 
 /// The raw value of an angle operand that is nearest to `angle`, in radians, or the end of its domain.
 pub fn raw_angle(operand: &Operand, angle: f64) -> i64 {

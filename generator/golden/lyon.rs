@@ -14,9 +14,9 @@ use super::highlight::{self, Products};
 use super::narrow::Narrow;
 use easy_ext::ext;
 
-use crate::base::fixed::Format;
-use crate::config::Config;
-use crate::keys::lyon::{Keys, Scale};
+use glint_base::fixed::Format;
+use glint_config::Config;
+use glint_keys::lyon::{Keys, Scale};
 
 /// Formats and constants that follow from the keys.
 #[ext(Derived)]

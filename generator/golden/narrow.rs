@@ -1,6 +1,6 @@
 //! Narrowing with the constants worked out beforehand: the models' inner loop.
 
-use crate::base::fixed::{Format, Rounding};
+use glint_base::fixed::{Format, Rounding};
 
 /// Brings raw values of a fixed number of fraction bits to one format, saturating.
 ///
@@ -42,7 +42,7 @@ impl Narrow {
 /// The largest error of rounding away fraction bits, in the value's own unit: from `from_frac`
 /// fraction bits to `frac`, saturation not counted.
 pub fn rounding_error(from_frac: u32, frac: u32, rounding: Rounding) -> f64 {
-    let ulp = crate::base::fixed::exp2(-(frac as i32));
+    let ulp = glint_base::fixed::exp2(-(frac as i32));
     match rounding {
         _ if from_frac <= frac => 0.0,
         Rounding::Truncate => ulp,

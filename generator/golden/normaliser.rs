@@ -7,9 +7,9 @@ use super::dot_product::unit_vector;
 use super::frame::{Frame, Slot, idle, step, step_by};
 use super::narrow::{Narrow, rounding_error};
 use super::{Contract, Model, Sweep, Term};
-use crate::base::fixed::{Format, exp2, mask};
-use crate::config::Config;
-use crate::keys::normaliser::Keys;
+use glint_base::fixed::{Format, exp2, mask};
+use glint_config::Config;
+use glint_keys::normaliser::Keys;
 
 /// The most that the sum of squares can be: each component is at least −2.0.
 const FARTHEST: i64 = 12;

@@ -10,9 +10,9 @@ use super::Model;
 use super::frame::{Clocked, Frame};
 use super::highlight::Products;
 use super::line::{self, CosineTable, magnitude};
-use crate::base::fixed::Format;
-use crate::config::Config;
-use crate::keys::quad_cosine::Keys;
+use glint_base::fixed::Format;
+use glint_config::Config;
+use glint_keys::quad_cosine::Keys;
 
 /// The power that serves n, as a number of a table: the seed's ranges.
 #[inline]

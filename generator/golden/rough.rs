@@ -16,9 +16,9 @@ use easy_ext::ext;
 use super::highlight::{self, Products};
 use super::narrow::Narrow;
 use super::sine::{self, Sine, TableScheme};
-use crate::base::fixed::Format;
-use crate::config::Config;
-use crate::keys::rough::{Arithmetic as Kind, Keys, Scheme};
+use glint_base::fixed::Format;
+use glint_config::Config;
+use glint_keys::rough::{Arithmetic as Kind, Keys, Scheme};
 
 /// Returns the keys of a configuration. In the patent's arithmetic f has the fraction bits of the cosine, which has no sign.
 fn keys_of(config: &Config) -> Keys {

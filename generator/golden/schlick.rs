@@ -4,10 +4,10 @@ use super::contract::{self, ErrorShare};
 use super::frame::{Clocked, Frame, idle, step};
 use super::highlight::{self, Highlight, Products, Reflectance};
 use super::{Contract, Model};
-use crate::base::fixed::{Format, exp2, mask};
-use crate::config::Config;
-use crate::golden::formulas;
-use crate::keys::schlick::Keys;
+use crate::formulas;
+use glint_base::fixed::{Format, exp2, mask};
+use glint_config::Config;
+use glint_keys::schlick::Keys;
 
 /// The arithmetic of the device. Cosines, divisors and remainders are in ulps of the cosine, and the quotient
 /// is f.

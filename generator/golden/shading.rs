@@ -8,9 +8,9 @@ use super::{
     Axis, Contract, Model, Sweep, Term, Values, blinn, cosine_power, dot_product, formulas,
     normaliser, schlick,
 };
-use crate::base::fixed::{Rounding, exp2};
-use crate::config::Config;
-use crate::keys::shading::{Highlight, Keys, Parts};
+use glint_base::fixed::{Rounding, exp2};
+use glint_config::Config;
+use glint_keys::shading::{Highlight, Keys, Parts};
 
 /// The parts, one after the other, and the sum behind them.
 fn device(keys: &Keys, parts: &Parts) -> device::Device {
@@ -219,9 +219,9 @@ impl Formula for Shading {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::config::Value;
-    use crate::golden::Bound;
-    use crate::keys::shading::schema;
+    use crate::Bound;
+    use glint_config::Value;
+    use glint_keys::shading::schema;
 
     /// The largest error of a unit normal of 14 fraction bits, half of whose error is what its rounding leaves, is beyond the bound
     /// that a part with a false claim would give, and within the one that it gives.

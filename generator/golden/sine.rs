@@ -3,7 +3,7 @@
 //! Operands are raw values with C fraction bits, 0 … 2^C; a sine is a raw u0.S.
 
 use super::curve::{self, Bend, Curve};
-use crate::base::fixed::exp2;
+use glint_base::fixed::exp2;
 
 /// How the table is organised.
 #[derive(Clone, Debug, PartialEq, Eq)]

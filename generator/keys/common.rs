@@ -1,9 +1,9 @@
 //! Keys that several devices share, so that one name means one thing everywhere.
 
-use crate::base::fixed::{Format, Rounding, exp2};
-use crate::config::{Key, Problems};
+use glint_base::fixed::{Format, Rounding, exp2};
+use glint_config::{Key, Problems};
 
-keys! {
+glint_config::keys! {
     /// The operand cos γ.
     pub struct Cosine {
         fraction: u32 = Key::integer("cosine.fraction", 20, 6..=24,
@@ -42,7 +42,7 @@ impl Cosine {
     }
 }
 
-keys! {
+glint_config::keys! {
     /// The colours that f multiplies.
     pub struct Colours {
         bits: u32 = colour_bits(),
@@ -65,7 +65,7 @@ impl Colours {
     }
 }
 
-keys! {
+glint_config::keys! {
     /// The operands of a device that has cos γ, n and colours.
     pub struct Operands {
         cosine: Cosine = Cosine::keys(),
@@ -91,7 +91,7 @@ impl Operands {
     }
 }
 
-keys! {
+glint_config::keys! {
     /// The reflectance f, and its products with the colours.
     pub struct Intensity {
         fraction: u32 = intensity_fraction(16),
@@ -115,7 +115,7 @@ impl Intensity {
     }
 }
 
-keys! {
+glint_config::keys! {
     /// The exponents for which the contract is stated.
     pub struct Domain {
         least: i64 = Key::integer("domain.exponent_min", 1, 0..=4095,

@@ -1,9 +1,9 @@
 //! The keys of `cosine-power`.
 
 use super::common::{self, Domain, Intensity, Operands};
-use crate::config::{Config, Problems, Schema};
+use glint_config::{Config, Problems, Schema};
 
-keys! {
+glint_config::keys! {
     /// The keys of a configuration.
     pub struct Keys {
         power: u32 = common::power(),

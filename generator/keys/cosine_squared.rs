@@ -1,10 +1,10 @@
 //! The keys of `cosine-squared`.
 
 use super::common;
-use crate::base::fixed::{Format, Rounding};
-use crate::config::{Config, Key, Problems, Schema};
+use glint_base::fixed::{Format, Rounding};
+use glint_config::{Config, Key, Problems, Schema};
 
-keys! {
+glint_config::keys! {
     /// The keys of a configuration.
     pub struct Keys {
         angle_integer: u32 = Key::integer("angle.integer", 7, 1..=8,

@@ -1,9 +1,9 @@
 //! The keys of `blinn` and `gauss`.
 
 use super::common::{self, Domain, Intensity, Operands};
-use crate::config::{Config, Key, Problems, Schema, Value};
+use glint_config::{Config, Key, Problems, Schema, Value};
 
-keys! {
+glint_config::keys! {
     /// The keys of a configuration.
     pub struct Keys {
         operands: Operands = Operands::keys(),

@@ -1,9 +1,9 @@
 //! The keys of `dot-product`.
 
-use crate::base::fixed::Rounding;
-use crate::config::{Config, Key, Problems, Schema};
+use glint_base::fixed::Rounding;
+use glint_config::{Config, Key, Problems, Schema};
 
-keys! {
+glint_config::keys! {
     /// The keys of a configuration.
     pub struct Keys {
         fraction: u32 = Key::integer("vector.fraction", 14, 2..=20,

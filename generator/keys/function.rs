@@ -2,14 +2,14 @@
 
 use std::sync::Arc;
 
-use crate::approximate::{
+use glint_approximate::{
     Curve, Function, Identity, Layout, Outside, Piecewise, Refusal, Samples, Wish, find,
 };
-use crate::base::fixed::{Format, MAX_WIDTH, exp2};
-use crate::config::{Config, Key, Problems, Schema, TextPattern};
-use crate::formula::{Enclosure, Fault, parse};
+use glint_base::fixed::{Format, MAX_WIDTH, exp2};
+use glint_config::{Config, Key, Problems, Schema, TextPattern};
+use glint_formula::{Enclosure, Fault, parse};
 
-keys! {
+glint_config::keys! {
     /// The keys of a configuration.
     pub struct Keys {
         formula: String = Key::text("function.formula", "1 / sqrt(x)", TextPattern::Formula,

@@ -3,7 +3,7 @@
 pub use super::decay::Keys;
 
 use super::decay;
-use crate::config::Schema;
+use glint_config::Schema;
 
 /// The keys of the device.
 pub fn schema() -> Schema {

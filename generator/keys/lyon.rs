@@ -1,10 +1,10 @@
 //! The keys of `lyon`.
 
 use super::common::{self, Colours, Domain, Intensity};
-use crate::base::fixed::Rounding;
-use crate::config::{Config, Key, Problems, Schema};
+use glint_base::fixed::Rounding;
+use glint_config::{Config, Key, Problems, Schema};
 
-choices! {
+glint_config::choices! {
     /// How β is had.
     pub enum Scale {
         /// `2^shift/(2·m)`; the operand is `shift`.
@@ -14,7 +14,7 @@ choices! {
     }
 }
 
-keys! {
+glint_config::keys! {
     /// The keys of a configuration.
     pub struct Keys {
         power: u32 = common::power(),

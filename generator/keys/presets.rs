@@ -1,6 +1,6 @@
 //! Functions by their names: configurations to start from.
 
-use crate::config::Value;
+use glint_config::Value;
 
 /// The device that they are configurations of.
 pub const DEVICE: &str = "function";

@@ -1,10 +1,10 @@
 //! The keys of `quadratic`.
 
 use super::common::{self, Domain, Intensity, Operands};
-use crate::base::fixed::Rounding;
-use crate::config::{Config, Key, Problems, Schema};
+use glint_base::fixed::Rounding;
+use glint_config::{Config, Key, Problems, Schema};
 
-choices! {
+glint_config::choices! {
     /// The contents of ROM(n).
     pub enum Scheme {
         /// n − 1.
@@ -14,7 +14,7 @@ choices! {
     }
 }
 
-keys! {
+glint_config::keys! {
     /// The keys of a configuration.
     pub struct Keys {
         scheme: Scheme = Key::choice("coefficient.scheme", "minimax", Scheme::WORDS,

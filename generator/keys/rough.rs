@@ -1,10 +1,10 @@
 //! The keys of `rough`, and which of their combinations make a device.
 
 use super::common::{self, Domain, Intensity, Operands};
-use crate::base::fixed::Rounding;
-use crate::config::{Config, Key, Problems, Schema};
+use glint_base::fixed::Rounding;
+use glint_config::{Config, Key, Problems, Schema};
 
-choices! {
+glint_config::choices! {
     /// How sums and products are kept.
     pub enum Arithmetic {
         /// With integer bits and signs.
@@ -14,7 +14,7 @@ choices! {
     }
 }
 
-choices! {
+glint_config::choices! {
     /// How ROM 18 is organised.
     pub enum Scheme {
         /// Ranges that shrink toward cos = 1, in straight segments.
@@ -24,7 +24,7 @@ choices! {
     }
 }
 
-keys! {
+glint_config::keys! {
     /// The keys of a configuration.
     ///
     /// In the patent's arithmetic all words have `cosine.fraction` bits; `cosine.signed`, `clamp`,

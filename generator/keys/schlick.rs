@@ -1,10 +1,10 @@
 //! The keys of `schlick`.
 
 use super::common::{self, Domain, Operands};
-use crate::base::fixed::{Format, Rounding};
-use crate::config::{Config, Key, Problems, Schema};
+use glint_base::fixed::{Format, Rounding};
+use glint_config::{Config, Key, Problems, Schema};
 
-keys! {
+glint_config::keys! {
     /// The keys of a configuration.
     pub struct Keys {
         operands: Operands = Operands::keys(),

@@ -2,10 +2,10 @@
 
 use super::common;
 use super::{blinn, cosine_power, dot_product, normaliser, schlick};
-use crate::base::fixed::Format;
-use crate::config::{Config, Key, Problems, Schema, Value};
+use glint_base::fixed::Format;
+use glint_config::{Config, Key, Problems, Schema, Value};
 
-choices! {
+glint_config::choices! {
     /// The device that makes the highlight of a cosine.
     pub enum Highlight {
         /// W(n, γ).
@@ -17,7 +17,7 @@ choices! {
     }
 }
 
-keys! {
+glint_config::keys! {
     /// The keys of a configuration.
     pub struct Keys {
         highlight: Highlight = Key::choice("highlight", "cosine-power", Highlight::WORDS,

@@ -1,9 +1,9 @@
 //! The keys of `threshold`.
 
 use super::common::{self, Domain, Intensity, Operands};
-use crate::config::{Config, Key, Problems, Schema};
+use glint_config::{Config, Key, Problems, Schema};
 
-keys! {
+glint_config::keys! {
     /// The keys of a configuration.
     pub struct Keys {
         operands: Operands = Operands::keys(),

@@ -220,7 +220,7 @@ fn median(mut values: Vec<f64>) -> f64 {
     if values.len() % 2 == 1 { values[middle] } else { (values[middle - 1] + values[middle]) / 2.0 }
 }
 
-/// The errors are those that stand beside the weights in `generator/target.rs`: of the look-up tables in the median and
+/// The errors are those that stand beside the weights in `generator/base/target.rs`: of the look-up tables in the median and
 /// at most. Where there is a frequency the estimates are as often above as below.
 #[test]
 fn estimates_are_as_near_to_synthesis_as_is_said() {

@@ -1,7 +1,7 @@
 //! `blinn` and `gauss` worked by hand in words of a few bits.
 
 use super::*;
-use crate::keys::common::{Domain, Intensity, Operands};
+use glint_keys::common::{Domain, Intensity, Operands};
 
 /// C = 4, S = 6 with one range and a tail; y with 1 + 2 fraction bits; F = 6.
 fn small(function: Function) -> Arithmetic {

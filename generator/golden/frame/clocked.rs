@@ -4,8 +4,8 @@ use std::mem;
 use std::sync::Arc;
 
 use super::{Does, Frame, Microinstruction, Next, Operand, Slot, State, Value, idle};
-use crate::base::fixed::mask;
-use crate::golden::Model;
+use crate::Model;
+use glint_base::fixed::mask;
 
 /// The handshake's own signals, which stand before the device's.
 const HANDSHAKE: [&str; 5] = ["valid", "busy", "done", "run", "word_address"];
@@ -134,7 +134,7 @@ impl Clocked {
 
     /// The device with registers behind the results that are logic. These are taken in the microinstruction that was to set
     /// `valid`, and one more sets it; where `valid` comes later than a microinstruction says, in every clock.
-    pub(in crate::golden) fn registered(&self) -> Option<Self> {
+    pub(crate) fn registered(&self) -> Option<Self> {
         let mut it = Fixed::clone(&self.fixed);
         let mut slots = self.state.len();
         for at in 0..it.shown.len() {

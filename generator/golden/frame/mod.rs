@@ -6,9 +6,9 @@
 //! order of the microinstructions numbers them. [`Frame::model`] makes a [`Model`](super::Model) of that.
 //!
 //! ```
-//! use glint::fixed::Format;
-//! use glint::golden::Model;
-//! use glint::golden::frame::{Frame, idle, step};
+//! use glint_base::fixed::Format;
+//! use glint_golden::Model;
+//! use glint_golden::frame::{Frame, idle, step};
 //!
 //! // It doubles its operand.
 //! let mut frame = Frame::default();
@@ -36,7 +36,7 @@ use std::sync::Arc;
 pub use clocked::Clocked;
 pub use part::Part;
 
-use crate::base::fixed::Format;
+use glint_base::fixed::Format;
 
 /// A place in the [`State`] of a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -4,9 +4,9 @@
 //! loaded in the microinstruction before its first, and its results are in registers from its last on.
 //!
 //! ```
-//! use glint::fixed::Format;
-//! use glint::golden::Model;
-//! use glint::golden::frame::{Frame, State, idle, step};
+//! use glint_base::fixed::Format;
+//! use glint_golden::Model;
+//! use glint_golden::frame::{Frame, State, idle, step};
 //!
 //! let byte = Format::unsigned(8, 0);
 //! let mut doubler = Frame::default();
@@ -30,8 +30,8 @@
 use std::sync::Arc;
 
 use super::{Condition, Does, Frame, Microinstruction, Next, Signal, Slot, State, idle};
-use crate::base::fixed::Format;
-use crate::golden::Model;
+use crate::Model;
+use glint_base::fixed::Format;
 
 /// The results of a part, in the state of the whole.
 pub struct Part {

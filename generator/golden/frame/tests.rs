@@ -1,5 +1,5 @@
 use super::*;
-use crate::golden::Model;
+use crate::Model;
 
 /// An operand that counts down by ones, or not at all where it is 0 (s1.2, clamped to 0 … 1.0): its slot and that of the
 /// count.

@@ -1,9 +1,9 @@
 //! The keys of cos γ, n and colours, for model and contract.
 
 use super::Products;
-use crate::golden::frame::{Frame, Slot};
-use crate::golden::{Operand, contract};
-use crate::keys::common::{Colours, Domain, Intensity, Operands};
+use crate::frame::{Frame, Slot};
+use crate::{Operand, contract};
+use glint_keys::common::{Colours, Domain, Intensity, Operands};
 
 /// The products of f with the colours.
 pub fn products(keys: &Colours, f: &Intensity) -> Products {

@@ -12,7 +12,7 @@ use std::sync::OnceLock;
 
 use super::contract::{self, COSINE, ErrorShare};
 use super::{Bound, Contract, Operand, Output, Sweep, nearer};
-use crate::base::fixed::{Format, exp2};
+use glint_base::fixed::{Format, exp2};
 
 /// The reflectance by a highlight's control operands: a number f in 0 … 1.
 pub trait Reflectance: Send + Sync {

@@ -1,9 +1,9 @@
 //! The products with a reflectance.
 
-use crate::base::fixed::{Format, Rounding};
-use crate::golden::frame::{Clocked, Frame, Microinstruction, Slot, State, idle, step};
-use crate::golden::narrow::Narrow;
-use crate::golden::{Operand, Output};
+use crate::frame::{Clocked, Frame, Microinstruction, Slot, State, idle, step};
+use crate::narrow::Narrow;
+use crate::{Operand, Output};
+use glint_base::fixed::{Format, Rounding};
 
 /// The operands that are multiplied by f: three colours, or one amplitude.
 #[derive(Clone, Debug)]

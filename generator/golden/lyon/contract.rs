@@ -1,13 +1,13 @@
 //! The accuracy contract of `lyon`.
 
 use super::{Arithmetic, Derived as _, Keys, Scale};
-use crate::base::fixed::{Rounding, exp2};
-use crate::config::Config;
-use crate::golden::contract::{self as shared, ErrorShare};
-use crate::golden::formulas;
-use crate::golden::highlight::{Highlight, Reflectance};
-use crate::golden::narrow::rounding_error;
-use crate::golden::{Contract, Operand, Sweep};
+use crate::contract::{self as shared, ErrorShare};
+use crate::formulas;
+use crate::highlight::{Highlight, Reflectance};
+use crate::narrow::rounding_error;
+use crate::{Contract, Operand, Sweep};
+use glint_base::fixed::{Rounding, exp2};
+use glint_config::Config;
 
 /// The most that D² can be: each component is at least −2.0.
 const FARTHEST: i64 = 12;

@@ -2,9 +2,9 @@
 
 use super::contract::of_keys;
 use super::*;
-use crate::base::fixed::Rounding;
-use crate::golden::Contract;
-use crate::keys::common::{Colours, Domain, Intensity};
+use crate::Contract;
+use glint_base::fixed::Rounding;
+use glint_keys::common::{Colours, Domain, Intensity};
 
 /// V = 4, D = 6, F = 4, K = 4, small enough to follow by hand.
 fn small(power: u32, scale: Scale) -> Keys {

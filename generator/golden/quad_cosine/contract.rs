@@ -3,13 +3,13 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::{Arithmetic, Keys, POWERS, products, range_of};
-use crate::base::fixed::{Format, exp2};
-use crate::config::Config;
-use crate::golden::contract::{self as shared, ErrorShare};
-use crate::golden::formulas;
-use crate::golden::highlight::{Highlight, Reflectance};
-use crate::golden::line;
-use crate::golden::{Contract, Operand, Sweep};
+use crate::contract::{self as shared, ErrorShare};
+use crate::formulas;
+use crate::highlight::{Highlight, Reflectance};
+use crate::line;
+use crate::{Contract, Operand, Sweep};
+use glint_base::fixed::{Format, exp2};
+use glint_config::Config;
 
 /// The accuracy contract. Control operands: `delta_zeta`, `zeta_start`, `exponent`, `length`; those of a
 /// point have its angle for `zeta_start`.

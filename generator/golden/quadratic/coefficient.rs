@@ -3,7 +3,7 @@
 //! With x = 1 − c, the parabola exceeds cⁿ by `h(x) = (1 − x)·(1 − a·x) − (1 − x)ⁿ` up to its zero at
 //! 1/a, beyond which cⁿ exceeds 0. The minimax a makes the maximum of h equal to (1 − 1/a)ⁿ.
 
-use crate::keys::quadratic::Scheme;
+use glint_keys::quadratic::Scheme;
 
 /// a(n) for n = 0 … `count` − 1, unrounded. n = 0 is as n = 1.
 pub fn table(scheme: Scheme, count: u32) -> Vec<f64> {

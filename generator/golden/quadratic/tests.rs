@@ -1,8 +1,8 @@
 //! Values worked out by hand.
 
 use super::*;
-use crate::base::fixed::Rounding;
-use crate::keys::common::{Domain, Intensity, Operands};
+use glint_base::fixed::Rounding;
+use glint_keys::common::{Domain, Intensity, Operands};
 
 #[test]
 fn minimax_words_by_hand() {

@@ -3,9 +3,9 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::Keys;
-use crate::base::fixed::{Rounding, exp2};
-use crate::golden::narrow::rounding_error;
-use crate::golden::sine::{Piece, Sine};
+use crate::narrow::rounding_error;
+use crate::sine::{Piece, Sine};
+use glint_base::fixed::{Rounding, exp2};
 
 /// Bins of the quarter circle: fine against the narrowest highlight, 3.6° at n = 1000.
 const BINS: usize = 512;

@@ -23,8 +23,8 @@
 
 use super::analysis::Analysis;
 use super::{Arithmetic, Keys, Kind, Scheme, pairs};
-use crate::base::fixed::exp2;
-use crate::golden::contract::ErrorShare;
+use crate::contract::ErrorShare;
+use glint_base::fixed::exp2;
 
 /// Returns the terms of f's error.
 pub fn shares(it: &Arithmetic) -> Vec<ErrorShare> {

@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use super::{Arithmetic, Derived as _, Keys, keys_of};
-use crate::base::fixed::Format;
-use crate::config::Config;
-use crate::golden::Model;
-use crate::golden::frame::{Clocked, Frame, idle, step_by};
+use crate::Model;
+use crate::frame::{Clocked, Frame, idle, step_by};
+use glint_base::fixed::Format;
+use glint_config::Config;
 
 /// The golden model.
 pub fn model(config: &Config) -> Box<dyn Model> {

@@ -3,12 +3,12 @@
 use easy_ext::ext;
 
 use super::{Arithmetic, Derived as _, Keys, Kind, bound, keys_of};
-use crate::base::fixed::{Format, exp2};
-use crate::config::Config;
-use crate::golden::contract::{self as shared, ErrorShare};
-use crate::golden::formulas;
-use crate::golden::highlight::{Highlight, Reflectance};
-use crate::golden::{Axis, Contract, Operand, Sweep, Values};
+use crate::contract::{self as shared, ErrorShare};
+use crate::formulas;
+use crate::highlight::{Highlight, Reflectance};
+use crate::{Axis, Contract, Operand, Sweep, Values};
+use glint_base::fixed::{Format, exp2};
+use glint_config::Config;
 
 /// The settings of dγ, in degrees, that an exhaustive check visits beside the largest of the domain.
 const SWEPT_DEVIATIONS: [f64; 4] = [0.0, 1.0, 5.0, 15.0];

@@ -14,8 +14,8 @@ use std::collections::BTreeMap;
 use super::analysis::{Analysis, BIN, SLACK};
 use super::contract::Domains as _;
 use super::{Arithmetic, Derived as _};
-use crate::base::fixed::exp2;
-use crate::golden::highlight::Reflectance;
+use crate::highlight::Reflectance;
+use glint_base::fixed::exp2;
 
 /// Pairs of operands that are looked at, and exponents with them.
 const STEPS: u64 = 1 << 21;

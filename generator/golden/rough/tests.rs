@@ -2,9 +2,9 @@
 
 use super::contract::Domains as _;
 use super::*;
-use crate::base::fixed::Rounding;
-use crate::golden::highlight::Reflectance;
-use crate::keys::common::{Domain, Intensity, Operands};
+use crate::highlight::Reflectance;
+use glint_base::fixed::Rounding;
+use glint_keys::common::{Domain, Intensity, Operands};
 
 /// C = 4, S = P = 6, F = 4, and the sine table that `sine.rs` works out by hand.
 fn small() -> Keys {

@@ -1,7 +1,7 @@
 //! Values worked out by hand.
 
 use super::*;
-use crate::keys::common::{Domain, Intensity, Operands};
+use glint_keys::common::{Domain, Intensity, Operands};
 
 /// C = 4, F = 4, K = 4, small enough to follow by hand.
 fn small(levels: &[u32]) -> Arithmetic {
@@ -27,7 +27,7 @@ fn either_side_of_the_level_is_right_and_no_other() {
 #[test]
 fn levels_that_are_seen_are_remarked_on() {
     let remarks = |levels: &[u32]| {
-        let schema = crate::keys::threshold::schema();
+        let schema = glint_keys::threshold::schema();
         let defaults = Keys::of(&Config::defaults(&schema, "defaults"));
         Arithmetic::new(Keys { levels: levels.to_vec(), ..defaults }).remarks()
     };

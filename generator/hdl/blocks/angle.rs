@@ -3,8 +3,8 @@
 //! The unit makes the binary point do the work: a signed angle has left −90° … 90° when its integer bits
 //! differ from its sign, and the fraction bits of its magnitude are an address as they stand.
 
-use crate::base::fixed::{Format, Overflow, Rounding, exp2};
-use crate::hdl::dsl::{Designer, Signal};
+use crate::dsl::{Designer, Signal};
+use glint_base::fixed::{Format, Overflow, Rounding, exp2};
 
 /// A signed angle without its sign.
 #[derive(Clone, Copy)]

@@ -1,7 +1,7 @@
 //! Colour operands and output multipliers: one for each colour, or one for all.
 
-use crate::base::fixed::{Format, Overflow, Rounding};
-use crate::hdl::dsl::{Designer, Operand, Signal, Step, step};
+use crate::dsl::{Designer, Operand, Signal, Step, step};
+use glint_base::fixed::{Format, Overflow, Rounding};
 
 /// The numbers of one colour channel in the source's figure.
 #[derive(Clone, Copy, Debug)]

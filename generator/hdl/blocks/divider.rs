@@ -4,8 +4,8 @@
 //! if that leaves no negative number; whether it did is the next bit of the quotient, the top bit
 //! first. What is left is the exact remainder, so the quotient is exact to its last bit.
 
-use crate::base::fixed::{Format, Overflow, Rounding};
-use crate::hdl::dsl::{Counter, Designer, Mux, Register, Setting, Signal};
+use crate::dsl::{Counter, Designer, Mux, Register, Setting, Signal};
+use glint_base::fixed::{Format, Overflow, Rounding};
 
 /// `dividend / divisor`, truncated to a fraction `u0.Q`; neither may be negative, and the dividend
 /// must not exceed the divisor.
@@ -17,9 +17,9 @@ use crate::hdl::dsl::{Counter, Designer, Mux, Register, Setting, Signal};
 /// [steps](Self::step), which is one microinstruction in a loop:
 ///
 /// ```
-/// use glint::hdl::blocks::divider::Divider;
-/// use glint::dsl::{Designer, end, loop_while, step, valid};
-/// use glint::fixed::Format;
+/// use glint_rtl::blocks::divider::Divider;
+/// use glint_rtl::dsl::{Designer, end, loop_while, step, valid};
+/// use glint_base::fixed::Format;
 ///
 /// let d = Designer::new("ratio");
 /// let a = d.operand("a", Format::unsigned(8, 0));

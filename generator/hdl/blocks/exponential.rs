@@ -2,8 +2,8 @@
 
 use super::multipartite::{self, Cut};
 use super::shift;
-use crate::base::fixed::{Format, Overflow, Rounding, exp2};
-use crate::hdl::dsl::{Designer, Signal};
+use crate::dsl::{Designer, Signal};
+use glint_base::fixed::{Format, Overflow, Rounding, exp2};
 
 /// Formats of the exponential.
 #[derive(Clone, Debug)]

@@ -1,7 +1,7 @@
 //! A walk along a scan line: an angle that grows by the same difference from point to point.
 
-use crate::base::fixed::Format;
-use crate::hdl::dsl::{Counter, Designer, Mux, Register, Signal, end, jump_if, loop_while, step};
+use crate::dsl::{Counter, Designer, Mux, Register, Signal, end, jump_if, loop_while, step};
+use glint_base::fixed::Format;
 
 /// The numbers of an operand in the source's figure: data input, write strobe, and what holds it.
 #[derive(Clone, Copy, Debug)]

@@ -7,8 +7,8 @@
 //! leading bits of A are looked at. The lower the field, the fewer suffice. What a field adds is odd about
 //! its middle, so its table has one half; the other half is its inverse.
 
-use crate::base::fixed::{Format, exp2};
-use crate::hdl::dsl::{Designer, Signal};
+use crate::dsl::{Designer, Signal};
+use glint_base::fixed::{Format, exp2};
 
 /// How the operand is cut.
 #[derive(Clone, Debug)]

@@ -1,7 +1,7 @@
 //! Turns brought into their first quadrant.
 
-use crate::base::fixed::Format;
-use crate::hdl::dsl::{Designer, Signal};
+use crate::dsl::{Designer, Signal};
+use glint_base::fixed::Format;
 
 /// A turn as a way from the nearer zero of its sine.
 #[derive(Clone, Copy)]

@@ -6,8 +6,8 @@
 //! the segments are fine where a function such as √u is steep, or where one such as −log₂(1 − u) must
 //! keep its relative accuracy, at a cost of one mux, a tree, and no shifter.
 
-use crate::base::fixed::{Format, Overflow, Rounding, exp2};
-use crate::hdl::dsl::{Designer, Signal};
+use crate::dsl::{Designer, Signal};
+use glint_base::fixed::{Format, Overflow, Rounding, exp2};
 
 /// How the operand is cut.
 #[derive(Clone, Debug)]

@@ -1,7 +1,7 @@
 //! Shifts by a number that is known at run time only, as rows of muxes.
 
-use crate::base::fixed::Format;
-use crate::hdl::dsl::{Designer, Signal};
+use crate::dsl::{Designer, Signal};
+use glint_base::fixed::Format;
 
 /// `x` divided by 2^`places` and rounded down to the fraction bits that it has: a barrel shifter, with one
 /// row of muxes for each bit of `places`.

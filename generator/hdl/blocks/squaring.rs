@@ -3,8 +3,8 @@
 //! The first squaring takes its operand from elsewhere and is a microinstruction of its own; all others are one
 //! microinstruction, executed again and again. The multiplier and the muxes before it are the device's.
 
-use crate::base::fixed::Format;
-use crate::hdl::dsl::{Counter, Designer, Mux, Register, Setting, Signal, Step, loop_while, step};
+use crate::dsl::{Counter, Designer, Mux, Register, Setting, Signal, Step, loop_while, step};
+use glint_base::fixed::Format;
 
 /// Squarings of a base, with the counter of those to come, `remaining`, where there is more than one.
 pub struct Squarings<'d> {

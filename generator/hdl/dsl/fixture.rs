@@ -1,7 +1,7 @@
 //! Designs for unit tests.
 
 use super::{Designer, Step, end, step, valid};
-use crate::hdl::netlist::Design;
+use crate::netlist::Design;
 
 /// The design of a description that gives the microinstructions between the one that idles and the one with the result.
 pub fn design(describe: impl FnOnce(&Designer) -> Vec<Step>) -> Design {

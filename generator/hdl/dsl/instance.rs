@@ -10,12 +10,12 @@ use std::panic::Location;
 use super::program::{Program, Setting, Step, end, jump_if, step, valid};
 use super::rules::read_by;
 use super::{Designer, Inner, Signal};
-use crate::base::cone;
-use crate::base::diagnostic::{Diagnostic, Diagnostics, SourceLocation};
-use crate::base::fixed::Format;
-use crate::hdl::netlist::{
+use crate::netlist::{
     Design, Driver, Field, FieldId, FieldKind, Net, NetId, Op, RegisterKind, Role, Rom, Sequence,
 };
+use glint_base::cone;
+use glint_base::diagnostic::{Diagnostic, Diagnostics, SourceLocation};
+use glint_base::fixed::Format;
 
 /// The most parts within parts: an instance of itself would have no end.
 const DEEPEST: u32 = 8;
@@ -53,8 +53,8 @@ impl Designer {
     /// registers. A description with parts has no microprogram of its own: [`Designer::dataflow`].
     ///
     /// ```
-    /// use glint::dsl::{Designer, end, step, valid};
-    /// use glint::fixed::Format;
+    /// use glint_rtl::dsl::{Designer, end, step, valid};
+    /// use glint_base::fixed::Format;
     ///
     /// fn square(d: &Designer) {
     ///     let x = d.operand("x", Format::unsigned(4, 0));

@@ -11,8 +11,8 @@
 //! the control word; fields stand there in the order in which the blocks were created.
 //!
 //! ```
-//! use glint::dsl::{Designer, end, step, valid};
-//! use glint::fixed::{Format, Overflow, Rounding};
+//! use glint_rtl::dsl::{Designer, end, step, valid};
+//! use glint_base::fixed::{Format, Overflow, Rounding};
 //!
 //! let d = Designer::new("squarer");
 //! let x = d.operand("x", Format::unsigned(0, 8));
@@ -52,7 +52,7 @@ macro_rules! described {
 
             /// States a comment on `topic`: where that is not the device, it is none of a pipeline's.
             #[must_use]
-            pub fn doc_on(self, topic: crate::hdl::netlist::Topic, line: &str) -> Self {
+            pub fn doc_on(self, topic: crate::netlist::Topic, line: &str) -> Self {
                 let _ = self.$net.doc_on(topic, line);
                 self
             }
@@ -100,15 +100,15 @@ pub use registers::{Counter, Flag, Operand, Register, Select};
 pub use rom::Rom;
 pub use signal::{Mux, Signal};
 
-use crate::hdl::netlist::register_held;
-pub use crate::hdl::netlist::{About, Note, Topic};
+use crate::netlist::register_held;
+pub use crate::netlist::{About, Note, Topic};
 
-use crate::base::diagnostic::{Diagnostic, Diagnostics};
-use crate::base::fixed::Format;
-use crate::base::interval;
-use crate::hdl::netlist::{
+use crate::netlist::{
     Design, Driver, FieldId, NetId, Op, Partition, RegisterKind, Role, Rom as NetRom,
 };
+use glint_base::diagnostic::{Diagnostic, Diagnostics};
+use glint_base::fixed::Format;
+use glint_base::interval;
 
 /// The note on writes and results of a device with buffers.
 const BUFFERED_NOTE: &str = "Operands have buffers: a write at any time is for the next computation, and start takes what \

@@ -3,8 +3,8 @@
 use std::panic::Location;
 
 use super::{Designer, Signal};
-use crate::base::fixed::{Format, Overflow, Rounding};
-use crate::hdl::netlist::{Driver, NetId, Op};
+use crate::netlist::{Driver, NetId, Op};
+use glint_base::fixed::{Format, Overflow, Rounding};
 
 impl Designer {
     /// `a` brought to `format`.

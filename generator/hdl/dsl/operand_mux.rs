@@ -9,9 +9,9 @@
 use std::cmp::Ordering;
 
 use super::{Designer, Select, SelectedProduct, Setting, Signal};
-use crate::base::fixed::Format;
-use crate::base::interval::{self, Interval, hull};
-use crate::hdl::netlist::{Driver, FieldId, Op};
+use crate::netlist::{Driver, FieldId, Op};
+use glint_base::fixed::Format;
+use glint_base::interval::{self, Interval, hull};
 
 /// A mux of operands of different formats.
 #[derive(Clone)]

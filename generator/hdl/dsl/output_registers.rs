@@ -5,8 +5,8 @@
 
 use super::program::{Kind, Program, Step};
 use super::{Designer, Setting, hold, step, valid};
-use crate::base::diagnostic::Diagnostic;
-use crate::hdl::netlist::{Design, Driver, FieldKind, NetId, Op, RegisterKind, Role};
+use crate::netlist::{Design, Driver, FieldKind, NetId, Op, RegisterKind, Role};
+use glint_base::diagnostic::Diagnostic;
 
 /// Inserts the registers, and the microinstructions that they take.
 pub(super) fn insert(d: &Designer, program: &mut Program) {

@@ -5,10 +5,10 @@ use std::panic::Location;
 
 use super::sequencer::{SequenceFields, Sequencer};
 use super::{Designer, Signal};
-use crate::base::diagnostic::{Diagnostic, SourceLocation};
-use crate::hdl::netlist::{
+use crate::netlist::{
     Driver, FieldId, FieldKind, Microinstruction, NetId, Op, Partition, Sequence,
 };
+use glint_base::diagnostic::{Diagnostic, SourceLocation};
 
 /// The setting of one field, or of the successor, in a microinstruction.
 #[derive(Clone)]

@@ -1,9 +1,9 @@
 //! Registers, operands, flags and counters, and the settings that they make for a microinstruction.
 
 use super::{Designer, Setting, Signal};
-use crate::base::fixed::Format;
-use crate::base::interval::Interval;
-use crate::hdl::netlist::{Driver, FieldId, FieldKind, NetId, Op, RegisterKind, Role};
+use crate::netlist::{Driver, FieldId, FieldKind, NetId, Op, RegisterKind, Role};
+use glint_base::fixed::Format;
+use glint_base::interval::Interval;
 
 impl Designer {
     /// An operand: the input port `name`, its write strobe `<name>_write` and the register

@@ -1,7 +1,7 @@
 //! A memory of the description.
 
 use super::{Designer, Signal};
-use crate::hdl::netlist::RomId;
+use crate::netlist::RomId;
 
 /// A read-only memory.
 #[derive(Clone, Copy)]

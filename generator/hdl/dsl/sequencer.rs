@@ -1,13 +1,13 @@
 //! The sequencer, which executes a microprogram: address counter, run flag, control ROM, handshake.
 
 use super::Designer;
-use crate::base::diagnostic::SourceLocation;
-use crate::base::fixed::Format;
-use crate::hdl::netlist::microcode;
-use crate::hdl::netlist::{
+use crate::netlist::microcode;
+use crate::netlist::{
     Control, Driver, FieldId, Microinstruction, NetId, Op, Partition, RegisterKind, Role,
     Rom as NetRom,
 };
+use glint_base::diagnostic::SourceLocation;
+use glint_base::fixed::Format;
 
 /// The fields that the sequencer uses, as far as the program needs them.
 pub struct SequenceFields {

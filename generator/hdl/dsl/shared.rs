@@ -3,12 +3,12 @@
 use std::panic::Location;
 
 use super::{Designer, Inner, Signal};
-use crate::base::diagnostic::{Diagnostic, SourceLocation};
-use crate::base::fixed::{Format, MAX_POINT, MAX_WIDTH};
-use crate::base::interval::Interval;
-use crate::hdl::netlist::{
+use crate::netlist::{
     Driver, Field, FieldId, FieldKind, Net, NetId, Partition, Port, RegisterKind, Role,
 };
+use glint_base::diagnostic::{Diagnostic, SourceLocation};
+use glint_base::fixed::{Format, MAX_POINT, MAX_WIDTH};
+use glint_base::interval::Interval;
 
 /// Access to the shared state.
 impl Designer {

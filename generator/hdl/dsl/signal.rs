@@ -1,9 +1,9 @@
 //! Signals: what can be done to bits by wiring, and the arithmetic blocks.
 
 use super::{Designer, Setting};
-use crate::base::fixed::Format;
-use crate::base::interval::{self, Interval, hull};
-use crate::hdl::netlist::{Driver, FieldId, NetId, Op, Topic};
+use crate::netlist::{Driver, FieldId, NetId, Op, Topic};
+use glint_base::fixed::Format;
+use glint_base::interval::{self, Interval, hull};
 
 /// A net of the design, as a handle.
 #[derive(Clone, Copy)]

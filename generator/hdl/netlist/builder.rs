@@ -4,8 +4,8 @@ use super::{
     About, Control, Design, Driver, Net, NetId, Partition, RegId, Register, RegisterKind, Rom,
     RomId, Topic,
 };
-use crate::base::diagnostic::SourceLocation;
-use crate::base::fixed::Format;
+use glint_base::diagnostic::SourceLocation;
+use glint_base::fixed::Format;
 
 impl Design {
     /// A design of which nothing but the name is there.

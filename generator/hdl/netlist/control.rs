@@ -1,7 +1,7 @@
 //! The control unit: fields, microinstructions, and where control goes.
 
 use super::{Design, NetId, RegId, RomId};
-use crate::base::diagnostic::SourceLocation;
+use glint_base::diagnostic::SourceLocation;
 
 /// The control unit: an address counter, a run flag and a ROM of microinstructions.
 ///

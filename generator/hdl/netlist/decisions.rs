@@ -7,7 +7,7 @@
 use std::collections::HashSet;
 
 use super::{Design, Driver, NetId, Role, Sequence};
-use crate::base::cone;
+use glint_base::cone;
 
 /// The microinstructions whose successor depends on an operand, by number.
 pub fn decided_by_data(design: &Design) -> Vec<usize> {
@@ -80,8 +80,8 @@ fn is_handshake(role: Role) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::base::fixed::Format;
-    use crate::hdl::dsl::{Designer, Signal, end, loop_while, step};
+    use crate::dsl::{Designer, Signal, end, loop_while, step};
+    use glint_base::fixed::Format;
 
     /// A counter of three bits, which starts from what is said, and `valid` two clocks after a loop's last iteration.
     fn counted(start: for<'d> fn(&'d Designer, Signal<'d>) -> Signal<'d>) -> Design {

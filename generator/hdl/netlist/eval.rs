@@ -4,7 +4,7 @@
 //! nothing with it and is held against it.
 
 use super::{Design, Driver, NetId, Op, RomId};
-use crate::base::fixed::{Format, mask};
+use glint_base::fixed::{Format, mask};
 
 fn one<const N: usize>(a: &[u64; N], cell: impl Fn(u64) -> u64) -> [u64; N] {
     std::array::from_fn(|lane| cell(a[lane]))

@@ -302,9 +302,9 @@ fn add_register(design: &mut Design, net: NetId, taken: &mut HashSet<String>) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::base::fixed::{Format, Overflow, Rounding};
-    use crate::hdl::dsl::{Designer, Step, end, hold, step, valid, wait_for_start};
-    use crate::hdl::netlist::Interpreter;
+    use crate::dsl::{Designer, Step, end, hold, step, valid, wait_for_start};
+    use crate::netlist::Interpreter;
+    use glint_base::fixed::{Format, Overflow, Rounding};
 
     const BYTE: Format = Format::unsigned(8, 0);
 
@@ -327,7 +327,7 @@ mod tests {
         let steps = [step("idle", [])].into_iter().chain(settle);
         d.microprogram(steps.chain([load, step("shown", [valid(), end()])]));
         let design = d.finish().unwrap_or_else(|mistakes| panic!("{mistakes}"));
-        let name = |net: &crate::hdl::netlist::Net| {
+        let name = |net: &crate::netlist::Net| {
             let number = net.name.strip_suffix("_held")?.trim_matches(char::is_alphabetic);
             number.parse::<u32>().ok()
         };

@@ -1,8 +1,8 @@
 //! The raw values that a cell can give, from those of its operands.
 
 use super::Op;
-use crate::base::fixed::{Format, mask};
-use crate::base::interval::{Interval, hull, product, wrap};
+use glint_base::fixed::{Format, mask};
+use glint_base::interval::{Interval, hull, product, wrap};
 
 /// The interval of a cell in `format` as [`Op`] documents it; all that the format has where nothing closer is known.
 /// `of` gives the interval of an operand, `format_of` its format. Two operands that are one net are a square.
@@ -67,7 +67,7 @@ pub fn of_cell<N: Copy + PartialEq>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::hdl::netlist::{NetId, eval};
+    use crate::netlist::{NetId, eval};
 
     /// Operands of three bits: every interval, and every value in it.
     #[test]

@@ -12,7 +12,7 @@ pub fn unpack(widths: &[u32], word: u64) -> Vec<u64> {
         .iter()
         .rev()
         .map(|&width| {
-            let value = rest & crate::base::fixed::mask(width);
+            let value = rest & glint_base::fixed::mask(width);
             rest = rest.checked_shr(width).unwrap_or(0);
             value
         })

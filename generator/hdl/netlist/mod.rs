@@ -29,14 +29,14 @@ pub mod termination;
 mod timing;
 mod verify;
 
-use crate::base::diagnostic::{Diagnostic, SourceLocation};
-use crate::base::fixed::Format;
-use crate::base::interval::Interval;
 pub use cell::Op;
 pub use control::{Control, Field, FieldKind, Microinstruction, Sequence};
 pub use decisions::{decided_by_data, delay_of_valid};
 pub use delay::{DelayLine, Delayed};
 pub use eval::Interpreter;
+use glint_base::diagnostic::{Diagnostic, SourceLocation};
+use glint_base::fixed::Format;
+use glint_base::interval::Interval;
 pub use handshake::Handshake;
 pub use held::register_held;
 pub use needed::setting_of;

@@ -3,7 +3,7 @@
 use std::collections::{HashSet, VecDeque};
 
 use super::{Design, Driver, Microinstruction, NetId, Op};
-use crate::base::fixed::mask;
+use glint_base::fixed::mask;
 
 /// For each net the clock, counted from that of the first microinstruction of a computation, in which its value
 /// first matters: reaches an output, the sequencer, or a register that is loaded. `usize::MAX` if it never does.

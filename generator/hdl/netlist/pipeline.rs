@@ -1,7 +1,7 @@
 //! The facts of a design that is a pipeline.
 
 use super::{Design, Driver, Net, NetId, Op, RegId};
-use crate::target::DelayMemory;
+use glint_base::target::DelayMemory;
 
 /// The pipeline of a design that takes a point every clock.
 #[derive(Clone, Debug)]

@@ -3,8 +3,8 @@
 //! A loop of one microinstruction ends because a counter counts down: its condition depends on nothing else. That the
 //! counter does count in every iteration is not assumed anywhere; the formal proof has to show it.
 
-use crate::base::cone;
-use crate::hdl::netlist::{Design, Driver, NetId, RegId, Sequence};
+use crate::netlist::{Design, Driver, NetId, RegId, Sequence};
+use glint_base::cone;
 
 /// The most clocks from a microinstruction to the one with `done`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,7 +54,7 @@ pub fn latest_done(design: &Design) -> Option<u32> {
 
 /// The largest value of a register.
 fn largest(design: &Design, register: RegId) -> u64 {
-    crate::base::fixed::mask(design.width(design.register(register).q))
+    glint_base::fixed::mask(design.width(design.register(register).q))
 }
 
 /// The one register on which a net depends, without its own clock.
@@ -73,9 +73,9 @@ fn decides(design: &Design, net: NetId) -> Option<RegId> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::base::fixed::Format;
-    use crate::hdl::dsl::fixture::design;
-    use crate::hdl::dsl::{Designer, Signal, loop_while, step};
+    use crate::dsl::fixture::design;
+    use crate::dsl::{Designer, Signal, loop_while, step};
+    use glint_base::fixed::Format;
 
     type Condition = for<'d> fn(&'d Designer, Signal<'d>, Signal<'d>) -> Signal<'d>;
 

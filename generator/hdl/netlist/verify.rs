@@ -5,9 +5,9 @@
 use std::collections::HashMap;
 
 use super::{Design, Driver, FieldKind, NetId, Op, Role, Sequence};
-use crate::base::diagnostic::{Diagnostic, SourceLocation};
-use crate::base::fixed::{MAX_WIDTH, mask};
-use crate::base::identifier;
+use glint_base::diagnostic::{Diagnostic, SourceLocation};
+use glint_base::fixed::{MAX_WIDTH, mask};
+use glint_base::identifier;
 
 impl Design {
     /// Every mistake: one in the names, in the structure or in the microprogram.

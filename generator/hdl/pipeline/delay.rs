@@ -1,8 +1,8 @@
 //! Delays of the operations of a graph on a target.
 
 use super::graph::{Cell, Graph, NodeId};
-use crate::hdl::netlist::Op;
-use crate::target::Timing;
+use crate::netlist::Op;
+use glint_base::target::Timing;
 
 /// Nanoseconds from the operands of a cell to its value, when operands have these widths.
 pub fn delay_of<N: Copy>(timing: &Timing, op: &Op<N>, width: &impl Fn(N) -> u32) -> f64 {

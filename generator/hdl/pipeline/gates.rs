@@ -7,7 +7,7 @@
 use super::graph::{Cell, Graph, Label, NodeId, Op};
 use super::rebuild::rebuilt;
 use super::unroll::Unrolled;
-use crate::base::fixed::Format;
+use glint_base::fixed::Format;
 
 /// Returns the computation without muxes of two inputs one of which has bits that are constants.
 pub fn gated(unrolled: &Unrolled) -> Unrolled {
@@ -105,7 +105,7 @@ mod tests {
     use std::panic::Location;
 
     use super::*;
-    use crate::hdl::netlist::{NetId, eval};
+    use crate::netlist::{NetId, eval};
 
     /// Evaluates a node at these operands.
     fn value(graph: &Graph, id: NodeId, operands: &[u64]) -> u64 {

@@ -6,10 +6,10 @@
 use std::collections::HashMap;
 use std::panic::Location;
 
-use crate::base::cone;
-use crate::base::fixed::{Format, mask};
-use crate::base::interval::{self, Interval};
-use crate::hdl::netlist::{self, RomId, eval, interval::of_cell};
+use crate::netlist::{self, RomId, eval, interval::of_cell};
+use glint_base::cone;
+use glint_base::fixed::{Format, mask};
+use glint_base::interval::{self, Interval};
 
 netlist::id!(
     /// A node of a [`Graph`].

@@ -19,9 +19,9 @@ mod sums;
 mod tests;
 mod unroll;
 
-use crate::base::diagnostic::{Diagnostic, Diagnostics};
-use crate::hdl::netlist::Design;
-use crate::target::Timing;
+use crate::netlist::Design;
+use glint_base::diagnostic::{Diagnostic, Diagnostics};
+use glint_base::target::Timing;
 
 pub use delay::delay_of;
 pub use graph::{Cell, Graph, Node, NodeId, Op};

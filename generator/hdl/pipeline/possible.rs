@@ -3,8 +3,8 @@
 use std::collections::{HashMap, HashSet};
 
 use super::graph::{Cell, Graph, NodeId};
-use crate::base::fixed::mask;
-use crate::hdl::netlist::eval;
+use crate::netlist::eval;
+use glint_base::fixed::mask;
 
 /// The most bits of which all combinations are tried.
 const MOST_BITS: u32 = 16;

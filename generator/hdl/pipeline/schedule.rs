@@ -13,7 +13,7 @@ use microlp::{ComparisonOp, OptimizationDirection, Problem, SolveOutcome};
 
 use super::delay;
 use super::graph::{Cell, Graph, Node, NodeId, Op};
-use crate::target::{Registered, Timing};
+use glint_base::target::{Registered, Timing};
 
 /// When each value is computed.
 #[derive(Clone, Debug)]
@@ -499,9 +499,9 @@ impl<'a> Problems<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::base::fixed::Format;
-    use crate::hdl::dsl::{fixture, step};
-    use crate::hdl::pipeline::unroll;
+    use crate::dsl::{fixture, step};
+    use crate::pipeline::unroll;
+    use glint_base::fixed::Format;
 
     #[test]
     fn a_schedule_that_breaks_a_constraint_is_refused() {

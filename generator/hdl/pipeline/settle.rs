@@ -4,7 +4,7 @@
 //! either is over, and else `f(x)`.
 
 use super::graph::{Cell, Graph, Label, NodeId, Op};
-use crate::base::fixed::Format;
+use glint_base::fixed::Format;
 
 /// Returns the value as one choice, where a choice between a constant and another such choice makes it.
 pub fn settled(graph: &mut Graph, id: NodeId) -> NodeId {

@@ -11,8 +11,8 @@ use super::graph::{Graph, Label, NodeId, Op};
 use super::rebuild::rebuilt;
 use super::sums::shortened;
 use super::unroll::Unrolled;
-use crate::base::fixed::Format;
-use crate::target::Timing;
+use glint_base::fixed::Format;
+use glint_base::target::Timing;
 
 /// The most bits of an operand that become rows in look-up tables.
 const MOST_ROWS: u32 = 4;
@@ -270,12 +270,12 @@ fn slice(graph: &mut Graph, of: NodeId, low: u32, format: Format, label: &Label)
 
 #[cfg(test)]
 mod tests {
-    use crate::base::fixed::Format;
-    use crate::hdl::dsl::fixture::design;
-    use crate::hdl::dsl::{Designer, Operand, Signal, step};
-    use crate::hdl::netlist::{Design, Driver, Interpreter, Op};
-    use crate::hdl::pipeline::{Delays, Goal, Options, pipeline};
-    use crate::target::{TIMINGS, Timing};
+    use crate::dsl::fixture::design;
+    use crate::dsl::{Designer, Operand, Signal, step};
+    use crate::netlist::{Design, Driver, Interpreter, Op};
+    use crate::pipeline::{Delays, Goal, Options, pipeline};
+    use glint_base::fixed::Format;
+    use glint_base::target::{TIMINGS, Timing};
 
     /// A product in one stage, of a device whose multipliers take 4 bits by 4.
     fn product(factors: impl for<'d> Fn(&'d Designer) -> [Signal<'d>; 2]) -> Design {

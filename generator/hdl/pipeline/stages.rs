@@ -6,11 +6,11 @@ use super::graph::{self, Cell, Graph, NodeId};
 use super::schedule::{Problems, Schedule, megahertz};
 use super::unroll::Unrolled;
 use super::{Delays, Goal, Options};
-use crate::base::fixed::Format;
-use crate::hdl::netlist::{
+use crate::netlist::{
     About, Checkpoint, Delayed, Design, Driver, Net, NetId, Op, Pipeline, Port, RegId,
     RegisterKind, Role, Rom, RomId, Stage, Topic,
 };
+use glint_base::fixed::Format;
 
 /// The design of a schedule.
 pub fn assemble(

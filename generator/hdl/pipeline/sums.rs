@@ -4,8 +4,8 @@
 //! constant less a limited value is, is chosen behind the difference, where the register takes it by its reset.
 
 use super::graph::{Cell, Graph, Label, NodeId, Op};
-use crate::base::fixed::Format;
-use crate::base::interval::Interval;
+use glint_base::fixed::Format;
+use glint_base::interval::Interval;
 
 /// A cell; of a sum or a difference the chain has no more bits than it needs.
 pub fn shortened(

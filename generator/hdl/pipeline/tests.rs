@@ -1,10 +1,10 @@
 use super::{Delays, Goal, Options, pipeline};
-use crate::base::fixed::Format;
-use crate::hdl::blocks::divider::Divider;
-use crate::hdl::dsl::fixture::design;
-use crate::hdl::dsl::{loop_while, step, wait_for_start};
-use crate::hdl::netlist::{Design, Driver, Net, NetId, Op, RegId, Register};
-use crate::target::Timing;
+use crate::blocks::divider::Divider;
+use crate::dsl::fixture::design;
+use crate::dsl::{loop_while, step, wait_for_start};
+use crate::netlist::{Design, Driver, Net, NetId, Op, RegId, Register};
+use glint_base::fixed::Format;
+use glint_base::target::Timing;
 
 fn options(goal: Goal) -> Options {
     let target = Timing::named("ecp5").expect("a target");

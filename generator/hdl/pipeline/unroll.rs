@@ -21,9 +21,9 @@ pub use line::{Line, WalkRegister, unroll_line};
 use super::graph::{Cell, Graph, Label, NodeId, Op};
 use super::possible;
 use super::settle::settled;
-use crate::base::diagnostic::{Diagnostic, Diagnostics};
-use crate::base::fixed::Format;
-use crate::hdl::netlist::{Design, Net, NetId, RegId, RegisterKind, Role, Sequence};
+use crate::netlist::{Design, Net, NetId, RegId, RegisterKind, Role, Sequence};
+use glint_base::diagnostic::{Diagnostic, Diagnostics};
+use glint_base::fixed::Format;
 
 /// More clocks than any microprogram takes that is worth a pipeline.
 const MOST_CLOCKS: usize = 4096;

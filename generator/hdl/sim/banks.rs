@@ -1,7 +1,7 @@
 //! From the compiler's one bank of slots to the two of a [`Program`].
 
-use crate::hdl::sim::compiler::{Compiler, Ordered};
-use crate::hdl::sim::program::{
+use crate::sim::compiler::{Compiler, Ordered};
+use crate::sim::program::{
     Bank, InputPort, Instruction, Place, Program, ReadEdge, RegisterEdge, Segment, Slot, Sources,
     Step,
 };

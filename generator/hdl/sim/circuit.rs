@@ -7,10 +7,10 @@ use rust_hdl::core::check_error::check_all;
 use rust_hdl::core::prelude::{Block, Clock, In, Logic, Probe, Signal};
 use rust_hdl::core::signal::get_signal_id;
 
-use crate::hdl::netlist::{Design, NetId, Partition};
-use crate::hdl::sim::machine::Machine;
-use crate::hdl::sim::program::Program;
-use crate::hdl::sim::wire::{Direction, Seen, Wire};
+use crate::netlist::{Design, NetId, Partition};
+use crate::sim::machine::Machine;
+use crate::sim::program::Program;
+use crate::sim::wire::{Direction, Seen, Wire};
 
 /// `LANES` independent instances of a design as a rust_hdl [`Block`]: rust_hdl clocks and settles
 /// it, checks it and, for lane 0, traces it.

@@ -4,14 +4,12 @@ use std::collections::{HashMap, HashSet};
 
 use anyhow::{Result, ensure};
 
-use crate::base::diagnostic::Diagnostics;
-use crate::base::fixed::mask;
-use crate::hdl::netlist::{Design, Driver, NetId, Register, Role};
-use crate::hdl::sim::banks;
-use crate::hdl::sim::compiler::Compiler;
-use crate::hdl::sim::program::{
-    Instruction, Program, ReadEdge, RegisterEdge, Slot, Sources, drop_of,
-};
+use crate::netlist::{Design, Driver, NetId, Register, Role};
+use crate::sim::banks;
+use crate::sim::compiler::Compiler;
+use crate::sim::program::{Instruction, Program, ReadEdge, RegisterEdge, Slot, Sources, drop_of};
+use glint_base::diagnostic::Diagnostics;
+use glint_base::fixed::mask;
 
 impl Program {
     /// Compiles a design.

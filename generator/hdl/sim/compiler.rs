@@ -3,10 +3,10 @@
 use std::collections::{BTreeMap, HashMap};
 use std::mem;
 
-use crate::base::fixed::mask;
-use crate::hdl::netlist::{Design, Driver, NetId};
-use crate::hdl::sim::machine::execute;
-use crate::hdl::sim::program::{InputPort, Instruction, Slot, Sources, Span};
+use crate::netlist::{Design, Driver, NetId};
+use crate::sim::machine::execute;
+use crate::sim::program::{InputPort, Instruction, Slot, Sources, Span};
+use glint_base::fixed::mask;
 
 /// The most sources that are input ports, which change at another edge than what the edge writes; the first numbers are
 /// theirs.

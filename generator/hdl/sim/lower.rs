@@ -1,9 +1,9 @@
 //! From cells to instructions.
 
-use crate::base::fixed::{MAX_WIDTH, mask};
-use crate::hdl::netlist::{NetId, Op};
-use crate::hdl::sim::compiler::Compiler;
-use crate::hdl::sim::program::{Instruction, Slot, drop_of};
+use crate::netlist::{NetId, Op};
+use crate::sim::compiler::Compiler;
+use crate::sim::program::{Instruction, Slot, drop_of};
+use glint_base::fixed::{MAX_WIDTH, mask};
 
 impl Compiler<'_> {
     /// The slot with the result of a cell, whose operands have been compiled.

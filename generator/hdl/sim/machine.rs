@@ -4,10 +4,10 @@ use std::hint::select_unpredictable;
 use std::mem;
 use std::sync::Arc;
 
-use crate::hdl::netlist::NetId;
-use crate::hdl::sim::program::{Bank, Instruction, Place, Program, Slot, Sources, Span, Step};
-use crate::hdl::sim::slots::Slots;
-use crate::hdl::sim::word::Word;
+use crate::netlist::NetId;
+use crate::sim::program::{Bank, Instruction, Place, Program, Slot, Sources, Span, Step};
+use crate::sim::slots::Slots;
+use crate::sim::word::Word;
 
 /// The state of `LANES` independent instances of a design, which one pass over the [`Program`]
 /// advances together.

@@ -31,7 +31,7 @@ use std::mem;
 use anyhow::{Result, ensure};
 use rust_hdl::core::simulate::simulate;
 
-use crate::hdl::netlist::{Design, NetId};
+use crate::netlist::{Design, NetId};
 
 pub use circuit::Circuit;
 pub use machine::Machine;
@@ -47,8 +47,8 @@ const UPDATES: usize = 4;
 /// `LANES` independent instances of a design, clocked by rust_hdl.
 ///
 /// ```
-/// # fn example(design: &glint::hdl::netlist::Design) -> anyhow::Result<()> {
-/// let mut simulator: glint::hdl::sim::Simulator = glint::hdl::sim::Simulator::new(design)?;
+/// # fn example(design: &glint_rtl::netlist::Design) -> anyhow::Result<()> {
+/// let mut simulator: glint_rtl::sim::Simulator = glint_rtl::sim::Simulator::new(design)?;
 /// let rst_n = simulator.input("rst_n").expect("a reset");
 /// simulator.clock()?;
 /// simulator.set(rst_n, 1);

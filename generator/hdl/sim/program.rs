@@ -16,8 +16,8 @@
 //! Instructions that depend on the same sources form a segment, and settling skips segments whose
 //! sources have not changed.
 
-use crate::base::fixed::MAX_WIDTH;
-use crate::hdl::netlist::NetId;
+use crate::netlist::NetId;
+use glint_base::fixed::MAX_WIDTH;
 
 /// The number of a slot within its bank.
 pub(super) type Slot = u32;
@@ -202,7 +202,7 @@ pub(super) struct Bank {
     pub initial: Vec<u64>,
 }
 
-/// A compiled [`Design`](crate::hdl::netlist::Design). Machines share it; it holds no state.
+/// A compiled [`Design`](crate::netlist::Design). Machines share it; it holds no state.
 #[derive(Clone, Debug)]
 pub struct Program {
     /// In an order in which each stands after those that compute its operands.

@@ -5,8 +5,8 @@
 //! copies of a sign bit. Because it is a normal form, the printer finds `a[5:2]` behind three nets of
 //! wiring, and the bits that nobody reads are known exactly.
 
-use crate::base::fixed::mask;
-use crate::hdl::netlist::NetId;
+use crate::netlist::NetId;
+use glint_base::fixed::mask;
 
 /// Neighbouring bits of one origin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

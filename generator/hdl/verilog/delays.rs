@@ -7,7 +7,7 @@ use super::naming::Naming;
 use super::plan::address_width;
 use super::text::{literal, statement};
 use super::writer;
-use crate::hdl::netlist::{DelayLine, NetId};
+use crate::netlist::{DelayLine, NetId};
 
 const TITLE: &str =
     "Delay lines: what nothing reads for several stages goes through small memories";

@@ -8,8 +8,8 @@
 use super::bits::{Bits, Piece};
 use super::plan::{NetForm, Plan, Reader};
 use super::text::{Names, constant_name, literal};
-use crate::base::fixed::mask;
-use crate::hdl::netlist::{Driver, NetId, Op, Rom};
+use crate::netlist::{Driver, NetId, Op, Rom};
+use glint_base::fixed::mask;
 
 /// A number that is baked in: a localparam.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -2,13 +2,13 @@
 
 use super::naming::Naming;
 use super::text::comment;
-use crate::base::fixed::Format;
-use crate::hdl::netlist::{Design, NetId, Partition, Pipeline, Role, Sequence, Timing};
+use crate::netlist::{Design, NetId, Partition, Pipeline, Role, Sequence, Timing};
+use glint_base::fixed::Format;
 
 /// The facts of a file's header beyond the design.
 #[derive(Clone, Copy)]
 pub struct Origin<'a> {
-    /// The configuration by its [`crate::base::input::label`].
+    /// The configuration by its [`glint_base::input::label`].
     pub config: &'a str,
     /// Clocks between the events of the handshake.
     pub timing: &'a Timing,

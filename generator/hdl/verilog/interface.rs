@@ -1,8 +1,8 @@
 //! The ports of the two units.
 
 use super::plan::{NetForm, Plan};
-use crate::base::fixed::mask;
-use crate::hdl::netlist::{Driver, NetId, Partition, RomId};
+use crate::netlist::{Driver, NetId, Partition, RomId};
+use glint_base::fixed::mask;
 
 /// The signals that cross the boundary of a partition.
 pub struct Interface {

@@ -2,7 +2,7 @@
 
 use super::naming::Naming;
 use super::text::literal;
-use crate::hdl::netlist::{Design, Partition, RegisterKind};
+use crate::netlist::{Design, Partition, RegisterKind};
 
 /// The lines of a partition's section for formal tools.
 pub fn invariants(design: &Design, naming: &Naming, partition: Partition) -> Vec<String> {

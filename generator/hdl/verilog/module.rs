@@ -12,9 +12,7 @@ use super::rows::{Row, separated};
 use super::text::{COLUMNS, annotated, comment, literal, range, statement};
 use super::words::{in_fields, in_hex, word_note};
 use super::writer;
-use crate::hdl::netlist::{
-    Design, Driver, Multiplier, NetId, Op, Partition, RegId, Register, RomId,
-};
+use crate::netlist::{Design, Driver, Multiplier, NetId, Op, Partition, RegId, Register, RomId};
 
 /// Builds one partition.
 pub struct Builder<'a> {

@@ -1,9 +1,7 @@
 //! The names and comments that emission adds to those of the description.
 
 use super::text::{Names, constant_name};
-use crate::hdl::netlist::{
-    Control, Design, Driver, FieldKind, Net, NetId, Op, Partition, Rom, RomId,
-};
+use crate::netlist::{Control, Design, Driver, FieldKind, Net, NetId, Op, Partition, Rom, RomId};
 
 /// Names of modules, instances, memories, files and parameters.
 pub struct Naming {
@@ -117,7 +115,7 @@ impl Naming {
 }
 
 fn choices(control: &Control, names: &mut Names) -> Vec<Vec<String>> {
-    let mut of_field = |field: &crate::hdl::netlist::Field| match &field.kind {
+    let mut of_field = |field: &crate::netlist::Field| match &field.kind {
         FieldKind::Select(choices) => choices
             .iter()
             .map(|choice| names.fresh(constant_name(&format!("{} {choice}", field.name)).as_str()))

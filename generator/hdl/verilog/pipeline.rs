@@ -9,7 +9,7 @@ use super::plan::Plan;
 use super::rows::Row;
 use super::text::{ascii, comment, literal};
 use super::writer;
-use crate::hdl::netlist::{Design, Driver, NetId, Partition, Pipeline, Role};
+use crate::netlist::{Design, Driver, NetId, Partition, Pipeline, Role};
 
 /// The module of delay lines, under the name `delay`.
 const DELAY: &str = include_str!("delay.v");

@@ -10,11 +10,11 @@ use anyhow::{Result, ensure};
 
 use super::bits::{Bits, Piece};
 use super::naming::remark;
-use crate::base::diagnostic::Diagnostics;
-use crate::base::fixed::mask;
-use crate::hdl::netlist::{
+use crate::netlist::{
     DelayLine, Delayed, Design, Driver, NetId, Op, Partition, RegId, Role, RomId,
 };
+use glint_base::diagnostic::Diagnostics;
+use glint_base::fixed::mask;
 
 /// How a net appears in the Verilog.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

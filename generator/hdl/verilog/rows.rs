@@ -2,7 +2,7 @@
 
 use super::plan::Plan;
 use super::text::{COLUMNS, annotated, range};
-use crate::hdl::netlist::{Design, NetId, Port};
+use crate::netlist::{Design, NetId, Port};
 
 /// A comma behind each text but the last.
 pub fn separated(mut texts: Vec<String>) -> Vec<String> {

@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use crate::hdl::netlist::Design;
+use crate::netlist::Design;
 
 /// The longest line that Glint writes into Verilog.
 pub const COLUMNS: usize = 100;

@@ -7,7 +7,7 @@ use super::naming::Naming;
 use super::plan::Plan;
 use super::rows::{Row, separated};
 use super::writer;
-use crate::hdl::netlist::Partition;
+use crate::netlist::Partition;
 
 /// The top module.
 pub fn module(

@@ -2,8 +2,8 @@
 
 use super::naming::is_control_rom;
 use super::text::ascii;
-use crate::base::fixed::mask;
-use crate::hdl::netlist::{Design, RomId};
+use crate::netlist::{Design, RomId};
+use glint_base::fixed::mask;
 
 /// Returns the comment on a word.
 pub fn word_note(design: &Design, id: RomId, address: usize) -> Option<String> {

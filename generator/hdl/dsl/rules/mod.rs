@@ -8,8 +8,8 @@ mod unused;
 use std::collections::{HashMap, HashSet};
 
 use super::SelectedProduct;
-use crate::base::diagnostic::Diagnostic;
-use crate::hdl::netlist::{Design, FieldId, NetId};
+use crate::netlist::{Design, FieldId, NetId};
+use glint_base::diagnostic::Diagnostic;
 pub(super) use operands::read_by;
 pub(super) use unused::warnings;
 

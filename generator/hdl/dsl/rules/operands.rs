@@ -2,9 +2,9 @@
 
 use std::collections::HashSet;
 
-use crate::base::cone::reached;
-use crate::base::diagnostic::Diagnostic;
-use crate::hdl::netlist::{Design, Driver, NetId, Role};
+use crate::netlist::{Design, Driver, NetId, Role};
+use glint_base::cone::reached;
+use glint_base::diagnostic::Diagnostic;
 
 /// Operands from which no way leads to an output.
 pub(super) fn check(design: &Design) -> Vec<Diagnostic> {
@@ -26,7 +26,7 @@ pub(super) fn used(design: &Design) -> HashSet<NetId> {
 }
 
 /// The nets on which a net depends, within a clock or through a register or a memory.
-pub(in crate::hdl::dsl) fn read_by(design: &Design, id: NetId) -> Vec<NetId> {
+pub(in crate::dsl) fn read_by(design: &Design, id: NetId) -> Vec<NetId> {
     match design.net(id).driver {
         Driver::Register(register) => {
             let register = design.register(register);

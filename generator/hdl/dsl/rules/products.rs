@@ -3,8 +3,8 @@
 use std::collections::{HashMap, HashSet};
 
 use super::SelectedProduct;
-use crate::base::diagnostic::Diagnostic;
-use crate::hdl::netlist::{Design, Driver, FieldKind, NetId, Op, setting_of};
+use crate::netlist::{Design, Driver, FieldKind, NetId, Op, setting_of};
+use glint_base::diagnostic::Diagnostic;
 
 /// Registers of `design` that are loaded with a product under a selection that means another one; `views` are the
 /// products that a selection gives their meaning.

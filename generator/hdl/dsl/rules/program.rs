@@ -3,12 +3,12 @@
 
 use std::collections::HashSet;
 
-use crate::base::cone::reached;
-use crate::base::diagnostic::Diagnostic;
-use crate::hdl::netlist::{
+use crate::netlist::{
     Control, Design, Driver, FieldId, FieldKind, NetId, Op, RegId, RegisterKind, Role, Sequence,
     setting_of,
 };
+use glint_base::cone::reached;
+use glint_base::diagnostic::Diagnostic;
 
 /// Microinstructions that raise `valid` too early, or none that does, select lines without a choice, and loops that
 /// nothing in them ends.

@@ -3,16 +3,13 @@
 use std::collections::HashSet;
 
 use super::operands::{read_by, used};
-use crate::base::cone::reached;
-use crate::base::diagnostic::Diagnostic;
-use crate::hdl::netlist::{Design, Driver, FieldId, FieldKind, Net, NetId, Op, Partition};
+use crate::netlist::{Design, Driver, FieldId, FieldKind, Net, NetId, Op, Partition};
+use glint_base::cone::reached;
+use glint_base::diagnostic::Diagnostic;
 
 /// Logic that no output depends on, muxes that always pass on the same, and choices that no microinstruction makes.
 /// `partly_used` are select lines of which that is intended.
-pub(in crate::hdl::dsl) fn warnings(
-    design: &Design,
-    partly_used: &HashSet<FieldId>,
-) -> Vec<Diagnostic> {
+pub(in crate::dsl) fn warnings(design: &Design, partly_used: &HashSet<FieldId>) -> Vec<Diagnostic> {
     let mut found = dead(design);
     found.extend(constant(design));
     found.extend(unmade(design, partly_used));

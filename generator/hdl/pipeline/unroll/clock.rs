@@ -3,9 +3,9 @@
 use std::collections::HashMap;
 
 use super::Executor;
-use crate::base::fixed::Format;
-use crate::hdl::netlist::{self, Driver, Net, NetId, RegId, RegisterKind, Role, RomId, Topic};
-use crate::hdl::pipeline::graph::{Cell, Graph, Label, NodeId, Op};
+use crate::netlist::{self, Driver, Net, NetId, RegId, RegisterKind, Role, RomId, Topic};
+use crate::pipeline::graph::{Cell, Graph, Label, NodeId, Op};
+use glint_base::fixed::Format;
 
 /// The state between two clocks.
 #[derive(Clone)]

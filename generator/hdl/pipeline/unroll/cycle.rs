@@ -2,9 +2,9 @@
 
 use super::clock::Clock;
 use super::{Executor, Iterations, Unrolled};
-use crate::base::fixed::Format;
-use crate::hdl::netlist::{Design, NetId};
-use crate::hdl::pipeline::graph::NodeId;
+use crate::netlist::{Design, NetId};
+use crate::pipeline::graph::NodeId;
+use glint_base::fixed::Format;
 
 /// A clock of a design that runs.
 #[derive(Debug)]

@@ -10,10 +10,10 @@
 //!   operands; and nothing else writes it between them.
 
 use super::{Clock, Executor, Iterations, State, Unrolled};
-use crate::base::cone::reached;
-use crate::base::diagnostic::{Diagnostic, Diagnostics};
-use crate::hdl::netlist::{Design, NetId, RegisterKind, Role, Sequence};
-use crate::hdl::pipeline::graph::{Cell, NodeId};
+use crate::netlist::{Design, NetId, RegisterKind, Role, Sequence};
+use crate::pipeline::graph::{Cell, NodeId};
+use glint_base::cone::reached;
+use glint_base::diagnostic::{Diagnostic, Diagnostics};
 
 /// The most clocks from a point to its results.
 const MOST_DELAY: usize = 12;

@@ -2,11 +2,11 @@
 
 use std::panic::Location;
 
-use crate::base::fixed::{Format, mask};
-use crate::hdl::netlist::{
+use crate::netlist::{
     Control, Design, Driver, Field, FieldId, FieldKind, Microinstruction, Net, NetId, Op, Port,
     Register, RegisterKind, Role, Rom, RomId, Sequence,
 };
+use glint_base::fixed::{Format, mask};
 
 /// A design under construction. It has the input port `rst_n`, number 0.
 pub struct Build {

@@ -1,9 +1,9 @@
 //! Designs that no checker has seen are refused, not simulated wrongly.
 
 use super::build::Build;
-use crate::base::fixed::Format;
-use crate::hdl::netlist::{Driver, NetId, Op, RegId, Role, RomId};
-use crate::hdl::sim::Program;
+use crate::netlist::{Driver, NetId, Op, RegId, Role, RomId};
+use crate::sim::Program;
+use glint_base::fixed::Format;
 
 const BYTE: Format = Format::unsigned(8, 0);
 const SIGNED: Format = Format::signed(7, 0);

@@ -1,9 +1,9 @@
 //! Each cell against arithmetic on i128, operands coming from ports, registers and constants.
 
 use super::build::{Build, Random};
-use crate::base::fixed::Format;
-use crate::hdl::netlist::{Driver, NetId, Op};
-use crate::hdl::sim::Simulator;
+use crate::netlist::{Driver, NetId, Op};
+use crate::sim::Simulator;
+use glint_base::fixed::Format;
 
 /// Simulates a cell for random operands. `expected` takes the operands' raw values and gives the
 /// result, which wraps to the result's width.

@@ -1,9 +1,9 @@
 //! Random netlists against the interpreter, which evaluates them net by net, as `netlist` documents it.
 
 use super::build::{Build, Random};
-use crate::base::fixed::Format;
-use crate::hdl::netlist::{Design, Driver, Interpreter, Net, NetId, Op};
-use crate::hdl::sim::Simulator;
+use crate::netlist::{Design, Driver, Interpreter, Net, NetId, Op};
+use crate::sim::Simulator;
+use glint_base::fixed::Format;
 
 /// A design of random cells, registers and ROMs, all connected at random; `big` ones have more
 /// registers and fields than the simulator tells apart.

@@ -3,9 +3,9 @@
 use rust_hdl::core::simulate::simulate;
 
 use super::build::Build;
-use crate::base::fixed::Format;
-use crate::hdl::netlist::{NetId, Op};
-use crate::hdl::sim::{Circuit, Simulator};
+use crate::netlist::{NetId, Op};
+use crate::sim::{Circuit, Simulator};
+use glint_base::fixed::Format;
 
 const BYTE: Format = Format::unsigned(8, 0);
 
@@ -116,7 +116,7 @@ fn roms_read_at_once_or_at_the_edge_and_zero_beyond_their_contents() {
 fn fields_are_parts_of_the_control_word_most_significant_first() {
     let mut b = Build::new();
     let address = b.register("word_address", Format::unsigned(2, 0));
-    let step = b.net("step", Format::unsigned(2, 0), crate::hdl::netlist::Driver::Constant(1));
+    let step = b.net("step", Format::unsigned(2, 0), crate::netlist::Driver::Constant(1));
     let next = b.op("next", Format::unsigned(2, 0), Op::Add { a: address, b: step, carry: None });
     b.of(address).data = Some(next);
     b.of(address).reset = Some(0);

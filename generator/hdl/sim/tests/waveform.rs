@@ -7,9 +7,9 @@ use std::sync::{Arc, Mutex};
 use vcd::{Command, IdCode, Parser, ScopeItem};
 
 use super::build::Build;
-use crate::base::fixed::Format;
-use crate::hdl::netlist::{Design, Driver, Op, Partition, RegId, RomId};
-use crate::hdl::sim::Simulator;
+use crate::netlist::{Design, Driver, Op, Partition, RegId, RomId};
+use crate::sim::Simulator;
+use glint_base::fixed::Format;
 
 /// A file in memory that can be read while the simulator writes it.
 #[derive(Clone, Default)]

@@ -21,8 +21,8 @@ use std::sync::{Arc, LazyLock, Mutex};
 
 use rayon::prelude::*;
 
-use crate::base::fixed::{Format, exp2};
-use crate::formula::{Enclosure, Fault, Formula};
+use glint_base::fixed::{Format, exp2};
+use glint_formula::{Enclosure, Fault, Formula};
 
 pub use reduction::{Identity, Reduction, Restore, Rule};
 pub use samples::Samples;
@@ -35,7 +35,7 @@ const MOST_SUMS: usize = 4;
 /// The most bits of an operand of which every value is computed.
 pub const MOST_BITS: u32 = 26;
 
-choices! {
+glint_config::choices! {
     /// The result of an operand outside the domain.
     #[derive(Hash)]
     pub enum Outside {

@@ -7,5 +7,6 @@ pub mod identifier;
 pub mod input;
 pub mod interval;
 pub mod keywords;
+pub mod target;
 pub mod text;
 pub mod transient;

@@ -1,6 +1,6 @@
 //! Golden models: each device a second time, by its formula and the source's narrative.
 //!
-//! A golden model uses [`crate::base::fixed`] and [`crate::config`] alone. It never sees the description,
+//! A golden model uses [`glint_base::fixed`] and [`glint_config`] alone. It never sees the description,
 //! the netlist or the microcode, and it computes its own tables; that is what makes the comparison
 //! with the simulated hardware worth something.
 
@@ -35,7 +35,7 @@ use std::fmt;
 
 pub use highlight::Highlight;
 
-use crate::base::fixed::{Format, exp2};
+use glint_base::fixed::{Format, exp2};
 
 /// A clock-by-clock model of a device.
 ///
@@ -161,7 +161,7 @@ pub trait Contract: Send + Sync {
     fn exact(&self, operands: &[i64], index: u64, values: &mut Vec<[f64; 2]>);
 
     /// A proven bound on the error, stated before anything is simulated. One without terms is not stated:
-    /// [`crate::certify`] may find one.
+    /// `glint certify` may find one.
     fn bound(&self) -> Bound;
 
     /// The formula of each output, as an expression of Python, as in
