@@ -50,7 +50,6 @@ mod fusesoc;
 mod instance;
 mod manifest;
 mod map;
-mod memory;
 pub mod module_names;
 mod multiplier;
 mod points;
@@ -67,12 +66,11 @@ use anyhow::{Result, ensure};
 use askama::Template;
 use sha2::{Digest, Sha256};
 
-use crate::hdl::netlist::{Design, Partition, RomId};
+use crate::hdl::netlist::Design;
+use crate::hdl::verilog;
 use crate::hdl::verilog::header::Origin;
-use crate::hdl::verilog::interface::Interface;
 use crate::hdl::verilog::naming::Naming;
 use crate::hdl::verilog::plan::Plan;
-use crate::hdl::verilog::{module, pipeline, top};
 use artifact::{Artifacts, Job, Kind};
 
 pub use crate::hdl::netlist::Timing;
@@ -188,13 +186,12 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
     };
     let job = Job { design, inputs, naming: &naming, registers };
     let mut files = Artifacts::default();
-    verilog(&job, &plan, &mut files)?;
+    for (file, module) in verilog::modules(&plan, &naming, &inputs.origin()) {
+        files.add(Kind::Rtl, file, module);
+    }
     multiplier::files(&job, &mut files)?;
-    for (at, file) in naming.files.iter().enumerate() {
-        let id = RomId(at as u32);
-        if !naming.style.inline && !naming.second.contains(&id) {
-            files.add(Kind::Memory, file, memory::contents(design, id)?);
-        }
+    for (file, contents) in verilog::memories(design, &naming)? {
+        files.add(Kind::Memory, file, contents);
     }
     if let (Some(_), Some(example), Some(accuracy)) =
         (&inputs.vectors, &inputs.example, &inputs.accuracy)
@@ -220,24 +217,6 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
     let contents = manifest::contents(&job, &names, &files)?;
     files.push(OutputFile { path: format!("rtl_out/{0}/{0}.json", design.name), contents });
     Ok(files)
-}
-
-/// The Verilog of the core: of a pipeline a module, else the top module, the control unit and the datapath.
-fn verilog(job: &Job, plan: &Plan, files: &mut Artifacts) -> Result<()> {
-    let (naming, origin, top_file) = (job.naming, job.inputs.origin(), format!("{}.v", job.name()));
-    if let Some(pipeline) = &job.design.pipeline {
-        files.add(Kind::Rtl, top_file, pipeline::module(plan, naming, pipeline, &origin));
-        return Ok(());
-    }
-    let control = Interface::new(plan, Partition::Control);
-    let datapath = Interface::new(plan, Partition::Datapath);
-    let units = [(Partition::Control, &control), (Partition::Datapath, &datapath)];
-    files.add(Kind::Rtl, top_file, top::module(plan, naming, units, &origin));
-    for (partition, interface) in units {
-        let module = module::Builder::new(plan, naming, interface, partition).module(&origin);
-        files.add(Kind::Rtl, format!("{}.v", naming.module(partition)), module);
-    }
-    Ok(())
 }
 
 /// The digest of a file, as the manifest holds it: SHA-256 in hexadecimal.

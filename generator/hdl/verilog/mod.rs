@@ -7,6 +7,7 @@ pub mod expression;
 pub mod header;
 pub mod interface;
 pub mod invariants;
+pub mod memory;
 pub mod module;
 pub mod naming;
 pub mod pipeline;
@@ -16,3 +17,50 @@ pub mod text;
 pub mod top;
 pub mod words;
 pub mod writer;
+
+use anyhow::Result;
+
+use crate::netlist::{Design, Partition, RomId, Timing};
+use header::Origin;
+use interface::Interface;
+use naming::Naming;
+use plan::Plan;
+
+/// Returns the files of a design by their names: modules, then the contents of ROMs as `$readmemh` reads them.
+///
+/// # Errors
+/// The mistakes that [`Design::verify_structure`] finds.
+pub fn files(design: &Design) -> Result<Vec<(String, String)>> {
+    let (plan, naming) = (Plan::new(design)?, Naming::new(design));
+    let origin = Origin { config: "", timing: &Timing::default() };
+    Ok([modules(&plan, &naming, &origin), memories(design, &naming)?].concat())
+}
+
+/// Returns the modules by the names of their files: of a pipeline one, else the top module, the control unit and the
+/// datapath.
+pub fn modules(plan: &Plan, naming: &Naming, origin: &Origin) -> Vec<(String, String)> {
+    let file = |module: &str, text: String| (format!("{module}.v"), text);
+    if let Some(pipeline) = &plan.design.pipeline {
+        return vec![file(&plan.design.name, pipeline::module(plan, naming, pipeline, origin))];
+    }
+    let control = Interface::new(plan, Partition::Control);
+    let datapath = Interface::new(plan, Partition::Datapath);
+    let units = [(Partition::Control, &control), (Partition::Datapath, &datapath)];
+    let top = file(&plan.design.name, top::module(plan, naming, units, origin));
+    let parts = units.map(|(partition, interface)| {
+        let module = module::Builder::new(plan, naming, interface, partition).module(origin);
+        file(&naming.module(partition), module)
+    });
+    [vec![top], parts.to_vec()].concat()
+}
+
+/// Returns the contents of the ROMs that stand in files of their own, by the names of these.
+///
+/// # Errors
+/// A control ROM whose words are not exactly as wide as all fields; a word that is wider than its ROM.
+pub fn memories(design: &Design, naming: &Naming) -> Result<Vec<(String, String)>> {
+    let apart = |id: &RomId| !naming.style.inline && !naming.second.contains(id);
+    let roms = naming.files.iter().enumerate().map(|(at, file)| (RomId(at as u32), file));
+    let roms = roms.filter(|(id, _)| apart(id));
+    roms.map(|(id, file)| Ok((file.clone(), memory::contents(design, id)?))).collect()
+}

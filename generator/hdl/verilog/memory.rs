@@ -2,11 +2,11 @@
 
 use anyhow::{Result, ensure};
 
-use crate::base::fixed::mask;
-use crate::hdl::netlist::{Design, RomId};
-use crate::hdl::verilog::naming::{is_control_rom, rom_label};
-use crate::hdl::verilog::text::comment;
-use crate::hdl::verilog::words::{in_fields, in_hex, word_note};
+use super::naming::{is_control_rom, rom_label};
+use super::text::comment;
+use super::words::{in_fields, in_hex, word_note};
+use crate::netlist::{Design, RomId};
+use glint_base::fixed::mask;
 
 /// The `.mem` file of a ROM.
 ///
