@@ -207,7 +207,7 @@ impl Reduction {
 
 /// The exponent of two of an operand, with as many fraction bits as a number has.
 fn exponent(scale: Option<(i64, u32)>, raw: i64) -> i64 {
-    scale.map_or(raw, |(factor, cut)| (i128::from(raw) * i128::from(factor) >> cut) as i64)
+    scale.map_or(raw, |(factor, cut)| ((i128::from(raw) * i128::from(factor)) >> cut) as i64)
 }
 
 /// The key of a reduction.

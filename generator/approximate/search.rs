@@ -376,7 +376,7 @@ impl<'f> Seen<'f> {
     /// No more than `most` of the operands or so, taken evenly.
     fn thinned(&self, most: usize) -> Self {
         // An odd one, so that the low bits take every value.
-        let by = if self.right.len() > most { self.right.len() / most | 1 } else { 1 };
+        let by = if self.right.len() > most { (self.right.len() / most) | 1 } else { 1 };
         let last = self.right.last().filter(|_| by > 1);
         let right = self.right.iter().step_by(by).chain(last).copied().collect();
         Self { stride: self.stride * by as i64, right, ..*self }
@@ -701,8 +701,9 @@ impl<'s> Table<'s> {
             let folded = (low..=high).into_par_iter().fold(|| none, of);
             folded.reduce(|| none, |a, b| with(a, &b))
         };
-        for k in 1..found.sums.len() {
-            found.sums[k] = Format::holding(ends[k].0, ends[k].1, found.coefficients[k].frac);
+        let sums = found.sums.iter_mut().zip(ends).zip(&found.coefficients).skip(1);
+        for ((sum, (low, high)), coefficient) in sums {
+            *sum = Format::holding(low, high, coefficient.frac);
         }
         let widest = found
             .steps

@@ -13,10 +13,12 @@ pub use contract::contract;
 
 use easy_ext::ext;
 
+use super::Operand;
+use super::contract as shared;
 use super::highlight::{self, Products};
 use super::narrow::Narrow;
 use super::sine::{self, Sine, TableScheme};
-use glint_base::fixed::Format;
+use glint_base::fixed::{Format, exp2};
 use glint_config::Config;
 use glint_keys::rough::{Arithmetic as Kind, Keys, Scheme};
 
@@ -30,9 +32,42 @@ fn keys_of(config: &Config) -> Keys {
     keys
 }
 
-/// Formats and words that follow from the keys.
+/// Formats, words and domains that follow from the keys.
 #[ext(Derived)]
 impl Keys {
+    fn ulp(&self) -> f64 {
+        exp2(-(self.operands.cosine.fraction as i32))
+    }
+
+    /// The domain of cos dγ: from the smallest cosine whose angle is within the deviation.
+    fn cos_dgamma_domain(&self) -> (i64, i64) {
+        let largest = self.largest_cosine();
+        let cosine = libm::cos(self.deviation.to_radians());
+        (((cosine / self.ulp()).ceil() as i64).min(largest), largest)
+    }
+
+    fn control(&self) -> Vec<Operand> {
+        let (largest, cos_gamma) = (self.largest_cosine(), self.cos_gamma_format());
+        let lowest = if cos_gamma.signed { -largest } else { 0 };
+        let sign = "1: the deviation is taken from the angle; 0: added to it";
+        vec![
+            shared::cosine_operand(cos_gamma, (lowest, largest)),
+            shared::control(
+                "cos_dgamma",
+                self.cos_dgamma_format(),
+                self.cos_dgamma_domain(),
+                "cosine of the deviation of the microfacet",
+            ),
+            shared::exponent_operand(self.operands.exponent_format(), self.domain.exponents()),
+            shared::control("dgamma_negative", Format::BIT, (0, 1), sign),
+        ]
+    }
+
+    #[inline]
+    fn clamped(&self, cosine: i64) -> i64 {
+        cosine.clamp(0, self.largest_cosine())
+    }
+
     fn products(&self) -> Products {
         highlight::products(&self.operands.colours, &self.f)
     }

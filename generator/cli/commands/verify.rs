@@ -1,5 +1,6 @@
 //! `verify`.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use anyhow::Result;
@@ -145,7 +146,9 @@ fn print_conclusion(one: &Loaded, record: &Record) {
         let titles: Vec<&str> = with(verdict).map(|answer| answer.title).collect();
         tables::print_line(&format!("  {}: {}", verdict.words(), titles.join(", ")));
     }
-    for command in record.checks.iter().filter_map(|it| it.finding.complete_with.as_ref()) {
+    let commands: BTreeSet<_> =
+        record.checks.iter().filter_map(|it| it.finding.complete_with.as_ref()).collect();
+    for command in commands {
         say!("  complete it with: {}", command.replacen(&record.config, &one.path, 1));
     }
 }

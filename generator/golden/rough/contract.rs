@@ -1,13 +1,10 @@
 //! The accuracy contract of `rough`.
 
-use easy_ext::ext;
-
-use super::{Arithmetic, Derived as _, Keys, Kind, bound, keys_of};
+use super::{Arithmetic, Derived as _, Kind, bound, keys_of};
 use crate::contract::{self as shared, ErrorShare};
 use crate::formulas;
 use crate::highlight::{Highlight, Reflectance};
 use crate::{Axis, Contract, Operand, Sweep, Values};
-use glint_base::fixed::{Format, exp2};
 use glint_config::Config;
 
 /// The settings of dγ, in degrees, that an exhaustive check visits beside the largest of the domain.
@@ -18,43 +15,6 @@ pub fn contract(config: &Config) -> Box<dyn Contract> {
     let keys = keys_of(config);
     let (control, products) = (keys.control(), keys.products());
     Box::new(Highlight::new(Arithmetic::new(keys), control, products))
-}
-
-/// Domains and units that follow from the keys.
-#[ext(Domains)]
-impl Keys {
-    pub(super) fn ulp(&self) -> f64 {
-        exp2(-(self.operands.cosine.fraction as i32))
-    }
-
-    /// The domain of cos dγ: from the smallest cosine whose angle is within the deviation.
-    pub(super) fn cos_dgamma_domain(&self) -> (i64, i64) {
-        let largest = self.largest_cosine();
-        let cosine = libm::cos(self.deviation.to_radians());
-        (((cosine / self.ulp()).ceil() as i64).min(largest), largest)
-    }
-
-    pub(super) fn control(&self) -> Vec<Operand> {
-        let (largest, cos_gamma) = (self.largest_cosine(), self.cos_gamma_format());
-        let lowest = if cos_gamma.signed { -largest } else { 0 };
-        let sign = "1: the deviation is taken from the angle; 0: added to it";
-        vec![
-            shared::cosine_operand(cos_gamma, (lowest, largest)),
-            shared::control(
-                "cos_dgamma",
-                self.cos_dgamma_format(),
-                self.cos_dgamma_domain(),
-                "cosine of the deviation of the microfacet",
-            ),
-            shared::exponent_operand(self.operands.exponent_format(), self.domain.exponents()),
-            shared::control("dgamma_negative", Format::BIT, (0, 1), sign),
-        ]
-    }
-
-    #[inline]
-    pub(super) fn clamped(&self, cosine: i64) -> i64 {
-        cosine.clamp(0, self.largest_cosine())
-    }
 }
 
 impl Reflectance for Arithmetic {

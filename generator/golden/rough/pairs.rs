@@ -12,7 +12,6 @@
 use std::collections::BTreeMap;
 
 use super::analysis::{Analysis, BIN, SLACK};
-use super::contract::Domains as _;
 use super::{Arithmetic, Derived as _};
 use crate::highlight::Reflectance;
 use glint_base::fixed::exp2;

@@ -1,6 +1,5 @@
 //! The bound of `rough`, in words of a few bits.
 
-use super::contract::Domains as _;
 use super::*;
 use crate::highlight::Reflectance;
 use glint_base::fixed::Rounding;
