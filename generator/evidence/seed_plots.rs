@@ -84,8 +84,11 @@ struct List {
     plot: Vec<Stated>,
 }
 
+/// A function of the angle in radians and the exponent.
+type Function = Box<dyn Fn(f64, f64) -> f64 + Sync>;
+
 /// Returns the function of this name.
-fn function(name: &str) -> Box<dyn Fn(f64, f64) -> f64 + Sync> {
+fn function(name: &str) -> Function {
     let (name, power) = name.split_once(' ').unwrap_or((name, ""));
     let power = power.parse().unwrap_or(1);
     match name {
@@ -103,9 +106,7 @@ fn function(name: &str) -> Box<dyn Fn(f64, f64) -> f64 + Sync> {
 
 impl Stated {
     /// The name of each series, the function, and the region.
-    fn series(
-        &self,
-    ) -> impl Iterator<Item = (String, Box<dyn Fn(f64, f64) -> f64 + Sync>, Region)> {
+    fn series(&self) -> impl Iterator<Item = (String, Function, Region)> {
         self.functions.iter().map(|text| {
             let mut parts = text.split(" | ");
             let mut part = || parts.next().unwrap_or_default();
