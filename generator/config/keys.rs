@@ -4,7 +4,7 @@ use super::schema::Key;
 use super::values::Config;
 use glint_base::fixed::Rounding;
 
-/// A type of field in a table of [`keys!`](macro@glint_keys).
+/// A type of field in a table of [`keys!`](macro@crate::keys).
 pub trait Setting: Sized {
     /// The value that a configuration has for the keys of the field.
     fn read(config: &Config, keys: &[Key]) -> Self;
@@ -61,7 +61,7 @@ macro_rules! keys {
     };
 }
 
-/// Makes an enum of the words of a choice, [`Key::choice`], for a field of [`keys!`](macro@glint_keys).
+/// Makes an enum of the words of a choice, [`Key::choice`], for a field of [`keys!`](macro@crate::keys).
 #[macro_export]
 macro_rules! choices {
     (
