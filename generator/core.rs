@@ -6,6 +6,7 @@ use std::time::Duration;
 use anyhow::{Context, Result};
 
 use crate::base::input;
+use crate::base::program::Program;
 use crate::config::{Config, Key};
 use crate::cosim::batch::{Engine, Golden, RustHdl, Verilog};
 use crate::cosim::exhaustive::{Backing, Clocks, Job, Places};
@@ -239,7 +240,7 @@ impl Core {
             _ => None,
         };
         let inputs = EmitInputs {
-            config: input::label(config),
+            regenerate: format!("{Program} generate {}", input::label(config)),
             configuration: self.digest(),
             timing: self.timing()?,
             example: Some(self.example()?),

@@ -3,5 +3,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    glint::cli::run(&glint::registry::Registry::shipped())
+    glint::cli::run_as("glint", &glint::registry::Registry::shipped())
 }

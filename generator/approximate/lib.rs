@@ -9,7 +9,9 @@ mod minimax;
 mod reduction;
 mod samples;
 mod search;
+mod seen;
 mod segments;
+mod table;
 
 #[cfg(test)]
 mod tests;

@@ -159,7 +159,7 @@ fn samples_are_met_and_a_wrong_coefficient_is_refused() {
     }
 }
 
-/// Of each identity a function: every operand of the whole domain is right against `libm`, and a wrong coefficient is refused.
+/// Checks a function of each identity: every operand of the whole domain is right against `libm`, and a wrong coefficient is refused.
 #[test]
 fn reduced_operands_serve_the_whole_domain() {
     type Whole = (&'static str, (f64, f64), Identity, fn(f64) -> f64);

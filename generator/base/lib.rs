@@ -7,6 +7,7 @@ pub mod identifier;
 pub mod input;
 pub mod interval;
 pub mod keywords;
+pub mod program;
 pub mod target;
 pub mod text;
 pub mod transient;

@@ -9,13 +9,14 @@ mod progress;
 mod store;
 mod tables;
 
-use std::ffi::OsString;
-use std::path::PathBuf;
+use std::ffi::{OsStr, OsString};
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 
+use crate::base::program::{self, Program};
 use crate::registry::Registry;
 use failure::wrong_usage;
 use tables::say;
@@ -121,6 +122,19 @@ struct Output {
     quiet: bool,
 }
 
+/// Reads a command line; help has examples with the name of the running program.
+fn parse(arguments: &[OsString]) -> Result<Cli, clap::Error> {
+    let examples = |command: clap::Command| match command.get_after_help() {
+        None => command,
+        Some(help) => {
+            let help = help.to_string().replace("\n  glint ", &format!("\n  {Program} "));
+            command.after_help(help)
+        }
+    };
+    let mut command = examples(Cli::command()).mut_subcommands(examples);
+    Cli::from_arg_matches(&command.try_get_matches_from_mut(arguments)?)
+}
+
 /// A finite number.
 fn number(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|number: &f64| number.is_finite());
@@ -143,8 +157,16 @@ fn count(text: &str) -> Result<u64, String> {
     number.filter(|number| *number > 0).ok_or_else(wanted)
 }
 
-/// Runs the command line of this process with the devices of `registry`.
+/// Runs the command line of this process with the devices of `registry`, under the name of its file.
 pub fn run(registry: &Registry) -> ExitCode {
+    let path = std::env::args_os().next().unwrap_or_default();
+    let name = Path::new(&path).file_stem().and_then(OsStr::to_str).unwrap_or("glint");
+    run_as(name, registry)
+}
+
+/// Runs the command line of this process under the name `program`, which messages and written files call it by.
+pub fn run_as(program: &str, registry: &Registry) -> ExitCode {
+    program::run_as(program);
     if let Err(error) = interrupt::listen() {
         failure::warn(&format!("an interruption may leave temporary files behind: {error}"));
     }
@@ -154,7 +176,7 @@ pub fn run(registry: &Registry) -> ExitCode {
 /// Runs the command line `arguments`, the program's name first.
 pub fn run_from(registry: &Registry, arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
-    let cli = match Cli::try_parse_from(&arguments) {
+    let cli = match parse(&arguments) {
         Ok(cli) => cli,
         Err(error)
             if error.use_stderr() && arguments.iter().any(|argument| argument == "--json") =>

@@ -15,6 +15,7 @@ use super::schema::{Key, Kind, Schema};
 use super::text_pattern::TextPattern;
 use super::validate::{Draft, keys_of};
 use super::values::{Config, Value};
+use glint_base::program::Program;
 
 /// Reads a configuration from its text.
 ///
@@ -436,5 +437,5 @@ fn is_bare(key: &str) -> bool {
 fn start_from(schemas: &[Schema]) -> String {
     let devices: Vec<&str> = schemas.iter().map(|schema| schema.device).collect();
     let devices = devices.join(", ");
-    format!("`glint new DEVICE` writes a file to start from; devices: {devices}")
+    format!("`{Program} new DEVICE` writes a file to start from; devices: {devices}")
 }

@@ -9,6 +9,7 @@ use super::problems::{Problems, STANDARD_INPUT};
 use super::schema::Schema;
 use super::values::Config;
 use glint_base::input;
+use glint_base::program::Program;
 
 /// Far beyond any configuration, and far below what would exhaust the memory.
 const LARGEST: u64 = 1 << 16;
@@ -71,7 +72,7 @@ fn contents(path: &Path) -> Result<Vec<u8>, (String, String)> {
         Err(error) if error.kind() == io::ErrorKind::NotFound => {
             let remedy = match neighbour(path) {
                 Some(neighbour) => format!("did you mean `{neighbour}`?"),
-                None => "`glint new DEVICE` writes a file to start from".to_owned(),
+                None => format!("`{Program} new DEVICE` writes a file to start from"),
             };
             Err(("there is no such file".to_owned(), remedy))
         }

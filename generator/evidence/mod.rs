@@ -12,7 +12,7 @@ pub mod measure;
 pub mod overview;
 pub mod seed_plots;
 
-use anyhow::Result;
+use anyhow::{Result, bail};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -84,6 +84,9 @@ pub fn gather(
     let hardware = hardware?;
     claims.push(simpler(hardware.as_ref()));
     claims.push(faster());
+    if let Some(claim) = claims.iter().find(|claim| claim.claim.is_empty()) {
+        bail!("claims.toml has no text of the claim `{}`", claim.id);
+    }
     let notes = devices
         .iter()
         .filter(|device| device.exponents.is_empty())
@@ -99,7 +102,7 @@ pub fn gather(
     Ok(Evidence {
         glint: env!("CARGO_PKG_VERSION"),
         claims,
-        plots,
+        plots: plots?,
         power_table,
         overview,
         devices,

@@ -1,5 +1,6 @@
 //! The plots and tables that the captions of the seeds' figures describe, made anew.
 
+use anyhow::{Context, Result, bail};
 use serde::{Deserialize, Serialize};
 
 use super::chart::{Chart, ChartAxis, Mark, Series, even, exponents};
@@ -79,7 +80,7 @@ struct Stated {
     functions: Vec<String>,
 }
 
-#[derive(Default, Deserialize)]
+#[derive(Deserialize)]
 struct List {
     plot: Vec<Stated>,
 }
@@ -87,54 +88,66 @@ struct List {
 /// A function of the angle in radians and the exponent.
 type Function = Box<dyn Fn(f64, f64) -> f64 + Sync>;
 
-/// Returns the function of this name.
-fn function(name: &str) -> Function {
-    let (name, power) = name.split_once(' ').unwrap_or((name, ""));
-    let power = power.parse().unwrap_or(1);
-    match name {
-        "w" => Box::new(w(power)),
-        "stretched" => Box::new(stretched(power)),
-        "quad" => Box::new(quad),
-        "schlick" => Box::new(schlick),
-        "less" => {
+/// Returns the function of this name, which a power may follow.
+fn function(text: &str) -> Result<Function> {
+    let (name, power) = match text.split_once(' ') {
+        None => (text, None),
+        Some((name, power)) => (name, Some(power.parse().context("the power of a function")?)),
+    };
+    Ok(match (name, power) {
+        ("blinn", None) => Box::new(blinn),
+        ("quad", None) => Box::new(quad),
+        ("schlick", None) => Box::new(schlick),
+        ("w", Some(power)) => Box::new(w(power)),
+        ("stretched", Some(power)) => Box::new(stretched(power)),
+        ("less", Some(power)) => {
             let w = w(power);
             Box::new(move |gamma, n| w(gamma, n) - blinn(gamma, n))
         }
-        _ => Box::new(blinn),
-    }
+        _ => bail!("there is no function `{text}`"),
+    })
+}
+
+/// Returns the region of this name, or above this level.
+fn region(text: &str) -> Result<Region> {
+    Ok(match text {
+        "inflection" => Region::Inflection,
+        level => Region::Level(level.parse().context("the region of a function")?),
+    })
 }
 
 impl Stated {
-    /// The name of each series, the function, and the region.
-    fn series(&self) -> impl Iterator<Item = (String, Function, Region)> {
-        self.functions.iter().map(|text| {
-            let mut parts = text.split(" | ");
-            let mut part = || parts.next().unwrap_or_default();
-            let (name, function) = (part().to_owned(), function(part()));
-            (name, function, part().parse().map_or(Region::Inflection, Region::Level))
-        })
+    /// Returns the series: of each function its name and what `values` makes of the function and its region.
+    fn series(&self, values: impl Fn(Function, &str) -> Result<Vec<f64>>) -> Result<Vec<Series>> {
+        let series = |text: &String| {
+            let mut parts = text.splitn(3, " | ");
+            let mut part = || parts.next().unwrap_or("");
+            let (name, of, region) = (part().to_owned(), function(part())?, part());
+            Ok(Series { name, values: values(of, region)? })
+        };
+        self.functions.iter().map(series).collect()
     }
 
-    fn plot(self) -> SeedPlot {
-        let mut chart = match self.over_exponent {
-            Some((most, top)) => self.over_exponents(most, top),
-            None => self.over_angles(self.over_angle.unwrap_or_default()),
+    fn plot(self) -> Result<SeedPlot> {
+        let mut chart = match (self.over_exponent, self.over_angle) {
+            (Some(ends), None) => self.over_exponents(ends)?,
+            (None, Some(ends)) => self.over_angles(ends)?,
+            _ => bail!("the plot `{}` has one of over_angle and over_exponent", self.id),
         };
         if let Some((low, high)) = self.difference {
             chart.y = ChartAxis::linear("difference", low, high);
         }
-        SeedPlot { figure: self.figure, chart }
+        Ok(SeedPlot { figure: self.figure, chart })
     }
 
     /// Functions of the angle at one exponent.
-    fn over_angles(&self, (n, degrees): (f64, f64)) -> Chart {
+    fn over_angles(&self, (n, degrees): (f64, f64)) -> Result<Chart> {
         let places = even(0.0, degrees, 120);
-        let series = self.series().map(|(name, function, _)| Series {
-            name,
-            values: places.iter().map(|degrees| function(degrees.to_radians(), n)).collect(),
-        });
-        Chart {
-            series: series.collect(),
+        let series = self.series(|function, _| {
+            Ok(places.iter().map(|degrees| function(degrees.to_radians(), n)).collect())
+        })?;
+        Ok(Chart {
+            series,
             id: self.id.clone(),
             title: self.title.clone(),
             caption: self.caption.clone(),
@@ -142,19 +155,18 @@ impl Stated {
             y: ChartAxis::linear(VALUE, 0.0, 1.0),
             places,
             marks: self.marked.then(|| inflection_mark(n)).into_iter().collect(),
-        }
+        })
     }
 
     /// Largest relative errors against n.
-    fn over_exponents(&self, most: f64, top: f64) -> Chart {
+    fn over_exponents(&self, (most, top): (f64, f64)) -> Result<Chart> {
         let places = exponents(2, most as u32, 24);
-        let series = self.series().map(|(name, function, region)| {
+        let series = self.series(|function, text| {
+            let region = region(text)?;
             let error = |&n: &u32| measure::at(&*function, n, region).map(|it| 100.0 * it.error);
-            let values = places.iter().map(|n| error(n).unwrap_or(f64::NAN)).collect();
-            Series { name, values }
-        });
-        let series: Vec<Series> = series.collect();
-        Chart {
+            Ok(places.iter().map(|n| error(n).unwrap_or(f64::NAN)).collect())
+        })?;
+        Ok(Chart {
             id: self.id.clone(),
             title: self.title.clone(),
             caption: format!("{} {}", self.caption, largest(&series, &places)),
@@ -163,7 +175,7 @@ impl Stated {
             places: places.into_iter().map(f64::from).collect(),
             series,
             marks: Vec::new(),
-        }
+        })
     }
 }
 
@@ -188,8 +200,11 @@ fn largest(series: &[Series], places: &[u32]) -> String {
 }
 
 /// All plots, in the order of the seeds.
-pub fn plots() -> Vec<SeedPlot> {
-    let list: List = toml::from_str(include_str!("seed_plots.toml")).unwrap_or_default();
+///
+/// # Errors
+/// A mistake in `seed_plots.toml`.
+pub fn plots() -> Result<Vec<SeedPlot>> {
+    let list: List = toml::from_str(include_str!("seed_plots.toml"))?;
     list.plot.into_iter().map(Stated::plot).collect()
 }
 
@@ -258,14 +273,16 @@ mod tests {
     }
 
     #[test]
-    fn plots_have_what_they_need() {
-        assert_eq!(plots().len(), 12);
-        for SeedPlot { chart, .. } in plots() {
+    fn plots_have_what_they_need() -> Result<()> {
+        let plots = plots()?;
+        assert_eq!(plots.len(), 12);
+        for SeedPlot { chart, .. } in plots {
             assert!(chart.series.len() <= crate::pages::plots::STYLES, "{}", chart.id);
             for series in &chart.series {
                 assert_eq!(series.values.len(), chart.places.len());
                 assert!(series.values.iter().all(|value| value.is_finite()), "{}", chart.id);
             }
         }
+        Ok(())
     }
 }

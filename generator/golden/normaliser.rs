@@ -196,7 +196,7 @@ impl Formula for Normaliser {
         Some(Sweep::ranges([("sum of squares", (1, most))]))
     }
 
-    /// Of a component as long as the vector, before it is rounded, and the rounding.
+    /// Returns the error of a component as long as the vector: that before it is rounded, and the rounding.
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let mantissa = self.mantissa(place[0], self.pairs(place[0]));
         let root = (mantissa as f64 * exp2(-2 * self.keys.fraction as i32 - 2)).sqrt();

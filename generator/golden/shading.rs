@@ -62,7 +62,7 @@ fn device(keys: &Keys, parts: &Parts) -> device::Device {
     frame.dataflow().domain("exponent", keys.least(), keys.most)
 }
 
-/// What there is of a highlight: model, contract, and its formula of cosine and n.
+/// The golden side of a highlight: model, contract, and its formula of cosine and n.
 struct Part {
     model: fn(&Config) -> Box<dyn Model>,
     contract: fn(&Config) -> Box<dyn Contract>,
@@ -121,15 +121,15 @@ fn error(contract: &dyn Contract) -> f64 {
     contract.bound().units * exp2(-contract.outputs()[0].format.frac)
 }
 
-/// What is proved of the parts.
+/// The proved errors of the parts.
 struct Errors {
-    /// Of a component of the unit normal.
+    /// The error of a component of the unit normal.
     unit: f64,
-    /// Of a cosine.
+    /// The error of a cosine.
     cosine: f64,
-    /// Of a colour's highlight, in units of a result.
+    /// The error of a colour's highlight, in units of a result.
     highlight: f64,
-    /// The steepest of the highlight's formula.
+    /// The largest slope of the highlight's formula over the cosine.
     slope: Option<f64>,
 }
 

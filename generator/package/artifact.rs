@@ -98,9 +98,9 @@ impl<'a> Job<'a> {
         &self.design.name
     }
 
-    /// The configuration, as the command that makes the files again has it.
+    /// The command that makes the files again.
     pub fn regenerate(&self) -> &'a str {
-        &self.inputs.config
+        &self.inputs.regenerate
     }
 
     /// Returns whether the core computes lines of points.

@@ -99,7 +99,7 @@ pub fn contents(job: &Job, names: &Names, others: &[OutputFile]) -> Result<Strin
         formula: &about.formula,
         source: &about.source,
         notes: about.paragraphs().collect(),
-        regenerate: format!("glint generate {}", inputs.config),
+        regenerate: inputs.regenerate.clone(),
         scale: "value = raw * 2^-fraction_bits",
         ports: facts::ports(design),
         timing: &inputs.timing,

@@ -146,8 +146,8 @@ pub fn sources_for(files: Vec<OutputFile>, target: &str) -> Vec<(String, String)
 /// The inputs of the files beyond the design.
 #[derive(Clone, Debug, Default)]
 pub struct EmitInputs {
-    /// The configuration by its [`crate::base::input::label`].
-    pub config: String,
+    /// The command that makes the files again, with the configuration by its [`crate::base::input::label`].
+    pub regenerate: String,
     /// Tells the configuration from others: SHA-256 in hexadecimal.
     pub configuration: String,
     /// Clocks, for header and manifest.
@@ -168,7 +168,7 @@ pub struct EmitInputs {
 
 impl EmitInputs {
     fn origin(&self) -> Origin<'_> {
-        Origin { config: &self.config, timing: &self.timing }
+        Origin { regenerate: &self.regenerate, timing: &self.timing }
     }
 }
 

@@ -9,6 +9,7 @@ use anyhow::{Result, bail, ensure};
 use super::setup::Line;
 use super::vector::Vector;
 use crate::base::fixed::{Format, Overflow, Rounding, exp2};
+use crate::base::program::Program;
 use crate::golden::{Contract, Operand};
 
 /// A point that a light shines on.
@@ -26,7 +27,7 @@ pub struct Point {
     pub cos_shaded: f64,
     /// The colour of the light times the specular coefficient, 0 … 1.
     pub colour: Vector,
-    /// What a device that computes all of the light takes.
+    /// The surface, for a device that computes all of the light.
     pub surface: Surface,
 }
 
@@ -184,7 +185,7 @@ impl Feed {
         if !unknown.is_empty() {
             let known: Vec<&str> = names.iter().map(|(name, _)| *name).collect();
             bail!(
-                "a host cannot supply {} of the device `{device}`; it supplies {}; `glint render --operand NAME=VALUE` gives \
+                "a host cannot supply {} of the device `{device}`; it supplies {}; `{Program} render --operand NAME=VALUE` gives \
                  an operand that stays the same",
                 unknown.join(", "),
                 known.join(", ")

@@ -9,10 +9,10 @@ use rayon::prelude::*;
 
 use super::model::Cost;
 use super::space::Space;
-use super::{Goal, Objective};
+use super::{ErrorUnit, Goal, Objective};
 use crate::config::{Config, Value};
 use crate::evidence::comparison::clocks_per_point;
-use crate::golden::Bound;
+use crate::golden::{Bound, Term};
 use crate::registry::Device;
 
 /// The exponent at which the clocks of a point are counted where they depend on it.
@@ -240,13 +240,12 @@ impl<'a> Search<'a> {
     /// The error that cannot be kept, and what is in the way.
     fn out_of_reach(&self, nearest: &Candidate) -> Result<Candidate> {
         let unit = self.goal.unit;
-        let terms = nearest.bound.terms.iter();
-        let largest = terms.max_by(|one, other| one.units.total_cmp(&other.units));
+        // The rounding of the outputs is no part of the error of f.
+        let counts = |term: &&Term| unit == ErrorUnit::Output || term.key != "output.rounding";
+        let largest = nearest.bound.terms.iter().filter(counts);
+        let largest = largest.max_by(|one, other| one.units.total_cmp(&other.units));
         let way = largest.map_or_else(String::new, |term| {
-            format!(
-                "; in the way is the {} (`{}`), {:.6} output units",
-                term.what, term.key, term.units
-            )
+            format!("; in the way: {} (`{}`), {:.6} output units", term.what, term.key, term.units)
         });
         bail!(
             "no configuration keeps {} {unit}; the smallest bound that was found is {} {unit}{way}",

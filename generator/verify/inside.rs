@@ -6,6 +6,7 @@ use anyhow::Result;
 
 use super::{Check, Finding, Subject, Verdict};
 use crate::base::input;
+use crate::base::program::Program;
 use crate::base::text::{counted, grouped};
 use crate::core::{TEST_POINTS, TEST_SEED};
 use crate::cosim::exhaustive::{Job, Proof, Record as Recorded, Shard, State};
@@ -138,8 +139,9 @@ fn record(subject: &Subject<'_>) -> Result<Option<Recorded>> {
 fn contract(subject: &Subject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Result<Finding> {
     let contract = subject.core.contract.as_ref();
     if !contract.bound().is_stated() {
-        let why = "The contract states no bound: `glint certify` finds one where it can.";
-        return Ok(Finding::without(Verdict::NotApplicable, why));
+        let why =
+            format!("The contract states no bound: `{Program} certify` finds one where it can.");
+        return Ok(Finding::without(Verdict::NotApplicable, &why));
     }
     let all = evaluations(subject);
     if !is_short(subject, all) {
@@ -199,7 +201,7 @@ fn without_record(subject: &Subject<'_>, evaluations: u64) -> Finding {
         grouped(evaluations),
         subject.proofs.display(),
     );
-    let command = format!("glint verify {} --full{without_tools}", input::label(subject.path));
+    let command = format!("{Program} verify {} --full{without_tools}", input::label(subject.path));
     Finding { complete_with: Some(command), ..Finding::without(Verdict::NotRun, why) }
 }
 
@@ -247,8 +249,8 @@ pub const MUTATION: Check = Check {
     },
     run: |subject, _, progress| {
         if subject.core.design.pipeline.is_some() {
-            let why = "Of a pipeline this check plants none; `glint mutate` does.";
-            return Ok(Finding::without(Verdict::NotApplicable, why));
+            let why = format!("Of a pipeline this check plants none; `{Program} mutate` does.");
+            return Ok(Finding::without(Verdict::NotApplicable, &why));
         }
         let faults = Faults::of(&subject.core.design);
         let found = mutate::run(subject.core, faults.iter(), &|| progress(1))?;
@@ -274,7 +276,9 @@ pub const MUTATION: Check = Check {
         let unreached = mutate::unreached(subject.core, &unnoticed)?;
         let ids: Vec<String> = unreached.iter().map(|fault| fault.id.clone()).collect();
         let words = format!(
-            "{words} More than 1 %: the test is too weak to say much; it shows nothing against the core. {}{MORE_STIMULUS}",
+            "{words} More than 1 %: the test is too weak to say much; it shows nothing against the core. {}To add stimulus, \
+             widen the keys of `domain`, or have the device's contract say where the formula is largest \
+             (`Contract::peak`); `{Program} mutate --only ID` shows what becomes of one fault.",
             match ids.is_empty() {
                 true => String::new(),
                 false =>
@@ -285,10 +289,6 @@ pub const MUTATION: Check = Check {
     },
 };
 
-/// How a user adds stimulus.
-const MORE_STIMULUS: &str = "To add stimulus, widen the keys of `domain`, or have the device's contract say where the formula is largest \
-     (`Contract::peak`); `glint mutate --only ID` shows what becomes of one fault.";
-
 /// The most faults that are named.
 const NAMED: usize = 20;
 
@@ -297,6 +297,6 @@ fn named(ids: &[String]) -> String {
     let named = ids[..ids.len().min(NAMED)].join(", ");
     match ids.len() - ids.len().min(NAMED) {
         0 => named,
-        more => format!("{named} and {more} more; `glint mutate` names all"),
+        more => format!("{named} and {more} more; `{Program} mutate` names all"),
     }
 }

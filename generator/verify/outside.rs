@@ -10,6 +10,7 @@ use rayon::prelude::*;
 
 use super::{Check, Finding, Subject, Verdict};
 use crate::base::input;
+use crate::base::program::Program;
 use crate::base::text::{counted, grouped};
 use crate::base::transient::Directory;
 use crate::certify::{self, Outcome, statements};
@@ -190,7 +191,7 @@ fn undecided(subject: &Subject<'_>, open: equality::Open, limit: Duration) -> Fi
         ),
         equality::Open::Limit => Finding {
             complete_with: Some(format!(
-                "glint verify {} --full --time-limit {}",
+                "{Program} verify {} --full --time-limit {}",
                 input::label(subject.path),
                 limit.saturating_mul(10)
             )),

@@ -48,7 +48,11 @@ fn every_command_works() {
     for file in ["rtl_out/fresnel/fresnel.v", "testbench/fresnel/fresnel_tb.v"] {
         assert!(directory.join("out").join(file).is_file(), "{file}");
     }
+    let core =
+        fs::read_to_string(directory.join("out/rtl_out/fresnel/fresnel.v")).expect("written");
+    assert!(core.contains("To regenerate: fresnel generate f.toml\n"), "{core}");
     succeed(directory, &[&generate[..], &["--check"]].concat());
+    assert!(succeed(directory, &["--help"]).contains("\n  fresnel generate my_core.toml"));
 
     for simulator in ["rust-hdl", "icarus", "verilator"] {
         let cosim = ["cosim", "f.toml", "--quiet", "--simulator", simulator];

@@ -8,6 +8,7 @@ use anyhow::{Context, Result};
 use serde_json::{Value, json};
 
 use super::Loaded;
+use crate::base::program::Program;
 use crate::cli::destination::Destination;
 use crate::cosim::exhaustive::{Clocks, Difference};
 use crate::cosim::{Lockstep, Mismatch, Outcome};
@@ -38,7 +39,7 @@ impl Reproducer {
             vcd,
             from,
             command: format!(
-                "glint cosim {} --seed {} --points {} --vcd FILE",
+                "{Program} cosim {} --seed {} --points {} --vcd FILE",
                 one.path,
                 mismatch.seed,
                 outcome.points + 1
@@ -57,7 +58,7 @@ impl Reproducer {
     ) -> Result<Self> {
         let (vcd, from) = window(one, &difference.mismatch);
         write(&vcd, |file| clocks.trace(difference.place, from, file))?;
-        Ok(Self { vcd, from, command: format!("glint cosim {} --exhaustive", one.path) })
+        Ok(Self { vcd, from, command: format!("{Program} cosim {} --exhaustive", one.path) })
     }
 
     /// For people.

@@ -32,6 +32,7 @@ use anyhow::{Context, Result, anyhow, bail};
 use super::failure::{self, Several};
 use crate::base::diagnostic::Diagnostics;
 use crate::base::input;
+use crate::base::program::Program;
 use crate::cli::wrong_usage;
 use crate::config::{self, Problems};
 use crate::core::Core;
@@ -58,7 +59,7 @@ fn paths(named: &[PathBuf]) -> Result<Vec<PathBuf>> {
         return Ok(named.to_vec());
     }
     let entries = std::fs::read_dir(CONFIGS).with_context(|| {
-        format!("cannot read `{CONFIGS}/`; name a configuration, or `glint new DEVICE` for one")
+        format!("cannot read `{CONFIGS}/`; name a configuration, or `{Program} new DEVICE` for one")
     })?;
     let mut paths = Vec::new();
     for entry in entries {
@@ -69,7 +70,7 @@ fn paths(named: &[PathBuf]) -> Result<Vec<PathBuf>> {
     }
     paths.sort();
     if paths.is_empty() {
-        bail!("there is no configuration in `{CONFIGS}/`; `glint new DEVICE` prints one");
+        bail!("there is no configuration in `{CONFIGS}/`; `{Program} new DEVICE` prints one");
     }
     Ok(paths)
 }
@@ -112,8 +113,8 @@ fn load_sequential(registry: &Registry, named: &[PathBuf], command: &str) -> Res
     match pipelines.first().filter(|_| !named.is_empty()) {
         None => Ok(loaded),
         Some(one) => bail!(
-            "`{}`: `glint {command}` is for cores with a microprogram; set architecture = \"sequential\", or see \
-             `glint schedule`",
+            "`{}`: `{Program} {command}` is for cores with a microprogram; set architecture = \"sequential\", or see \
+             `{Program} schedule`",
             one.path
         ),
     }
@@ -220,7 +221,7 @@ impl Loaded {
         let bound = self.core.contract.bound();
         if !bound.is_stated() {
             let message = format!(
-                "{}: its contract states no error bound; `glint certify` finds one where it can",
+                "{}: its contract states no error bound; `{Program} certify` finds one where it can",
                 self.path
             );
             if self.core.config.strict {

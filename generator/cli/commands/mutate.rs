@@ -10,6 +10,7 @@ use serde_json::{Value, json};
 
 use super::mismatch::{self, first_clock, traced};
 use super::{Loaded, load};
+use crate::base::program::Program;
 use crate::cli::own_file::OwnFile;
 use crate::cli::tables::Column;
 use crate::cli::{Configs, Output, TimeLimit, progress, say, tables, wrong_usage};
@@ -174,7 +175,7 @@ fn only(output: Output, one: &Loaded, id: &str) -> Result<bool> {
     let faults = Faults::of(&one.core.design);
     let Some(fault) = faults.find(id) else {
         wrong_usage!(
-            "`{}` has no fault `{id}`; `glint mutate {} --list` names them",
+            "`{}` has no fault `{id}`; `{Program} mutate {} --list` names them",
             one.path,
             one.path
         );

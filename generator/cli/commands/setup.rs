@@ -8,6 +8,7 @@ use csv::StringRecord;
 use serde_json::{Map, Value, json};
 
 use super::{Loaded, load_one, rows};
+use crate::base::program::Program;
 use crate::cli::failure::WrongUsage;
 use crate::cli::tables::Column;
 use crate::cli::{Output, say, tables, wrong_usage};
@@ -480,7 +481,7 @@ impl<'a> Host<'a> {
         let operands = self.one.core.contract.operands().iter().zip(&set_up.raw);
         let operands: Vec<String> =
             operands.map(|(operand, raw)| format!("{}=#{raw}", operand.name)).collect();
-        say!("glint eval {} {}", self.one.path, operands.join(" "));
+        say!("{Program} eval {} {}", self.one.path, operands.join(" "));
     }
 
     fn json(&self, set_up: &SetUp) -> Value {

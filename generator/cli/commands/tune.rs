@@ -9,6 +9,7 @@ use clap::{Args, ValueEnum};
 use indicatif::ProgressBar;
 use serde_json::{Value as Json, json};
 
+use crate::base::program::Program;
 use crate::cli::destination::Destination;
 use crate::cli::tables::{self, Column};
 use crate::cli::{Output, failure, number, progress, say, wrong_usage};
@@ -115,7 +116,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     }
     if arguments.target.family().is_none() {
         wrong_usage!(
-            "--target {}: there is no estimate of what a configuration costs there; tune for an FPGA and see `glint synth`",
+            "--target {}: there is no estimate of what a configuration costs there; tune for an FPGA and see `{Program} synth`",
             arguments.target
         );
     }
@@ -209,9 +210,9 @@ fn origin(device: &Device) -> &'static str {
 fn toml(device: &Device, best: &Candidate, arguments: &Arguments) -> String {
     let cost = &best.cost;
     let head = format!(
-        "# The smallest `{}` within {} {} that `glint tune` found for {}.\n\
+        "# The smallest `{}` within {} {} that `{Program} tune` found for {}.\n\
          # Bound, {}: {:.6} of f, {:.4} output units. Estimate: {:.0} LUTs, {} DSP blocks, {} block RAMs,\n\
-         # {} bits of ROM, {:.0} MHz{}; `glint synth` measures.\n{}",
+         # {} bits of ROM, {:.0} MHz{}; `{Program} synth` measures.\n{}",
         device.name,
         arguments.error,
         arguments.unit,

@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::json;
 
 use super::{Loaded, load};
+use crate::base::program::Program;
 use crate::base::text;
 use crate::cli::own_file::OwnFile;
 use crate::cli::{Configs, Output, count, progress, say, tables};
@@ -171,7 +172,7 @@ fn read(path: &Path) -> Result<Option<Known>> {
         }
     };
     let known: Known = serde_json::from_str(&text)
-        .with_context(|| format!("`{}` is no record of `glint worst`", path.display()))?;
+        .with_context(|| format!("`{}` is no record of `{Program} worst`", path.display()))?;
     ensure!(known.units.is_finite(), "`{}` has no error", path.display());
     Ok(Some(known))
 }

@@ -52,7 +52,7 @@ impl Staging {
             let own = above.join(parts.next().unwrap_or_default());
             ensure!(
                 !own.is_symlink(),
-                "`{}` is a symbolic link, and what it leads to is not Glint's; nothing was changed\n\
+                "`{}` is a symbolic link, through which Glint does not write; nothing was changed\n\
                  give --out where it leads, or make a directory of it",
                 own.display()
             );

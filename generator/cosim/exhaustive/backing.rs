@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Record;
 use crate::base::input;
+use crate::base::program::Program;
 use crate::golden::Contract;
 
 /// The directory of certificates inside that of the records.
@@ -76,9 +77,10 @@ impl Backing {
             Self::Certificate(path) => {
                 format!("The bound is proven by Gappa, by the record `{path}`")
             }
-            Self::Author => "The bound is stated by its author, and nothing here proves it: `glint certify`, and `glint \
-                             cosim --exhaustive --json` where it can go through all operands, do"
-                .to_owned(),
+            Self::Author => format!(
+                "The bound is stated by its author, and nothing here proves it: `{Program} certify`, and `{Program} \
+                 cosim --exhaustive --json` where it can go through all operands, do"
+            ),
         }
     }
 }

@@ -14,6 +14,7 @@ use anyhow::{Context, Result, ensure};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use crate::base::program::Program;
 use crate::cosim::binding::Binding;
 use crate::cosim::lockstep::LANES;
 use crate::cosim::outcome::{Course, Mismatch};
@@ -114,12 +115,13 @@ impl<'a> Clocks<'a> {
                 "registers at every clock: the operands have {} bits, and all combinations are gone through for up to {MOST_BITS}, of a narrower configuration of the device",
                 self.bits()
             ),
-            _ if self.binding.is_pipeline() => {
-                "pauses between points, results that wait, resets with points on their way; `glint cosim` draws these at \
+            _ if self.binding.is_pipeline() => format!(
+                "pauses between points, results that wait, resets with points on their way; `{Program} cosim` draws these at \
                  random"
-                    .to_owned()
-            }
-            _ => "idle gaps, operands written one by one, writes and starts while busy, resets within a computation, and other contents of the registers before it than those that one other computation leaves; `glint cosim` draws these at random".to_owned(),
+            ),
+            _ => format!(
+                "idle gaps, operands written one by one, writes and starts while busy, resets within a computation, and other contents of the registers before it than those that one other computation leaves; `{Program} cosim` draws these at random"
+            ),
         }
     }
 

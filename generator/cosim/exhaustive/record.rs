@@ -1,4 +1,4 @@
-//! The record of an exhaustive check, as `glint cosim --exhaustive --json` writes it: found by what it was
+//! The record of an exhaustive check, as `{Program} cosim --exhaustive --json` writes it: found by what it was
 //! made of, and checked again in part.
 
 use std::path::{Path, PathBuf};
@@ -8,6 +8,7 @@ use serde::Deserialize;
 
 use super::{Peak, Places, Proof};
 use crate::base::input;
+use crate::base::program::Program;
 use crate::golden::{Axis, Contract, Sweep, Values};
 
 /// How near a recorded figure must come to that of today.
@@ -114,7 +115,7 @@ impl Record {
         anyhow::ensure!(
             same_axes,
             "the record `{}` is of another version of Glint: its sweep is not today's; \
-             `glint cosim --exhaustive --json` makes a new one",
+             `{Program} cosim --exhaustive --json` makes a new one",
             self.path.display()
         );
         Ok(())

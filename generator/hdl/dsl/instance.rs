@@ -171,7 +171,7 @@ impl Designer {
     }
 }
 
-/// What takes a clock of its own between parts, which nothing waits for.
+/// Returns the registers and synchronous memories between parts: each takes a clock that nothing waits for.
 fn delayed(inner: &mut Inner) -> Vec<Diagnostic> {
     let Inner { design, placed, .. } = inner;
     let registers = design.registers.iter().filter(|it| it.kind == RegisterKind::Internal);

@@ -120,7 +120,7 @@ pub struct Designer {
     inner: RefCell<Inner>,
     /// Tells its handles from those of another.
     serial: u64,
-    /// Of how many descriptions it is a part.
+    /// The number of descriptions that it is a part of.
     depth: u32,
     start: NetId,
     idle: NetId,

@@ -8,8 +8,8 @@ use glint_base::fixed::Format;
 /// The facts of a file's header beyond the design.
 #[derive(Clone, Copy)]
 pub struct Origin<'a> {
-    /// The configuration by its [`glint_base::input::label`]; empty where there is none.
-    pub config: &'a str,
+    /// The command that makes the file again; empty where there is none.
+    pub regenerate: &'a str,
     /// Clocks between the events of the handshake.
     pub timing: &'a Timing,
 }
@@ -69,9 +69,9 @@ fn paragraph(text: &str) -> Vec<String> {
 
 /// Where a file comes from.
 pub fn regenerated(origin: &Origin) -> Vec<String> {
-    let again = match origin.config {
+    let again = match origin.regenerate {
         "" => String::new(),
-        config => format!(" To regenerate: glint generate {config}"),
+        command => format!(" To regenerate: {command}"),
     };
     vec![
         "//".to_owned(),

@@ -32,7 +32,7 @@ use plan::Plan;
 /// The mistakes that [`Design::verify_structure`] finds.
 pub fn files(design: &Design) -> Result<Vec<(String, String)>> {
     let (plan, naming) = (Plan::new(design)?, Naming::new(design));
-    let origin = Origin { config: "", timing: &Timing::default() };
+    let origin = Origin { regenerate: "", timing: &Timing::default() };
     Ok([modules(&plan, &naming, &origin), memories(design, &naming)?].concat())
 }
 

@@ -6,6 +6,7 @@ pub mod blocks;
 mod table;
 
 use crate::base::fixed::Format;
+use crate::base::program::Program;
 use crate::config::{Config, Key, Schema, Value, shared_keys};
 use crate::cosim::exhaustive::Backing;
 use crate::evidence::advice::Advice;
@@ -74,7 +75,9 @@ pub fn limit(inputs: &PageInputs) -> String {
 pub fn accuracy(contract: &dyn Contract, backing: &Backing) -> String {
     let bound = contract.bound();
     if !bound.is_stated() {
-        return "The contract states no bound of the error; `glint certify` finds one where it can.".to_owned();
+        return format!(
+            "The contract states no bound of the error; `{Program} certify` finds one where it can."
+        );
     }
     let verdict = if bound.units < 1.0 {
         "which is inside the contract (less than 1 unit)"
@@ -111,7 +114,8 @@ pub fn proof(inputs: &PageInputs) -> String {
         "" => String::new(),
         omits => format!(" Not covered: {omits}."),
     };
-    let (axes, checked) = (axes.join(", "), format!("`glint cosim {} --exhaustive`", inputs.path));
+    let (axes, checked) =
+        (axes.join(", "), format!("`{Program} cosim {} --exhaustive`", inputs.path));
     if inputs.contract.highlight().is_none() {
         return format!("{checked} checks it: the outputs at every {axes} (integers).{omits}");
     }

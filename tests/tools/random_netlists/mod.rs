@@ -23,7 +23,7 @@ fn emitted_verilog_means_what_the_netlist_means() {
     for seed in 0..DESIGNS {
         let design = generate::design(seed);
         let inputs = EmitInputs {
-            config: "configs/random.toml".to_owned(),
+            regenerate: "glint generate random.toml".to_owned(),
             vectors: Some(vectors(&design, seed)),
             ..EmitInputs::default()
         };

@@ -5,6 +5,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::{Arguments, Entry};
+use crate::base::program::Program;
 use crate::base::text;
 use crate::cli::tables::Column;
 use crate::cli::{Output, failure, say, tables};
@@ -220,7 +221,7 @@ fn print_speed(entries: &[Entry]) {
     let tools =
         tools(entries.iter().filter_map(|it| it.record.as_ref()).flat_map(|it| &it.targets));
     say!(
-        "Measured by `glint synth` with registers around the core, the median of several runs of place and route: {}.",
+        "Measured by `{Program} synth` with registers around the core, the median of several runs of place and route: {}.",
         Vec::from_iter(tools).join(", ")
     );
 }

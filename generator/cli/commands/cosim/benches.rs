@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use super::Arguments;
+use crate::base::program::Program;
 use crate::cli::commands::Loaded;
 use crate::cli::commands::mismatch::{first_clock, waveform_of};
 use crate::cli::failure;
@@ -101,7 +102,7 @@ fn bench(one: &Loaded, which: Simulator, points: u64, arguments: &Arguments) -> 
             vcd: written.is_ok().then(|| path.display().to_string()),
             from,
             command: format!(
-                "glint cosim {} --simulator {} --seed {} --points {points}",
+                "{Program} cosim {} --simulator {} --seed {} --points {points}",
                 one.path,
                 name(arguments),
                 arguments.seed

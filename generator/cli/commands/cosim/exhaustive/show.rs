@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use anyhow::Result;
 use serde_json::{Value, json};
 
+use crate::base::program::Program;
 use crate::base::text;
 use crate::cli::commands::Loaded;
 use crate::cli::commands::mismatch::Reproducer;
@@ -87,7 +88,7 @@ fn print(one: &Loaded, job: &Job<'_>, proof: &Proof, state: &State) {
     let verdict = match state.shard == Shard::WHOLE {
         true => proof.verdict(one.core.contract.as_ref(), job.f.sweep()).to_owned(),
         false if proof.failures.is_empty() => {
-            "holds so far; `glint merge` joins the shards".to_owned()
+            format!("holds so far; `{Program} merge` joins the shards")
         }
         false => "FAILS".to_owned(),
     };

@@ -1,0 +1,160 @@
+//! The results that are right at the operands that a search looks at.
+
+use rayon::prelude::*;
+
+use super::{Function, Reduction, Refusal};
+use glint_base::fixed::{Format, exp2};
+
+/// The most operands that the search looks at; of more, these are taken evenly.
+const HELD: u64 = 1 << 25;
+
+/// The most of them where there are more than can be computed.
+const HELD_OF_MANY: u64 = 1 << 18;
+
+/// Operands whose results are found at a time.
+const BLOCK: usize = 1 << 16;
+
+/// The values of a function at the operands that the search looks at.
+pub(super) struct Seen<'f> {
+    pub(super) function: &'f Function,
+    pub(super) origin: i64,
+    pub(super) bits: u32,
+    /// From an operand to the next that is looked at.
+    pub(super) stride: i64,
+    /// The polynomials that are right, lowest and highest, of each operand that is looked at.
+    pub(super) right: Vec<(i64, i64)>,
+    /// The polynomial's format.
+    pub(super) result: Format,
+    /// The function of the operands that were reduced to these, and the format of its results.
+    pub(super) whole: Option<(&'f Function, &'f Reduction, Format)>,
+}
+
+/// The results that are right of some operands, and between which numbers the nearest are.
+struct Nearest {
+    right: Vec<(i64, i64)>,
+    nearest: (i64, i64),
+}
+
+impl Default for Nearest {
+    fn default() -> Self {
+        Self { right: Vec::new(), nearest: (i64::MAX, i64::MIN) }
+    }
+}
+
+impl Nearest {
+    fn with(mut self, it: Result<(i64, i64, i64), Refusal>) -> Result<Self, Refusal> {
+        let (nearest, low, high) = it?;
+        self.right.push((low, high));
+        self.nearest = (self.nearest.0.min(nearest), self.nearest.1.max(nearest));
+        Ok(self)
+    }
+
+    fn and(mut self, mut other: Self) -> Self {
+        self.right.append(&mut other.right);
+        let (low, high) = other.nearest;
+        Self { nearest: (self.nearest.0.min(low), self.nearest.1.max(high)), ..self }
+    }
+}
+
+impl Function {
+    /// The result that is nearest at a raw operand, and the lowest and the highest that are right where less error is allowed
+    /// by `stricter`.
+    fn right(&self, raw: i64, stricter: f64) -> Result<(i64, i64, i64), Refusal> {
+        let limits = self.limits(raw).map_err(|fault| self.refusal(raw, &fault))?;
+        if limits.low.abs().max(limits.high.abs()) > exp2(48) {
+            let message = format!("at the operand {raw} the result has more than 48 bits");
+            let remedy = "fewer fraction bits, or another domain";
+            return Err(Refusal::new("result.fraction", message, remedy));
+        }
+        let error = self.allowed(raw) - stricter;
+        let nearest = (limits.middle() + 0.5).floor() as i64;
+        // Nearer than the error, whatever the exact value is.
+        let low = (limits.high - error).floor() as i64 + 1;
+        let high = (limits.low + error).ceil() as i64 - 1;
+        Ok((nearest, low, high))
+    }
+}
+
+impl<'f> Seen<'f> {
+    /// Evaluates the function; none if an operand has no result that is right. Where it does not look at every operand, less
+    /// error is allowed by `stricter`.
+    pub(super) fn new(function: &'f Function, stricter: f64) -> Result<Option<Self>, Refusal> {
+        let (first, last) = function.domain;
+        let (origin, bits) = function.numbering();
+        let count = (last - first) as u64 + 1;
+        let held = if function.is_wide() { HELD_OF_MANY } else { HELD };
+        // An odd one, so that the low bits take every value.
+        let stride = if count > held { count.div_ceil(held) as i64 | 1 } else { 1 };
+        let stricter = if stride > 1 { stricter } else { 0.0 };
+        let of = |at: u64| function.right((first + at as i64 * stride).min(last), stricter);
+        let seen = count.div_ceil(stride as u64) + u64::from(stride > 1);
+        let all = (0..seen).into_par_iter().map(of).try_fold(Nearest::default, Nearest::with);
+        let all = all.try_reduce(Nearest::default, |a, b| Ok(a.and(b)))?;
+        let (low, high) = all.nearest;
+        let result = Format::holding(low.into(), high.into(), function.fraction as i32);
+        let (least, most) = (result.min_raw() as i64, result.max_raw() as i64);
+        let mut right = all.right;
+        right.iter_mut().for_each(|it| *it = (it.0.max(least), it.1.min(most)));
+        if right.iter().any(|(low, high)| low > high) {
+            return Ok(None);
+        }
+        Ok(Some(Self { function, origin, bits, stride, right, result, whole: None }))
+    }
+
+    /// Evaluates a function whose operands are reduced: a polynomial is right with which the results of all operands are that
+    /// are reduced to its own.
+    pub(super) fn reduced(
+        whole: &'f Function,
+        reduction: &'f Reduction,
+        inner: &'f Function,
+    ) -> Result<Option<Self>, Refusal> {
+        let Some(mut seen) = Self::new(inner, 0.0)? else { return Ok(None) };
+        let all = (seen.result.min_raw() as i64, seen.result.max_raw() as i64);
+        seen.right.fill(all);
+        let (first, last) = whole.domain;
+        let nearest = (first..=last).into_par_iter().map(|raw| whole.right(raw, 0.0));
+        let ends = nearest.map(|it| it.map(|(nearest, ..)| (nearest, nearest)));
+        let (low, high) =
+            ends.try_reduce(|| (i64::MAX, i64::MIN), |a, b| Ok((a.0.min(b.0), a.1.max(b.1))))?;
+        let result = Format::holding(low.into(), high.into(), whole.fraction as i32);
+        let (least, most) = (result.min_raw() as i64, result.max_raw() as i64);
+        for from in (first..=last).step_by(BLOCK) {
+            let of = |raw: i64| {
+                let (_, low, high) = whole.right(raw, 0.0)?;
+                let (number, restore) = reduction.reduce(raw);
+                Ok((number as usize, restore.polynomials((low.max(least), high.min(most)))))
+            };
+            let some: Vec<_> = (from..=last.min(from + BLOCK as i64 - 1))
+                .into_par_iter()
+                .map(of)
+                .collect::<Result<_, Refusal>>()?;
+            for (number, (low, high)) in some {
+                let right = &mut seen.right[number];
+                *right = (right.0.max(low), right.1.min(high));
+                if right.0 > right.1 {
+                    return Ok(None);
+                }
+            }
+        }
+        seen.whole = Some((whole, reduction, result));
+        Ok(Some(seen))
+    }
+
+    /// No more than `most` of the operands or so, taken evenly.
+    pub(super) fn thinned(&self, most: usize) -> Self {
+        // An odd one, so that the low bits take every value.
+        let by = if self.right.len() > most { (self.right.len() / most) | 1 } else { 1 };
+        let last = self.right.last().filter(|_| by > 1);
+        let right = self.right.iter().step_by(by).chain(last).copied().collect();
+        Self { stride: self.stride * by as i64, right, ..*self }
+    }
+
+    pub(super) fn raw(&self, seen: usize) -> i64 {
+        let (first, last) = self.function.domain;
+        (first + seen as i64 * self.stride).min(last)
+    }
+
+    pub(super) fn number(&self, raw: i64) -> u64 {
+        (raw - self.origin) as u64
+    }
+}

@@ -1,0 +1,365 @@
+//! The words of a table for given segments: coefficients that are right at every operand, as narrow as may be.
+//!
+//! Coefficients are rounded one after the other, the highest first: what the hardware makes of those that are chosen is
+//! taken off the function, and the rest is fitted again. The constant closes the search: every operand of a segment allows
+//! an interval of constants, and one within all of them is right for all.
+
+use rayon::prelude::*;
+
+use super::minimax::minimax;
+use super::seen::Seen;
+use super::{MOST_SUMS, Piecewise, Segments, Step};
+use glint_base::fixed::{Format, MAX_WIDTH, exp2};
+use glint_base::interval::Interval;
+
+/// Points of a segment to which polynomials are fitted.
+const FITTED: i64 = 40;
+
+/// Fraction bits of coefficients beyond those of the result, where the search begins.
+const GENEROUS: i32 = 8;
+
+/// The fewest of them.
+const FEWEST: i32 = -8;
+
+/// A segment in the search.
+pub(super) struct Piece {
+    /// Its operands that are looked at, by their numbers among all such.
+    seen: std::ops::Range<usize>,
+    /// The points to which polynomials are fitted: offsets, the same as fractions of the segment, and values.
+    offsets: Vec<i64>,
+    at: Vec<f64>,
+    values: Vec<f64>,
+}
+
+/// Fraction bits beyond those of the result, the constant's first, and leading bits of the offset at each step.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Widths {
+    guard: Vec<i32>,
+    offset: Vec<u32>,
+}
+
+impl Widths {
+    /// The cuts of the products; none if one would have to gain bits.
+    fn steps(&self) -> Option<Vec<Step>> {
+        let of = |(k, &offset): (usize, &u32)| {
+            let dropped = self.guard[k + 1] + offset as i32 - self.guard[k];
+            u32::try_from(dropped).ok().map(|dropped| Step { offset, dropped })
+        };
+        self.offset.iter().enumerate().map(of).collect()
+    }
+
+    /// One bit fewer or more of variable number `at`, if that may be.
+    fn with(&self, at: usize, change: i32) -> Option<Self> {
+        let mut other = self.clone();
+        match other.guard.get_mut(at) {
+            Some(guard) => {
+                *guard += change;
+                let least = if at == 0 { 0 } else { FEWEST };
+                if *guard < least {
+                    return None;
+                }
+            }
+            None => {
+                let offset = &mut other.offset[at - self.guard.len()];
+                *offset = u32::try_from(*offset as i32 + change).ok().filter(|bits| *bits > 0)?;
+            }
+        }
+        Some(other)
+    }
+
+    /// No variable wider than in another.
+    fn no_wider(mut self, most: &Self) -> Self {
+        self.guard.iter_mut().zip(&most.guard).for_each(|(own, most)| *own = (*own).min(*most));
+        self.offset.iter_mut().zip(&most.offset).for_each(|(own, most)| *own = (*own).min(*most));
+        self
+    }
+
+    /// How many variables there are.
+    fn count(&self) -> usize {
+        self.guard.len() + self.offset.len()
+    }
+}
+
+/// The segments of a domain, in the search for the words of their table.
+pub(super) struct Table<'s> {
+    seen: &'s Seen<'s>,
+    cut: Segments,
+    pieces: Vec<Option<Piece>>,
+}
+
+/// The words of a table, of which those that no operand reads are not known.
+pub(super) type Words = Vec<Option<Vec<i64>>>;
+
+impl<'s> Table<'s> {
+    pub(super) fn new(seen: &'s Seen<'s>, cut: Segments) -> Self {
+        let (first, last) = seen.function.domain;
+        let ends = [first, last].map(|raw| cut.place(seen.number(raw)).word);
+        let words = 0..ends[0].max(ends[1]) + 1;
+        let pieces = words.into_par_iter().map(|word| Self::piece(seen, cut, word)).collect();
+        Self { seen, cut, pieces }
+    }
+
+    /// The samples in the segment of a word; none without an operand of the domain.
+    fn piece(seen: &Seen, cut: Segments, word: usize) -> Option<Piece> {
+        let (first, last) = seen.function.domain;
+        let (from, count) = cut.numbers(word);
+        let low = (seen.origin + from as i64).max(first);
+        let high = (seen.origin + (from + count - 1) as i64).min(last);
+        if low > high {
+            return None;
+        }
+        let before = |raw: i64| ((raw - first) as u64).div_ceil(seen.stride as u64) as usize;
+        let many = (high - low + 1).min(FITTED);
+        let step = (many - 1).max(1);
+        let raws = (0..many).map(|k| low + (high - low) * k / step);
+        let point = |raw: i64| {
+            // It had limits before: all formulas have, or the nearest operand that was looked at has.
+            let value = seen.function.limits(raw).map_or(f64::NAN, |limits| limits.middle());
+            (cut.place(seen.number(raw)).offset, value)
+        };
+        let mut points: Vec<(i64, f64)> = raws.map(point).collect();
+        // Halving segments run the other way.
+        points.sort_by_key(|it| it.0);
+        let unit = exp2(-(cut.rest() as i32));
+        Some(Piece {
+            seen: before(low)..before(high + 1).min(seen.right.len()),
+            at: points.iter().map(|it| it.0 as f64 * unit).collect(),
+            values: points.iter().map(|it| it.1).collect(),
+            offsets: points.into_iter().map(|it| it.0).collect(),
+        })
+    }
+
+    /// Whether polynomials of unlimited precision are so near to the function that a rounding to the nearest may be.
+    pub(super) fn may_fit(&self, degree: u32) -> bool {
+        let fits = |piece: &Piece| match degree {
+            0 => self.constant(piece, &[], &[], 0).is_some(),
+            _ => {
+                minimax(&piece.at, &piece.values, degree as usize).1
+                    < self.seen.function.error - 0.5
+            }
+        };
+        self.pieces.par_iter().flatten().all(fits)
+    }
+
+    /// The narrowest coefficients and offsets, if any are right.
+    pub(super) fn narrowest(&self, degree: usize) -> Option<(Widths, Words)> {
+        let generous = self.generous(degree);
+        let mut words = self.words(&generous)?;
+        // How far each can go alone; together they need about a bit more.
+        let mut widths = generous.clone();
+        for at in 0..generous.count() {
+            let mut alone = generous.clone();
+            while let Some(lower) = alone.with(at, -1).filter(|it| self.words(it).is_some()) {
+                alone = lower;
+                widths = widths.with(at, -1)?;
+            }
+        }
+        loop {
+            if let Some(found) = self.words(&widths) {
+                words = found;
+                break;
+            }
+            if widths == generous {
+                break;
+            }
+            for at in 0..generous.count() {
+                widths = widths.with(at, 1)?.no_wider(&generous);
+            }
+        }
+        let mut changed = true;
+        while changed {
+            changed = false;
+            for at in (0..generous.count()).rev() {
+                let Some(lower) = widths.with(at, -1) else { continue };
+                if let Some(found) = self.words(&lower) {
+                    (widths, words, changed) = (lower, found, true);
+                }
+            }
+        }
+        Some((widths, words))
+    }
+
+    /// The widths with which the search begins.
+    fn generous(&self, degree: usize) -> Widths {
+        let guard = if degree == 0 { 0 } else { GENEROUS };
+        Widths { guard: vec![guard; degree + 1], offset: vec![self.cut.rest(); degree] }
+    }
+
+    /// Widths that were chosen by fewer operands, a bit wider where these are not right, and the words with them.
+    pub(super) fn settled(&self, mut widths: Widths) -> Option<(Widths, Words)> {
+        let generous = self.generous(widths.offset.len());
+        let wider = |widths: &Widths, at| {
+            let wider = widths.with(at, 1)?.no_wider(&generous);
+            (wider != *widths).then_some(wider)
+        };
+        loop {
+            let one_wider = (0..generous.count()).filter_map(|at| wider(&widths, at));
+            for some in [widths.clone()].into_iter().chain(one_wider) {
+                if let Some(words) = self.words(&some) {
+                    return Some((some, words));
+                }
+            }
+            let before = widths.clone();
+            for at in 0..generous.count() {
+                widths = wider(&widths, at).unwrap_or(widths);
+            }
+            if widths == before {
+                return None;
+            }
+        }
+    }
+
+    /// The words of a table with these widths, if there are such with which every operand that is looked at is right.
+    fn words(&self, widths: &Widths) -> Option<Words> {
+        let steps = widths.steps()?;
+        let fit = |piece: &Option<Piece>| match piece {
+            None => Some(None),
+            Some(piece) => {
+                let mut coefficients = vec![0; widths.guard.len()];
+                let none = vec![0; piece.at.len()];
+                let found = self.place(
+                    piece,
+                    (widths, &steps),
+                    &none,
+                    &mut coefficients,
+                    widths.guard.len() - 1,
+                );
+                found.then_some(Some(coefficients))
+            }
+        };
+        self.pieces.par_iter().map(fit).collect()
+    }
+
+    /// Chooses coefficient `k` and those below it; `product` is what is added to it at the points of the fit.
+    fn place(
+        &self,
+        piece: &Piece,
+        shape: (&Widths, &[Step]),
+        product: &[i64],
+        coefficients: &mut Vec<i64>,
+        k: usize,
+    ) -> bool {
+        let (widths, steps) = shape;
+        if k == 0 {
+            let guard = widths.guard[0] as u32;
+            let constant = self.constant(piece, &coefficients[1..], steps, guard);
+            coefficients[0] = constant.unwrap_or(0);
+            return constant.is_some();
+        }
+        let unit = exp2(-widths.guard[k]);
+        let rests = piece.values.iter().zip(&piece.at).zip(product);
+        let rests =
+            rests.map(|((value, at), &product)| value - product as f64 * unit * at.powi(k as i32));
+        let wanted = minimax(&piece.at, &rests.collect::<Vec<f64>>(), k).0[k] / unit;
+        let nearest = (wanted + 0.5).floor();
+        let other = if wanted < nearest { nearest - 1.0 } else { nearest + 1.0 };
+        [nearest, other].into_iter().any(|coefficient| {
+            coefficients[k] = coefficient as i64;
+            let sums = piece.offsets.iter().zip(product).map(|(&offset, product)| {
+                steps[k - 1].product(coefficients[k] + product, offset, self.cut.rest())
+            });
+            let sums: Vec<i64> = sums.collect();
+            self.place(piece, shape, &sums, coefficients, k - 1)
+        })
+    }
+
+    /// The constant with which every operand of the segment is right: the middle of all such. `above` are the other
+    /// coefficients.
+    fn constant(&self, piece: &Piece, above: &[i64], steps: &[Step], guard: u32) -> Option<i64> {
+        let (mut least, mut most) = (i64::MIN, i64::MAX);
+        for (at, &(low, high)) in piece.seen.clone().zip(&self.seen.right[piece.seen.clone()]) {
+            let offset = self.cut.place(self.seen.number(self.seen.raw(at))).offset;
+            let mut sum = above.last().copied().unwrap_or(0);
+            for (k, step) in steps.iter().enumerate().rev() {
+                sum = step.product(sum, offset, self.cut.rest());
+                if k > 0 {
+                    sum += above[k - 1];
+                }
+            }
+            least = least.max((low << guard) - sum);
+            most = most.min(((high + 1) << guard) - 1 - sum);
+            if least > most {
+                return None;
+            }
+        }
+        // None is looked at where the operands of a segment lie between those that are.
+        Some(if least == i64::MIN { 0 } else { least + (most - least) / 2 })
+    }
+
+    /// The formats of the coefficients, the constant first.
+    fn formats(&self, widths: &Widths, words: &Words) -> Vec<Format> {
+        let fraction = self.seen.function.fraction as i32;
+        let format = |(k, guard): (usize, &i32)| {
+            let (low, high) = words.iter().flatten().fold((i64::MAX, i64::MIN), |ends, word| {
+                (ends.0.min(word[k]), ends.1.max(word[k]))
+            });
+            Format::holding(low.into(), high.into(), fraction + guard)
+        };
+        widths.guard.iter().enumerate().map(format).collect()
+    }
+
+    /// Bits of the table.
+    pub(super) fn bits(&self, widths: &Widths, words: &Words) -> u64 {
+        let width: u32 = self.formats(widths, words).iter().map(|format| format.width()).sum();
+        words.len() as u64 * u64::from(width)
+    }
+
+    /// The approximation with these words, if its nets are not too wide.
+    pub(super) fn finished(&self, widths: &Widths, words: Words) -> Option<Piecewise> {
+        let Seen { result: polynomial, whole, .. } = self.seen;
+        let function = whole.map_or(self.seen.function, |it| it.0);
+        let coefficients = self.formats(widths, &words);
+        // A word that no operand of the domain reads has what stands before or behind it.
+        let mut before = words.iter().flatten().next()?.clone();
+        let words: Vec<Vec<i64>> = words
+            .into_iter()
+            .map(|word| {
+                before = word.unwrap_or_else(|| before.clone());
+                before.clone()
+            })
+            .collect();
+        let mut found = Piecewise {
+            operand: function.operand,
+            domain: function.domain,
+            outside: function.outside,
+            reduction: whole.map(|it| it.1.clone()),
+            origin: self.seen.origin,
+            segments: self.cut,
+            coefficients,
+            words,
+            steps: widths.steps()?,
+            sums: vec![*polynomial; widths.guard.len()],
+            result: whole.map_or(*polynomial, |it| it.2),
+            bound: f64::INFINITY,
+        };
+        let (low, high) = function.domain;
+        let none = [(i128::MAX, i128::MIN); MOST_SUMS];
+        let with = |mut ends: [Interval; MOST_SUMS], sums: &[Interval]| {
+            for (end, sum) in ends.iter_mut().zip(sums) {
+                *end = (end.0.min(sum.0), end.1.max(sum.1));
+            }
+            ends
+        };
+        let ends = if function.is_wide() {
+            let walks = (0..found.words.len()).filter_map(|word| found.walk(word));
+            walks.fold(none, |ends, walk| with(ends, &walk.sums))
+        } else {
+            let of = |ends, raw| {
+                with(ends, &found.sums_of(raw).map(|sum| (i128::from(sum), i128::from(sum))))
+            };
+            let folded = (low..=high).into_par_iter().fold(|| none, of);
+            folded.reduce(|| none, |a, b| with(a, &b))
+        };
+        let sums = found.sums.iter_mut().zip(ends).zip(&found.coefficients).skip(1);
+        for ((sum, (low, high)), coefficient) in sums {
+            *sum = Format::holding(low, high, coefficient.frac);
+        }
+        let widest = found
+            .steps
+            .iter()
+            .zip(&found.sums[1..])
+            .map(|(step, sum)| sum.width() + 1 + step.offset);
+        let narrow = widest.max().unwrap_or(0) < MAX_WIDTH;
+        narrow.then_some(found)
+    }
+}

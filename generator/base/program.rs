@@ -1,0 +1,21 @@
+//! The name of the running program: `glint`, or that of a program with devices of its own.
+
+use std::fmt;
+use std::sync::OnceLock;
+
+static NAME: OnceLock<String> = OnceLock::new();
+
+/// The running program in a text that says how to call it; `glint` unless [`run_as`] gave another name.
+#[derive(Clone, Copy, Debug)]
+pub struct Program;
+
+impl fmt::Display for Program {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(NAME.get().map_or("glint", String::as_str))
+    }
+}
+
+/// Names the running program; a second name has no effect.
+pub fn run_as(name: &str) {
+    NAME.get_or_init(|| name.to_owned());
+}
