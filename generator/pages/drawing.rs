@@ -31,21 +31,6 @@ pub enum Item {
         /// The attribute `d`.
         d: String,
     },
-    /// A rectangle with rounded corners.
-    Rect {
-        /// Class.
-        class: &'static str,
-        /// The left edge.
-        x: i32,
-        /// The upper edge.
-        y: i32,
-        /// From left to right.
-        width: i32,
-        /// From top to bottom.
-        height: i32,
-        /// The radius of the corners.
-        radius: i32,
-    },
     /// A line of text.
     Text {
         /// Class.

@@ -36,11 +36,6 @@ impl<const LANES: usize> Machine<LANES> {
         machine
     }
 
-    /// The program that it runs.
-    pub fn program(&self) -> &Program {
-        &self.program
-    }
-
     /// Inverts bits of a word of a ROM: a fault, which the same call takes back. Words are numbered through all ROMs, in
     /// the order of the design.
     ///

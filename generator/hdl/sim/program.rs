@@ -220,11 +220,6 @@ pub struct Program {
 }
 
 impl Program {
-    /// The number of steps that settle the design after a clock edge.
-    pub fn steps(&self) -> usize {
-        self.steps.len()
-    }
-
     /// The number of input ports.
     pub fn inputs(&self) -> usize {
         self.narrow.inputs.len() + self.wide.inputs.len()
