@@ -7,6 +7,7 @@ pub mod bench;
 pub mod cores;
 pub mod host;
 pub mod netlist;
+pub mod random_netlist;
 pub mod said;
 pub mod sample;
 pub mod tools;

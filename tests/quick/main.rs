@@ -31,6 +31,7 @@ mod registers;
 mod rooms;
 mod rough_microprogram;
 mod shared_products;
+mod simulator;
 mod software;
 mod spread;
 mod streams;

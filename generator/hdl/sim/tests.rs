@@ -3,6 +3,5 @@
 mod build;
 mod errors;
 mod ops;
-mod random;
 mod state;
 mod waveform;

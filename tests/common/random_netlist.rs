@@ -40,10 +40,24 @@ impl Random {
 /// Words of the control ROM; not a power of two.
 const WORDS: usize = 6;
 
+/// How large a design is.
+#[derive(Clone, Copy)]
+pub struct Size {
+    /// The most bits of a net that is not a product.
+    pub widest: usize,
+    /// Registers with feedback.
+    pub registers: usize,
+    /// Pairs of a select and an enable in the control word.
+    pub fields: usize,
+}
+
+/// A design that the tools outside go through in an instant.
+pub const SMALL: Size = Size { widest: 20, registers: 4, fields: 2 };
+
 /// The design of a seed.
-pub fn design(seed: u64) -> Design {
-    let mut build =
-        Build { random: Random::new(seed), design: skeleton(seed), partition: Partition::Control };
+pub fn design(seed: u64, size: Size) -> Design {
+    let (random, partition) = (Random::new(seed), Partition::Control);
+    let mut build = Build { random, size, design: skeleton(seed), partition };
     build.control();
     build.partition = Partition::Datapath;
     build.datapath();
@@ -59,6 +73,7 @@ fn skeleton(seed: u64) -> Design {
 
 struct Build {
     random: Random,
+    size: Size,
     design: Design,
     partition: Partition,
 }
@@ -128,10 +143,9 @@ impl Build {
         self.design.registers[run.index()].data = Some(running);
 
         let choices = || FieldKind::Select(["a", "b", "c·c", "d"].map(str::to_owned).to_vec());
-        let kinds =
-            [(2, choices()), (1, FieldKind::Enable), (2, choices()), (1, FieldKind::Enable)];
-        let width = kinds.iter().map(|(width, _)| width).sum::<i32>();
-        for (at, (width, kind)) in kinds.into_iter().enumerate() {
+        let kinds = (0..self.size.fields).flat_map(|_| [(2, choices()), (1, FieldKind::Enable)]);
+        let width = 3 * self.size.fields as i32;
+        for (at, (width, kind)) in kinds.enumerate() {
             let id = FieldId(at as u32);
             let net = self.net(Format::unsigned(width, 0), Driver::Field(id), true);
             self.design.control.fields.push(Field {
@@ -158,12 +172,12 @@ impl Build {
 
     fn datapath(&mut self) {
         for _ in 0..4 {
-            let format = self.format(20);
+            let format = self.format(self.size.widest);
             let strobe = self.input(Format::BIT, Role::Strobe);
             self.input(format, Role::Operand { strobe });
         }
         // With feedback: data is chosen when all is there.
-        let loops: Vec<_> = (0..4)
+        let loops: Vec<_> = (0..self.size.registers)
             .map(|_| {
                 let format = self.format(16);
                 let reset = self.random.bits(format.width());
@@ -293,7 +307,7 @@ impl Build {
     }
 
     fn cell(&mut self) {
-        let format = self.format(20);
+        let format = self.format(self.size.widest);
         let width = format.width();
         let bit = Format::BIT;
         let pair = |build: &mut Self, signed| {
@@ -318,9 +332,9 @@ impl Build {
                 let (a, b) = pair(self, None);
                 self.add(format, Op::Sub(a, b));
             }
-            7 | 8 => {
+            7 | 8 if width < 64 => {
                 let signed = self.random.chance(50);
-                let other = 1 + self.random.below(20) as u32;
+                let other = 1 + self.random.below((64 - width as usize).min(20)) as u32;
                 let a = self.of_width(width, Some(signed));
                 let b = self.of_width(other, Some(signed));
                 let total = (width + other) as i32;
@@ -353,7 +367,9 @@ impl Build {
                 let inputs = (0..count).map(|_| self.of_width(width, None)).collect();
                 let select = match (count, self.random.chance(70)) {
                     (2, _) => self.of_width(1, None),
-                    (_, true) => self.design.control.fields[self.random.below(2) * 2].net,
+                    (_, true) => {
+                        self.design.control.fields[self.random.below(self.size.fields) * 2].net
+                    }
                     (_, false) => self.of_width(2, Some(false)),
                 };
                 self.add(format, Op::Mux { select, inputs });

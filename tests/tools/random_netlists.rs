@@ -5,8 +5,7 @@
 //! [`glint::hdl::netlist::Op`] predicts the outputs, Icarus Verilog simulates the text, and both linters
 //! must have nothing to say.
 
-mod generate;
-
+use crate::common::random_netlist::{Random, SMALL, design};
 use crate::common::tools::{assert_bench_passes, assert_lint_clean};
 use glint::hdl::netlist::{Design, Interpreter, Role};
 use glint::package::{EmitInputs, Vectors, emit};
@@ -21,7 +20,7 @@ const KNOWN_FROM: usize = 40;
 #[test]
 fn emitted_verilog_means_what_the_netlist_means() {
     for seed in 0..DESIGNS {
-        let design = generate::design(seed);
+        let design = design(seed, SMALL);
         let inputs = EmitInputs {
             regenerate: "glint generate random.toml".to_owned(),
             vectors: Some(vectors(&design, seed)),
@@ -57,7 +56,7 @@ fn check_text(name: &str, text: &str) {
 }
 
 fn vectors(design: &Design, seed: u64) -> Vectors {
-    let mut random = generate::Random::new(!seed);
+    let mut random = Random::new(!seed);
     let mut interpreter = Interpreter::new(design).expect("no loop");
     let mut vectors = Vectors { known_from: KNOWN_FROM, ..Vectors::default() };
     for clock in 0..CLOCKS {
