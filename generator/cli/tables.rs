@@ -12,7 +12,7 @@ const FRAME: usize = 3;
 
 /// A column of a table.
 #[derive(Clone, Copy)]
-pub struct Column<'a> {
+struct Column<'a> {
     heading: &'a str,
     /// Whether it has numbers: aligned to the right, and never broken.
     number: bool,
@@ -21,28 +21,24 @@ pub struct Column<'a> {
 }
 
 impl<'a> Column<'a> {
-    /// A column of words, which may be broken into lines between words.
-    pub const fn words(heading: &'a str) -> Self {
-        Self { heading, number: false, dispensable: 0 }
-    }
-
-    /// A column of numbers.
-    pub const fn numbers(heading: &'a str) -> Self {
-        Self { heading, number: true, dispensable: 0 }
-    }
-
-    /// Makes the column one which goes where there is no room, before those of a smaller number.
-    #[must_use]
-    pub const fn dispensable(self, order: u8) -> Self {
-        Self { dispensable: order, ..self }
+    /// The columns of some headings, which bars part. The cells below one with a colon behind it are numbers, others words, which
+    /// may be broken into lines; a digit behind the colon, or behind a semicolon, is when a column goes where there is no
+    /// room for all.
+    fn all(headings: &'a str) -> Vec<Self> {
+        let column = |heading: &'a str| {
+            let number = heading.contains(':');
+            let (heading, order) = heading.split_once([':', ';']).unwrap_or((heading, ""));
+            Self { heading, number, dispensable: order.parse().unwrap_or(0) }
+        };
+        headings.split(" | ").map(column).collect()
     }
 }
 
-/// Prints rows under headings, no wider than the terminal: columns that can be spared go, and where that is
-/// not enough, the cells of a row stand below each other.
-pub fn print(columns: &[Column<'_>], rows: impl IntoIterator<Item = Vec<String>>) {
+/// Prints rows under headings, as `device | points: | clocks:2 | remark;1` has them, no wider than the terminal: columns
+/// with a digit go, those of the largest first, and where that is not enough, the cells of a row stand below each other.
+pub fn print(headings: &str, rows: impl IntoIterator<Item = Vec<String>>) {
     let rows: Vec<Vec<String>> = rows.into_iter().collect();
-    print_line(&text(columns, &rows, width()));
+    print_line(&text(&Column::all(headings), &rows, width()));
 }
 
 /// How wide a line may be: what `COLUMNS` says, or the terminal; without either, as wide as it likes.
@@ -227,12 +223,7 @@ pub fn finish() -> Result<()> {
 mod tests {
     use super::*;
 
-    const COLUMNS: [Column<'_>; 4] = [
-        Column::words("device"),
-        Column::numbers("clocks, all of them").dispensable(1),
-        Column::numbers("points").dispensable(2),
-        Column::words("what it computes"),
-    ];
+    const HEADINGS: &str = "device | clocks, all of them:1 | points:2 | what it computes";
 
     fn rows() -> Vec<Vec<String>> {
         let row = ["rough", "1 305 235", "100 000", "a rough surface's highlight"];
@@ -247,27 +238,27 @@ mod tests {
     #[test]
     fn a_table_takes_what_room_there_is() {
         for room in 36..100 {
-            let text = text(&COLUMNS, &rows(), Some(room));
+            let text = text(&Column::all(HEADINGS), &rows(), Some(room));
             assert!(widest(&text) <= room, "{room}:\n{text}");
             for (column, number) in [("points", "100 000"), ("clocks", "1 305 235")] {
                 let said = text.contains(number) || text.contains("no room for");
                 assert!(said, "{column} at {room}:\n{text}");
             }
         }
-        let all = text(&COLUMNS, &rows(), None);
+        let all = text(&Column::all(HEADINGS), &rows(), None);
         assert_eq!(all.lines().count(), 3, "{all}");
     }
 
     #[test]
     fn the_least_important_column_goes_first_and_is_named() {
-        let text = text(&COLUMNS, &rows(), Some(40));
+        let text = text(&Column::all(HEADINGS), &rows(), Some(40));
         assert!(text.contains("(no room for points; --json"), "{text}");
         assert!(text.contains("1 305 235"), "{text}");
     }
 
     #[test]
     fn without_room_for_a_table_rows_are_stacked() {
-        let columns = COLUMNS.map(|column| column.dispensable(0));
+        let columns = Column::all("device | clocks, all of them: | points: | what it computes");
         let text = text(&columns, &rows(), Some(40));
         assert_eq!(
             text,

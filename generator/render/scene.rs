@@ -1,6 +1,7 @@
 //! The scene of a picture.
 
 use anyhow::Result;
+use clap::ValueEnum;
 
 use super::height::Relief;
 use super::mesh::Mesh;
@@ -51,7 +52,7 @@ pub struct Light {
 }
 
 /// The scenes that need no file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum BuiltIn {
     /// A ball.
     Sphere,

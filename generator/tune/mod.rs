@@ -11,6 +11,8 @@ mod space;
 use std::fmt;
 
 use anyhow::{Context, Result};
+use clap::ValueEnum;
+use serde::Serialize;
 
 use crate::config::Config;
 use crate::golden::Bound;
@@ -23,7 +25,8 @@ use space::Space;
 use crate::synth::Target;
 
 /// The unit of an error.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ValueEnum)]
+#[serde(rename_all = "lowercase")]
 pub enum ErrorUnit {
     /// The reflectance f, from 0 to 1.
     F,
@@ -51,9 +54,9 @@ impl fmt::Display for ErrorUnit {
 }
 
 /// The cost that is minimised.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Objective {
-    /// Look-up tables, with DSP blocks and block RAMs counted as the look-up tables that the target has for each.
+    /// Look-up tables; a DSP block or a block RAM counts for as many as the chip has of them.
     Area,
     /// Look-up tables.
     Luts,

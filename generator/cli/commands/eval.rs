@@ -13,7 +13,6 @@ use serde_json::{Value, json};
 use super::{Loaded, load_one};
 use crate::base::fixed::Format;
 use crate::cli::failure::WrongUsage;
-use crate::cli::tables::Column;
 use crate::cli::{Output, say, tables, wrong_usage};
 use crate::cosim::Driven;
 use crate::golden::{self, Contract, Model, Operand};
@@ -130,16 +129,10 @@ fn point(output: Output, one: &Loaded, given: &[Option<i64>]) -> Result<bool> {
     }
     print_values("operand", operands);
     print_values("golden, when valid", signals);
-    let columns = [
-        Column::words("result"),
-        Column::numbers("value"),
-        Column::numbers("formula in f64"),
-        Column::numbers("error in last places"),
-    ];
     let rows = results.into_iter().map(|it| {
         vec![it.name, it.value.to_string(), format!("{:.9}", it.exact), format!("{:.3}", it.error)]
     });
-    tables::print(&columns, rows);
+    tables::print("result | value: | formula in f64: | error in last places:", rows);
     Ok(true)
 }
 
@@ -203,14 +196,8 @@ impl Signal {
 }
 
 fn print_values(what: &str, values: Vec<Signal>) {
-    let columns = [
-        Column::words(what),
-        Column::words("format"),
-        Column::numbers("raw"),
-        Column::numbers("value"),
-    ];
     let row = |it: Signal| vec![it.name, it.format, it.raw.to_string(), it.value.to_string()];
-    tables::print(&columns, values.into_iter().map(row));
+    tables::print(&format!("{what} | format | raw: | value:"), values.into_iter().map(row));
 }
 
 /// All signals in the clock in which `valid` is high.

@@ -7,7 +7,6 @@ use clap::Args;
 use serde_json::json;
 
 use super::{CONFIGS, paths};
-use crate::cli::tables::Column;
 use crate::cli::{Output, tables};
 use crate::registry::Registry;
 
@@ -38,7 +37,7 @@ pub fn run(registry: &Registry, output: Output, _: &Arguments) -> Result<bool> {
         .devices()
         .iter()
         .map(|device| vec![device.name.to_owned(), device.summary.to_owned()]);
-    tables::print(&[Column::words("device"), Column::words("what it computes")], rows);
+    tables::print("device | what it computes", rows);
     for config in configs {
         tables::print_line(&config);
     }

@@ -9,7 +9,6 @@ use serde_json::{Value, json};
 use super::mismatch::Reproducer;
 use super::{CONFIGS, FAILS, HOLDS, Loaded, OUTSIDE, cosim, generate, load, verdict};
 use crate::base::text;
-use crate::cli::tables::Column;
 use crate::cli::{Output, progress, say, tables};
 use crate::core::{TEST_POINTS, TEST_SEED};
 use crate::cosim::Outcome;
@@ -62,18 +61,8 @@ fn finding(one: &Loaded, bar: &indicatif::ProgressBar) -> Result<Finding> {
 }
 
 /// The columns of the table, which is the last thing on the screen but for the line that counts.
-const COLUMNS: [Column<'_>; 10] = [
-    Column::words("configuration"),
-    Column::words("device").dispensable(6),
-    Column::numbers("clocks/point").dispensable(2),
-    Column::numbers("points").dispensable(4),
-    Column::numbers("clocks").dispensable(7),
-    Column::numbers("registers, outputs").dispensable(8),
-    Column::numbers("ROM bits").dispensable(3),
-    Column::numbers("bound").dispensable(1),
-    Column::numbers("largest error"),
-    Column::words("verdict"),
-];
+const COLUMNS: &str = "configuration | device;6 | clocks/point:2 | points:4 | clocks:7 | registers, outputs:8 | ROM bits:3 | \
+                       bound:1 | largest error: | verdict";
 
 fn print(loaded: &[Loaded], findings: &[Finding], details: bool) -> Result<()> {
     for (one, finding) in loaded.iter().zip(findings) {
@@ -114,7 +103,7 @@ fn print(loaded: &[Loaded], findings: &[Finding], details: bool) -> Result<()> {
             verdict(&finding.bound, &finding.failures).to_owned(),
         ]
     });
-    tables::print(&COLUMNS, rows);
+    tables::print(COLUMNS, rows);
     tables::print_line(&counts(findings));
     Ok(())
 }

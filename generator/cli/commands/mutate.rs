@@ -12,7 +12,6 @@ use super::mismatch::{self, first_clock, traced};
 use super::{Loaded, load};
 use crate::base::program::Program;
 use crate::cli::own_file::OwnFile;
-use crate::cli::tables::Column;
 use crate::cli::{Configs, Output, TimeLimit, progress, say, tables, wrong_usage};
 use crate::cosim::Lockstep;
 use crate::mutate::{
@@ -266,16 +265,10 @@ fn print(scored: &Scored) {
     };
     let kinds = score.kinds.iter().map(|(kind, tally)| row(kind.to_string(), tally));
     let all = row("all".to_owned(), &score.all);
-    let columns = [
-        Column::words("fault"),
-        Column::numbers("planted"),
-        Column::numbers("caught"),
-        Column::numbers("directed").dispensable(1),
-        Column::numbers("equivalent"),
-        Column::numbers("undecided"),
-        Column::numbers("bench"),
-    ];
-    tables::print(&columns, kinds.chain([all]));
+    tables::print(
+        "fault | planted: | caught: | directed:1 | equivalent: | undecided: | bench:",
+        kinds.chain([all]),
+    );
     print_undecided(&score.undecided);
     print_shipped("faults in the netlist", score.all.of_shipped(), None);
     if let Some(memory) = score.of_memory() {

@@ -56,8 +56,8 @@ pub struct Arguments {
     #[arg(long, value_name = "N", default_value_t = 2)]
     samples: u32,
     /// The object that is shown
-    #[arg(long, value_enum, default_value_t = ShapeName::Sphere, conflicts_with = "mesh")]
-    shape: ShapeName,
+    #[arg(long, value_enum, default_value_t = BuiltIn::Sphere, conflicts_with = "mesh")]
+    shape: BuiltIn,
     /// Show the mesh of a Wavefront OBJ file; where it has no normals, they are computed
     #[arg(long, value_name = "FILE")]
     mesh: Option<PathBuf>,
@@ -126,18 +126,6 @@ enum Through {
     RustHdl,
     /// The emitted Verilog in Verilator
     Verilator,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum ShapeName {
-    /// A ball
-    Sphere,
-    /// A ring
-    Torus,
-    /// A vase
-    Vase,
-    /// A vase, a ball and a ring
-    Group,
 }
 
 /// `glint render`.
@@ -225,15 +213,7 @@ fn scene(arguments: &Arguments, coarse: bool) -> Result<Scene> {
                 colour: arguments.colour.unwrap_or(render::COLOUR),
             }]
         }
-        None => {
-            let which = match arguments.shape {
-                ShapeName::Sphere => BuiltIn::Sphere,
-                ShapeName::Torus => BuiltIn::Torus,
-                ShapeName::Vase => BuiltIn::Vase,
-                ShapeName::Group => BuiltIn::Group,
-            };
-            Scene::built_in(which, arguments.colour, coarse)?
-        }
+        None => Scene::built_in(arguments.shape, arguments.colour, coarse)?,
     };
     let mut scene = Scene {
         objects,

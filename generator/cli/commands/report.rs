@@ -8,7 +8,6 @@ use serde_json::json;
 
 use super::yosys;
 use crate::cli::own_file::OwnFile;
-use crate::cli::tables::Column;
 use crate::cli::{Output, TimeLimit, progress, say, tables};
 use crate::evidence;
 use crate::evidence::benchmark;
@@ -87,7 +86,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
             claim.verdict.words().to_owned(),
         ]
     });
-    tables::print(&["claim", "the seed", "ours", "verdict"].map(Column::words), rows);
+    tables::print("claim | the seed | ours | verdict", rows);
     let counts = Verdict::ALL.into_iter().filter_map(|verdict| {
         let claims = evidence.claims.iter().filter(|claim| claim.verdict == verdict);
         Some((claims.count(), verdict.words())).filter(|(count, _)| *count > 0)

@@ -8,7 +8,6 @@ use serde_json::{Value, json};
 
 use super::{Loaded, load, paths};
 use crate::base::text::counted;
-use crate::cli::tables::Column;
 use crate::cli::{Configs, Output, say, store, tables};
 use crate::hdl::netlist::{Design, Pipeline};
 use crate::package::{Seal, sealed};
@@ -102,16 +101,10 @@ fn print(one: &Loaded, pipeline: &Pipeline) {
             stage.delayed_bits.to_string(),
         ]
     });
-    let columns = [
-        Column::numbers("stage"),
-        Column::words("microinstructions"),
-        Column::words("computes"),
-        Column::numbers("logic ns").dispensable(3),
-        Column::numbers("slack ns").dispensable(1),
-        Column::numbers("bits").dispensable(2),
-        Column::numbers("delayed").dispensable(4),
-    ];
-    tables::print(&columns, rows);
+    tables::print(
+        "stage: | microinstructions | computes | logic ns:3 | slack ns:1 | bits:2 | delayed:4",
+        rows,
+    );
 }
 
 /// The values that a stage computes, by name.

@@ -10,7 +10,6 @@ use serde_json::{Map, Value, json};
 use super::{Loaded, load_one, rows};
 use crate::base::program::Program;
 use crate::cli::failure::WrongUsage;
-use crate::cli::tables::Column;
 use crate::cli::{Output, say, tables, wrong_usage};
 use crate::config;
 use crate::registry::Registry;
@@ -85,50 +84,22 @@ struct Input {
     vector: bool,
 }
 
-const fn vector(name: &'static str) -> Input {
-    Input { name, vector: true }
-}
-
-const fn number(name: &'static str) -> Input {
-    Input { name, vector: false }
-}
-
-const OF_LINE: [Input; 14] = [
-    vector("normal_1"),
-    vector("half_1"),
-    vector("light_1"),
-    vector("view_1"),
-    vector("normal_2"),
-    vector("half_2"),
-    vector("light_2"),
-    vector("view_2"),
-    number("theta_1"),
-    number("theta_2"),
-    number("gamma"),
-    number("points"),
-    number("exponent"),
-    number("intensity"),
+/// The inputs of a line: vectors, and numbers.
+const OF_LINE: [&str; 2] = [
+    "normal_1 half_1 light_1 view_1 normal_2 half_2 light_2 view_2",
+    "theta_1 theta_2 gamma points exponent intensity",
 ];
 
-const OF_POINT: [Input; 11] = [
-    vector("normal"),
-    vector("perturbed"),
-    vector("half"),
-    vector("light"),
-    vector("view"),
-    number("gamma"),
-    number("dgamma"),
-    number("exponent"),
-    number("red"),
-    number("green"),
-    number("blue"),
-];
+const OF_POINT: [&str; 2] =
+    ["normal perturbed half light view", "gamma dgamma exponent red green blue"];
 
 /// The inputs of a device, and what they are worth to it.
 struct Host<'a> {
     one: &'a Loaded,
     feed: Feed,
     line: bool,
+    /// Some may not concern it.
+    inputs: Vec<Input>,
 }
 
 /// The values of each input of a [`Host`].
@@ -146,7 +117,7 @@ struct SetUp {
 pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
     let one = load_one(registry, &registry.schemas(), &arguments.config)?;
     let host = Host::new(&one)?;
-    let mut given = vec![[None; 3]; host.inputs().len()];
+    let mut given = vec![[None; 3]; host.inputs.len()];
     for setting in &arguments.inputs {
         let Some((name, text)) = setting.split_once('=') else {
             wrong_usage!("`{setting}` is not input=value, as in exponent=20")
@@ -194,12 +165,12 @@ impl<'a> Host<'a> {
             "the operands of `{}` are vectors and colours themselves: there is nothing to set up",
             one.core.device.name
         );
-        Ok(Self { one, feed, line: render::walks_lines(contract) })
-    }
-
-    /// Returns the inputs of a device of this kind; some may not concern it.
-    fn inputs(&self) -> &'static [Input] {
-        if self.line { &OF_LINE } else { &OF_POINT }
+        let line = render::walks_lines(contract);
+        let [vectors, numbers] = if line { OF_LINE } else { OF_POINT };
+        let input = |vector| move |name| Input { name, vector };
+        let inputs = vectors.split(' ').map(input(true));
+        let inputs = inputs.chain(numbers.split(' ').map(input(false))).collect();
+        Ok(Self { one, feed, line, inputs })
     }
 
     fn concerns(&self, name: &str) -> bool {
@@ -212,7 +183,7 @@ impl<'a> Host<'a> {
 
     /// The place of an input, and of a component where the name is that of one.
     fn place(&self, name: &str) -> Result<(usize, Option<usize>), String> {
-        let all = self.inputs();
+        let all = &self.inputs;
         let at = |name: &str| all.iter().position(|it| it.name == name && self.concerns(name));
         if let Some(at) = at(name) {
             return Ok((at, None));
@@ -241,7 +212,7 @@ impl<'a> Host<'a> {
         (at, axis): (usize, Option<usize>),
         text: &str,
     ) -> Result<(), String> {
-        let Input { name, vector } = self.inputs()[at];
+        let Input { name, vector } = self.inputs[at];
         let number = |text: &str| match text.parse::<f64>() {
             Ok(value) if value.is_finite() => Ok(value),
             _ => Err(format!("input `{name}`: `{text}` is not a finite number")),
@@ -263,7 +234,7 @@ impl<'a> Host<'a> {
     }
 
     fn number(&self, given: &Given, name: &str) -> Option<f64> {
-        let at = self.inputs().iter().position(|it| it.name == name)?;
+        let at = self.inputs.iter().position(|it| it.name == name)?;
         given[at][0]
     }
 
@@ -301,7 +272,7 @@ impl<'a> Host<'a> {
     }
 
     fn vector(&self, given: &Given, name: &str) -> Result<Option<Vector>, String> {
-        let at = self.inputs().iter().position(|it| it.name == name);
+        let at = self.inputs.iter().position(|it| it.name == name);
         let parts = at.map_or([None; 3], |at| given[at]);
         match parts {
             [Some(x), Some(y), Some(z)] => Ok(Some(Vector::new(x, y, z))),
@@ -339,7 +310,7 @@ impl<'a> Host<'a> {
     /// Whether angles are given; an error where vectors are, too.
     fn by_angles(&self, given: &Given, angles: &[&str]) -> Result<bool, String> {
         let angle = angles.iter().find(|name| self.number(given, name).is_some());
-        let mut vectors = self.inputs().iter().zip(given).filter(|(input, _)| input.vector);
+        let mut vectors = self.inputs.iter().zip(given).filter(|(input, _)| input.vector);
         let vector = vectors.find(|(_, parts)| parts.iter().any(Option::is_some));
         match (angle, vector) {
             (Some(angle), Some((vector, _))) => Err(format!(
@@ -459,7 +430,7 @@ impl<'a> Host<'a> {
             let value = (value * 1e9).round() / 1e9;
             vec![(*name).to_owned(), (*formula).to_owned(), format!("{value} {unit}")]
         });
-        tables::print(&["quantity", "of seed 000", "value"].map(Column::words), rows);
+        tables::print("quantity | of seed 000 | value", rows);
         let operands = self.one.core.contract.operands().iter();
         let rows = operands.zip(&set_up.raw).zip(&set_up.real).map(|((operand, raw), real)| {
             vec![
@@ -470,14 +441,7 @@ impl<'a> Host<'a> {
                 real.to_string(),
             ]
         });
-        let columns = [
-            Column::words("operand"),
-            Column::words("format"),
-            Column::numbers("raw"),
-            Column::numbers("value"),
-            Column::numbers("before rounding"),
-        ];
-        tables::print(&columns, rows);
+        tables::print("operand | format | raw: | value: | before rounding:", rows);
         let operands = self.one.core.contract.operands().iter().zip(&set_up.raw);
         let operands: Vec<String> =
             operands.map(|(operand, raw)| format!("{}=#{raw}", operand.name)).collect();

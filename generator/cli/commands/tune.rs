@@ -5,13 +5,13 @@ mod plot;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail};
-use clap::{Args, ValueEnum};
+use clap::Args;
 use indicatif::ProgressBar;
 use serde_json::{Value as Json, json};
 
 use crate::base::program::Program;
 use crate::cli::destination::Destination;
-use crate::cli::tables::{self, Column};
+use crate::cli::tables;
 use crate::cli::{Output, failure, number, progress, say, wrong_usage};
 use crate::config::{self, Config, Value};
 use crate::registry::{Device, Registry};
@@ -67,38 +67,6 @@ pub struct Arguments {
     /// Print the trade-off of error and area as CSV
     #[arg(long)]
     csv: bool,
-}
-
-impl ValueEnum for ErrorUnit {
-    fn value_variants<'a>() -> &'a [Self] {
-        &[Self::F, Self::Output]
-    }
-
-    fn to_possible_value(&self) -> Option<clap::builder::PossibleValue> {
-        Some(clap::builder::PossibleValue::new(match self {
-            Self::F => "f",
-            Self::Output => "output",
-        }))
-    }
-}
-
-impl ValueEnum for Objective {
-    fn value_variants<'a>() -> &'a [Self] {
-        &[Self::Area, Self::Luts, Self::Dsps, Self::Memory]
-    }
-
-    fn to_possible_value(&self) -> Option<clap::builder::PossibleValue> {
-        let (name, help) = match self {
-            Self::Area => (
-                "area",
-                "look-up tables; a DSP block or a block RAM counts for as many as the chip has of them",
-            ),
-            Self::Luts => ("luts", "look-up tables"),
-            Self::Dsps => ("dsps", "DSP blocks, then area"),
-            Self::Memory => ("memory", "bits of ROM, then area"),
-        };
-        Some(clap::builder::PossibleValue::new(name).help(help))
-    }
 }
 
 /// `glint tune`.
@@ -244,17 +212,6 @@ fn widths(answer: &Answer, candidate: &Candidate) -> String {
 }
 
 fn print(device: &Device, answer: &Answer, arguments: &Arguments, text: &str) {
-    let columns = [
-        Column::numbers("error of f"),
-        Column::numbers("output units"),
-        Column::numbers("LUT"),
-        Column::numbers("DSP"),
-        Column::numbers("RAM").dispensable(1),
-        Column::numbers("ROM bits").dispensable(3),
-        Column::numbers("MHz").dispensable(2),
-        Column::numbers("M points/s").dispensable(4),
-        Column::words("keys"),
-    ];
     let rows = answer.front.iter().map(|candidate| {
         let cost = &candidate.cost;
         vec![
@@ -269,7 +226,10 @@ fn print(device: &Device, answer: &Answer, arguments: &Arguments, text: &str) {
             widths(answer, candidate),
         ]
     });
-    tables::print(&columns, rows);
+    tables::print(
+        "error of f: | output units: | LUT: | DSP: | RAM:1 | ROM bits:3 | MHz:2 | M points/s:4 | keys",
+        rows,
+    );
     say!(
         "Bounds are {}; LUTs and MHz are estimates for {}. {} configurations were looked at.",
         origin(device),
@@ -309,7 +269,7 @@ fn as_json(answer: &Answer, arguments: &Arguments, text: &str) -> Json {
         "device": arguments.device,
         "target": arguments.target,
         "error": arguments.error,
-        "unit": if arguments.unit == ErrorUnit::F { "f" } else { "output" },
+        "unit": arguments.unit,
         "best": candidate(&answer.best),
         "front": answer.front.iter().map(candidate).collect::<Vec<_>>(),
         "looked_at": answer.looked_at,

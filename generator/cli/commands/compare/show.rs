@@ -7,7 +7,6 @@ use serde_json::{Value, json};
 use super::{Arguments, Entry};
 use crate::base::program::Program;
 use crate::base::text;
-use crate::cli::tables::Column;
 use crate::cli::{Output, failure, say, tables};
 use crate::evidence::comparison::{ANGLES, ANGLES_PER_DEGREE, Accuracy, Multiplier, Spread};
 use crate::golden::contract;
@@ -89,18 +88,6 @@ fn print_errors(arguments: &Arguments, entries: &[Entry]) {
         arguments.exponent,
         1.0 / f64::from(ANGLES_PER_DEGREE)
     );
-    let columns = [
-        Column::words("device"),
-        Column::numbers("largest"),
-        Column::numbers("mean").dispensable(3),
-        Column::numbers("formula, largest"),
-        Column::numbers("mean").dispensable(6),
-        Column::numbers("operands, largest").dispensable(1),
-        Column::numbers("mean").dispensable(5),
-        Column::numbers("fixed point, largest"),
-        Column::numbers("mean").dispensable(4),
-        Column::numbers("bound, units").dispensable(2),
-    ];
     let rows = entries.iter().map(|entry| {
         let mut row = vec![entry.label.clone()];
         match &entry.figures.accuracy {
@@ -115,7 +102,10 @@ fn print_errors(arguments: &Arguments, entries: &[Entry]) {
         row.push(format!("{:.3}", entry.core.contract.bound().units));
         row
     });
-    tables::print(&columns, rows);
+    tables::print(
+        "device | largest: | mean:3 | formula, largest: | mean:6 | operands, largest:1 | mean:5 | fixed point, largest: | mean:4 | bound, units:2",
+        rows,
+    );
     tables::print_line(
         "The error at an angle is the sum of three: of the formula, in f64 at the quantised operands; of cos gamma \
          as the operands denote it; and of the fixed point, f against the formula. The bound is on an output, \
@@ -126,18 +116,10 @@ fn print_errors(arguments: &Arguments, entries: &[Entry]) {
 
 fn print_hardware(entries: &[Entry]) {
     let synthesised = entries.iter().any(|entry| !entry.usage.is_empty());
-    let mut headings = vec![
-        "device".to_owned(),
-        "clocks a point".to_owned(),
-        "ROM bits".to_owned(),
-        "multipliers".to_owned(),
-    ];
-    if synthesised {
-        for family in &FAMILIES {
-            for resource in ["LUT", "DSP", "RAM"] {
-                headings.push(format!("{} {resource}", family.title));
-            }
-        }
+    let mut headings = "device | clocks a point: | ROM bits: | multipliers;1".to_owned();
+    for family in FAMILIES.iter().filter(|_| synthesised) {
+        let resources = ["LUT", "DSP", "RAM"].map(|it| format!(" | {} {it}:", family.title));
+        headings += &resources.concat();
     }
     let rows = entries.iter().map(|entry| {
         let mut row = vec![
@@ -151,13 +133,7 @@ fn print_hardware(entries: &[Entry]) {
         }
         row
     });
-    let columns = headings.iter().map(|heading| match heading.as_str() {
-        "device" => Column::words("device"),
-        "multipliers" => Column::words("multipliers").dispensable(1),
-        heading => Column::numbers(heading),
-    });
-    let columns: Vec<Column<'_>> = columns.collect();
-    tables::print(&columns, rows);
+    tables::print(&headings, rows);
     tables::print_line(
         "ROM bits count the control ROM. Clocks are from start to start, per point of the longest line where a \
          start shows several.",
@@ -191,15 +167,6 @@ fn print_speed(entries: &[Entry]) {
     if entries.iter().all(|entry| entry.record.is_none()) {
         return;
     }
-    let columns = [
-        Column::words("device"),
-        Column::words("target"),
-        Column::numbers("MHz"),
-        Column::numbers("lowest to highest").dispensable(1),
-        Column::numbers("M points/s"),
-        Column::numbers("k/s per LUT"),
-        Column::numbers("M/s per DSP"),
-    ];
     let per = |number: Option<f64>, scale: f64| {
         number.map_or_else(|| "-".to_owned(), |it| format!("{:.1}", it * scale))
     };
@@ -217,7 +184,10 @@ fn print_speed(entries: &[Entry]) {
         })
     });
     tables::print_line("");
-    tables::print(&columns, rows);
+    tables::print(
+        "device | target | MHz: | lowest to highest:1 | M points/s: | k/s per LUT: | M/s per DSP:",
+        rows,
+    );
     let tools =
         tools(entries.iter().filter_map(|it| it.record.as_ref()).flat_map(|it| &it.targets));
     say!(

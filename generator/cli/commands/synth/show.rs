@@ -5,32 +5,20 @@ use serde_json::{Value, json};
 
 use super::{Measured, Recorded};
 use crate::cli::say;
-use crate::cli::tables::{self, Column};
+use crate::cli::tables;
 use crate::synth::{Figures, Rate, tools};
 
 /// The cell without a figure.
 const NONE: &str = "–";
 
 pub fn print(measured: &[Measured], notes: &[String]) {
-    let columns = [
-        Column::words("configuration"),
-        Column::words("target"),
-        Column::numbers("LUT"),
-        Column::numbers("DSP"),
-        Column::numbers("RAM"),
-        Column::numbers("FF").dispensable(3),
-        Column::numbers("gates").dispensable(2),
-        Column::numbers("µm²").dispensable(5),
-        Column::numbers("MHz"),
-        Column::numbers("spread").dispensable(4),
-        Column::numbers("clocks/point").dispensable(1),
-        Column::numbers("M points/s"),
-        Column::numbers("k/s per LUT").dispensable(6),
-        Column::numbers("M/s per DSP").dispensable(6),
-    ];
     let rows =
         measured.iter().flat_map(|one| one.figures.iter().map(move |figures| row(one, figures)));
-    tables::print(&columns, rows);
+    tables::print(
+        "configuration | target | LUT: | DSP: | RAM: | FF:3 | gates:2 | µm²:5 | MHz: | spread:4 | clocks/point:1 | \
+         M points/s: | k/s per LUT:6 | M/s per DSP:6",
+        rows,
+    );
     for one in measured {
         for figures in &one.figures {
             let about = format!("{}, {}", one.one.core.config.name, figures.device);
