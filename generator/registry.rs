@@ -239,6 +239,7 @@ fn pipelining(config: &Config) -> Option<pipeline::Options> {
             0 => pipeline::Goal::ClockMhz(keys.pipeline_clock_mhz),
             stages => pipeline::Goal::Stages(stages as usize),
         },
+        interval: keys.interval as usize,
         registered: keys.multipliers == "registered",
         stall: keys.stall == "ready",
         side: keys.side,

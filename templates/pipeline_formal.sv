@@ -38,6 +38,13 @@ ${ line }$
 
     // The same for a queue beside it: all points in it move together, unless a result waits.
     wire ${ moves }$ = ${ moves_when }$;
+<%- if let Some(turn) = turn %>
+    reg  ${ turn.range }$${ turn.name }$;  // points are taken at 0
+    always @(posedge clk) begin
+        if (!rst_n) ${ turn.name }$ <= 0;
+        else if (${ moves }$) ${ turn.name }$ <= ${ turn.next }$;
+    end
+<%- endif %>
     reg  [${ stages }$:1] ${ queue }$;
     always @(posedge clk) begin
         if (!rst_n) ${ queue }$ <= ${ empty }$;
@@ -46,7 +53,7 @@ ${ line }$
 <%- if let Some(side) = side %>
 
     // One point, whichever it is: ${ chosen }$ is free. Where it is, and what travels with it.
-    wire ${ begins }$ = in_valid & ${ moves }$ & ${ chosen }$ & ~|${ followed }$;
+    wire ${ begins }$ = ${ offered }$ & ${ moves }$ & ${ chosen }$ & ~|${ followed }$;
     reg  [${ stages }$:1] ${ followed }$;
     reg  ${ side.range }$ ${ side.tag }$;
     always @(posedge clk) begin
@@ -61,9 +68,15 @@ ${ line }$
         // out_valid follows from the points that were taken, whatever out_ready is.
         assert (${ present }$ == ${ queue }$);
         assert (out_valid == ${ queue }$[${ stages }$]);
-<%- if stall %>
+<%- if let Some(turn) = turn %>
+        // A point is taken in its turn, whenever no result waits.
+        assert (${ turn.slot }$ == ${ turn.name }$);
+        assert (in_ready == (${ moves }$ & (${ turn.name }$ == 0)));
+<%- else if stall %>
         // A point is taken whenever no result waits.
         assert (in_ready == ${ moves }$);
+<%- endif %>
+<%- if stall %>
         // A result that waits stays as it is.
         if ($past(rst_n && out_valid && !out_ready)) begin
             assert (out_valid);

@@ -1,7 +1,7 @@
 // ${ list.name }$: computes with ${ list.module }$ what a file lists
 //
 // Every line of POINTS_FILE has the operands of one point in hexadecimal, in port order. ${ list.name }$
-// offers a point every clock, and writes a line for each to RESULTS_FILE, with the outputs in
+// offers a point ${ every }$, and writes a line for each to RESULTS_FILE, with the outputs in
 // hexadecimal, in port order, and a line with a single dot behind it.
 // Inputs change on the falling edge of the clock; outputs are read just before the rising edge.
 
@@ -50,16 +50,16 @@ ${ line }$
         ${ list.reset }$ = 1'b1;
         ${ names.read }$ = ${ list.operands.len() }$;
         while (${ names.clocks }$ < LIMIT && (${ names.read }$ == ${ list.operands.len() }$ || ${ names.total }$ < ${ names.offered }$)) begin
-            if (${ names.read }$ == ${ list.operands.len() }$)
+            if (${ names.read }$ == ${ list.operands.len() }$${ taken }$)
                 ${ names.read }$ = $fscanf(
                     ${ names.points }$, "${ list.scan }$"
 <%- for operand in list.operands %>,
                     ${ operand }$
 <%- endfor %>
                 );
-            ${ in_valid }$ = ${ names.read }$ == ${ list.operands.len() }$;
+            ${ in_valid }$ = ${ names.read }$ == ${ list.operands.len() }$${ taken }$;
             if (${ in_valid }$) ${ names.offered }$ = ${ names.offered }$ + 1;
-            else ${ names.clocks }$ = ${ names.clocks }$ + 1;
+            else ${ waits }$${ names.clocks }$ = ${ names.clocks }$ + 1;
             if (${ list.valid }$) begin
                 $fwrite(
                     ${ names.results }$, "${ list.print }$\n.\n"

@@ -30,6 +30,9 @@ keys! {
         stages: u32 = Key::integer("pipeline.stages", 0, 0..=1000,
             "The number of stages, in place of a clock; as fast as they allow. 0: pipeline.clock_mhz decides.")
             .only_when("architecture", "pipelined"),
+        interval: u32 = Key::integer("pipeline.interval", 1, 1..=64,
+            "Clocks from a point to the next: a multiplier serves as many products. From 1 to the clocks of the sequential core.")
+            .only_when("architecture", "pipelined"),
         multipliers: String = Key::choice("pipeline.multipliers", "inferred", &["inferred", "registered"],
             "Products as the synthesiser finds them, or in instances of <name>_multiplier, whose output register is that of \
              the DSP block: faster, and every product takes a block.")

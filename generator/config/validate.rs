@@ -216,6 +216,14 @@ fn check(schema: &Schema, draft: &Draft, problems: &mut Problems) {
         );
     }
 
+    if keys.stream && keys.interval > 1 {
+        problems.push(
+            "interface.stream",
+            "`interface.stream` needs a pipeline that takes a point every clock".to_owned(),
+            "set pipeline.interval = 1, or remove interface.stream".to_owned(),
+        );
+    }
+
     let mut certain: Option<Vec<Problem>> = None;
     for trial in trials(schema, draft) {
         let mut found = problems.cleared();

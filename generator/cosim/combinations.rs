@@ -78,7 +78,7 @@ impl Space {
 
 /// The inputs of a device that goes through combinations, clock by clock: one clock of reset; then all
 /// operands are written in the clock of `start`, and the next computation starts in the first clock in
-/// which the device is not busy (a pipeline never is). While it is, the data show the complement of what was written.
+/// which the device is not busy, or a pipeline ready. While it is, the data show the complement of what was written.
 pub(super) struct Combinations {
     space: Arc<Space>,
     first: u64,

@@ -123,7 +123,10 @@ impl Stream {
         let inputs = match &mut self.source {
             Source::Stimulus(stimulus) => stimulus.next(deaf, &binding.points),
             Source::Offers(offers) => offers.next(taken, &binding.points),
-            Source::Combinations(combinations) => combinations.next(taken),
+            Source::Combinations(combinations) => combinations.next(match &self.host {
+                Host::Core(core) => !core.deaf,
+                Host::Pipe(pipe) => pipe.is_ready(),
+            }),
             Source::Recorded(recorded) => recorded.next(),
         };
         self.seen.clocks += 1;

@@ -4,7 +4,7 @@ use anyhow::{Result, bail};
 
 use super::instances::Instances;
 use crate::golden::Contract;
-use crate::hdl::netlist::{Design, NetId};
+use crate::hdl::netlist::{Design, NetId, Role};
 
 /// Records what `nets` carry in each clock, just before its rising edge: the points are offered one a clock, but for a bubble
 /// before the last; the first result waits for `pause` clocks, where it can. The recording ends with the last result.
@@ -20,6 +20,7 @@ pub(super) fn record(
 ) -> Result<Vec<Vec<u64>>> {
     let mut instance = Instances::<1>::new(design, contract)?;
     let (out_ready, valid) = (instance.ports.out_ready, instance.ports.valid);
+    let in_ready = design.port(|role| role == Role::InReady).map(|port| port.net);
     let mut waiting = points;
     let mut paused = if out_ready.is_some() { pause } else { 0 };
     let (mut bubble, mut taken) = (true, 0);
@@ -43,7 +44,7 @@ pub(super) fn record(
         if taken == points.len() {
             return Ok(clocks);
         }
-        if point.is_some() && !waits {
+        if point.is_some() && in_ready.is_none_or(|it| instance.simulator.value(it) == 1) {
             waiting = &waiting[1..];
         }
         instance.simulator.clock()?;

@@ -375,7 +375,8 @@ fn run(
             trial.timing.start_to_start = overlaps.then_some(clock);
         }
         if busy.map_or(shows, |busy| !high(busy)) {
-            let next = if busy.is_some() { clock } else { 1 };
+            let interval = design.pipeline.as_ref().map(|pipeline| pipeline.interval as u32);
+            let next = interval.unwrap_or(clock);
             trial.timing.start_to_start.get_or_insert(next);
             ensure!(trial.timing.start_to_valid.is_some(), "`{}` never raises valid", design.name);
             return Ok(trial);

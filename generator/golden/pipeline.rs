@@ -5,21 +5,28 @@ use std::collections::VecDeque;
 /// The points in the stages of a pipeline, and when they move.
 ///
 /// All points move on together. They do not while the last stage has one that is not taken. A point is
-/// taken when it is offered and all points move.
+/// taken when it is offered, all points move and the slot is 0: every `interval` clocks in which they move.
 #[derive(Clone, Debug)]
 pub struct Occupancy<P> {
     /// From stage 1 on; the last has the results.
     stages: VecDeque<Option<P>>,
+    interval: usize,
+    slot: usize,
 }
 
 impl<P> Occupancy<P> {
-    /// A pipeline of `latency` stages without any point.
-    pub fn empty(latency: usize) -> Self {
-        Self { stages: (0..latency).map(|_| None).collect() }
+    /// A pipeline of `latency` stages without any point, which takes one every `interval` clocks.
+    pub fn empty(latency: usize, interval: usize) -> Self {
+        Self { stages: (0..latency).map(|_| None).collect(), interval, slot: 0 }
     }
 
     /// Whether a point that is offered is taken: `in_ready`.
-    pub fn moves(&self, out_ready: bool) -> bool {
+    pub fn takes(&self, out_ready: bool) -> bool {
+        self.moves(out_ready) && self.slot == 0
+    }
+
+    /// Whether all points move on.
+    fn moves(&self, out_ready: bool) -> bool {
         out_ready || self.last().is_none()
     }
 
@@ -42,13 +49,15 @@ impl<P> Occupancy<P> {
     /// A rising edge. The point whose results were taken.
     pub fn clock(&mut self, rst_n: bool, offered: Option<P>, out_ready: bool) -> Option<P> {
         let taken = if self.moves(out_ready) {
-            self.stages.push_front(offered);
+            self.stages.push_front(offered.filter(|_| self.slot == 0));
+            self.slot = (self.slot + 1) % self.interval;
             self.stages.pop_back().flatten()
         } else {
             None
         };
         if !rst_n {
             self.stages.iter_mut().for_each(|point| *point = None);
+            self.slot = 0;
         }
         taken
     }
@@ -60,11 +69,11 @@ mod tests {
 
     #[test]
     fn a_point_waits_at_the_end_and_nothing_overtakes_it() {
-        let mut stages = Occupancy::empty(2);
+        let mut stages = Occupancy::empty(2, 1);
         assert_eq!(stages.clock(true, Some('a'), false), None);
         assert_eq!(stages.clock(true, Some('b'), false), None);
         assert_eq!(stages.last(), Some(&'a'));
-        assert!(!stages.moves(false) && stages.moves(true));
+        assert!(!stages.takes(false) && stages.takes(true));
         assert_eq!(stages.clock(true, Some('c'), false), None);
         assert_eq!(stages.clock(true, None, true), Some('a'));
         assert_eq!(stages.clock(true, None, true), Some('b'));
@@ -73,9 +82,26 @@ mod tests {
 
     #[test]
     fn a_reset_drops_every_point() {
-        let mut stages = Occupancy::empty(3);
+        let mut stages = Occupancy::empty(3, 2);
         stages.clock(true, Some(1), true);
+        assert!(!stages.takes(true));
         stages.clock(false, Some(2), true);
         assert_eq!(stages.points().count(), 0);
+        assert!(stages.takes(true));
+    }
+
+    #[test]
+    fn a_point_is_taken_every_few_clocks_in_which_points_move() {
+        let mut stages = Occupancy::empty(2, 3);
+        assert!(stages.takes(false));
+        assert_eq!(stages.clock(true, Some('a'), true), None);
+        assert!(!stages.takes(true));
+        // Offered too soon, and lost.
+        assert_eq!(stages.clock(true, Some('b'), true), None);
+        assert_eq!(stages.clock(true, None, false), None);
+        assert_eq!(stages.clock(true, None, true), Some('a'));
+        assert!(stages.takes(false));
+        stages.clock(true, Some('c'), true);
+        assert_eq!(stages.points().map(|(at, _)| at).collect::<Vec<_>>(), [1]);
     }
 }

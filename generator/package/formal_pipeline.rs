@@ -23,6 +23,14 @@ struct Side {
     stages: Vec<SideStage>,
 }
 
+/// The counter of the slots of a pipeline that takes a point every few clocks, and one beside it.
+struct Turn {
+    range: String,
+    name: String,
+    next: String,
+    slot: String,
+}
+
 /// The side value of a stage.
 struct SideStage {
     number: usize,
@@ -54,6 +62,18 @@ pub fn files(job: &Job, pipeline: &Pipeline, files: &mut Artifacts) -> Result<()
     };
     let latency = pipeline.stages.len();
     let valid = seen(&Naming::new(design).valid, &format!("[{latency}:1]"));
+    let turn = pipeline.slot.map(|net| {
+        let (bits, name) = (range(design.width(net)), names.fresh("turn"));
+        let range = if bits.is_empty() { bits } else { format!("{bits} ") };
+        let slot = seen(&port_name(net), range.trim_end());
+        let next = format!("({name} == {}) ? 0 : {name} + 1", pipeline.interval - 1);
+        Turn { range, next, slot, name }
+    });
+    // A point that is offered in its turn.
+    let offered = match &turn {
+        Some(turn) => format!("(in_valid & ({} == 0))", turn.name),
+        None => "in_valid".to_owned(),
+    };
     let side = (pipeline.side > 0).then(|| Side {
         range: range(pipeline.side),
         tag: names.fresh("tag"),
@@ -95,7 +115,9 @@ pub fn files(job: &Job, pipeline: &Pipeline, files: &mut Artifacts) -> Result<()
         results: Vec<String> = results.map(|port| port_name(port.net)).collect(),
         present: String = names.fresh("present"),
         moves: String = names.fresh("moves"),
-        queue_next: String = shifted(&queue, "in_valid"),
+        queue_next: String = shifted(&queue, &offered),
+        offered: String,
+        turn: Option<Turn>,
         followed_next: String = shifted(&followed, &begins),
         queue: String,
         chosen: String,

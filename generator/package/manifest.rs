@@ -255,7 +255,7 @@ fn pipeline(pipeline: &Pipeline) -> Value {
     });
     let mut entry = json!({
         "latency": pipeline.stages.len(),
-        "interval": 1,
+        "interval": pipeline.interval,
         "target": pipeline.target,
         "clock_mhz": (pipeline.clock_mhz * 10.0).round() / 10.0,
         "stall": pipeline.stall,

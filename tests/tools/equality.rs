@@ -141,6 +141,7 @@ fn square(faulty: bool) -> Design {
 fn the_solver_finds_the_point_that_differs() {
     let goal = Goal::ClockMhz(100.0);
     let options = Options {
+        interval: 1,
         target: &glint::target::TIMINGS[0],
         goal,
         registered: false,

@@ -105,6 +105,17 @@ fn print(one: &Loaded, pipeline: &Pipeline) {
         "stage: | microinstructions | computes | logic ns:3 | slack ns:1 | bits:2 | delayed:4",
         rows,
     );
+    if pipeline.units.is_empty() {
+        return;
+    }
+    say!("a point every {} clocks; the product of each slot:", pipeline.interval);
+    let slots = (0..pipeline.interval).map(|slot| slot.to_string());
+    let headings: Vec<String> = ["multiplier".to_owned()].into_iter().chain(slots).collect();
+    let rows = pipeline.units.iter().map(|unit| {
+        let serves = unit.serves.iter().map(|it| it.clone().unwrap_or_default());
+        [unit.name.clone()].into_iter().chain(serves).collect()
+    });
+    tables::print(&headings.join(" | "), rows);
 }
 
 /// The values that a stage computes, by name.
@@ -124,14 +135,17 @@ fn as_json(one: &Loaded, pipeline: &Pipeline) -> Value {
             "delayed_bits": stage.delayed_bits,
         })
     });
+    let reservations =
+        pipeline.units.iter().map(|unit| json!({ "multiplier": unit.name, "slots": unit.serves }));
     json!({
         "config": one.path,
         "name": one.core.config.name,
         "target": pipeline.target,
         "clock_mhz": pipeline.clock_mhz,
         "latency": pipeline.stages.len(),
-        "interval": 1,
+        "interval": pipeline.interval,
         "registered_multipliers": pipeline.registered.len(),
+        "reservations": reservations.collect::<Vec<_>>(),
         "stages": stages.collect::<Vec<_>>(),
     })
 }

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use super::{Engine, LANES, Points};
 use crate::cosim::instances::Instances;
 use crate::golden::Contract;
-use crate::hdl::netlist::Design;
+use crate::hdl::netlist::{Design, NetId, Role};
 
 /// More clocks than any computation takes.
 const LIMIT: u64 = 1 << 16;
@@ -28,7 +28,8 @@ impl RustHdl {
     /// As of [`crate::hdl::sim::Simulator::new`], and a contract that speaks of ports that the design does not have.
     pub fn new(design: &Design, contract: &dyn Contract) -> Result<Self> {
         let latency = design.pipeline.as_ref().map(|pipeline| pipeline.stages.len() as u64);
-        let team = |_| Ok(Team { instances: Instances::new(design, contract)?, latency });
+        let in_ready = design.port(|role| role == Role::InReady).map(|port| port.net);
+        let team = |_| Ok(Team { instances: Instances::new(design, contract)?, latency, in_ready });
         Ok(Self { teams: (0..rayon::current_num_threads()).map(team).collect::<Result<_>>()? })
     }
 }
@@ -49,6 +50,8 @@ struct Team {
     instances: Instances<LANES>,
     /// The clocks from a point to its results, of a pipeline.
     latency: Option<u64>,
+    /// The output that says when a pipeline takes a point; the same in all instances.
+    in_ready: Option<NetId>,
 }
 
 /// A computation of an instance.
@@ -61,9 +64,9 @@ struct Task {
 }
 
 impl Team {
-    /// Every instance takes the next point as soon as it can: a core when it is free, a pipeline in every clock.
+    /// Every instance takes the next point as soon as it can: a core when it is free, a pipeline when it is ready.
     fn compute(&mut self, points: &Points, range: Range<usize>) -> Result<Vec<i64>> {
-        let Self { instances, latency } = self;
+        let Self { instances, latency, in_ready } = self;
         let width = instances.ports.results.len();
         let base = points.results[range.start];
         let mut out = vec![0; (points.results[range.end] - base) * width];
@@ -75,7 +78,9 @@ impl Team {
             if left == 0 {
                 break;
             }
-            for tasks in tasks.iter_mut().filter(|tasks| latency.is_some() || tasks.is_empty()) {
+            let ready = in_ready.is_none_or(|net| instances.simulator.lane(net, 0) == 1);
+            let takes = |tasks: &VecDeque<Task>| latency.map_or(tasks.is_empty(), |_| ready);
+            for tasks in tasks.iter_mut().filter(|tasks| takes(tasks)) {
                 tasks.extend(waiting.next().map(|point| Task { point, shown: 0, taken: clock }));
             }
             let taken = |tasks: &VecDeque<Task>| {

@@ -86,7 +86,7 @@ impl Pipe {
         let pipe = Self {
             columns: Arc::new(columns),
             reference: Reference::new(design, pipeline, model, ports, &results)?,
-            stages: Occupancy::empty(latency),
+            stages: Occupancy::empty(latency, pipeline.interval),
             out_ready: true,
             taken: true,
         };
@@ -108,8 +108,7 @@ impl Pipe {
     ) -> Result<()> {
         let rst_n = inputs[ports.reset] == 1;
         self.out_ready = ports.out_ready.is_none_or(|at| inputs[at] == 1);
-        // Nothing is taken while the points do not move.
-        self.taken = self.stages.moves(self.out_ready);
+        self.taken = self.stages.takes(self.out_ready);
         let mut point = None;
         if self.taken && rst_n && inputs[ports.start] == 1 {
             let mut operands = vec![0; ports.operands.len()];
@@ -137,7 +136,7 @@ impl Pipe {
         let point = self.stages.stage(stage);
         match column {
             Column::OutValid => Some(point.is_some().into()),
-            Column::InReady => Some(self.stages.moves(self.out_ready).into()),
+            Column::InReady => Some(self.stages.takes(self.out_ready).into()),
             Column::Side => point.map(|point| point.side),
             Column::Result(at) => point.map(|point| point.expected.results[at]),
             Column::Checkpoint(at) => point.and_then(|point| point.expected.registers[at]),
@@ -147,6 +146,11 @@ impl Pipe {
     /// Returns the place of the point that the net at this position speaks of, and the clock that took it.
     pub(super) fn point(&self, at: usize) -> Option<(u64, u64)> {
         self.stages.stage(self.columns[at].1).map(|point| (point.place, point.taken))
+    }
+
+    /// Whether a point is taken in the next clock if the results are.
+    pub(super) fn is_ready(&self) -> bool {
+        self.stages.takes(true)
     }
 
     /// Whether a point is on its way with a place before this one.

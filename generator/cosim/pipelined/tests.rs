@@ -30,6 +30,29 @@ fn every_device_is_what_its_golden_model_says() {
     }
 }
 
+/// A point every few clocks: fewer multipliers, registers that hold values, and a slot in which points are taken.
+#[test]
+fn every_device_with_shared_multipliers_is_what_its_golden_model_says() {
+    let interval = |clocks| ("pipeline.interval", Value::Integer(clocks));
+    for device in devices() {
+        for keys in [
+            &[interval(2)][..],
+            &[interval(3), ("pipeline.side", Value::Integer(9))],
+            &[interval(4), ("pipeline.stall", Value::Text("none".to_owned()))],
+            &[interval(4), ("pipeline.multipliers", Value::Text("registered".to_owned()))],
+        ] {
+            let config = pipelined(&device, keys);
+            let design = device.design(&config).unwrap_or_else(|wrong| panic!("{wrong}"));
+            let contract = (device.contract)(&config);
+            let model = (device.model)(&config);
+            let lockstep = Lockstep::new(&design, model, contract.as_ref(), 1).unwrap();
+            let outcome = lockstep.run_alone(200).unwrap();
+            assert_eq!(outcome.mismatch, None, "{} {keys:?}", device.name);
+            assert!(outcome.registers > 0 && outcome.clocks >= 400, "{}", device.name);
+        }
+    }
+}
+
 /// Every key of `[pipeline]`: the side channel is compared too.
 #[test]
 fn a_pipeline_with_a_side_channel_or_without_stalls_is_what_its_golden_model_says() {

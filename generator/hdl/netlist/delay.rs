@@ -29,7 +29,7 @@ pub struct Delayed {
 impl DelayLine {
     /// The words of a memory that does the same: the value that comes out of it is held by a register behind it.
     pub fn words(&self) -> usize {
-        self.to - self.from - 1
+        self.values[0].passed().len()
     }
 }
 
@@ -82,7 +82,8 @@ impl Design {
             let registers: Vec<RegId> = chain.map(|at| RegId(at as u32)).collect();
             let last = self.register(registers[registers.len() - 1]).q;
             let to = pipeline.clock_of(last);
-            let (from, enable) = (to - registers.len(), register.enable);
+            let (from, enable) =
+                (pipeline.clock_of(self.register(registers[0]).q) - 1, register.enable);
             let line = lines.entry((from, to)).or_insert_with(|| DelayLine {
                 from,
                 to,

@@ -40,7 +40,7 @@ use glint_base::interval::Interval;
 pub use handshake::Handshake;
 pub use held::register_held;
 pub use needed::setting_of;
-pub use pipeline::{Checkpoint, Multiplier, Pipeline, Stage};
+pub use pipeline::{Checkpoint, Multiplier, Pipeline, Stage, Unit};
 pub use termination::latest_done;
 pub use timing::Timing;
 

@@ -1,9 +1,11 @@
 //! The facts of a design that is a pipeline.
 
+use std::collections::BTreeMap;
+
 use super::{Design, Driver, Net, NetId, Op, RegId};
 use glint_base::target::DelayMemory;
 
-/// The pipeline of a design that takes a point every clock.
+/// The pipeline of a design: it takes a point every clock, or every few.
 #[derive(Clone, Debug)]
 pub struct Pipeline {
     /// The name of the target whose delays the schedule assumes.
@@ -12,6 +14,14 @@ pub struct Pipeline {
     pub clock_mhz: f64,
     /// The fastest clock that some number of stages keeps: what the slowest operation alone allows.
     pub most_mhz: f64,
+    /// A point is taken every so many clocks at most, in slot 0. A point is in stage s while the slot is s modulo this number.
+    pub interval: usize,
+    /// The counter of the slots, which moves on with the points; none with an interval of 1.
+    pub slot: Option<NetId>,
+    /// By slot, the enables of registers that take a value in it and hold it for as many clocks.
+    pub loads: BTreeMap<usize, NetId>,
+    /// The multipliers that serve one operation in each slot.
+    pub units: Vec<Unit>,
     /// The environment can hold the results back by `out_ready`.
     pub stall: bool,
     /// Bits that travel with a point.
@@ -35,6 +45,17 @@ pub struct Pipeline {
     pub registered: Vec<RegId>,
     /// Where values are to be seen that the sequential design has in registers.
     pub checkpoints: Vec<Checkpoint>,
+}
+
+/// A multiplier that several operations share.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unit {
+    /// Its name, which is that of the register behind it.
+    pub name: String,
+    /// The nets of its muxes, operand registers and product; the last is the register behind it.
+    pub nets: Vec<NetId>,
+    /// For each slot, the value that it computes, by name.
+    pub serves: Vec<Option<String>>,
 }
 
 /// The logic between two rows of registers.
@@ -66,9 +87,14 @@ pub struct Checkpoint {
 }
 
 impl Pipeline {
-    /// The clock in which a net has the value of a point, counted from that in which the point is taken: its stage.
+    /// The first clock in which a net has the value of a point, counted from that in which the point is taken: its stage.
     pub fn clock_of(&self, net: NetId) -> usize {
         self.stage_of[net.index()]
+    }
+
+    /// Whether a net belongs to a multiplier that operations of several stages share.
+    pub fn is_shared(&self, net: NetId) -> bool {
+        self.units.iter().any(|unit| unit.nets.contains(&net))
     }
 
     /// The named nets whose logic is in a stage, each with the name of its value, in the order of the design's nets; the
@@ -86,7 +112,7 @@ impl Pipeline {
         };
         let nets = design.iter().zip(&self.stage_of);
         let nets = nets.filter(move |((id, net), at)| {
-            net.named && !self.handshake.contains(id) && made(net, **at)
+            net.named && !self.handshake.contains(id) && !self.is_shared(*id) && made(net, **at)
         });
         nets.map(|((id, net), _)| (self.value_of[id.index()].as_str(), net))
     }

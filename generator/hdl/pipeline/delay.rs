@@ -23,6 +23,12 @@ pub fn delay_of<N: Copy>(timing: &Timing, op: &Op<N>, width: &impl Fn(N) -> u32)
     }
 }
 
+/// Nanoseconds through a choice among this number of values.
+pub fn of_choice(timing: &Timing, values: usize) -> f64 {
+    let select = usize::BITS - values.saturating_sub(1).leading_zeros();
+    delay_of(timing, &Op::Mux { select: 0, inputs: vec![0; values] }, &|_| select)
+}
+
 /// Nanoseconds from the operands of a node to its value.
 pub fn node_delay(timing: &Timing, graph: &Graph, id: NodeId) -> f64 {
     match &graph.node(id).cell {

@@ -1,4 +1,4 @@
-//! The pipelined architecture: one microprogram, a point every clock.
+//! The pipelined architecture: one microprogram, a point every clock or every few.
 //!
 //! A design with a microprogram is unrolled (`unroll`) into a graph of values, whose products are
 //! split (`split`) to the multipliers of a [`Timing`]; a schedule (`schedule`) gives every value its stage,
@@ -12,6 +12,7 @@ mod possible;
 mod rebuild;
 mod schedule;
 mod settle;
+mod sharing;
 mod split;
 mod stages;
 mod sums;
@@ -19,7 +20,7 @@ mod sums;
 mod tests;
 mod unroll;
 
-use crate::netlist::Design;
+use crate::netlist::{Design, latest_done};
 use glint_base::diagnostic::{Diagnostic, Diagnostics};
 use glint_base::target::Timing;
 
@@ -56,6 +57,8 @@ pub struct Options {
     pub target: &'static Timing,
     /// The goal of the schedule.
     pub goal: Goal,
+    /// A point is taken every so many clocks at most.
+    pub interval: usize,
     /// Products end in the register of a multiplier, where the target has a delay for it.
     pub registered: bool,
     /// The environment can hold the results back.
@@ -82,7 +85,13 @@ pub fn pipeline(sequential: &Design, options: &Options) -> Result<Design, Diagno
     let results: Vec<_> = unrolled.results.iter().map(|&(_, value)| value).collect();
     let problems = |registered: bool| {
         let registered = options.target.registered.filter(|_| registered);
-        schedule::Problems::new(&unrolled.graph, options.target, registered, &results)
+        schedule::Problems::new(
+            &unrolled.graph,
+            options.target,
+            registered,
+            options.interval,
+            &results,
+        )
     };
     let unregistered = (!options.registered).then_some(&problems);
     let problems = problems(options.registered);
@@ -92,6 +101,17 @@ pub fn pipeline(sequential: &Design, options: &Options) -> Result<Design, Diagno
         Diagnostics(vec![Diagnostic::new(message, place).of_key(key, remedy)])
     };
     let (name, target) = (&sequential.name, options.target.name);
+    // With the clock of `start`, in which the operands are written.
+    let clocks = latest_done(sequential).map_or(unrolled.steps.len(), |it| it as usize) + 1;
+    if options.interval > clocks {
+        let message = format!(
+            "`{name}` has no use for a point every {} clocks: its sequential core takes one every {clocks} and is smaller",
+            options.interval
+        );
+        let remedy =
+            format!("set pipeline.interval to {clocks} or less, or architecture = \"sequential\"");
+        return Err(wrong("pipeline.interval", message, remedy, None));
+    }
     let unsolved = |why: String, at: Option<NodeId>| {
         let message = format!("`{name}` has no schedule: {why}; this is a mistake of Glint's");
         let remedy = "ask for another pipeline.clock_mhz or pipeline.stages";

@@ -6,13 +6,18 @@
 //! 2006). A value is held for as many boundaries as there are to its last use, a register bit for each
 //! bit and boundary. Constraints are differences of two variables, so the linear program has integers for
 //! a solution.
+//!
+//! Products that share multipliers get their stages first: one after another, as early as the constraints allow, in the first
+//! slot in which a multiplier is free (`sharing`). The linear program places everything else around them.
 
-use std::collections::BTreeSet;
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, BTreeSet};
 
 use microlp::{ComparisonOp, OptimizationDirection, Problem, SolveOutcome};
 
 use super::delay;
 use super::graph::{Cell, Graph, Node, NodeId, Op};
+use super::sharing::{self, Kind, Unit};
 use glint_base::target::{Registered, Timing};
 
 /// When each value is computed.
@@ -60,9 +65,24 @@ pub struct Problems<'a> {
     setup: Vec<f64>,
     /// The selection between a value and a constant, where a register behind it does so by its reset.
     reset_by: Vec<Option<NodeId>>,
-    /// The time from the operands to the clock, beyond the way to a register, of nodes that the clock makes: a word of a block
-    /// memory, or a product in the register of a multiplier.
-    clocked: Vec<Option<f64>>,
+    /// For nodes that the clock makes.
+    clocked: Vec<Option<Clocked>>,
+    /// Clocks from a point to the next at least.
+    interval: usize,
+    /// The products that share multipliers.
+    kinds: Vec<Kind>,
+}
+
+/// A node that the clock makes: a word of a block memory, a product in the register of a multiplier, or one of a multiplier
+/// that others use too.
+#[derive(Clone, Copy, Debug)]
+struct Clocked {
+    /// The time from the operands to the clock, beyond the way to a register.
+    operands: f64,
+    /// The logic between registers that the operands go through after that, if there is any.
+    inside: f64,
+    /// Boundaries from the operands to the node.
+    apart: usize,
 }
 
 /// The clock of a period in nanoseconds, in MHz to a decimal. Rounded down, so that what is stated can be reached.
@@ -77,6 +97,9 @@ fn takes_no_logic(cell: &Cell) -> bool {
 
 /// A node stands at least this number of stages after another.
 type Difference = (NodeId, NodeId, usize);
+
+/// The stages of the products that share multipliers.
+type Taken = BTreeMap<NodeId, usize>;
 
 /// The inverters whose bits are, through wiring, factors of products.
 fn inverted_factors(graph: &Graph, live: &[NodeId]) -> Vec<NodeId> {
@@ -116,6 +139,7 @@ impl<'a> Problems<'a> {
         graph: &'a Graph,
         target: &'a Timing,
         registered: Option<Registered>,
+        interval: usize,
         results: &'a [NodeId],
     ) -> Self {
         let live: Vec<NodeId> = graph
@@ -144,8 +168,11 @@ impl<'a> Problems<'a> {
         let product = |id: NodeId| {
             registered.filter(|_| matches!(graph.node(id).cell, Cell::Op(Op::Mul(..))))
         };
+        let kinds = sharing::kinds(graph, target, &live, interval);
+        let shares = |id: &NodeId| kinds.iter().any(|kind| kind.products.contains(id));
         let delay = nodes().map(|id| match product(id) {
             Some(registered) => registered.output,
+            None if shares(&id) => 0.0,
             None => delay::node_delay(target, graph, id),
         });
         let mut delay: Vec<f64> = delay.collect();
@@ -163,12 +190,30 @@ impl<'a> Problems<'a> {
         let setup = nodes().map(|id| delay::setup(target, graph, id)).collect();
         let reset_by = nodes().map(|id| delay::reset_by(graph, id));
         let reset_by = reset_by.map(|it| it.map(|select| held(graph, results, select))).collect();
+        let by_clock = |operands| Clocked { operands, inside: 0.0, apart: 1 };
         let clocked = nodes().map(|id| match product(id) {
-            Some(registered) => Some(registered.product),
-            None => delay::is_block(target, graph, id).then_some(target.address),
+            _ if shares(&id) => {
+                let operands = delay::of_choice(target, interval);
+                let inside = product(id).map_or(target.product, |it| it.product);
+                Some(Clocked { operands, inside, apart: 2 })
+            }
+            Some(registered) => Some(by_clock(registered.product)),
+            None => delay::is_block(target, graph, id).then(|| by_clock(target.address)),
         });
         let clocked = clocked.collect();
-        Self { graph, target, live, results, users, delay, setup, reset_by, clocked }
+        Self {
+            graph,
+            target,
+            live,
+            results,
+            users,
+            delay,
+            setup,
+            reset_by,
+            clocked,
+            interval,
+            kinds,
+        }
     }
 
     /// The shortest period that one operation alone allows, and the operation. What the environment takes for an operand
@@ -176,7 +221,8 @@ impl<'a> Problems<'a> {
     pub fn fastest(&self) -> Option<Unreachable> {
         let delay = |id: &NodeId| {
             let at = id.index();
-            (self.delay[at] + self.setup[at]).max(self.clocked[at].unwrap_or(0.0))
+            let clocked = self.clocked[at].map_or(0.0, |it| it.operands.max(it.inside));
+            (self.delay[at] + self.setup[at]).max(clocked)
         };
         // Nor does a memory whose words are all the same: synthesis makes a constant of it.
         let settled = |id: &&NodeId| match self.graph.node(**id) {
@@ -202,8 +248,9 @@ impl<'a> Problems<'a> {
             _ => {}
         }
         let differences = self.differences(period);
-        let latency = self.latency(&differences);
-        self.solve(&differences, latency, period)
+        let taken = self.taken(&differences);
+        let latency = self.latency(&differences, &taken);
+        self.solve(&differences, &taken, latency, period)
     }
 
     /// The schedule of this number of stages with the shortest period. With more than there are of use the
@@ -213,7 +260,11 @@ impl<'a> Problems<'a> {
     /// The solver fails.
     pub fn for_stages(&self, stages: usize) -> Result<Schedule, Refusal> {
         let fastest = self.fastest().map_or(0.0, |it| it.period);
-        let fits = |period: f64| self.latency(&self.differences(period)) <= stages;
+        let least = |period: f64| {
+            let differences = self.differences(period);
+            self.latency(&differences, &self.taken(&differences))
+        };
+        let fits = |period: f64| least(period) <= stages;
         let all = self.delay.iter().chain(&self.setup).sum::<f64>();
         let mut high = self.target.register + all + 1.0;
         let mut low = fastest;
@@ -230,18 +281,21 @@ impl<'a> Problems<'a> {
             }
         }
         let differences = self.differences(high);
-        self.solve(&differences, stages.max(self.latency(&differences)), high)
+        let taken = self.taken(&differences);
+        let latency = stages.max(self.latency(&differences, &taken));
+        self.solve(&differences, &taken, latency, high)
     }
 
     /// The most stages that shorten the clock.
     pub fn most_stages(&self) -> usize {
         let period = self.fastest().map_or(0.0, |it| it.period);
-        self.latency(&self.differences(period))
+        let differences = self.differences(period);
+        self.latency(&differences, &self.taken(&differences))
     }
 
     /// How many boundaries lie between the operands of `user` and `user`.
-    fn apart(&self, user: NodeId) -> usize {
-        usize::from(self.is_clocked(user))
+    pub fn apart(&self, user: NodeId) -> usize {
+        self.clocked[user.index()].map_or(0, |it| it.apart)
     }
 
     /// The registers between two nodes that are too long for one stage. Block memories and multipliers stand in columns of
@@ -277,10 +331,10 @@ impl<'a> Problems<'a> {
             reached[from.index()] = from;
             while let Some(at) = pending.pop_first() {
                 for &user in &self.users[at.index()] {
-                    if let Some(operands) = self.clocked[user.index()] {
+                    if let Some(Clocked { operands, apart, .. }) = self.clocked[user.index()] {
                         // Room for a register between the logic and the memory or the multiplier.
                         if longest[at.index()] + operands > most {
-                            differences.push((from, user, 2));
+                            differences.push((from, user, apart + 1));
                         }
                         continue;
                     }
@@ -307,19 +361,48 @@ impl<'a> Problems<'a> {
     }
 
     /// The fewest boundaries: the longest chain of differences, and one behind the results.
-    fn latency(&self, differences: &[Difference]) -> usize {
-        let earliest = self.earliest(differences);
+    fn latency(&self, differences: &[Difference], taken: &Taken) -> usize {
+        let earliest = self.earliest(differences, taken);
         let results = self.results.iter().filter(|id| self.graph.constant_of(**id).is_none());
         results.map(|id| earliest[id.index()] + 1).max().unwrap_or(1)
     }
 
     /// Differences are sorted by their first node, and a node stands after its operands.
-    fn earliest(&self, differences: &[Difference]) -> Vec<usize> {
+    fn earliest(&self, differences: &[Difference], taken: &Taken) -> Vec<usize> {
         let mut earliest = vec![0; self.graph.nodes.len()];
+        taken.iter().for_each(|(id, stage)| earliest[id.index()] = *stage);
         for &(from, to, apart) in differences {
             earliest[to.index()] = earliest[to.index()].max(earliest[from.index()] + apart);
         }
         earliest
+    }
+
+    /// The stages of products that share multipliers: one after another, first the one that can be there first, and of those the
+    /// one on which most depends.
+    fn taken(&self, differences: &[Difference]) -> Taken {
+        let mut after = vec![0; self.graph.nodes.len()];
+        for &(from, to, apart) in differences.iter().rev() {
+            after[from.index()] = after[from.index()].max(after[to.index()] + apart);
+        }
+        let mut taken = Taken::new();
+        let mut used: Vec<_> = self.kinds.iter().map(|_| vec![0; self.interval]).collect();
+        let kinds = self.kinds.iter().enumerate();
+        let mut open: Vec<_> =
+            kinds.flat_map(|(kind, it)| it.products.iter().map(move |id| (kind, *id))).collect();
+        while !open.is_empty() {
+            let earliest = self.earliest(differences, &taken);
+            let next = (0..open.len()).min_by_key(|&at| {
+                (earliest[open[at].1.index()], Reverse(after[open[at].1.index()]))
+            });
+            let (kind, id) = open.remove(next.unwrap_or(0));
+            let mut stage = earliest[id.index()];
+            while used[kind][stage % self.interval] == self.kinds[kind].units {
+                stage += 1;
+            }
+            used[kind][stage % self.interval] += 1;
+            taken.insert(id, stage);
+        }
+        taken
     }
 
     /// The last stage that a node can stand in: operands are there from the beginning, and results need a boundary behind them.
@@ -357,21 +440,38 @@ impl<'a> Problems<'a> {
                 return Err(Refusal::Unsolved(message, Some(to)));
             }
         }
+        for kind in &self.kinds {
+            for (at, &id) in kind.products.iter().enumerate() {
+                let slot = |id: NodeId| stage[id.index()] % self.interval;
+                let others = kind.products[..at].iter().filter(|it| slot(**it) == slot(id));
+                if others.count() >= kind.units {
+                    let (slot, units) = (slot(id), kind.units);
+                    let message = format!(
+                        "`{}` is one product too many for {units} in slot {slot}",
+                        name(id)
+                    );
+                    return Err(Refusal::Unsolved(message, Some(id)));
+                }
+            }
+        }
         Ok(())
     }
 
     fn solve(
         &self,
         differences: &[Difference],
+        taken: &Taken,
         latency: usize,
         period: f64,
     ) -> Result<Schedule, Refusal> {
         let mut problem = Problem::new(OptimizationDirection::Minimize);
         let last = latency as f64;
         let nodes = 0..self.graph.nodes.len();
-        let stage: Vec<_> = nodes
-            .map(|id| problem.add_var(0.0, (0.0, self.last_stage(id, latency) as f64)))
-            .collect();
+        let stages = nodes.map(|id| match taken.get(&NodeId(id as u32)) {
+            Some(&stage) => (stage as f64, stage as f64),
+            None => (0.0, self.last_stage(id, latency) as f64),
+        });
+        let stage: Vec<_> = stages.map(|it| problem.add_var(0.0, it)).collect();
         for &(from, to, apart) in differences {
             let (from, to) = (stage[from.index()], stage[to.index()]);
             problem.add_constraint([(to, 1.0), (from, -1.0)], ComparisonOp::Ge, apart as f64);
@@ -459,8 +559,11 @@ impl<'a> Problems<'a> {
             }
             let users = self.users[id.index()].iter().filter(|user| !later(user));
             let operand = users.filter_map(|user| self.clocked[user.index()]);
-            let operand = operand.map(|operand| arrival[id.index()] + operand);
+            let operand = operand.map(|it| arrival[id.index()] + it.operands);
             longest[at] = operand.fold(longest[at], f64::max);
+            if let Some(clocked) = self.clocked[id.index()] {
+                longest[at - 1] = longest[at - 1].max(clocked.inside);
+            }
         }
         longest
     }
@@ -490,7 +593,15 @@ impl<'a> Problems<'a> {
         last
     }
 
-    /// Whether the clock makes a node: a word of a block memory, or a product in the register of a multiplier.
+    /// The multipliers that products share, with the products of each slot.
+    pub fn units(&self, schedule: &Schedule) -> Vec<Unit> {
+        let kinds = self.kinds.iter();
+        let of =
+            |kind| sharing::units(self.graph, self.target, kind, &schedule.stage, self.interval);
+        kinds.flat_map(of).collect()
+    }
+
+    /// Whether the clock makes a node: a word of a block memory, or a product in a register.
     pub fn is_clocked(&self, id: NodeId) -> bool {
         self.clocked[id.index()].is_some()
     }
@@ -517,7 +628,7 @@ mod tests {
         let unrolled = unroll::unroll(&design).unwrap_or_else(|wrong| panic!("{wrong}"));
         let results: Vec<NodeId> = unrolled.results.iter().map(|&(_, value)| value).collect();
         let target = Timing::named("ecp5").expect("a target");
-        let problems = Problems::new(&unrolled.graph, target, None, &results);
+        let problems = Problems::new(&unrolled.graph, target, None, 1, &results);
         let period = problems.fastest().expect("an operation").period;
         let schedule = problems.for_period(period).expect("a schedule");
         let differences = problems.differences(period);

@@ -290,6 +290,7 @@ mod tests {
         let target: &Timing =
             Box::leak(Box::new(Timing { multiplier: (4, 4), ..TIMINGS[0].clone() }));
         let options = Options {
+            interval: 1,
             target,
             goal: Goal::Stages(1),
             registered: false,

@@ -1,13 +1,14 @@
 //! From a schedule to a design: the logic of every stage, and registers between the stages.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 use super::graph::{self, Cell, Graph, NodeId};
 use super::schedule::{Problems, Schedule, megahertz};
+use super::sharing;
 use super::unroll::Unrolled;
 use super::{Delays, Goal, Options};
 use crate::netlist::{
-    About, Checkpoint, Delayed, Design, Driver, Net, NetId, Op, Pipeline, Port, RegId,
+    self, About, Checkpoint, Delayed, Design, Driver, Net, NetId, Op, Pipeline, Port, RegId,
     RegisterKind, Role, Rom, RomId, Stage, Topic,
 };
 use glint_base::fixed::Format;
@@ -22,7 +23,10 @@ pub fn assemble(
 ) -> Design {
     let notes = sequential.about.notes.iter();
     let about = About {
-        title: format!("{}, a point a clock", sequential.about.title),
+        title: match options.interval {
+            1 => format!("{}, a point a clock", sequential.about.title),
+            clocks => format!("{}, a point every {clocks} clocks", sequential.about.title),
+        },
         notes: notes.filter(|note| note.topic == Topic::Device).cloned().collect(),
         ..sequential.about.clone()
     };
@@ -35,6 +39,11 @@ pub fn assemble(
         stage_of: Vec::new(),
         value_of: Vec::new(),
         advance: None,
+        interval: options.interval,
+        slot: None,
+        loads: BTreeMap::new(),
+        shared: HashMap::new(),
+        units: Vec::new(),
         taken: HashSet::from(["clk".to_owned()]),
         names: HashMap::new(),
         values: HashMap::new(),
@@ -47,12 +56,15 @@ pub fn assemble(
     builder.ports(unrolled, options);
     builder.names();
     builder.handshake();
+    let units = builder.units(options.registered);
     builder.cells();
+    builder.muxes(units);
     builder.results(unrolled);
     let stages = builder.stages(unrolled);
     let checkpoints = builder.checkpoints(unrolled);
     let Builder { mut design, stage_of, value_of, flow, valid, side_values, registered, .. } =
         builder;
+    let (slot, loads, units) = (builder.slot, builder.loads, builder.units);
     design.ports.sort_by_key(|port| match port.role {
         role if role.is_input() => 0,
         Role::InReady => 1,
@@ -67,6 +79,10 @@ pub fn assemble(
             Goal::Stages(_) => megahertz(schedule.period),
         },
         most_mhz: problems.fastest().map_or(f64::INFINITY, |it| megahertz(it.period)),
+        interval: options.interval,
+        slot,
+        loads,
+        units,
         stall: options.stall,
         side: options.side,
         delay_memory: options.target.delay_memory.filter(|_| options.delays == Delays::Memory),
@@ -109,6 +125,15 @@ struct Builder<'a> {
     value_of: Vec<String>,
     /// 1 when every point moves on by a stage; none if they always do.
     advance: Option<NetId>,
+    /// Clocks from a point to the next at least.
+    interval: usize,
+    /// The counter of the slots.
+    slot: Option<NetId>,
+    /// The enables of registers that hold a value for all slots from this one on.
+    loads: BTreeMap<usize, NetId>,
+    /// The register behind the multiplier of each product that shares one.
+    shared: HashMap<NodeId, NetId>,
+    units: Vec<netlist::Unit>,
     taken: HashSet<String>,
     /// The name of every node's value, without a stage.
     names: HashMap<NodeId, String>,
@@ -221,11 +246,15 @@ impl Builder<'_> {
 
     /// `name` in a stage, as no other net has it.
     fn staged(&self, name: &str, stage: usize) -> String {
-        let mut staged = format!("{name}_s{stage}");
-        while self.taken.contains(&staged) {
-            staged.push('_');
+        self.free(format!("{name}_s{stage}"))
+    }
+
+    /// `name`, or one like it that no other net has.
+    fn free(&self, mut name: String) -> String {
+        while self.taken.contains(&name) {
+            name.push('_');
         }
-        staged
+        name
     }
 
     /// The points on their way, and when they move.
@@ -261,11 +290,20 @@ impl Builder<'_> {
             self.documented(advance, "every point moves on by a stage");
             self.advance = Some(advance);
             self.flow.extend([empty, advance]);
-            let op = Driver::Op(Op::Relabel(advance));
-            let in_ready = self.net("in_ready".to_owned(), latency, Format::BIT, op);
+        }
+        let first = self.slots();
+        let ready = match (self.advance, first) {
+            (Some(advance), Some(first)) => Some(Op::And(advance, first)),
+            (one, other) => one.or(other).map(Op::Relabel),
+        };
+        if let Some(ready) = ready {
+            let in_ready = self.net("in_ready".to_owned(), latency, Format::BIT, Driver::Op(ready));
             self.documented(in_ready, "a point that is offered is taken in this clock");
             self.flow.push(in_ready);
             self.design.ports.push(Port { net: in_ready, role: Role::InReady });
+        }
+        if let Some(first) = first {
+            valid[0] = self.inner("offered", Format::BIT, Driver::Op(Op::And(offered, first)));
         }
         for stage in 1..=latency {
             self.register(valid[stage], valid[stage - 1], self.advance, Some(0));
@@ -287,7 +325,150 @@ impl Builder<'_> {
         }
     }
 
-    /// The value of every node in its stage, and registers up to its last use.
+    /// A net of the handshake without a name of its own.
+    fn inner(&mut self, name: &str, format: Format, driver: Driver) -> NetId {
+        let id = self.net(self.free(name.to_owned()), 0, format, driver);
+        self.design.nets[id.index()].named = false;
+        self.flow.push(id);
+        id
+    }
+
+    /// The counter of the slots, and whether it stands in slot 0; none if there is one slot.
+    fn slots(&mut self) -> Option<NetId> {
+        let last = self.interval.checked_sub(1).filter(|last| *last > 0)?;
+        let bits = usize::BITS - last.leading_zeros();
+        let format = Format::unsigned(bits as i32, 0);
+        let slot = self.net(self.free("slot".to_owned()), 1, format, Driver::Undriven);
+        self.documented(slot, "the point in stage s is there in slot s modulo the interval");
+        self.flow.push(slot);
+        self.slot = Some(slot);
+        let first = self.is_slot(slot, 0);
+        let one = self.inner("slot_step", format, Driver::Constant(1));
+        let next = Op::Add { a: slot, b: one, carry: None };
+        let mut next = self.inner("slot_after", format, Driver::Op(next));
+        if !self.interval.is_power_of_two() {
+            let begin = self.inner("slot_begin", format, Driver::Constant(0));
+            let select = self.is_slot(slot, last);
+            let inputs = vec![next, begin];
+            next = self.inner("slot_next", format, Driver::Op(Op::Mux { select, inputs }));
+        }
+        self.register(slot, next, self.advance, Some(0));
+        Some(first)
+    }
+
+    /// Whether the counter stands in a slot.
+    fn is_slot(&mut self, slot: NetId, number: usize) -> NetId {
+        let format = self.design.net(slot).format;
+        let value = Driver::Constant(number as u64);
+        let number = self.inner(&format!("slot_{number}"), format, value);
+        self.inner("slot_is", Format::BIT, Driver::Op(Op::Equal(slot, number)))
+    }
+
+    /// The enable of registers that take what a stage makes, and hold it until the next point is there.
+    fn load(&mut self, stage: usize) -> Option<NetId> {
+        let Some(slot) = self.slot else { return self.advance };
+        let number = stage % self.interval;
+        if let Some(&load) = self.loads.get(&number) {
+            return Some(load);
+        }
+        let here = self.is_slot(slot, number);
+        let op = self.advance.map_or(Op::Relabel(here), |advance| Op::And(advance, here));
+        let load = self.net(self.free(format!("load_{number}")), 0, Format::BIT, Driver::Op(op));
+        self.documented(load, &format!("points move on from slot {number}"));
+        self.flow.push(load);
+        self.loads.insert(number, load);
+        Some(load)
+    }
+
+    /// The multipliers that products share, without what selects their factors.
+    fn units(&mut self, registered: bool) -> Vec<(sharing::Unit, [NetId; 2])> {
+        let mut made = Vec::new();
+        for (number, unit) in (1..).zip(self.problems.units(self.schedule)) {
+            let products = unit.serves.iter().flatten().map(|(id, _)| *id);
+            let first = products.clone().map(|id| self.schedule.stage[id.index()]).min();
+            let stage = first.unwrap_or(2);
+            let format = |width: u32| Format {
+                signed: unit.signed,
+                int: width as i32 - i32::from(unit.signed),
+                frac: 0,
+            };
+            let name = self.free(format!("multiplier_{number}"));
+            let mut factor = |side: usize, letter: &str| {
+                let name = self.free(format!("{name}_{letter}"));
+                let q = self.net(name, stage - 1, format(unit.widths[side]), Driver::Undriven);
+                self.documented(q, "the factor of the slot's product")
+            };
+            let factors = [factor(0, "a"), factor(1, "b")];
+            let wide = format(unit.widths[0] + unit.widths[1]);
+            let op = Driver::Op(Op::Mul(factors[0], factors[1]));
+            let product = self.net(self.free(format!("{name}_product")), stage - 1, wide, op);
+            let q = self.net(name.clone(), stage, wide, Driver::Undriven);
+            if registered {
+                self.registered.push(RegId(self.design.registers.len() as u32));
+            }
+            self.register(q, product, self.advance, None);
+            self.shared.extend(products.map(|id| (id, q)));
+            // The multiplier works in the slot before the one in which its register has the product.
+            let serves = (0..self.interval).map(|slot| {
+                let served = unit.serves[(slot + 1) % self.interval].as_ref();
+                served.map(|(id, _)| self.names[id].clone())
+            });
+            let (nets, serves) = (vec![factors[0], factors[1], product, q], serves.collect());
+            self.units.push(netlist::Unit { name, nets, serves });
+            made.push((unit, factors));
+        }
+        made
+    }
+
+    /// The factors of shared multipliers: registers behind a choice by the slot, two stages before the product is there.
+    fn muxes(&mut self, units: Vec<(sharing::Unit, [NetId; 2])>) {
+        for (at, (unit, factors)) in units.into_iter().enumerate() {
+            for (side, q) in factors.into_iter().enumerate() {
+                let mut inputs = vec![None; self.interval];
+                for (id, of) in unit.serves.iter().flatten() {
+                    let stage = self.schedule.stage[id.index()] - 2;
+                    let value = self.value(of[side], stage);
+                    inputs[stage % self.interval] = Some(self.widened(value, q));
+                }
+                // In slots without a product anything may come: what comes before.
+                let first = inputs.iter().rev().flatten().next().copied();
+                let mut known = first.unwrap_or(q);
+                let inputs = inputs.into_iter().map(|input| {
+                    known = input.unwrap_or(known);
+                    known
+                });
+                let inputs: Vec<NetId> = inputs.collect();
+                let data = match self.slot {
+                    Some(select) if inputs.iter().any(|it| *it != inputs[0]) => {
+                        let name = self.free(format!("{}_next", self.design.net(q).name));
+                        let format = self.design.net(q).format;
+                        let stage = self.stage_of[q.index()] - 1;
+                        let mux = Driver::Op(Op::Mux { select, inputs });
+                        let mux = self.net(name, stage, format, mux);
+                        self.units[at].nets.insert(0, mux);
+                        mux
+                    }
+                    _ => inputs[0],
+                };
+                self.register(q, data, self.advance, None);
+            }
+        }
+    }
+
+    /// A value with as many bits as another net.
+    fn widened(&mut self, value: NetId, as_many: NetId) -> NetId {
+        let format = self.design.net(as_many).format;
+        if self.design.width(value) == format.width() {
+            return value;
+        }
+        let name = self.free(format!("{}_wide", self.design.net(value).name));
+        let stage = self.stage_of[value.index()];
+        let wide = self.net(name, stage, format, Driver::Op(Op::Extend(value)));
+        self.design.nets[wide.index()].named = false;
+        wide
+    }
+
+    /// The value of every node in its stage, and registers up to its last use: each holds it until the next point is there.
     fn cells(&mut self) {
         let last = self.problems.last_use(self.schedule);
         for &id in self.problems.live() {
@@ -296,20 +477,38 @@ impl Builder<'_> {
             let mut value = match &node.cell {
                 Cell::Operand(_) => self.values[&(id, 0)],
                 Cell::Read { rom, address } => self.read(id, *rom, *address, stage),
+                Cell::Op(_) if self.shared.contains_key(&id) => self.shared_product(id, stage),
                 Cell::Op(op) if self.problems.is_clocked(id) => {
                     let product = self.cell(id, op, stage - 1);
                     self.registered.push(RegId(self.design.registers.len() as u32));
-                    self.behind(id, product, stage)
+                    self.behind(id, product, stage, self.advance)
                 }
                 Cell::Op(op) => self.cell(id, op, stage),
                 Cell::Constant(_) | Cell::Unknown(_) => continue,
             };
             self.values.insert((id, stage), value);
-            for stage in stage + 1..=last[id.index()] {
-                value = self.behind(id, value, stage);
-                self.values.insert((id, stage), value);
+            let last = last[id.index()];
+            for from in (stage..last).step_by(self.interval) {
+                // What is read in the next stage alone need not stay.
+                let enable = if last - stage > 1 { self.load(from) } else { self.advance };
+                value = self.behind(id, value, from + 1, enable);
+                let held = from + 1..=last.min(from + self.interval);
+                self.values.extend(held.map(|stage| ((id, stage), value)));
             }
         }
+    }
+
+    /// The bits of a shared multiplier's register that are a product, in its stage.
+    fn shared_product(&mut self, id: NodeId, stage: usize) -> NetId {
+        let (of, format) = (self.shared[&id], self.graph.node(id).format);
+        let op = match self.design.width(of) == format.width() {
+            true => Op::Relabel(of),
+            false => Op::Slice { of, low: 0 },
+        };
+        let net = self.net(self.staged(&self.names[&id], stage), stage, format, Driver::Op(op));
+        self.labelled(net, id);
+        self.design.nets[net.index()].named = self.graph.node(id).label.named;
+        net
     }
 
     /// Makes a cell in a stage.
@@ -324,11 +523,11 @@ impl Builder<'_> {
     }
 
     /// A register of a stage that takes what the stage before has of a node.
-    fn behind(&mut self, id: NodeId, value: NetId, stage: usize) -> NetId {
+    fn behind(&mut self, id: NodeId, value: NetId, stage: usize, enable: Option<NetId>) -> NetId {
         let name = self.staged(&self.names[&id], stage);
         let q = self.net(name, stage, self.graph.node(id).format, Driver::Undriven);
         self.labelled(q, id);
-        self.register(q, value, self.advance, None);
+        self.register(q, value, enable, None);
         q
     }
 

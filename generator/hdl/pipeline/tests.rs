@@ -8,7 +8,15 @@ use glint_base::target::Timing;
 
 fn options(goal: Goal) -> Options {
     let target = Timing::named("ecp5").expect("a target");
-    Options { target, goal, registered: false, stall: true, side: 0, delays: Delays::Memory }
+    Options {
+        target,
+        goal,
+        interval: 1,
+        registered: false,
+        stall: true,
+        side: 0,
+        delays: Delays::Memory,
+    }
 }
 
 /// A quotient of 8 bits, a bit a clock.
@@ -260,4 +268,56 @@ fn what_a_reset_chooses_costs_the_select_time_and_the_value_none() {
     let sum = clock_of_a_sum(By::Nothing);
     assert_eq!(clock_of_a_sum(By::Operand), sum);
     assert!(clock_of_a_sum(By::Sum) < sum);
+}
+
+/// Four products in a row, the first with a sign.
+fn products() -> Design {
+    design(|d| {
+        let a = d.operand("a", Format::signed(11, 0)).q();
+        let b = d.operand("b", Format::unsigned(12, 0)).q();
+        let signed = d.mul("with_sign", a, a);
+        let square = d.mul("square", b, b);
+        let y = d.register("y", square.format());
+        let z = d.register("z", signed.format());
+        y.takes(square);
+        z.takes(signed);
+        let upper = y.q().bits(12, Format::unsigned(12, 0));
+        let again = d.mul("again", upper, b);
+        d.output("y_out", again);
+        d.output("z_out", z.q());
+        vec![step("load", [y.load(), z.load()]), step("show", [])]
+    })
+}
+
+#[test]
+fn a_multiplier_serves_a_product_in_each_slot_and_no_more_than_are_needed() {
+    let of = |interval: usize| {
+        let options = Options { interval, ..options(Goal::ClockMhz(100.0)) };
+        let made = pipeline(&products(), &options).unwrap_or_else(|wrong| panic!("{wrong}"));
+        let mistakes = made.verify();
+        assert!(mistakes.is_empty(), "{mistakes:?}");
+        let multipliers =
+            made.nets.iter().filter(|it| matches!(it.driver, Driver::Op(Op::Mul(..))));
+        let units = made.pipeline.as_ref().expect("a pipeline").units.clone();
+        (multipliers.count(), units)
+    };
+    assert_eq!(of(1).0, 3);
+    assert!(of(1).1.is_empty());
+    for (interval, multipliers) in [(2, 2), (3, 1)] {
+        let (count, units) = of(interval);
+        assert_eq!(count, multipliers, "{interval}");
+        let served = units.iter().flat_map(|it| it.serves.iter().flatten()).count();
+        assert_eq!(count + served, 3 + units.len());
+    }
+}
+
+#[test]
+fn an_interval_beyond_the_sequential_clocks_is_refused_with_the_most() {
+    let made =
+        |interval| pipeline(&products(), &Options { interval, ..options(Goal::ClockMhz(100.0)) });
+    let text = made(64).expect_err("no interval").to_string();
+    assert!(text.contains("pipeline.interval") && text.contains("smaller"), "{text}");
+    let most = text.split("set pipeline.interval to ").nth(1).expect("a remedy");
+    let most: usize = most.split(' ').next().expect("a number").parse().expect("a number");
+    assert!(made(most).is_ok() && made(most + 1).is_err());
 }

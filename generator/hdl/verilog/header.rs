@@ -105,8 +105,12 @@ fn stages(pipeline: &Pipeline) -> String {
     };
     let products =
         if pipeline.registered.is_empty() { "" } else { ", products in registered multipliers" };
+    let every = match pipeline.interval {
+        1 => "clock".to_owned(),
+        clocks => format!("{clocks} clocks, when in_ready says so"),
+    };
     format!(
-        "Pipeline: a point every clock, its results {clocks} clocks later; stages for {clock:.0} MHz on {}{products}. {stall}",
+        "Pipeline: a point every {every}, its results {clocks} clocks later; stages for {clock:.0} MHz on {}{products}. {stall}",
         pipeline.target
     )
 }

@@ -1,6 +1,6 @@
 //! The modules of the two units, and the parts of which a pipeline is made.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::expression::Expressions;
 use super::header::{self, Origin};
@@ -395,12 +395,8 @@ impl<'a> Builder<'a> {
         takes
     }
 
-    /// The block of the wanted registers of a pipeline, which all take their values under `enable`.
-    pub(super) fn stage(
-        &mut self,
-        enable: Option<NetId>,
-        wanted: &dyn Fn(NetId) -> bool,
-    ) -> Vec<String> {
+    /// The blocks of the wanted registers of a pipeline: one for those that take their values under the same enable.
+    pub(super) fn stage(&mut self, wanted: &dyn Fn(NetId) -> bool) -> Vec<String> {
         let design = self.plan.design;
         let registers = (0..).map(RegId).zip(&design.registers);
         let written = registers.filter(|(id, register)| {
@@ -408,20 +404,27 @@ impl<'a> Builder<'a> {
                 && design.multiplier(*id).is_none()
                 && self.plan.delayed(*id).is_none()
         });
-        let members: Vec<RegId> = written.map(|(id, _)| id).collect();
-        let when = enable.map(|enable| format!("if ({}) ", self.expressions.whole(enable)));
-        let when = format!("always @(posedge clk) {}", when.unwrap_or_default());
-        let takes = self.takes(&members, 8);
-        match &takes[..] {
-            [] => Vec::new(),
-            [only] if when.len() + only.len() < COLUMNS - 4 => {
-                vec![format!("    {when}{}", only.trim_start())]
-            }
-            _ => {
-                let begin = format!("    {when}begin");
-                [begin].into_iter().chain(takes).chain(["    end".to_owned()]).collect()
+        let mut groups: BTreeMap<Option<NetId>, Vec<RegId>> = BTreeMap::new();
+        for (id, register) in written {
+            groups.entry(register.enable).or_default().push(id);
+        }
+        let mut lines = Vec::new();
+        for (enable, members) in groups {
+            let when = enable.map(|enable| format!("if ({}) ", self.expressions.whole(enable)));
+            let when = format!("always @(posedge clk) {}", when.unwrap_or_default());
+            let takes = self.takes(&members, 8);
+            match &takes[..] {
+                [only] if when.len() + only.len() < COLUMNS - 4 => {
+                    lines.push(format!("    {when}{}", only.trim_start()));
+                }
+                _ => {
+                    lines.push(format!("    {when}begin"));
+                    lines.extend(takes);
+                    lines.push("    end".to_owned());
+                }
             }
         }
+        lines
     }
 
     fn group(&mut self, enable: Option<NetId>, members: &[RegId]) -> Vec<String> {

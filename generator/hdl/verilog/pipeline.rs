@@ -7,9 +7,9 @@ use super::module::{Builder, parameters};
 use super::naming::Naming;
 use super::plan::Plan;
 use super::rows::Row;
-use super::text::{ascii, comment, literal};
+use super::text::{ascii, comment, literal, range};
 use super::writer;
-use crate::netlist::{Design, Driver, NetId, Partition, Pipeline, Role};
+use crate::netlist::{Design, Driver, NetId, Partition, Pipeline, Role, Unit};
 
 /// The module of delay lines, under the name `delay`.
 const DELAY: &str = include_str!("delay.v");
@@ -27,10 +27,14 @@ pub fn module(plan: &Plan, naming: &Naming, pipeline: &Pipeline, origin: &Origin
     let is_word = |net: NetId| matches!(design.net(net).driver, Driver::Rom(_));
     // What the clock changes stands in the stage that makes it.
     let section = |net: NetId| pipeline.clock_of(net) - usize::from(clocked(net));
-    let enable = enable(design, pipeline);
-    let here =
-        |net: NetId, number: usize| !pipeline.handshake.contains(&net) && section(net) == number;
+    let shared = |net: NetId| pipeline.is_shared(net);
+    let here = |net: NetId, number: usize| {
+        !pipeline.handshake.contains(&net) && !shared(net) && section(net) == number
+    };
     let mut stages = handshake(plan, naming, pipeline);
+    // Stages read what is behind a multiplier before they say what is in front of it.
+    let behind = |net: NetId| pipeline.units.iter().any(|unit| unit.nets.last() == Some(&net));
+    stages.extend(Row::declarations(&builder.state(&behind)));
     for (number, stage) in pipeline.stages.iter().enumerate() {
         let here = |net: NetId| here(net, number);
         stages.push(String::new());
@@ -39,11 +43,20 @@ pub fn module(plan: &Plan, naming: &Naming, pipeline: &Pipeline, origin: &Origin
         stages.extend(builder.items(&here).concat());
         let registers = Row::together(builder.state(&|net| here(net) && !is_word(net)));
         stages.extend(Row::declarations(&registers));
-        stages.extend(builder.stage(enable, &here));
+        stages.extend(builder.stage(&here));
     }
     stages.extend(delays::section(&mut builder, naming));
     let results = builder.items(&|net| here(net, pipeline.stages.len())).concat();
     stages.extend(writer::section("Results", results));
+    for unit in &pipeline.units {
+        let here = |net: NetId| unit.nets.contains(&net);
+        let mut lines = reservations(unit);
+        lines.extend(Row::declarations(&builder.state(&|net| here(net) && !behind(net))));
+        lines.extend(builder.items(&here).concat());
+        lines.extend(builder.stage(&here));
+        stages.push(String::new());
+        stages.extend(lines);
+    }
     let delay = match plan.delays.is_empty() {
         true => String::new(),
         false => DELAY.replace("module delay", &format!("module {}", naming.delay())),
@@ -58,6 +71,14 @@ pub fn module(plan: &Plan, naming: &Naming, pipeline: &Pipeline, origin: &Origin
     )
 }
 
+/// `multiplier_1, slot 0 on: base, -, red_product, green_product`.
+fn reservations(unit: &Unit) -> Vec<String> {
+    let serves = unit.serves.iter().map(|it| it.as_deref().unwrap_or("-"));
+    let serves: Vec<&str> = serves.collect();
+    let text = format!("{}, from slot 0 on: {}", unit.name, serves.join(", "));
+    comment(4, &ascii(&text))
+}
+
 /// Returns the valid bits of the stages and their enables: a shift register in place of the bits of the netlist.
 fn handshake(plan: &Plan, naming: &Naming, pipeline: &Pipeline) -> Vec<String> {
     let design = plan.design;
@@ -68,28 +89,84 @@ fn handshake(plan: &Plan, naming: &Naming, pipeline: &Pipeline) -> Vec<String> {
     let [offered, shown, reset] =
         [Role::InValid, Role::Valid, Role::Reset].map(|role| port(role).unwrap_or_default());
     let (valid, last) = (&naming.valid, pipeline.stages.len());
+    let slot = pipeline.slot.map(|slot| {
+        let (name, bits) = (&design.net(slot).name, design.width(slot));
+        let slot = |number: usize| literal(number as u64, bits);
+        let first = format!("{name} == {}", slot(0));
+        let next = match pipeline.interval.is_power_of_two() {
+            true => format!("{name} + {}", slot(1)),
+            false => {
+                let end = slot(pipeline.interval - 1);
+                format!("({name} == {end}) ? {} : {name} + {}", slot(0), slot(1))
+            }
+        };
+        let loads = pipeline.loads.iter().map(|(&number, &net)| {
+            (design.net(net).name.as_str(), format!("({name} == {})", slot(number)))
+        });
+        (name, first, next, slot(0), loads.collect::<Vec<_>>())
+    });
+    let loads = slot.iter().flat_map(|(.., loads)| loads.clone()).collect::<Vec<_>>();
+    let offered = match &slot {
+        Some((_, first, ..)) => format!("{offered} & ({first})"),
+        None => offered.to_owned(),
+    };
     let next = match last {
-        1 => offered.to_owned(),
+        1 => offered,
         2 => format!("{{{valid}[1], {offered}}}"),
         _ => format!("{{{valid}[{}:1], {offered}}}", last - 1),
     };
     let mut lines =
         vec![format!("reg  [{last}:1] {valid};"), format!("assign {shown} = {valid}[{last}];")];
-    let enable = enable(design, pipeline);
-    if let (Some(enable), Some(ready), Some(taken)) =
-        (enable, port(Role::OutReady), port(Role::InReady))
-    {
-        let advance = &design.net(enable).name;
-        lines.push(format!("wire {advance} = {ready} | ~{valid}[{last}];"));
-        lines.push(format!("assign {taken} = {advance};"));
+    if let Some((name, ..)) = &slot {
+        let bits = pipeline.slot.map_or(1, |it| design.width(it));
+        let bits = if bits == 1 { String::new() } else { format!("{} ", range(bits)) };
+        lines.insert(1, format!("reg  {bits}{name};"));
     }
-    let when = enable.map_or(String::new(), |it| format!("if ({}) ", design.net(it).name));
+    let enable = enable(design, pipeline).map(|it| &design.net(it).name);
+    if let (Some(advance), Some(ready)) = (enable, port(Role::OutReady)) {
+        lines.push(format!("wire {advance} = {ready} | ~{valid}[{last}];"));
+    }
+    if let Some(taken) = port(Role::InReady) {
+        let first = slot.as_ref().map(|(_, first, ..)| format!("({first})"));
+        let when = enable.cloned().into_iter().chain(first).collect::<Vec<_>>().join(" & ");
+        lines.push(format!("assign {taken} = {when};"));
+    }
+    let when = enable.map_or(String::new(), |it| format!("if ({it}) "));
+    let empty = literal(0, last as u32);
     lines.push("always @(posedge clk) begin".to_owned());
-    lines.push(format!("    if (!{reset}) {valid} <= {};", literal(0, last as u32)));
-    lines.push(format!("    else {when}{valid} <= {next};"));
+    match slot {
+        None => {
+            lines.push(format!("    if (!{reset}) {valid} <= {empty};"));
+            lines.push(format!("    else {when}{valid} <= {next};"));
+        }
+        Some((slot, _, after, begin, _)) => {
+            lines.push(format!("    if (!{reset}) begin"));
+            lines.extend([
+                format!("        {valid} <= {empty};"),
+                format!("        {slot} <= {begin};"),
+            ]);
+            lines.push(format!("    end else {when}begin"));
+            lines.extend([
+                format!("        {valid} <= {next};"),
+                format!("        {slot} <= {after};"),
+            ]);
+            lines.push("    end".to_owned());
+        }
+    }
     lines.push("end".to_owned());
+    for (name, here) in loads {
+        let when = enable.map_or(String::new(), |it| format!("{it} & "));
+        lines.push(format!("wire {name} = {when}{here};"));
+    }
     writer::section(
-        "The handshake: a bit for each stage that has a point; all points move on together",
+        match pipeline.slot {
+            None => {
+                "The handshake: a bit for each stage that has a point; all points move on together"
+            }
+            Some(_) => {
+                "The handshake: a bit for each stage that has a point; all points move on together, and the slot with them"
+            }
+        },
         lines.into_iter().map(|line| format!("    {line}")).collect(),
     )
 }

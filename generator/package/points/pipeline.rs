@@ -25,9 +25,19 @@ pub fn points_bench(design: &Design, limit: u32) -> Result<PointsBench> {
     });
     let ends = [of_role(Role::Reset)?.net, of_role(Role::Valid)?.net];
     let list = List::new(design, limit, |role| role == Role::Point, ends);
+    let names = Variables::new(&mut Names::of_ports(design));
+    // A pipeline that takes one every few clocks says when.
+    let slots = design.pipeline.as_ref().is_some_and(|it| it.interval > 1);
+    let ready = design.port(|it| it == Role::InReady).filter(|_| slots);
     let text = fill!("points_pipeline.v" {
         list: &'a List = &list,
-        names: Variables = Variables::new(&mut Names::of_ports(design)),
+        every: &'a str = if slots { "whenever it is taken" } else { "every clock" },
+        taken: String = ready.map_or(String::new(), |it| format!(" && {}", port_name(it))),
+        waits: String = match slots {
+            true => format!("if ({} != {}) ", names.read, list.operands.len()),
+            false => String::new(),
+        },
+        names: Variables,
         in_valid: String = port_name(of_role(Role::InValid)?),
         // Inputs that never change, with their values.
         held: Vec<(String, String)> = held.collect(),
