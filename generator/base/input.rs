@@ -39,6 +39,19 @@ pub fn open(path: &Path) -> io::Result<Box<dyn Read>> {
     Ok(Box::new(File::open(path)?))
 }
 
+/// The text of a file, if there is one.
+///
+/// # Errors
+/// As of [`open`], but for a file that is not there.
+pub fn text(path: &Path) -> Result<Option<String>> {
+    let mut text = String::new();
+    match open(path).and_then(|mut file| file.read_to_string(&mut text)) {
+        Ok(_) => Ok(Some(text)),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(error).with_context(|| format!("cannot read `{}`", path.display())),
+    }
+}
+
 /// The records in a directory: its files `*.json` that are a `T`, in the order of their names. Other files are left
 /// alone, and a directory that is not there has none.
 ///

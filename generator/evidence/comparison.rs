@@ -3,6 +3,7 @@
 use std::fmt;
 
 use anyhow::Result;
+use serde::Serialize;
 
 use crate::cosim::trial;
 use crate::golden::formulas;
@@ -19,7 +20,7 @@ pub const ANGLES: u32 = 90 * ANGLES_PER_DEGREE + 1;
 const TYPICAL: f64 = 10.0;
 
 /// An absolute error over the grid.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Spread {
     /// The largest.
     pub largest: f64,
@@ -38,9 +39,10 @@ impl Spread {
 
 /// The error of `f` against `cosⁿγ`, whole and by cause. At every angle the whole error is the sum of the
 /// signed errors by cause; the largest of each may be at different angles.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Accuracy {
     /// The word f against `cosⁿγ`.
+    #[serde(rename = "error")]
     pub whole: Spread,
     /// The source's formula, in f64 and at the quantised operands, against `cosⁿ` of the angle that these
     /// denote.

@@ -317,17 +317,22 @@ fn has_the_arrows_of_the_blocks(path: &str, document: &Document, design: &Design
     assert_eq!(drawn, expected, "{path}");
 }
 
-fn has_the_clocks_of_the_manifest(path: &str, wavedrom: &str, core: &Core) {
-    let name = &core.config.name;
-    let manifest = fs::read_to_string(format!("rtl_out/{name}/{name}.json")).expect("a manifest");
-    let manifest: Value = serde_json::from_str(&manifest).expect("JSON");
+/// Finds the wave of a signal.
+fn waves(path: &str, wavedrom: &str) -> impl Fn(&str) -> String {
     let waves: Value = serde_json::from_str(wavedrom).expect("JSON");
-    let wave = |signal: &str| {
+    move |signal| {
         let lanes = waves["signal"].as_array().expect("signals");
         let lane = lanes.iter().find(|lane| lane["name"] == signal);
         let lane = lane.unwrap_or_else(|| panic!("{path}: no lane `{signal}`"));
         lane["wave"].as_str().expect("a wave").to_owned()
-    };
+    }
+}
+
+fn has_the_clocks_of_the_manifest(path: &str, wavedrom: &str, core: &Core) {
+    let name = &core.config.name;
+    let manifest = fs::read_to_string(format!("rtl_out/{name}/{name}.json")).expect("a manifest");
+    let manifest: Value = serde_json::from_str(&manifest).expect("JSON");
+    let wave = waves(path, wavedrom);
     assert!(wave("start").starts_with("10"), "{path}: {}", wave("start"));
     assert!(wave("busy").starts_with("01"), "{path}: {}", wave("busy"));
     for (signal, event) in [("valid", "start_to_valid"), ("done", "start_to_done")] {
@@ -352,17 +357,21 @@ fn has_every_word(path: &str, document: &Document, core: &Core) {
     assert_eq!(bits, expected, "{path}");
 }
 
+/// The cells of a table, row by row, the heading among them.
+fn rows(document: &Document, label: &str) -> Vec<Vec<String>> {
+    let mut tables = elements(document, "div");
+    let table = tables.find(|div| div.attribute("aria-label") == Some(label)).expect("a table");
+    let rows = table.descendants().filter(|node| node.tag_name().name() == "tr");
+    rows.map(|row| row.children().filter(Node::is_element).map(text).collect()).collect()
+}
+
 /// The figures of `synthesis/cosine_power.json` for ECP5, over eight clocks a point.
 #[test]
 fn area_and_speed_are_those_of_the_record() {
     let path = "configs/cosine_power.toml";
     let page = make(path, &configuration(path)).page;
     let document = parse(&page);
-    let mut tables = elements(&document, "div");
-    let table = tables.find(|div| div.attribute("aria-label") == Some("Area and speed"));
-    let rows = table.expect("a table").descendants().filter(|node| node.tag_name().name() == "tr");
-    let rows = rows.map(|row| row.children().filter(Node::is_element).map(text).collect());
-    let rows: Vec<Vec<String>> = rows.collect();
+    let rows = rows(&document, "Area and speed");
     let row = rows.iter().find(|row| row[0].starts_with("ECP5")).expect("ECP5");
     let record = fs::read_to_string("synthesis/cosine_power.json").expect("a record");
     let record: Value = serde_json::from_str(&record).expect("JSON");
@@ -441,15 +450,7 @@ fn has_the_latency_of_the_header(path: &str, wavedrom: &str, verilog: &str) {
     let (before, _) = header.split_once(" clocks later").expect("the latency");
     let latency: usize =
         before.rsplit(' ').next().and_then(|it| it.parse().ok()).expect("a number");
-    let waves: Value = serde_json::from_str(wavedrom).expect("JSON");
-    let wave = |signal: &str| {
-        let lanes = waves["signal"].as_array().expect("signals");
-        let lane = lanes.iter().find(|lane| lane["name"] == signal);
-        lane.unwrap_or_else(|| panic!("{path}: no lane `{signal}`"))["wave"]
-            .as_str()
-            .expect("a wave")
-            .to_owned()
-    };
+    let wave = waves(path, wavedrom);
     // Two points, a bubble and a point; nothing after them.
     assert!(wave("in_valid").starts_with("1.010"), "{path}: {}", wave("in_valid"));
     assert_eq!(wave("out_valid").find('1'), Some(latency), "{path}");
@@ -474,13 +475,10 @@ fn example(path: &str) -> Vec<(String, i64, f64)> {
     let core = configuration(path);
     let page = make(path, &core).page;
     let document = parse(&page);
-    let tables = elements(&document, "div");
-    let mut tables = tables.filter(|div| div.attribute("aria-label") == Some("A worked example"));
-    let table = tables.next().expect("a worked example");
-    let rows = table.descendants().filter(|node| node.tag_name().name() == "tr");
-    rows.skip(1)
-        .map(|row| {
-            let cells: Vec<String> = row.children().filter(Node::is_element).map(text).collect();
+    let rows = rows(&document, "A worked example");
+    rows[1..]
+        .iter()
+        .map(|cells| {
             let integer = cells[1].parse().unwrap_or_else(|_| panic!("{path}: {cells:?}"));
             let value = cells[2].parse().unwrap_or_else(|_| panic!("{path}: {cells:?}"));
             (cells[0].clone(), integer, value)

@@ -1,7 +1,6 @@
 //! `worst`.
 
 use std::collections::BTreeMap;
-use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
@@ -11,7 +10,7 @@ use serde_json::json;
 
 use super::{Loaded, load};
 use crate::base::program::Program;
-use crate::base::text;
+use crate::base::{input, text};
 use crate::cli::own_file::OwnFile;
 use crate::cli::{Configs, Output, count, progress, say, tables};
 use crate::cosim::search::{self, Reached};
@@ -164,13 +163,7 @@ fn record(one: &Loaded, arguments: &Arguments) -> Result<Option<(OwnFile, Option
 }
 
 fn read(path: &Path) -> Result<Option<Known>> {
-    let text = match std::fs::read_to_string(path) {
-        Ok(text) => text,
-        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
-        Err(error) => {
-            return Err(error).with_context(|| format!("cannot read `{}`", path.display()));
-        }
-    };
+    let Some(text) = input::text(path)? else { return Ok(None) };
     let known: Known = serde_json::from_str(&text)
         .with_context(|| format!("`{}` is no record of `{Program} worst`", path.display()))?;
     ensure!(known.units.is_finite(), "`{}` has no error", path.display());

@@ -8,7 +8,7 @@ use super::{Arguments, Entry};
 use crate::base::program::Program;
 use crate::base::text;
 use crate::cli::{Output, failure, say, tables};
-use crate::evidence::comparison::{ANGLES, ANGLES_PER_DEGREE, Accuracy, Multiplier, Spread};
+use crate::evidence::comparison::{ANGLES, ANGLES_PER_DEGREE, Accuracy, Multiplier};
 use crate::golden::contract;
 use crate::synth::{Frequency, Rate, TARGETS, Target, tools};
 use crate::target::FAMILIES;
@@ -72,14 +72,10 @@ fn at_rest(entry: &Entry) -> Option<String> {
     })
 }
 
-/// The errors of an accuracy with their names, the whole first.
-fn spreads(accuracy: &Accuracy) -> [(&'static str, Spread); 4] {
-    [
-        ("error", accuracy.whole),
-        ("formula", accuracy.formula),
-        ("operands", accuracy.operands),
-        ("fixed_point", accuracy.fixed_point),
-    ]
+/// The largest error and the mean: of the whole, of the formula, of the operands and of the fixed point.
+fn errors(accuracy: &Accuracy) -> impl Iterator<Item = f64> {
+    let Accuracy { whole, formula, operands, fixed_point } = *accuracy;
+    [whole, formula, operands, fixed_point].into_iter().flat_map(|it| [it.largest, it.mean])
 }
 
 fn print_errors(arguments: &Arguments, entries: &[Entry]) {
@@ -92,12 +88,7 @@ fn print_errors(arguments: &Arguments, entries: &[Entry]) {
         let mut row = vec![entry.label.clone()];
         match &entry.figures.accuracy {
             None => row.resize(9, "-".to_owned()),
-            Some(accuracy) => row.extend(
-                spreads(accuracy)
-                    .iter()
-                    .flat_map(|(_, spread)| [spread.largest, spread.mean])
-                    .map(|error| format!("{error:.6}")),
-            ),
+            Some(accuracy) => row.extend(errors(accuracy).map(|error| format!("{error:.6}"))),
         }
         row.push(format!("{:.3}", entry.core.contract.bound().units));
         row
@@ -222,7 +213,7 @@ fn numbers(usage: &Usage) -> [(&'static str, u64); 3] {
 fn as_csv(arguments: &Arguments, entries: &[Entry]) -> Vec<Vec<String>> {
     let synthesised = entries.iter().any(|entry| !entry.usage.is_empty());
     let mut heading: Vec<String> = ["name", "device", "exponent"].map(str::to_owned).to_vec();
-    for (name, _) in spreads(&Accuracy::default()) {
+    for name in ["error", "formula", "operands", "fixed_point"] {
         heading.extend([format!("{name}_largest"), format!("{name}_mean")]);
     }
     heading
@@ -247,12 +238,7 @@ fn as_csv(arguments: &Arguments, entries: &[Entry]) -> Vec<Vec<String>> {
         ];
         match &entry.figures.accuracy {
             None => row.extend(vec![String::new(); 8]),
-            Some(accuracy) => row.extend(
-                spreads(accuracy)
-                    .iter()
-                    .flat_map(|(_, spread)| [spread.largest, spread.mean])
-                    .map(|error| error.to_string()),
-            ),
+            Some(accuracy) => row.extend(errors(accuracy).map(|error| error.to_string())),
         }
         row.extend([
             entry.core.contract.bound().units.to_string(),
@@ -302,6 +288,7 @@ fn as_json(arguments: &Arguments, entries: &[Entry], notes: &[String], failed: &
 fn entry_json(entry: &Entry) -> Value {
     let core = &entry.core;
     let schema = (core.device.schema)();
+    let multipliers = entry.figures.multipliers.iter();
     let mut value = json!({
         "name": entry.label,
         "device": core.device.name,
@@ -309,14 +296,9 @@ fn entry_json(entry: &Entry) -> Value {
         "bound_units": core.contract.bound().units,
         "clocks_per_point": entry.figures.clocks_per_point,
         "rom_bits": core.design.rom_bits(),
+        "errors": entry.figures.accuracy,
+        "multipliers": Vec::from_iter(multipliers.map(|it| [it.first, it.second])),
     });
-    value["errors"] = entry.figures.accuracy.as_ref().map_or(Value::Null, |it| {
-        let spread = |spread: Spread| json!({ "largest": spread.largest, "mean": spread.mean });
-        let named = spreads(it).map(|(name, errors)| (name.to_owned(), spread(errors)));
-        Value::Object(named.into_iter().collect())
-    });
-    let multipliers = entry.figures.multipliers.iter();
-    value["multipliers"] = multipliers.map(|it| json!([it.first, it.second])).collect();
     if !entry.usage.is_empty() {
         let taken = |usage: &Result<Usage, String>| match usage {
             Ok(usage) => {

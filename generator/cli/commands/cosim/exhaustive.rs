@@ -2,7 +2,6 @@
 
 pub mod show;
 
-use std::io::Read;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -67,14 +66,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
 
 /// The state that a file holds, if there is one.
 pub fn read(path: &Path) -> Result<Option<State>> {
-    let mut text = String::new();
-    match input::open(path).and_then(|mut file| file.read_to_string(&mut text)) {
-        Ok(_) => {}
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
-        Err(error) => {
-            return Err(error).with_context(|| format!("cannot read `{}`", path.display()));
-        }
-    }
+    let Some(text) = input::text(path)? else { return Ok(None) };
     let state = kept::from_text(&text).with_context(|| {
         format!("`{}` does not hold the state of a proof; name another file", path.display())
     })?;
