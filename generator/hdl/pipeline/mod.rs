@@ -20,7 +20,7 @@ mod sums;
 mod tests;
 mod unroll;
 
-use crate::netlist::{Design, latest_done};
+use crate::netlist::{Design, decided_by_data, latest_done};
 use glint_base::diagnostic::{Diagnostic, Diagnostics};
 use glint_base::target::Timing;
 
@@ -101,8 +101,10 @@ pub fn pipeline(sequential: &Design, options: &Options) -> Result<Design, Diagno
         Diagnostics(vec![Diagnostic::new(message, place).of_key(key, remedy)])
     };
     let (name, target) = (&sequential.name, options.target.name);
-    // With the clock of `start`, in which the operands are written.
-    let clocks = latest_done(sequential).map_or(unrolled.steps.len(), |it| it as usize) + 1;
+    // With the clock of `start`, in which the operands are written. Iterations that operands decide on are counted at their most.
+    let steps = unrolled.steps.len();
+    let most = latest_done(sequential).filter(|_| !decided_by_data(sequential).is_empty());
+    let clocks = most.map_or(steps, |it| steps.max(it as usize)) + 1;
     if options.interval > clocks {
         let message = format!(
             "`{name}` has no use for a point every {} clocks: its sequential core takes one every {clocks} and is smaller",
