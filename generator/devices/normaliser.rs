@@ -74,7 +74,7 @@ pub fn describe(d: &Designer, config: &Config) {
 }
 
 /// A word shifted left by pairs of places until one of its two top bits is 1, and by how many pairs.
-fn by_pairs<'d>(d: &'d Designer, mut word: Signal<'d>) -> (Signal<'d>, Signal<'d>) {
+pub(super) fn by_pairs<'d>(d: &'d Designer, mut word: Signal<'d>) -> (Signal<'d>, Signal<'d>) {
     let width = word.format().width();
     let mut places = Vec::new();
     for bit in (1..=(width - 1).ilog2()).rev() {
@@ -91,7 +91,7 @@ fn by_pairs<'d>(d: &'d Designer, mut word: Signal<'d>) -> (Signal<'d>, Signal<'d
 }
 
 /// 1/√m of the mantissa m, by a chord between two rounded values of the function.
-fn inverse_root<'d>(
+pub(super) fn inverse_root<'d>(
     d: &'d Designer,
     mantissa: Signal<'d>,
     address: i32,

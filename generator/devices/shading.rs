@@ -1,6 +1,6 @@
 //! `shading`: normals in, colours out. Its parts are other devices of Glint.
 
-use super::{blinn, cosine_power, dot_product, normaliser, schlick};
+use super::{blinn, cosine_power, dot_product, schlick};
 use crate::base::fixed::{Overflow, Rounding};
 use crate::config::Config;
 use crate::hdl::dsl::{About, Designer, Signal};
@@ -31,17 +31,13 @@ pub fn describe<'d>(d: &'d Designer, config: &Config) {
     };
     let [ambient, diffuse, specular] = ["ambient", "diffuse", "specular"].map(material);
 
-    let components = ["x", "y", "z"];
-    let given = std::array::from_fn::<_, 3, _>(|at| (components[at], normal[at]));
-    let unit = d.instance("unit", |d| normaliser::describe(d, &parts.normaliser), &given);
-    let unit = ["unit_x_out", "unit_y_out", "unit_z_out"].map(|name| unit.out(name));
-    let cosine = |name: &str, other: [Signal<'d>; 3]| {
-        let ([nx, ny, nz], [hx, hy, hz]) = (unit, other);
+    let cosine = |name: &str, config: &Config, other: [Signal<'d>; 3]| {
+        let ([nx, ny, nz], [hx, hy, hz]) = (normal, other);
         let given = [("nx", nx), ("ny", ny), ("nz", nz), ("hx", hx), ("hy", hy), ("hz", hz)];
-        d.instance(name, |d| dot_product::describe(d, &parts.cosine), &given).out("cosine_out")
+        d.instance(name, |d| dot_product::describe(d, config), &given).out("cosine_out")
     };
-    let facing = cosine("diffuse_cosine", light);
-    let cos_gamma = cosine("specular_cosine", half);
+    let facing = cosine("diffuse_cosine", &parts.facing, light);
+    let cos_gamma = cosine("specular_cosine", &parts.cosine, half);
     let guard = keys.guard() as i32;
     let [red, green, blue] = specular.map(|it| it.with_fraction(guard).shift_left(guard));
     let given = [
@@ -84,7 +80,7 @@ fn about(keys: &Keys) -> About {
         source: "J. F. Blinn, Models of Light Reflection for Computer Synthesized Pictures, SIGGRAPH 1977".to_owned(),
         notes: vec![
             "The normal need not be a unit vector: an interpolated one will do. Of the zero vector every cosine is 0.".into(),
-            "Light and half vector are unit vectors; their components beyond -1 and 1 are taken for these.".into(),
+            "Light and half vector are unit vectors: nothing is stated of components beyond -1 and 1.".into(),
             "A sum above the largest result becomes the largest.".into(),
         ],
     }

@@ -1,47 +1,60 @@
 //! The golden model and the contract, from the formula.
 
+use std::sync::Arc;
+
 use super::device::{self, Formula};
-use super::frame::{Frame, idle, step};
+use super::frame::{Frame, idle, step, step_by};
 use super::narrow::{Narrow, rounding_error};
+use super::normaliser::Root;
 use super::{Contract, Model, Sweep, Term};
 use glint_base::fixed::{Format, Rounding, exp2};
 use glint_config::Config;
 use glint_keys::dot_product::Keys;
 
-/// A sum of products to a cosine of 0 ... 1.
-#[derive(Clone, Copy)]
-struct Limited {
-    rounded: Narrow,
-    one: i64,
-}
-
-impl Limited {
-    fn apply(self, sum: i64) -> i64 {
-        self.rounded.apply(sum).min(self.one)
-    }
-}
-
 /// The operations of each microinstruction.
 fn device(config: &Config) -> device::Device {
-    let Cosine { keys, limited } = Cosine::new(config);
-    let [fraction, other, kept] = [keys.fraction, keys.other, keys.kept].map(|bits| bits as i32);
+    let it = Arc::new(Cosine::new(config));
+    let Keys { fraction, other, kept, .. } = it.keys;
     let mut frame = Frame::default();
-    let mut component = |name, fraction: i32| {
-        frame.clamped(name, Format::signed(1, fraction), -(1 << fraction), 1 << fraction)
-    };
-    let [nx, ny, nz] = ["nx", "ny", "nz"].map(|name| component(name, fraction));
-    let [hx, hy, hz] = ["hx", "hy", "hz"].map(|name| component(name, other));
-    let sum = frame.register("sum", Format::signed(2, fraction + other));
-    let cosine = frame.register("cosine", Format::unsigned(1, kept));
+    let mut component =
+        |name, fraction: u32| frame.operand(name, Format::signed(1, fraction as i32));
+    let normal = ["nx", "ny", "nz"].map(|name| component(name, fraction));
+    let half = ["hx", "hy", "hz"].map(|name| component(name, other));
+    let sum = frame.register("sum", Format::signed(4, it.keys.products() as i32));
+    let squares = frame.register("squares", Format::unsigned(4, 2 * fraction as i32));
+    let mantissa = frame.register("mantissa", Format::unsigned(it.root.width as i32, 0));
+    let shift = frame.register("shift", Format::unsigned(it.root.pair_bits() as i32, 0));
+    let distance = frame.register("distance", it.keys.distance());
+    let inverse = frame.register("inverse", it.keys.shortened());
+    let cosine = frame.register("cosine", Format::unsigned(1, kept as i32));
     frame.shows("cosine_out", cosine);
-    frame.device([
+    let add = |axis: usize| {
+        let (n, h, first) = (normal[axis], half[axis], axis == 0);
+        step(move |s| {
+            s[sum] = s[n] * s[h] + if first { 0 } else { s[sum] };
+            s[squares] = s[n] * s[n] + if first { 0 } else { s[squares] };
+        })
+    };
+    let device = frame.device([
         idle(),
-        step(move |s| s[sum] = s[nx] * s[hx]),
-        step(move |s| s[sum] += s[ny] * s[hy]),
-        step(move |s| s[sum] += s[nz] * s[hz]),
-        step(move |s| s[cosine] = limited.apply(s[sum])),
+        add(0),
+        add(1),
+        add(2),
+        step_by(&it, move |it, s| {
+            s[shift] = it.root.pairs(s[squares]);
+            s[mantissa] = it.root.mantissa(s[squares], s[shift]);
+        }),
+        step_by(&it, move |it, s| s[distance] = it.distance.apply(s[sum] << s[shift])),
+        step_by(&it, move |it, s| {
+            s[inverse] = it.shortened.apply(it.root.inverse(s[mantissa]));
+        }),
+        step_by(&it, move |it, s| {
+            s[cosine] = it.rounded.apply(s[distance] * s[inverse]).min(it.one);
+        }),
         idle().valid().end(),
-    ])
+    ]);
+    let one = 1 << other;
+    ["hx", "hy", "hz"].into_iter().fold(device, |device, name| device.domain(name, -one, one))
 }
 
 /// The golden model.
@@ -54,18 +67,42 @@ pub fn contract(config: &Config) -> Box<dyn Contract> {
     device(config).contract(Cosine::new(config))
 }
 
-/// The formula: max(0, N.H), and at most 1.
+/// The formula: N.H, at least 0 and at most 1, of a normal of any length.
 struct Cosine {
     keys: Keys,
-    limited: Limited,
+    root: Root,
+    /// From the products of both vectors, shifted, half of which it is.
+    distance: Narrow,
+    shortened: Narrow,
+    rounded: Narrow,
+    one: i64,
 }
 
 impl Cosine {
     fn new(config: &Config) -> Self {
         let keys = Keys::of(config);
         let wide = Format::unsigned(2, keys.kept as i32);
-        let rounded = Narrow::new(keys.products(), wide, keys.rounding);
-        Self { limited: Limited { rounded, one: 1 << keys.kept }, keys }
+        Self {
+            root: Root::new(keys.fraction, keys.address, keys.inverse),
+            distance: Narrow::new(keys.products() + 1, keys.distance(), Rounding::Nearest),
+            shortened: Narrow::new(keys.inverse, keys.shortened(), Rounding::Nearest),
+            rounded: Narrow::new(2 * keys.factor - 1, wide, keys.rounding),
+            one: 1 << keys.kept,
+            keys,
+        }
+    }
+
+    /// The errors, as values, of a cosine by the inverse root, by its factors, and by its rounding.
+    ///
+    /// Let m be the squares shifted to 1 ≤ m < 4, f = 1/√m, and t the products as far, of which the cosine is t·f. What
+    /// stands for f is off by `Root::error`, which counts √m times, and by what its own rounding leaves, half a place
+    /// below √m < 2 times. What stands for t is off by half a place, and for a t of 2.0 by a whole one, where f is a half; f is at most 1.
+    /// Beyond t = √m the cosine stays 1, and what is computed does not fall.
+    fn errors(&self) -> [f64; 3] {
+        let Keys { factor, kept, rounding, .. } = self.keys;
+        let (root, place) = (self.root.error(), exp2(-(factor as i32)));
+        let root = root[0] + root[1];
+        [root, place * (2.0 + root + place), rounding_error(2 * factor - 1, kept, rounding)]
     }
 }
 
@@ -77,31 +114,20 @@ pub(super) fn unit_vector(vector: [f64; 3]) -> [f64; 3] {
 
 impl Formula for Cosine {
     fn exact(&self, v: &[f64]) -> Vec<f64> {
-        // A component beyond 1 or -1 is taken for that.
-        let at = |place: usize| v[place].clamp(-1.0, 1.0);
-        let sum: f64 = (0..3).map(|axis| at(axis) * at(3 + axis)).sum();
+        let unit = unit_vector([v[0], v[1], v[2]]);
+        let sum: f64 = (0..3).map(|axis| unit[axis] * v[3 + axis]).sum();
         vec![sum.clamp(0.0, 1.0)]
     }
 
-    /// Components within their domain; `certify` holds the hardware against this.
-    fn expressions(&self) -> Vec<String> {
-        vec!["max(0, min(1, nx * hx + ny * hy + nz * hz))".to_owned()]
-    }
-
-    /// The products and their sum are exact, and rounded once. To clamp to 0 … 1 brings two values no further
-    /// apart, and both ends are values of the output, so that the rest of the way changes nothing.
     fn terms(&self) -> Vec<Term> {
-        let error = rounding_error(self.keys.products(), self.keys.kept, self.keys.rounding);
-        let units = match self.keys.rounding {
-            // What is cut has at least the last place of a product, which it keeps below a whole unit.
-            Rounding::Truncate => {
-                error * exp2(self.keys.kept as i32)
-                    - exp2(self.keys.kept as i32 - self.keys.products() as i32)
-            }
-            Rounding::Nearest => error * exp2(self.keys.kept as i32),
-        };
-        let what = "rounding of the cosine";
-        vec![Term { key: "output.rounding", what, units: units.max(0.0) }]
+        let [root, factors, rounding] = self.errors();
+        let units = exp2(self.keys.kept as i32);
+        let term = |key, what, error| Term { key, what, units: error * units };
+        vec![
+            term("table.address", "the inverse root", root),
+            term("factor.bits", "rounding of the factors", factors),
+            term("output.rounding", "rounding of the cosine", rounding),
+        ]
     }
 
     /// A unit vector, and another close to it, or close to a right angle with it: highlights are near a product of 1,
@@ -125,18 +151,19 @@ impl Formula for Cosine {
             vector.map(|component| (component * exp2(fraction as i32)).round() as i64)
         };
         let Keys { fraction, other, .. } = self.keys;
-        Some([raw(normal, fraction), raw(unit_vector(half), other)].concat())
+        let length = exp2(1) * libm::exp2(-unit() * f64::from(fraction));
+        Some([raw(normal.map(|it| length * it), fraction), raw(unit_vector(half), other)].concat())
     }
 
-    /// The sum determines the result.
+    /// The sum of squares determines the inverse root.
     fn sweep(&self) -> Option<Sweep> {
-        let most = 3 << self.keys.products();
-        Some(Sweep::ranges([("sum of the products", (-most, most))]))
+        Some(self.root.sweep())
     }
 
+    /// By the inverse root as it is; by the factors and the rounding as far as they can be off.
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
-        let exact = place[0] as f64 * exp2(self.keys.kept as i32 - self.keys.products() as i32);
-        let one = exp2(self.keys.kept as i32);
-        Some((self.limited.apply(place[0]) as f64 - exact.clamp(0.0, one)).abs())
+        let [_, factors, rounding] = self.errors();
+        let error = self.root.relative_error(place[0]) + factors + rounding;
+        Some(error * exp2(self.keys.kept as i32))
     }
 }

@@ -5,8 +5,7 @@ use super::dot_product::unit_vector;
 use super::frame::{Frame, Slot, State};
 use super::narrow::Narrow;
 use super::{
-    Axis, Contract, Model, Sweep, Term, Values, blinn, cosine_power, dot_product, formulas,
-    normaliser, schlick,
+    Axis, Contract, Model, Sweep, Term, Values, blinn, cosine_power, dot_product, formulas, schlick,
 };
 use glint_base::fixed::{Rounding, exp2};
 use glint_config::Config;
@@ -30,16 +29,14 @@ fn device(keys: &Keys, parts: &Parts) -> device::Device {
     ) -> (&'static str, impl Fn(&State) -> i64 + Send + Sync) {
         (name, move |s: &State| s[slot] << places)
     }
-    let given = [("x", normal[0], 0), ("y", normal[1], 0), ("z", normal[2], 0)].map(left);
-    let unit = frame.part("unit", &*normaliser::model(&parts.normaliser), given);
-    let [nx, ny, nz] = ["unit_x_out", "unit_y_out", "unit_z_out"].map(|name| unit.out(name));
-    let mut cosine = |name: &str, [x, y, z]: [Slot; 3]| {
+    let [nx, ny, nz] = normal;
+    let mut cosine = |name: &str, config: &Config, [x, y, z]: [Slot; 3]| {
         let given = [("nx", nx), ("ny", ny), ("nz", nz), ("hx", x), ("hy", y), ("hz", z)];
         let given = given.map(|(name, slot)| left((name, slot, 0)));
-        frame.part(name, &*dot_product::model(&parts.cosine), given).out("cosine_out")
+        frame.part(name, &*dot_product::model(config), given).out("cosine_out")
     };
-    let facing = cosine("diffuse_cosine", light);
-    let cos_gamma = cosine("specular_cosine", half);
+    let facing = cosine("diffuse_cosine", &parts.facing, light);
+    let cos_gamma = cosine("specular_cosine", &parts.cosine, half);
     let [red, green, blue] = specular.map(|slot| (slot, keys.guard()));
     let given = [
         ("cos_gamma", cos_gamma, 0),
@@ -51,15 +48,19 @@ fn device(keys: &Keys, parts: &Parts) -> device::Device {
     let highlight =
         frame.part("highlight", &*(part(keys).model)(&parts.highlight), given.map(left));
 
-    let sum = Narrow::new(keys.cosine, keys.colour_format(), Rounding::Nearest);
-    let places = (keys.cosine, keys.cosine - keys.guard());
+    let places = keys.facing();
+    let sum = Narrow::new(places, keys.colour_format(), Rounding::Nearest);
+    let guarded = places - keys.guard();
     for (at, name) in ["red_out", "green_out", "blue_out"].into_iter().enumerate() {
         let (ambient, diffuse, shine) = (ambient[at], diffuse[at], highlight.out(name));
         frame.output(name, keys.colour_format(), move |s| {
-            sum.apply((s[ambient] << places.0) + s[diffuse] * s[facing] + (s[shine] << places.1))
+            sum.apply((s[ambient] << places) + s[diffuse] * s[facing] + (s[shine] << guarded))
         });
     }
-    frame.dataflow().domain("exponent", keys.least(), keys.most)
+    let device = frame.dataflow().domain("exponent", keys.least(), keys.most);
+    let one = 1 << keys.light;
+    let vectors = ["lx", "ly", "lz", "hx", "hy", "hz"].into_iter();
+    vectors.fold(device, |device, name| device.domain(name, -one, one))
 }
 
 /// The golden side of a highlight: model, contract, and its formula of cosine and n.
@@ -108,7 +109,7 @@ pub fn contract(config: &Config) -> Box<dyn Contract> {
     let device = device(&keys, &parts);
     let highlight = (part(&keys).contract)(&parts.highlight);
     let errors = Errors {
-        unit: error(&*normaliser::contract(&parts.normaliser)),
+        facing: error(&*dot_product::contract(&parts.facing)),
         cosine: error(&*dot_product::contract(&parts.cosine)),
         highlight: error(&*highlight) * exp2(-(keys.guard() as i32)),
         slope: highlight.highlight().and_then(|it| it.slope()),
@@ -123,9 +124,9 @@ fn error(contract: &dyn Contract) -> f64 {
 
 /// The proved errors of the parts.
 struct Errors {
-    /// The error of a component of the unit normal.
-    unit: f64,
-    /// The error of a cosine.
+    /// The error of the cosine between normal and light.
+    facing: f64,
+    /// The error of the cosine between normal and half vector.
     cosine: f64,
     /// The error of a colour's highlight, in units of a result.
     highlight: f64,
@@ -144,7 +145,7 @@ impl Formula for Shading {
     fn exact(&self, v: &[f64]) -> Vec<f64> {
         let unit = unit_vector([v[0], v[1], v[2]]);
         let cosine = |at: usize| {
-            let products = (0..3).map(|axis| unit[axis] * v[at + axis].clamp(-1.0, 1.0));
+            let products = (0..3).map(|axis| unit[axis] * v[at + axis]);
             products.sum::<f64>().clamp(0.0, 1.0)
         };
         let (facing, f) = (cosine(3), (self.formula)(cosine(6), v[9]));
@@ -155,17 +156,20 @@ impl Formula for Shading {
 
     /// An error of an operand of a part grows by the part's slope in it, and the part adds its own.
     ///
-    /// - A cosine is N·L with |L| ≤ 1 in each component, clamped: its slope in a component of N is at most 1, three times.
     /// - A colour is diffuse·cosine + specular·f(cosine), saturated: its slopes are at most the largest colour, and that times
     ///   the slope of f.
     fn terms(&self) -> Vec<Term> {
-        let Errors { unit, cosine, highlight, slope } = self.errors;
+        let Errors { facing, cosine, highlight, slope } = self.errors;
         let Some(slope) = slope else { return Vec::new() };
-        let colours = (exp2(self.keys.colour_bits as i32) - 1.0) * (1.0 + slope);
+        let colour = exp2(self.keys.colour_bits as i32) - 1.0;
         let term = |key, what, units| Term { key, what, units };
         vec![
-            term("unit.fraction", "the unit normal, through both cosines", 3.0 * unit * colours),
-            term("cosine.fraction", "the cosines, through the colours", cosine * colours),
+            term("colour.bits", "the cosine of the light, through the colour", facing * colour),
+            term(
+                "cosine.fraction",
+                "the cosine of the highlight, through the colour",
+                cosine * slope * colour,
+            ),
             term("highlight", "the highlight", highlight),
             term("colour.bits", "rounding of the results", 0.5),
         ]
@@ -223,15 +227,15 @@ mod tests {
     use glint_config::Value;
     use glint_keys::shading::schema;
 
-    /// The largest error of a unit normal of 14 fraction bits, half of whose error is what its rounding leaves, is beyond the bound
-    /// that a part with a false claim would give, and within the one that it gives.
+    /// The largest error with a cosine of 12 fraction bits is beyond the bound that a part with a false claim would give, and within
+    /// the one that it gives.
     #[test]
     fn the_bound_of_the_whole_falls_with_that_of_a_part() {
-        let keys = [("unit.fraction", 14), ("domain.exponent_max", 1000)];
+        let keys = [("cosine.fraction", 12), ("domain.exponent_max", 1000)];
         let keys = keys.map(|(key, value)| (key.to_owned(), Value::Integer(value)));
         let config = Config::from_values(&schema(), "coarse", keys.into()).expect("sound keys");
         let (keys, whole) = (Keys::of(&config), contract(&config));
-        let errors = Errors { unit: 0.0, cosine: 2e-7, highlight: 0.1, slope: Some(1000.0) };
+        let errors = Errors { facing: 2e-7, cosine: 2e-7, highlight: 0.1, slope: Some(1000.0) };
         let claimed = Shading { formula: part(&keys).formula, errors, keys };
         let claimed = Bound::of(claimed.terms()).units;
         // A linear congruential generator.

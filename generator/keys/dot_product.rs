@@ -1,15 +1,20 @@
 //! The keys of `dot-product`.
 
-use glint_base::fixed::Rounding;
+use super::normaliser;
+use glint_base::fixed::{Format, Rounding};
 use glint_config::{Config, Key, Problems, Schema};
 
 glint_config::keys! {
     /// The keys of a configuration.
     pub struct Keys {
-        fraction: u32 = Key::integer("vector.fraction", 14, 2..=20,
-            "Fraction bits of a component of the normal, s1.F."),
-        other: u32 = Key::integer("half.fraction", 14, 2..=20,
-            "Fraction bits of a component of the half vector, s1.F."),
+        fraction: u32 = Key::integer("vector.fraction", 14, 2..=14,
+            "Fraction bits of a component of the normal, s1.F, which need not be a unit vector."),
+        other: u32 = Key::integer("half.fraction", 14, 2..=14,
+            "Fraction bits of a component of the half vector, s1.F, a unit vector."),
+        address: u32 = normaliser::address(),
+        inverse: u32 = normaliser::inverse(),
+        factor: u32 = Key::integer("factor.bits", 18, 6..=24,
+            "Bits of both factors of the last product: the normal's length times the cosine, and the inverse of the length."),
         kept: u32 = Key::integer("output.fraction", 14, 2..=20,
             "Fraction bits of the cosine, u1.C."),
         rounding: Rounding = Key::rounding("output.rounding", "nearest",
@@ -22,6 +27,16 @@ impl Keys {
     pub fn products(&self) -> u32 {
         self.fraction + self.other
     }
+
+    /// The format of the product of both vectors where the normal's length is from 1 to 2.
+    pub fn distance(&self) -> Format {
+        Format::unsigned(1, self.factor as i32 - 1)
+    }
+
+    /// The format of the inverse of that length.
+    pub fn shortened(&self) -> Format {
+        Format::unsigned(0, self.factor as i32)
+    }
 }
 
 /// The keys of the device.
@@ -29,15 +44,14 @@ pub fn schema() -> Schema {
     Schema { device: "dot-product", keys: Keys::keys(), check }
 }
 
-/// The sum of products has the fraction bits of both components, and the cosine is rounded from it.
 fn check(config: &Config, problems: &mut Problems) {
-    let keys = Keys::of(config);
-    let most = keys.products();
-    if keys.kept > most {
+    let Keys { fraction, address, inverse, factor, kept, .. } = Keys::of(config);
+    normaliser::check_root(fraction, address, inverse, problems);
+    if kept >= 2 * factor {
         problems.push(
             "output.fraction",
-            format!("more fraction bits than the {most} of a product of components"),
-            format!("at most {most}, or a larger vector.fraction or half.fraction"),
+            format!("more fraction bits than the {} of the last product", 2 * factor - 1),
+            "a larger factor.bits".to_owned(),
         );
     }
 }

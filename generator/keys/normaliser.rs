@@ -8,14 +8,23 @@ glint_config::keys! {
     pub struct Keys {
         fraction: u32 = Key::integer("vector.fraction", 14, 2..=14,
             "Fraction bits of a component, s1.F."),
-        address: u32 = Key::integer("table.address", 9, 3..=12,
-            "Leading bits of the sum that choose a segment."),
-        inverse: u32 = Key::integer("inverse.fraction", 20, 6..=24,
-            "Fraction bits of the inverse root, u1.R."),
+        address: u32 = address(),
+        inverse: u32 = inverse(),
         kept: u32 = Key::integer("output.fraction", 14, 2..=20, "Fraction bits of a result, s1.C."),
         rounding: Rounding = Key::rounding("output.rounding", "nearest",
             "How the components of the unit vector are rounded."),
     }
+}
+
+/// The bits that choose a segment of the table of inverse roots.
+pub(super) fn address() -> Key {
+    let doc = "Leading bits of the sum of squares that choose a segment.";
+    Key::integer("table.address", 9, 3..=12, doc)
+}
+
+/// The width of a word of that table.
+pub(super) fn inverse() -> Key {
+    Key::integer("inverse.fraction", 20, 6..=24, "Fraction bits of the inverse root, u1.R.")
 }
 
 /// The keys of the device.
@@ -25,6 +34,18 @@ pub fn schema() -> Schema {
 
 fn check(config: &Config, problems: &mut Problems) {
     let Keys { fraction, address, inverse, kept, .. } = Keys::of(config);
+    check_root(fraction, address, inverse, problems);
+    if kept > inverse {
+        problems.push(
+            "output.fraction",
+            format!("more fraction bits than the {inverse} of the inverse root"),
+            format!("at most {inverse}, or a larger inverse.fraction"),
+        );
+    }
+}
+
+/// Checks the table of inverse roots for components with so many fraction bits.
+pub(super) fn check_root(fraction: u32, address: u32, inverse: u32, problems: &mut Problems) {
     let sum = 2 * fraction + 4;
     if address >= sum {
         problems.push(
@@ -38,13 +59,6 @@ fn check(config: &Config, problems: &mut Problems) {
             "inverse.fraction",
             format!("coarser than the {address} bits of table.address"),
             format!("at least {address}"),
-        );
-    }
-    if kept > inverse {
-        problems.push(
-            "output.fraction",
-            format!("more fraction bits than the {inverse} of the inverse root"),
-            format!("at most {inverse}, or a larger inverse.fraction"),
         );
     }
 }

@@ -1,7 +1,7 @@
 //! The keys of `shading`, and the configurations of its parts.
 
 use super::common;
-use super::{blinn, cosine_power, dot_product, normaliser, schlick};
+use super::{blinn, cosine_power, dot_product, schlick};
 use glint_base::fixed::Format;
 use glint_config::{Config, Key, Problems, Schema, Value};
 
@@ -26,10 +26,8 @@ glint_config::keys! {
             "Fraction bits of a component of the normal, s1.F, which need not be a unit vector."),
         light: u32 = Key::integer("light.fraction", 14, 6..=14,
             "Fraction bits of a component of the light and the half vector, unit vectors, s1.F."),
-        unit: u32 = Key::integer("unit.fraction", 18, 14..=20,
-            "Fraction bits of a component of the unit normal that is made."),
-        cosine: u32 = Key::integer("cosine.fraction", 20, 12..=20,
-            "Fraction bits of the cosines between normal and light, normal and half vector."),
+        cosine: u32 = Key::integer("cosine.fraction", 18, 12..=20,
+            "Fraction bits of the cosine between normal and half vector."),
         exponent_bits: u32 = common::exponent_bits(),
         colour_bits: u32 = Key::integer("colour.bits", 8, 2..=10,
             "Bits of a coefficient of the material, and of a result."),
@@ -61,9 +59,9 @@ fn check(config: &Config, problems: &mut Problems) {
 
 /// The configurations of the parts.
 pub struct Parts {
-    /// That of the unit normal.
-    pub normaliser: Config,
-    /// That of both cosines.
+    /// That of the cosine between normal and light.
+    pub facing: Config,
+    /// That of the cosine between normal and half vector.
     pub cosine: Config,
     /// That of the highlight.
     pub highlight: Config,
@@ -95,6 +93,11 @@ impl Keys {
         (12 - self.colour_bits).min(4)
     }
 
+    /// Fraction bits of the cosine between normal and light, whose slope in a colour is the smaller.
+    pub fn facing(&self) -> u32 {
+        self.cosine.min(self.colour_bits + 6)
+    }
+
     /// The smallest n for which the accuracy contract is stated: below the power of W it jumps at a right angle.
     pub fn least(&self) -> i64 {
         if self.highlight == Highlight::CosinePower { 16 } else { 1 }
@@ -110,26 +113,24 @@ impl Keys {
             Config::from_values(&schema, "part", keys.iter().map(value).collect())
                 .map_err(|why| (schema.device, why))
         };
-        let [normal, unit, cosine, exponent, colour] = [
+        let [normal, light, cosine, exponent, colour] = [
             self.normal,
-            self.unit,
+            self.light,
             self.cosine,
             self.exponent_bits,
             self.colour_bits + self.guard(),
         ]
         .map(i64::from);
-        let normaliser = make(
-            normaliser::schema(),
-            &[
+        let between = |kept: i64| {
+            let keys = [
                 ("vector.fraction", normal),
-                ("table.address", 11),
+                ("half.fraction", light),
+                ("table.address", 10),
                 ("inverse.fraction", 21),
-                ("output.fraction", unit),
-            ],
-        )?;
-        let light = i64::from(self.light);
-        let cosines =
-            [("vector.fraction", unit), ("half.fraction", light), ("output.fraction", cosine)];
+                ("output.fraction", kept),
+            ];
+            make(dot_product::schema(), &keys)
+        };
         let (schema, fraction) = match self.highlight {
             Highlight::CosinePower => (cosine_power::schema(), 18),
             Highlight::Blinn => (blinn::schema(), 18),
@@ -144,8 +145,8 @@ impl Keys {
             ("domain.exponent_max", self.most),
         ];
         Ok(Parts {
-            normaliser,
-            cosine: make(dot_product::schema(), &cosines)?,
+            facing: between(self.facing().into())?,
+            cosine: between(cosine)?,
             highlight: make(schema, &highlight)?,
         })
     }

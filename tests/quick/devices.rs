@@ -37,14 +37,13 @@ fn errors(contract: &dyn Contract, operands: &[i64], formula: impl Fn(&[f64]) ->
 }
 
 fn dot(v: &[f64]) -> Vec<f64> {
-    let at = |place: usize| v[place].clamp(-1.0, 1.0);
-    vec![(at(0) * at(3) + at(1) * at(4) + at(2) * at(5)).clamp(0.0, 1.0)]
+    let n = unit(&v[..3]);
+    vec![(n[0] * v[3] + n[1] * v[4] + n[2] * v[5]).clamp(0.0, 1.0)]
 }
 
 /// By the default, W of power 16.
 fn shading(v: &[f64]) -> Vec<f64> {
-    let unit = unit(&v[..3]);
-    let [facing, cosine] = [3, 6].map(|at| dot(&[&unit[..], &v[at..at + 3]].concat())[0]);
+    let [facing, cosine] = [3, 6].map(|at| dot(&[&v[..3], &v[at..at + 3]].concat())[0]);
     let base = (v[9] / 16.0 * (cosine - 1.0) + 1.0).max(0.0);
     let f = if cosine > 0.0 { base.powi(16) } else { 0.0 };
     (10..13).map(|at| (v[at] + v[at + 3] * facing + v[at + 6] * f).min(255.0)).collect()
@@ -178,9 +177,11 @@ fn vectors_by_hand() {
     }
     let core = default(named("dot-product"));
     for (operands, expected) in [
-        // (0.5, 0.5, 0)·(1, 0, 0); the other way round it is 0; beyond 1 it is 1.
-        ([8192, 8192, 0, 16384, 0, 0], 8192),
+        // (3, 0, 4)/5·(1, 0, 0) = 0.6, of any length, in 2^-14 9830.4; the other way round it is 0; beyond 1 it is 1.
+        ([3, 0, 4, 16384, 0, 0], 9830),
+        ([24576, 0, 32767, 16384, 0, 0], 9830),
         ([-8192, 8192, 0, 16384, 0, 0], 0),
+        ([0, 0, 0, 16384, 0, 0], 0),
         ([16384, 16384, 0, 16384, 16384, 0], 16384),
     ] {
         raw.clear();

@@ -220,10 +220,22 @@ impl Graph {
             return id;
         }
         let range = of_cell(&op, format, &|id| self.node(id).format, &|id| self.node(id).range);
+        let range = (range.0, self.limit(&op).map_or(range.1, |limit| range.1.min(limit)));
         if range.0 == range.1 {
             return self.constant(format.bits(range.0), format, label);
         }
         self.insert(Cell::Op(op), format, range, label)
+    }
+
+    /// The limit that a choice keeps to: the value where it is less, and the limit where not.
+    fn limit(&self, op: &Op) -> Option<i128> {
+        let Op::Mux { select, inputs } = op else { return None };
+        match (&self.node(*select).cell, &inputs[..]) {
+            (Cell::Op(Op::Less(value, limit)), [other, one]) if (limit, value) == (other, one) => {
+                Some(self.node(*limit).range.1)
+            }
+            _ => None,
+        }
     }
 
     /// A node that already is what the cell would give, or one that is less.

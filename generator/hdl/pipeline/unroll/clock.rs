@@ -127,6 +127,12 @@ impl<'e, 'a> Clock<'e, 'a> {
         let address = self.value(design.rom(rom).address);
         let net = design.net(design.rom(rom).data);
         let words = &design.rom(rom).words;
+        // Parts that are alike have tables that are alike: one will do.
+        let first = design
+            .roms
+            .iter()
+            .position(|it| it.words == *words && design.net(it.data).format == net.format);
+        let rom = first.map_or(rom, |first| RomId(first as u32));
         self.graph().read(rom, address, words, net.format, &label(net))
     }
 
