@@ -201,7 +201,7 @@ impl Registry {
         let mut all = Self::catalogue();
         all.0.extend(of_catalogue![
             normaliser: "normaliser", "(x, y, z)/sqrt(x^2 + y^2 + z^2), by a table of inverse roots";
-            dot_product: "dot-product", "max(0, N.H) of two unit vectors, the cosine that highlights start from";
+            dot_product: "dot-product", "max(0, N.H) of a normal of any length, the cosine that highlights start from";
             shading: "shading", "ambient + diffuse*N.L + specular*highlight, from normals of any length";
         ]);
         all

@@ -13,7 +13,7 @@ use glint::config::Config;
 use glint::core::Core;
 use glint::golden::Contract;
 use glint::hdl::netlist::{Design, Driver, Op};
-use glint::registry::{Device, Registry};
+use glint::registry::Device;
 use glint::tools::Tool;
 use rayon::prelude::*;
 
@@ -98,17 +98,14 @@ fn of_user(device: Device) -> (Design, Box<dyn Contract>) {
 }
 
 #[test]
-fn devices_without_records_are_certified() {
-    let dot_product = *Registry::shipped().device("dot-product").expect("a device");
-    for device in [fresnel::FRESNEL, dot_product] {
-        let (design, contract) = of_user(device);
-        let stated = statements(&design, contract.as_ref(), Duration::MAX).expect("statements");
-        assert!(all_accepted(&stated), "{}", device.name);
-        // Less than the rounding of the outputs takes.
-        let asked = questions(&design, contract.as_ref(), Duration::MAX).expect("questions");
-        let smaller: Vec<_> = asked.iter().map(|it| it.within(0.49)).collect();
-        assert!(!all_accepted(&smaller), "{}", device.name);
-    }
+fn a_device_without_records_is_certified() {
+    let (design, contract) = of_user(fresnel::FRESNEL);
+    let stated = statements(&design, contract.as_ref(), Duration::MAX).expect("statements");
+    assert!(all_accepted(&stated));
+    // Less than the rounding of the outputs takes.
+    let asked = questions(&design, contract.as_ref(), Duration::MAX).expect("questions");
+    let smaller: Vec<_> = asked.iter().map(|it| it.within(0.49)).collect();
+    assert!(!all_accepted(&smaller));
 }
 
 /// The bound that Gappa finds.
