@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use super::device::{self, Formula};
 use super::frame::{Frame, idle, step, step_by};
+use super::inverse_root::{Root, unit_vector};
 use super::narrow::{Narrow, rounding_error};
-use super::normaliser::Root;
 use super::{Contract, Model, Sweep, Term};
 use glint_base::fixed::{Format, Rounding, exp2};
 use glint_config::Config;
@@ -104,12 +104,6 @@ impl Cosine {
         let root = root[0] + root[1];
         [root, place * (2.0 + root + place), rounding_error(2 * factor - 1, kept, rounding)]
     }
-}
-
-/// The unit vector of a direction; the zero vector stays.
-pub(super) fn unit_vector(vector: [f64; 3]) -> [f64; 3] {
-    let now = vector.map(|it| it * it).iter().sum::<f64>().sqrt();
-    vector.map(|it| if now == 0.0 { 0.0 } else { it / now })
 }
 
 impl Formula for Cosine {

@@ -18,6 +18,7 @@ pub mod function;
 pub mod gauss;
 pub mod halving;
 pub mod highlight;
+mod inverse_root;
 pub mod line;
 pub mod lyon;
 pub mod narrow;

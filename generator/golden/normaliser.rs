@@ -3,101 +3,13 @@
 use std::sync::Arc;
 
 use super::device::{self, Formula};
-use super::dot_product::unit_vector;
 use super::frame::{Frame, Slot, idle, step, step_by};
+use super::inverse_root::{Root, unit_vector};
 use super::narrow::{Narrow, rounding_error};
 use super::{Contract, Model, Sweep, Term};
-use glint_base::fixed::{Format, exp2, mask};
+use glint_base::fixed::{Format, exp2};
 use glint_config::Config;
 use glint_keys::normaliser::Keys;
-
-/// The most that the sum of squares can be: each component is at least −2.0.
-const FARTHEST: i64 = 12;
-
-/// The inverse root of a sum of three squares, by a table.
-pub(super) struct Root {
-    /// Bits of the sum.
-    pub width: u32,
-    address: u32,
-    fraction: u32,
-    /// 1/√m at the ends of the segments, from m = 1.0 on, raw.
-    ends: Vec<i64>,
-}
-
-impl Root {
-    /// Of components with so many fraction bits: the leading bits of the sum that choose a segment, and fraction bits of
-    /// an inverse root.
-    pub fn new(components: u32, address: u32, fraction: u32) -> Self {
-        let segments = 1i64 << address;
-        let scale = exp2(fraction as i32);
-        // m goes from 1.0 to 4.0 in steps of 4.0/segments.
-        let end =
-            |at: i64| (scale / (at as f64 * (4.0 / segments as f64)).sqrt() + 0.5).floor() as i64;
-        let ends = (segments / 4..=segments).map(end).collect();
-        Self { width: 2 * components + 4, address, fraction, ends }
-    }
-
-    /// Pairs of leading zeros, as many as the shifter counts.
-    pub fn pairs(&self, sum: i64) -> i64 {
-        match sum {
-            0 => (1 << self.pair_bits()) - 1,
-            _ => i64::from((self.width - 1 - sum.ilog2()) / 2),
-        }
-    }
-
-    /// Bits of that count.
-    pub fn pair_bits(&self) -> u32 {
-        (self.width - 1).ilog2()
-    }
-
-    /// The sum shifted by so many pairs.
-    pub fn mantissa(&self, sum: i64, pairs: i64) -> i64 {
-        if sum == 0 { 0 } else { sum << (2 * pairs) }
-    }
-
-    /// 1/√m by the chord of the segment.
-    pub fn inverse(&self, mantissa: i64) -> i64 {
-        if mantissa == 0 {
-            return 0;
-        }
-        let below = self.width - self.address;
-        let at = ((mantissa >> below) - (1 << (self.address - 2))) as usize;
-        let along = below.min(self.fraction - self.address + 2);
-        let rest = (mantissa >> (below - along)) & mask(along) as i64;
-        self.ends[at] - (((self.ends[at] - self.ends[at + 1]) * rest) >> along)
-    }
-
-    /// The errors of √m·f by the chords and by roundings, as values. Let m be the mantissa, 1 ≤ m < 4, f = 1/√m and r what
-    /// stands for it, u the last place of r.
-    ///
-    /// - f is convex, so that a chord lies above it, by at most h²/8·max f″ = h²/8·¾·a^(−5/2) in the segment from
-    ///   a on, of length h.
-    /// - The ends of the chord are rounded: ½u. What is cut of the way along the segment is at most a part
-    ///   2^−(R − A + 2) of a fall of at most h/2 = 2^(1 − A): ½u. The fall is truncated: u. In all 2u.
-    /// - That counts √m times, which is below 2: 4u for the rounding, and the chord's times the root of the end of the segment.
-    pub fn error(&self) -> [f64; 2] {
-        let h = 4.0 / exp2(self.address as i32);
-        let chord = (1 << (self.address - 2)..1u32 << self.address)
-            .map(|at| {
-                let a = f64::from(at) * h;
-                h * h / 8.0 * 0.75 * libm::pow(a, -2.5) * (a + h).sqrt()
-            })
-            .fold(0.0, f64::max);
-        [chord, 4.0 * exp2(-(self.fraction as i32))]
-    }
-
-    /// Every sum of squares, which determines the inverse root.
-    pub fn sweep(&self) -> Sweep {
-        Sweep::ranges([("sum of squares", (1, FARTHEST << (self.width - 4)))])
-    }
-
-    /// √m·r − 1 of a sum of squares.
-    pub fn relative_error(&self, sum: i64) -> f64 {
-        let mantissa = self.mantissa(sum, self.pairs(sum));
-        let root = (mantissa as f64 * exp2(2 - self.width as i32)).sqrt();
-        (self.inverse(mantissa) as f64 * exp2(-(self.fraction as i32)) * root - 1.0).abs()
-    }
-}
 
 struct Normaliser {
     keys: Keys,

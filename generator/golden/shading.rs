@@ -1,8 +1,8 @@
 //! `shading`: ambient, diffuse and specular light of a normal of any length, from the models of its parts.
 
 use super::device::{self, Formula};
-use super::dot_product::unit_vector;
 use super::frame::{Frame, Slot, State};
+use super::inverse_root::unit_vector;
 use super::narrow::Narrow;
 use super::{
     Axis, Contract, Model, Sweep, Term, Values, blinn, cosine_power, dot_product, formulas, schlick,
