@@ -43,7 +43,7 @@ impl Normaliser {
         self.rounded.apply(shifted * inverse)
     }
 
-    /// What the rounding of a result leaves, as a value.
+    /// Returns the error that the rounding of a result leaves, as a value.
     fn rounding_error(&self) -> f64 {
         let Keys { fraction, inverse, kept, rounding, .. } = self.keys;
         rounding_error(fraction + 1 + inverse, kept, rounding)
