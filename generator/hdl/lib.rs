@@ -32,7 +32,7 @@
 //! assert_eq!(glint_rtl::verilog::files(&design)?.len(), 4);
 //! let target = Timing::named("ecp5").expect("a target");
 //! let (goal, delays) = (Goal::ClockMhz(100.0), Delays::Memory);
-//! let options = Options { target, goal, registered: false, stall: true, side: 0, delays };
+//! let options = Options { target, goal, registered: false, stall: true, side: 0, delays, interval: 1 };
 //! assert_eq!(glint_rtl::verilog::files(&pipeline(&design, &options)?)?.len(), 1);
 //! # Ok::<(), anyhow::Error>(())
 //! ```
