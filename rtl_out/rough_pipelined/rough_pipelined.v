@@ -4,7 +4,7 @@
 //
 // Source: UA 60139, claim 1, figures 1, 2 and 4
 //
-// Pipeline: a point every clock, its results 19 clocks later; stages for 138 MHz on ecp5. While
+// Pipeline: a point every clock, its results 18 clocks later; stages for 138 MHz on ecp5. While
 // out_valid is high and out_ready low, all points stay where they are, and in_ready is low.
 //
 // Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit apart) and F
@@ -50,13 +50,13 @@ module rough_pipelined #(
     localparam [16:0] MINUS_ONE = 17'h10000;  // -1.0 in s0.16
 
     // The handshake: a bit for each stage that has a point; all points move on together
-    reg  [19:1] valid;
-    assign out_valid = valid[19];
-    wire advance = out_ready | ~valid[19];
+    reg  [18:1] valid;
+    assign out_valid = valid[18];
+    wire advance = out_ready | ~valid[18];
     assign in_ready = advance;
     always @(posedge clk) begin
-        if (!rst_n) valid <= 19'd0;
-        else if (advance) valid <= {valid[18:1], in_valid};
+        if (!rst_n) valid <= 18'd0;
+        else if (advance) valid <= {valid[17:1], in_valid};
     end
 
     // Stage 0, part of: operands cos gamma, cos dgamma; sine of gamma addressed; 19 <- sin gamma;
@@ -78,11 +78,14 @@ module rough_pipelined #(
 
     // Stage 1, part of: operands cos gamma, cos dgamma; sine of gamma addressed; 19 <- sin gamma;
     // 11 <- cos gamma * cos dgamma
+    wire sine_in_range7_s1 = |complement_s1[20:4];  // u is in range 7 or in one above
     wire sine_in_range8_s1 = |complement_s1[20:2];  // u is in range 8 or in one above
     wire sine_in_range1_s1 = |complement_s1[20:16];  // u is in range 1 or in one above
     wire sine_in_range2_s1 = |complement_s1[20:14];  // u is in range 2 or in one above
     wire sine_in_range3_s1 = |complement_s1[20:12];  // u is in range 3 or in one above
     wire sine_in_range0_s1 = |complement_s1[20:18];  // u is in range 0 or in one above
+    wire [9:0] sine_word8_s1 = sine_in_range8_s1 ? {8'd144, complement_s1[3:2]} : {8'd145,
+            complement_s1[1:0]};
     wire [9:0] sine_word3_s1 = sine_in_range3_s1 ? {4'd7, complement_s1[13:8]} : {5'd16,
             complement_s1[11:7]};
     wire [9:0] sine_word2_s1 = sine_in_range2_s1 ? {3'd2, complement_s1[15:9]} : sine_word3_s1;
@@ -100,7 +103,6 @@ module rough_pipelined #(
     wire [8:0] sine_word0_2_s1 = sine_in_range0_2_s1 ? {3'd6, complement_2_s1[19:14]} : {1'b0,
             complement_2_s1[17:10]};
     reg         sine_in_range6_s2;                // u is in range 6 or in one above
-    reg         sine_in_range7_s2;                // u is in range 7 or in one above
     reg  [1:0]  complement_shifted_bits_18_s2;    // u0.2
     reg         sine_in_range5_s2;                // u is in range 5 or in one above
     reg         facing_s2;                        // the surface faces the half vector
@@ -108,19 +110,19 @@ module rough_pipelined #(
     reg         sine_in_range7_2_s2;              // u is in range 7 or in one above
     reg  [1:0]  complement_shifted_bits_18_2_s2;  // u0.2
     reg         sine_in_range5_2_s2;              // u is in range 5 or in one above
-    reg         dgamma_negative_s2, sine_in_range8_s2, sine_in_range1_s2, sine_in_range2_s2;
+    reg         dgamma_negative_s2, sine_in_range7_s2, sine_in_range8_s2, sine_in_range1_s2;
     reg  [20:0] complement_s2, multiplier10_at_highest_2_s2, complement_2_s2;
-    reg         sine_in_range3_s2, sine_in_range0_s2, sine_in_range8_2_s2, sine_in_range1_2_s2;
-    reg  [9:0]  sine_word8_s2, sine_word1_s2, sine_word8_2_s2, sine_word1_2_s2;
-    reg  [17:0] multiplier10_upper_bits_s2, multiplier10_upper_bits_2_s2, multiplier10_row_2_s2;
-    reg  [17:0] multiplier10_row_4_s2;
+    reg         sine_in_range2_s2, sine_in_range3_s2, sine_in_range0_s2, sine_in_range8_2_s2;
+    reg  [9:0]  sine_word7_s2, sine_word1_s2, sine_word8_2_s2, sine_word1_2_s2;
+    reg  [35:0] multiplier10_upper_s2;
+    reg  [17:0] multiplier10_row_2_s2, multiplier10_row_4_s2;
     reg  [19:0] multiplier10_row_7_s2, multiplier10_row_9_s2, multiplier10_at_highest_s2;
-    reg         sine_in_range2_2_s2, sine_in_range3_2_s2, sine_in_range0_2_s2;
+    reg         sine_in_range1_2_s2, sine_in_range2_2_s2, sine_in_range3_2_s2, sine_in_range0_2_s2;
     always @(posedge clk) if (advance) begin
         dgamma_negative_s2 <= dgamma_negative_s1;
         complement_s2 <= complement_s1;
         sine_in_range6_s2 <= |complement_s1[20:6];
-        sine_in_range7_s2 <= |complement_s1[20:4];
+        sine_in_range7_s2 <= sine_in_range7_s1;
         sine_in_range8_s2 <= sine_in_range8_s1;
         complement_shifted_bits_18_s2 <= complement_s1[1:0];
         sine_in_range5_s2 <= |complement_s1[20:8];
@@ -129,11 +131,9 @@ module rough_pipelined #(
         sine_in_range3_s2 <= sine_in_range3_s1;
         sine_in_range0_s2 <= sine_in_range0_s1;
         facing_s2 <= |cos_gamma_reg_s1;
-        sine_word8_s2 <= sine_in_range8_s1 ? {8'd144, complement_s1[3:2]} : {8'd145,
-                complement_s1[1:0]};
+        sine_word7_s2 <= sine_in_range7_s1 ? {7'd71, complement_s1[5:3]} : sine_word8_s1;
         sine_word1_s2 <= sine_in_range1_s1 ? {1'b0, sine_word0_s1} : sine_word2_s1;
-        multiplier10_upper_bits_s2 <= cos_dgamma_reg_s1[19:2];
-        multiplier10_upper_bits_2_s2 <= cos_gamma_reg_s1[19:2];
+        multiplier10_upper_s2 <= cos_gamma_reg_s1[19:2] * cos_dgamma_reg_s1[19:2];
         multiplier10_row_2_s2 <= cos_gamma_reg_s1[0] ? cos_dgamma_reg_s1[19:2] : 18'd0;
         multiplier10_row_4_s2 <= cos_gamma_reg_s1[1] ? cos_dgamma_reg_s1[19:2] : 18'd0;
         multiplier10_row_7_s2 <= cos_dgamma_reg_s1[0] ? cos_gamma_reg_s1[19:0] : 20'd0;
@@ -172,7 +172,6 @@ module rough_pipelined #(
             4'd0};
     wire [13:0] sine_rest1_s2 = sine_in_range1_s2 ? sine_rest0_s2 : sine_rest2_s2;  // u0.14
     wire [13:0] sine_rest4_s2 = sine_in_range4_s2 ? sine_rest1_s2 : sine_rest6_s2;  // u0.14
-    wire [9:0] sine_word7_s2 = sine_in_range7_s2 ? {7'd71, complement_s2[5:3]} : sine_word8_s2;
     wire [9:0] sine_word5_s2 = sine_in_range5_s2 ? {6'd34, complement_s2[9:6]} : {7'd70,
             complement_s2[7:5]};
     wire [9:0] sine_word6_s2 = sine_in_range6_s2 ? sine_word5_s2 : sine_word7_s2;
@@ -219,7 +218,7 @@ module rough_pipelined #(
     always @(posedge clk) if (advance) begin
         dgamma_negative_s3 <= dgamma_negative_s2;
         facing_s3 <= facing_s2;
-        multiplier10_upper_s3 <= multiplier10_upper_bits_2_s2 * multiplier10_upper_bits_s2;
+        multiplier10_upper_s3 <= multiplier10_upper_s2;
         multiplier10_upper_12_s3 <= {1'b0, multiplier10_upper_8_s2[20:1]} + {1'b0,
                 multiplier10_upper_4_s2, multiplier10_row_2_s2[0]};
         multiplier10_rows_4_s3 <= {multiplier10_upper_8_s2[0], multiplier10_row_7_s2[0]};
@@ -237,48 +236,47 @@ module rough_pipelined #(
     wire [20:0] multiplier10_2_s3 = {1'b0, multiplier10_inside_3_s3} | multiplier10_at_highest_2_s3;
     // block 11, u1.22: cos gamma * cos dgamma
     wire [22:0] reg11_cos_cos_s3 = {multiplier10_2_s3, multiplier10_upper_14_s3[15:14]};
-    reg  [21:0] sine_base_s4;     // u0.22
-    reg  [12:0] sine_slope_s4;    // u-5.18
-    reg  [21:0] sine_base_2_s4;   // u0.22
-    reg  [12:0] sine_slope_2_s4;  // u-5.18
+    reg  [21:0] sine_base_s4;    // u0.22
+    reg  [12:0] sine_slope_s4;   // u-5.18
     reg         dgamma_negative_s4, facing_s4;
+    reg  [34:0] sine_word_2_s4;
     always @(posedge clk) if (advance) begin
         dgamma_negative_s4 <= dgamma_negative_s3;
         facing_s4 <= facing_s3;
         sine_base_s4 <= sine_word_s3[34:13];
         sine_slope_s4 <= sine_word_s3[12:0];
-        sine_base_2_s4 <= sine_word_2_s3[34:13];
-        sine_slope_2_s4 <= sine_word_2_s3[12:0];
+        sine_word_2_s4 <= sine_word_2_s3;
     end
 
     // Stage 4: values on their way
     reg         dgamma_negative_s5, facing_s5;
     wire [13:0] sine_rest4_s5, sine_rest4_2_s5;
-    reg  [21:0] sine_base_s5, sine_base_2_s5;
-    reg  [12:0] sine_slope_s5, sine_slope_2_s5;
+    reg  [21:0] sine_base_s5;
+    reg  [12:0] sine_slope_s5;
+    reg  [34:0] sine_word_2_s5;
     always @(posedge clk) if (advance) begin
         dgamma_negative_s5 <= dgamma_negative_s4;
         facing_s5 <= facing_s4;
         sine_base_s5 <= sine_base_s4;
         sine_slope_s5 <= sine_slope_s4;
-        sine_base_2_s5 <= sine_base_2_s4;
-        sine_slope_2_s5 <= sine_slope_2_s4;
+        sine_word_2_s5 <= sine_word_2_s4;
     end
 
     // Stage 5, part of: 19 <- sin gamma; 11 <- cos gamma * cos dgamma; operands sin dgamma, sin
     // gamma
     wire [26:0] sine_rise_s5 = sine_slope_s5 * sine_rest4_s5;  // u-5.32
-    wire [26:0] sine_rise_2_s5 = sine_slope_2_s5 * sine_rest4_2_s5;  // u-5.32
+    wire [26:0] sine_rise_2_s5 = sine_word_2_s5[12:0] * sine_rest4_2_s5;  // u-5.32
     reg  [16:0] sine_rise_kept_s6;    // u-5.22
+    reg  [21:0] sine_base_2_s6;       // u0.22
     reg  [16:0] sine_rise_kept_2_s6;  // u-5.22
     reg         dgamma_negative_s6, facing_s6;
-    reg  [21:0] sine_base_s6, sine_base_2_s6;
+    reg  [21:0] sine_base_s6;
     always @(posedge clk) if (advance) begin
         dgamma_negative_s6 <= dgamma_negative_s5;
         facing_s6 <= facing_s5;
         sine_base_s6 <= sine_base_s5;
         sine_rise_kept_s6 <= sine_rise_s5[26:10];
-        sine_base_2_s6 <= sine_base_2_s5;
+        sine_base_2_s6 <= sine_word_2_s5[34:13];
         sine_rise_kept_2_s6 <= sine_rise_2_s5[26:10];
     end
 
@@ -286,14 +284,18 @@ module rough_pipelined #(
     // gamma
     wire [22:0] sine_sum_s6 = {1'b0, sine_base_s6} + {6'd0, sine_rise_kept_s6};  // u1.22
     wire [22:0] sine_sum_2_s6 = {1'b0, sine_base_2_s6} + {6'd0, sine_rise_kept_2_s6};  // u1.22
-    reg  [21:0] reg19_sin_gamma_s7;  // register 19, u0.22: sin gamma
-    reg  [21:0] sine_value_s7;       // u0.22: sine of the addressed cosine
+    // u0.22: sine of the addressed cosine
+    wire [21:0] sine_value_s6 = sine_sum_2_s6[22] ? 22'h3fffff : sine_sum_2_s6[21:0];
+    reg  [21:0] reg19_sin_gamma_s7;            // register 19, u0.22: sin gamma
     reg         dgamma_negative_s7, facing_s7;
+    reg  [17:0] multiplier10_upper_bits_3_s7;
+    reg  [3:0]  multiplier10_lower_bits_2_s7;
     always @(posedge clk) if (advance) begin
         dgamma_negative_s7 <= dgamma_negative_s6;
         facing_s7 <= facing_s6;
         reg19_sin_gamma_s7 <= sine_sum_s6[22] ? 22'h3fffff : sine_sum_s6[21:0];
-        sine_value_s7 <= sine_sum_2_s6[22] ? 22'h3fffff : sine_sum_2_s6[21:0];
+        multiplier10_upper_bits_3_s7 <= sine_value_s6[21:4];
+        multiplier10_lower_bits_2_s7 <= sine_value_s6[3:0];
     end
 
     // Stage 7, part of: 12 <- sin gamma * sin dgamma
@@ -305,14 +307,14 @@ module rough_pipelined #(
     always @(posedge clk) if (advance) begin
         dgamma_negative_s8 <= dgamma_negative_s7;
         facing_s8 <= facing_s7;
-        multiplier10_upper_bits_3_s8 <= sine_value_s7[21:4];
+        multiplier10_upper_bits_3_s8 <= multiplier10_upper_bits_3_s7;
         multiplier10_upper_bits_4_s8 <= reg19_sin_gamma_s7[21:4];
-        multiplier10_lower_s8 <= reg19_sin_gamma_s7[3:0] * sine_value_s7[21:4];
-        multiplier10_upper_16_s8 <= reg19_sin_gamma_s7[21:4] * sine_value_s7[3:0];
-        multiplier10_row_12_s8 <= reg19_sin_gamma_s7[0] ? sine_value_s7[3:0] : 4'd0;
-        multiplier10_row_14_s8 <= reg19_sin_gamma_s7[1] ? sine_value_s7[3:0] : 4'd0;
-        multiplier10_row_17_s8 <= reg19_sin_gamma_s7[2] ? sine_value_s7[3:0] : 4'd0;
-        multiplier10_row_20_s8 <= reg19_sin_gamma_s7[3] ? sine_value_s7[3:0] : 4'd0;
+        multiplier10_lower_s8 <= reg19_sin_gamma_s7[3:0] * multiplier10_upper_bits_3_s7;
+        multiplier10_upper_16_s8 <= reg19_sin_gamma_s7[21:4] * multiplier10_lower_bits_2_s7;
+        multiplier10_row_12_s8 <= reg19_sin_gamma_s7[0] ? multiplier10_lower_bits_2_s7 : 4'd0;
+        multiplier10_row_14_s8 <= reg19_sin_gamma_s7[1] ? multiplier10_lower_bits_2_s7 : 4'd0;
+        multiplier10_row_17_s8 <= reg19_sin_gamma_s7[2] ? multiplier10_lower_bits_2_s7 : 4'd0;
+        multiplier10_row_20_s8 <= reg19_sin_gamma_s7[3] ? multiplier10_lower_bits_2_s7 : 4'd0;
     end
 
     // Stage 8, part of: 12 <- sin gamma * sin dgamma
@@ -397,75 +399,64 @@ module rough_pipelined #(
         multiplier10_view_3_s13 <= multiplier10_upper_37_s12[17:2];
     end
 
-    // Stage 13, part of: 13 <- n/2 * (cos(gamma +- dgamma) - 1)
-    wire signed [16:0] result_limited_s13 = (~multiplier10_upper_39_s13[10] &
-            (|multiplier10_upper_39_s13[9:0])) ? RESULT_MOST : {multiplier10_upper_39_s13[0],
+    // Stage 13, part of: 13 <- n/2 * (cos(gamma +- dgamma) - 1); operands adder 16, adder 16
+    wire adder16_upper_s13 = ~multiplier10_upper_39_s13[0];
+    wire [16:0] adder16_before_2_s13 = (~multiplier10_upper_39_s13[10] &
+            (|multiplier10_upper_39_s13[9:0])) ? 17'h1ffff : {adder16_upper_s13,
             multiplier10_view_3_s13};
-    wire signed [16:0] result_s13 = (multiplier10_upper_39_s13[10] &
-            ~(&multiplier10_upper_39_s13[9:0])) ? MINUS_ONE : result_limited_s13;
-    // register 13, s0.16: n/2*(cos(gamma +- dgamma) - 1), then f
-    reg  signed [16:0] reg13_result_s14;
-    reg                facing_s14;
+    wire [16:0] adder16_before_3_s13 = (multiplier10_upper_39_s13[10] &
+            ~(&multiplier10_upper_39_s13[9:0])) ? 17'd0 : adder16_before_2_s13;
+    reg  [16:0] adder16_s14;  // register 16, u1.16: register 13 + 1.0
+    reg         facing_s14;
     always @(posedge clk) if (advance) begin
         facing_s14 <= facing_s13;
-        reg13_result_s14 <= facing_s13 ? result_s13 : MINUS_ONE;
+        adder16_s14 <= facing_s13 ? adder16_before_3_s13 : 17'd0;
     end
 
-    // Stage 14, part of: operands adder 16, adder 16
-    reg         facing_s15, adder16_upper_2_s15;
-    reg  [15:0] adder16_upper_3_s15;
+    // Stage 14, part of: 13 <- (... + 1)^2
+    wire [33:0] multiplier10_6_s14 = adder16_s14 * adder16_s14;  // multiplier 10
+    reg  signed [16:0] line_or_square_kept_inside_s15;  // s0.16
+    reg                facing_s15;
+    reg         [1:0]  result_high_2_s15;
     always @(posedge clk) if (advance) begin
         facing_s15 <= facing_s14;
-        adder16_upper_2_s15 <= ~reg13_result_s14[16];
-        adder16_upper_3_s15 <= reg13_result_s14[15:0];
+        result_high_2_s15 <= multiplier10_6_s14[33:32];
+        line_or_square_kept_inside_s15 <= multiplier10_6_s14[32:16];
     end
 
     // Stage 15, part of: 13 <- (... + 1)^2
-    // block 16, u1.16: register 13 + 1.0
-    wire [16:0] adder16_s15 = {adder16_upper_2_s15, adder16_upper_3_s15};
-    wire [33:0] multiplier10_6_s15 = adder16_s15 * adder16_s15;  // multiplier 10
-    reg  signed [16:0] line_or_square_kept_inside_s16;    // s0.16
-    reg                facing_s16;
-    reg         [9:0]  line_or_square_kept_bits_2_2_s16;
-    always @(posedge clk) if (advance) begin
-        facing_s16 <= facing_s15;
-        line_or_square_kept_bits_2_2_s16 <= {8'd0, multiplier10_6_s15[33:32]};
-        line_or_square_kept_inside_s16 <= multiplier10_6_s15[32:16];
-    end
-
-    // Stage 16, part of: 13 <- (... + 1)^2
-    wire signed [16:0] result_2_s16 = (|line_or_square_kept_bits_2_2_s16) ? RESULT_MOST :
-            line_or_square_kept_inside_s16;
+    wire signed [16:0] result_s15 = (|result_high_2_s15) ? RESULT_MOST :
+            line_or_square_kept_inside_s15;
     // mux 13, s0.16: n/2*(cos(gamma +- dgamma) - 1), then f
-    wire signed [16:0] reg13_result_2_s16 = facing_s16 ? result_2_s16 : MINUS_ONE;
-    reg  [15:0] f_s17;  // u0.16: the reflectance, once register 13 holds the square
-    wire [7:0]  red_s17, green_s17, blue_s17;
-    always @(posedge clk) if (advance) f_s17 <= reg13_result_2_s16[15:0];
+    wire signed [16:0] reg13_result_s15 = facing_s15 ? result_s15 : MINUS_ONE;
+    reg  [15:0] f_s16;  // u0.16: the reflectance, once register 13 holds the square
+    wire [7:0]  red_s16, green_s16, blue_s16;
+    always @(posedge clk) if (advance) f_s16 <= reg13_result_s15[15:0];
+
+    // Stage 16, part of: valid: intensities on the outputs
+    // multiplier 20, u8.16: an output before it is rounded
+    wire [23:0] red_product_s16 = f_s16 * red_s16;
+    // multiplier 21, u8.16: an output before it is rounded
+    wire [23:0] green_product_s16 = f_s16 * green_s16;
+    // multiplier 22, u8.16: an output before it is rounded
+    wire [23:0] blue_product_s16 = f_s16 * blue_s16;
+    reg  [7:0] red_product_kept_s17, green_product_kept_s17, blue_product_kept_s17;
+    reg        red_product_bits_s17, green_product_bits_s17, blue_product_bits_s17;
+    always @(posedge clk) if (advance) begin
+        red_product_kept_s17 <= red_product_s16[23:16];
+        red_product_bits_s17 <= red_product_s16[15];
+        green_product_kept_s17 <= green_product_s16[23:16];
+        green_product_bits_s17 <= green_product_s16[15];
+        blue_product_kept_s17 <= blue_product_s16[23:16];
+        blue_product_bits_s17 <= blue_product_s16[15];
+    end
 
     // Stage 17, part of: valid: intensities on the outputs
-    // multiplier 20, u8.16: an output before it is rounded
-    wire [23:0] red_product_s17 = f_s17 * red_s17;
-    // multiplier 21, u8.16: an output before it is rounded
-    wire [23:0] green_product_s17 = f_s17 * green_s17;
-    // multiplier 22, u8.16: an output before it is rounded
-    wire [23:0] blue_product_s17 = f_s17 * blue_s17;
-    reg  [7:0] red_product_kept_s18, green_product_kept_s18, blue_product_kept_s18;
-    reg        red_product_bits_s18, green_product_bits_s18, blue_product_bits_s18;
+    reg  [7:0] red_intensity_s18, green_intensity_s18, blue_intensity_s18;
     always @(posedge clk) if (advance) begin
-        red_product_kept_s18 <= red_product_s17[23:16];
-        red_product_bits_s18 <= red_product_s17[15];
-        green_product_kept_s18 <= green_product_s17[23:16];
-        green_product_bits_s18 <= green_product_s17[15];
-        blue_product_kept_s18 <= blue_product_s17[23:16];
-        blue_product_bits_s18 <= blue_product_s17[15];
-    end
-
-    // Stage 18, part of: valid: intensities on the outputs
-    reg  [7:0] red_intensity_s19, green_intensity_s19, blue_intensity_s19;
-    always @(posedge clk) if (advance) begin
-        red_intensity_s19 <= red_product_kept_s18 + {7'd0, red_product_bits_s18};
-        green_intensity_s19 <= green_product_kept_s18 + {7'd0, green_product_bits_s18};
-        blue_intensity_s19 <= blue_product_kept_s18 + {7'd0, blue_product_bits_s18};
+        red_intensity_s18 <= red_product_kept_s17 + {7'd0, red_product_bits_s17};
+        green_intensity_s18 <= green_product_kept_s17 + {7'd0, green_product_bits_s17};
+        blue_intensity_s18 <= blue_product_kept_s17 + {7'd0, blue_product_bits_s17};
     end
 
     // Delay lines: what nothing reads for several stages goes through small memories
@@ -484,23 +475,23 @@ module rough_pipelined #(
         .entering(exponent),
         .leaving(exponent_s11)
     );
-    rough_pipelined_delay #(.WIDTH(24), .WORDS(16), .BITS(4)) delay_of_17 (
+    rough_pipelined_delay #(.WIDTH(24), .WORDS(15), .BITS(4)) delay_of_16 (
         .clk(clk), .rst_n(rst_n), .enable(advance),
         .entering({red, green, blue}),
-        .leaving({red_s17, green_s17, blue_s17})
+        .leaving({red_s16, green_s16, blue_s16})
     );
 
     // Results
-    assign red_out = red_intensity_s19;  // output 40: intensity on the output
-    assign green_out = green_intensity_s19;  // output 41: intensity on the output
-    assign blue_out = blue_intensity_s19;  // output 42: intensity on the output
+    assign red_out = red_intensity_s18;  // output 40: intensity on the output
+    assign green_out = green_intensity_s18;  // output 41: intensity on the output
+    assign blue_out = blue_intensity_s18;  // output 42: intensity on the output
 
     // Unused bits, among them those that narrowing drops.
     wire unused = &{1'b0, sine_rise_s5[9:0], multiplier10_upper_12_s3[1:0], multiplier10_rows_4_s3,
             multiplier10_upper_14_s3[13:0], sine_rise_2_s5[9:0], multiplier10_sum_10_s9[21:0],
-            multiplier10_lower_2_s12[4:0], multiplier10_upper_37_s12[1:0], multiplier10_6_s15[15:0],
-            reg13_result_2_s16[16], red_product_s17[14:0], green_product_s17[14:0],
-            blue_product_s17[14:0]};
+            multiplier10_lower_2_s12[4:0], multiplier10_upper_37_s12[1:0], multiplier10_6_s14[15:0],
+            reg13_result_s15[16], red_product_s16[14:0], green_product_s16[14:0],
+            blue_product_s16[14:0]};
 endmodule
 
 // Values on their way, WORDS + 1 registers long. A slot of a small memory gives the value that it

@@ -307,11 +307,14 @@ impl Graph {
                 if low > 0 || high < 0 {
                     return Some(self.constant(1, format, label));
                 }
-                match self.node(*a).cell {
-                    Cell::Op(Op::Extend(b)) => Some(self.op(Op::Any(b), format, label)),
-                    _ if self.width(*a) == 1 => Some(self.op(Op::Relabel(*a), format, label)),
-                    _ => None,
+                if let Cell::Op(Op::Extend(b)) = self.node(*a).cell {
+                    return Some(self.op(Op::Any(b), format, label));
                 }
+                if self.width(*a) == 1 {
+                    return Some(self.op(Op::Relabel(*a), format, label));
+                }
+                let bits = self.without_zeros(*a, label)?;
+                Some(self.op(Op::Any(bits), format, label))
             }
             Op::All(a) if self.width(*a) == 1 => Some(self.op(Op::Relabel(*a), format, label)),
             Op::Equal(..) | Op::Less(..) | Op::All(_) => None,
@@ -335,6 +338,18 @@ impl Graph {
                 }
             }
         }
+    }
+
+    /// The bits of a slice that are not zeros in front of a number, where some are.
+    fn without_zeros(&mut self, slice: NodeId, label: &Label) -> Option<NodeId> {
+        let Cell::Op(Op::Slice { of, low }) = self.node(slice).cell else { return None };
+        let Cell::Op(Op::Extend(number)) = self.node(of).cell else { return None };
+        let inner = self.node(number).format;
+        let left = inner.width() - low;
+        (!inner.signed && left < self.width(slice)).then(|| {
+            let bits = Format::unsigned(left as i32, 0);
+            self.op(Op::Slice { of: number, low }, bits, label)
+        })
     }
 
     fn fold_slice(

@@ -1,9 +1,10 @@
 //! Sums and differences in fewer look-up tables: a synthesiser takes them as they are written, and a schedule counts them.
 //!
-//! Of a sum of which an operand has zeros in its lowest bits those of the other one pass it by. `a + ~b + 1` is `a - b`. What a
-//! constant less a limited value is, is chosen behind the difference, where the register takes it by its reset.
+//! Of a sum of which an operand has zeros in its lowest bits those of the other one pass it by. `a + ~b + 1` is `a - b`. A
+//! choice between a value and a constant is made behind a sum with a constant, where the register makes it by its reset.
 
 use super::graph::{Cell, Graph, Label, NodeId, Op};
+use crate::netlist::interval::of_cell;
 use glint_base::fixed::Format;
 use glint_base::interval::Interval;
 
@@ -53,7 +54,7 @@ pub fn shortened(
     graph.insert(Cell::Op(Op::Concat(vec![upper, lower])), format, range, label)
 }
 
-/// A constant less a choice between a value and a constant: the choice between their differences.
+/// A constant and a choice between a value and a constant: the choice between their sums, or differences.
 fn chosen_behind(
     graph: &mut Graph,
     op: &Op,
@@ -61,15 +62,38 @@ fn chosen_behind(
     range: Interval,
     label: &Label,
 ) -> Option<NodeId> {
-    let Op::Sub(from, choice) = *op else { return None };
-    graph.constant_of(from)?;
+    let (constant, choice) = match *op {
+        Op::Sub(constant, choice) => (constant, choice),
+        Op::Add { a: choice, b: constant, carry: None } => (constant, choice),
+        _ => return None,
+    };
+    graph.constant_of(constant)?;
+    // The choice, or its bits with another weight of the highest.
+    let same = graph.node(choice).format;
+    let choice = match graph.node(choice).cell {
+        Cell::Op(Op::Relabel(of)) => of,
+        _ => choice,
+    };
     let Cell::Op(Op::Mux { select, inputs }) = graph.node(choice).cell.clone() else { return None };
     let constants = inputs.iter().filter(|it| graph.constant_of(**it).is_some());
     if inputs.len() != 2 || constants.count() != 1 {
         return None;
     }
     let each = Label { named: false, ..label.part("before") };
-    let inputs = inputs.iter().map(|&it| graph.op(Op::Sub(from, it), format, &each)).collect();
+    let inputs = inputs.into_iter().map(|input| {
+        let input = graph.op(Op::Relabel(input), same, &each);
+        let each_op = match op {
+            Op::Sub(..) => Op::Sub(constant, input),
+            _ => Op::Add { a: input, b: constant, carry: None },
+        };
+        let range =
+            of_cell(&each_op, format, &|id| graph.node(id).format, &|id| graph.node(id).range);
+        match graph.constant_of(input) {
+            Some(_) => graph.op(each_op, format, &each),
+            None => shortened(graph, each_op, format, range, &each),
+        }
+    });
+    let inputs = inputs.collect();
     Some(graph.insert(Cell::Op(Op::Mux { select, inputs }), format, range, label))
 }
 
