@@ -114,8 +114,8 @@ module rough_pipelined #(
     reg  [20:0] complement_s2, multiplier10_at_highest_2_s2, complement_2_s2;
     reg         sine_in_range2_s2, sine_in_range3_s2, sine_in_range0_s2, sine_in_range8_2_s2;
     reg  [9:0]  sine_word7_s2, sine_word1_s2, sine_word8_2_s2, sine_word1_2_s2;
-    reg  [35:0] multiplier10_upper_s2;
-    reg  [17:0] multiplier10_row_2_s2, multiplier10_row_4_s2;
+    reg  [17:0] multiplier10_upper_bits_s2, multiplier10_upper_bits_2_s2, multiplier10_row_2_s2;
+    reg  [17:0] multiplier10_row_4_s2;
     reg  [19:0] multiplier10_row_7_s2, multiplier10_row_9_s2, multiplier10_at_highest_s2;
     reg         sine_in_range1_2_s2, sine_in_range2_2_s2, sine_in_range3_2_s2, sine_in_range0_2_s2;
     always @(posedge clk) if (advance) begin
@@ -133,7 +133,8 @@ module rough_pipelined #(
         facing_s2 <= |cos_gamma_reg_s1;
         sine_word7_s2 <= sine_in_range7_s1 ? {7'd71, complement_s1[5:3]} : sine_word8_s1;
         sine_word1_s2 <= sine_in_range1_s1 ? {1'b0, sine_word0_s1} : sine_word2_s1;
-        multiplier10_upper_s2 <= cos_gamma_reg_s1[19:2] * cos_dgamma_reg_s1[19:2];
+        multiplier10_upper_bits_s2 <= cos_dgamma_reg_s1[19:2];
+        multiplier10_upper_bits_2_s2 <= cos_gamma_reg_s1[19:2];
         multiplier10_row_2_s2 <= cos_gamma_reg_s1[0] ? cos_dgamma_reg_s1[19:2] : 18'd0;
         multiplier10_row_4_s2 <= cos_gamma_reg_s1[1] ? cos_dgamma_reg_s1[19:2] : 18'd0;
         multiplier10_row_7_s2 <= cos_dgamma_reg_s1[0] ? cos_gamma_reg_s1[19:0] : 20'd0;
@@ -218,7 +219,7 @@ module rough_pipelined #(
     always @(posedge clk) if (advance) begin
         dgamma_negative_s3 <= dgamma_negative_s2;
         facing_s3 <= facing_s2;
-        multiplier10_upper_s3 <= multiplier10_upper_s2;
+        multiplier10_upper_s3 <= multiplier10_upper_bits_2_s2 * multiplier10_upper_bits_s2;
         multiplier10_upper_12_s3 <= {1'b0, multiplier10_upper_8_s2[20:1]} + {1'b0,
                 multiplier10_upper_4_s2, multiplier10_row_2_s2[0]};
         multiplier10_rows_4_s3 <= {multiplier10_upper_8_s2[0], multiplier10_row_7_s2[0]};

@@ -51,6 +51,7 @@ module threshold_pipelined #(
 
     // Constants
     localparam [20:0] COS_GAMMA_MOST = 21'h100000;  // 1.0 in u1.20
+    localparam [16:0] MULTIPLIER1_ROUNDED_LEAST = 17'h10000;  // -1.0 in s0.16
 
     // The handshake: a bit for each stage that has a point; all points move on together
     reg  [9:1] valid;
@@ -89,38 +90,41 @@ module threshold_pipelined #(
         facing_s2 <= |cos_gamma_reg_s1;
     end
 
-    // Stage 2, part of: scaled <- n/2 * (cos gamma - 1); intensity <- (scaled + 1)^2, or 0 below
-    // ROM(n)
+    // Stage 2, part of: scaled <- n/2 * (cos gamma - 1)
     wire [27:0] multiplier1_upper_7_s2 = {18'd0, multiplier1_upper_4_s2[10:1]} +
             multiplier1_upper_s2;
     wire signed [10:0] multiplier1_upper_8_s2 = {1'b0, multiplier1_upper_7_s2[27:18]} - {1'b0,
             multiplier1_at_sign_s2};
-    reg  [15:0] multiplier1_5_s3;  // register 1
-    reg  [9:0]  exponent_s3, multiplier1_kept_bits_2_s3;
-    reg         multiplier1_kept_bits_s3, facing_s3, adder2_upper_2_s3;
+    reg  signed [16:0] multiplier1_kept_inside_s3;  // s0.16
+    reg         [9:0]  exponent_s3, multiplier1_kept_bits_2_s3;
+    reg                multiplier1_kept_bits_s3, facing_s3;
     always @(posedge clk) if (advance) begin
         exponent_s3 <= exponent_s2;
         multiplier1_kept_bits_s3 <= multiplier1_upper_8_s2[10];
         multiplier1_kept_bits_2_s3 <= multiplier1_upper_8_s2[10:1];
+        multiplier1_kept_inside_s3 <= {multiplier1_upper_8_s2[1:0], multiplier1_upper_7_s2[17:3]};
         facing_s3 <= facing_s2;
-        adder2_upper_2_s3 <= ~multiplier1_upper_8_s2[1];
-        multiplier1_5_s3 <= {multiplier1_upper_8_s2[0], multiplier1_upper_7_s2[17:3]};
     end
 
     // Stage 3, part of: scaled <- n/2 * (cos gamma - 1); intensity <- (scaled + 1)^2, or 0 below
     // ROM(n)
-    reg  [16:0] adder2_s4;    // register 2, u1.16: base of the square, 0 ... 1.0
+    // s0.16: n/2*(cos gamma - 1), not below -1.0
+    wire signed [16:0] scaled_s3 = (multiplier1_kept_bits_s3 & ~(&multiplier1_kept_bits_2_s3)) ?
+            MULTIPLIER1_ROUNDED_LEAST : multiplier1_kept_inside_s3;
     reg  [9:0]  exponent_s4;
-    reg         facing_s4;
+    reg         facing_s4, adder2_upper_2_s4;
+    reg  [15:0] adder2_upper_3_s4;
     always @(posedge clk) if (advance) begin
         exponent_s4 <= exponent_s3;
         facing_s4 <= facing_s3;
-        adder2_s4 <= (multiplier1_kept_bits_s3 & ~(&multiplier1_kept_bits_2_s3)) ? 17'd0 :
-                {adder2_upper_2_s3, multiplier1_5_s3};
+        adder2_upper_2_s4 <= ~scaled_s3[16];
+        adder2_upper_3_s4 <= scaled_s3[15:0];
     end
 
     // Stage 4, part of: intensity <- (scaled + 1)^2, or 0 below ROM(n)
     reg  [15:0] levels_word_s5;  // u0.16
+    // block 2, u1.16: base of the square, 0 ... 1.0
+    wire [16:0] adder2_s4 = {adder2_upper_2_s4, adder2_upper_3_s4};
     wire [33:0] multiplier2_s4 = adder2_s4 * adder2_s4;  // multiplier 2, u2.32
     // ROM levels: the smallest f that is shown for an exponent n (the address)
     reg [15:0] levels_rom [0:1023];

@@ -471,7 +471,13 @@ impl<'a> Problems<'a> {
             Some(&stage) => (stage as f64, stage as f64),
             None => (0.0, self.last_stage(id, latency) as f64),
         });
-        let stage: Vec<_> = stages.map(|it| problem.add_var(0.0, it)).collect();
+        // Of schedules of as many register bits one whose products are late: their operands have registers of their own.
+        let late = |id: usize| match self.graph.node(NodeId(id as u32)).cell {
+            Cell::Op(Op::Mul(..)) => -1e-3,
+            _ => 0.0,
+        };
+        let stage: Vec<_> =
+            stages.enumerate().map(|(id, it)| problem.add_var(late(id), it)).collect();
         for &(from, to, apart) in differences {
             let (from, to) = (stage[from.index()], stage[to.index()]);
             problem.add_constraint([(to, 1.0), (from, -1.0)], ComparisonOp::Ge, apart as f64);

@@ -16,6 +16,24 @@ pub fn shortened(
     range: Interval,
     label: &Label,
 ) -> NodeId {
+    // One choice before an inverter takes no clock, two do.
+    let behind = match op {
+        Op::Add { a, .. } => choice(graph, a)
+            .is_some_and(|(_, inputs)| inputs.iter().any(|&it| choice(graph, it).is_some())),
+        _ => true,
+    };
+    within(graph, op, format, range, label, behind)
+}
+
+/// As [`shortened`]. Choices are made behind a sum with a constant where `behind` says so.
+fn within(
+    graph: &mut Graph,
+    op: Op,
+    format: Format,
+    range: Interval,
+    label: &Label,
+    behind: bool,
+) -> NodeId {
     let op = match op {
         Op::Add { a, b, carry: Some(one) } if graph.constant_of(one) == Some(1) => {
             match (&graph.node(a).cell, &graph.node(b).cell) {
@@ -26,7 +44,7 @@ pub fn shortened(
         }
         _ => op,
     };
-    if let Some(id) = chosen_behind(graph, &op, format, range, label) {
+    if behind && let Some(id) = chosen_behind(graph, &op, format, range, label) {
         return id;
     }
     let width = format.width();
@@ -62,23 +80,14 @@ fn chosen_behind(
     range: Interval,
     label: &Label,
 ) -> Option<NodeId> {
-    let (constant, choice) = match *op {
-        Op::Sub(constant, choice) => (constant, choice),
-        Op::Add { a: choice, b: constant, carry: None } => (constant, choice),
+    let (constant, from) = match *op {
+        Op::Sub(constant, from) => (constant, from),
+        Op::Add { a: from, b: constant, carry: None } => (constant, from),
         _ => return None,
     };
     graph.constant_of(constant)?;
-    // The choice, or its bits with another weight of the highest.
-    let same = graph.node(choice).format;
-    let choice = match graph.node(choice).cell {
-        Cell::Op(Op::Relabel(of)) => of,
-        _ => choice,
-    };
-    let Cell::Op(Op::Mux { select, inputs }) = graph.node(choice).cell.clone() else { return None };
-    let constants = inputs.iter().filter(|it| graph.constant_of(**it).is_some());
-    if inputs.len() != 2 || constants.count() != 1 {
-        return None;
-    }
+    let (select, inputs) = choice(graph, from)?;
+    let same = graph.node(from).format;
     let each = Label { named: false, ..label.part("before") };
     let inputs = inputs.into_iter().map(|input| {
         let input = graph.op(Op::Relabel(input), same, &each);
@@ -90,11 +99,23 @@ fn chosen_behind(
             of_cell(&each_op, format, &|id| graph.node(id).format, &|id| graph.node(id).range);
         match graph.constant_of(input) {
             Some(_) => graph.op(each_op, format, &each),
-            None => shortened(graph, each_op, format, range, &each),
+            None => within(graph, each_op, format, range, &each, true),
         }
     });
     let inputs = inputs.collect();
     Some(graph.insert(Cell::Op(Op::Mux { select, inputs }), format, range, label))
+}
+
+/// The select and the inputs of a choice between a value and a constant, where a node is one or has its bits.
+fn choice(graph: &Graph, id: NodeId) -> Option<(NodeId, Vec<NodeId>)> {
+    match &graph.node(id).cell {
+        Cell::Op(Op::Relabel(of)) => choice(graph, *of),
+        Cell::Op(Op::Mux { select, inputs }) => {
+            let constants = inputs.iter().filter(|it| graph.constant_of(**it).is_some()).count();
+            (inputs.len() == 2 && constants == 1).then(|| (*select, inputs.clone()))
+        }
+        _ => None,
+    }
 }
 
 /// How many of the lowest bits are always 0.
