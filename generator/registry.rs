@@ -239,7 +239,11 @@ fn pipelining(config: &Config) -> Option<pipeline::Options> {
             0 => pipeline::Goal::ClockMhz(keys.pipeline_clock_mhz),
             stages => pipeline::Goal::Stages(stages as usize),
         },
-        interval: keys.interval as usize,
+        interval: match keys.interval.parse() {
+            Ok(clocks) => pipeline::Interval::Clocks(clocks),
+            Err(_) if keys.rate != 0.0 => pipeline::Interval::Rate(keys.rate),
+            Err(_) => pipeline::Interval::Multipliers(keys.max_multipliers as usize),
+        },
         registered: keys.multipliers == "registered",
         stall: keys.stall == "ready",
         side: keys.side,

@@ -16,6 +16,14 @@ pub fn shared_keys() -> &'static [Key] {
 
 static KEYS: LazyLock<Vec<Key>> = LazyLock::new(Shared::keys);
 
+/// The values of `pipeline.interval`.
+static INTERVALS: [&str; 65] = [
+    "auto", "1", "2", "3", "4", "5", "6", "7", "8", "9", "10", "11", "12", "13", "14", "15", "16",
+    "17", "18", "19", "20", "21", "22", "23", "24", "25", "26", "27", "28", "29", "30", "31", "32",
+    "33", "34", "35", "36", "37", "38", "39", "40", "41", "42", "43", "44", "45", "46", "47", "48",
+    "49", "50", "51", "52", "53", "54", "55", "56", "57", "58", "59", "60", "61", "62", "63", "64",
+];
+
 keys! {
     /// The shared keys of a configuration.
     pub struct Shared {
@@ -30,9 +38,16 @@ keys! {
         stages: u32 = Key::integer("pipeline.stages", 0, 0..=1000,
             "The number of stages, in place of a clock; as fast as they allow. 0: pipeline.clock_mhz decides.")
             .only_when("architecture", "pipelined"),
-        interval: u32 = Key::integer("pipeline.interval", 1, 1..=64,
-            "Clocks from a point to the next: a multiplier serves as many products. From 1 to the clocks of the sequential core.")
+        interval: String = Key::choice("pipeline.interval", "1", &INTERVALS,
+            "Clocks from a point to the next: a multiplier serves as many products. From 1 to the clocks of the sequential core, \
+             or as pipeline.rate or pipeline.max_multipliers asks for.")
             .only_when("architecture", "pipelined"),
+        rate: f64 = Key::number_or_zero("pipeline.rate", 0.001..=2000.0,
+            "Million points a second at least, at pipeline.clock_mhz: the interval is the longest that has them.")
+            .only_when("pipeline.interval", "auto"),
+        max_multipliers: u32 = Key::integer("pipeline.max_multipliers", 0, 0..=1000,
+            "The most multipliers: the interval is the shortest that has no more. 0: pipeline.rate decides.")
+            .only_when("pipeline.interval", "auto"),
         multipliers: String = Key::choice("pipeline.multipliers", "inferred", &["inferred", "registered"],
             "Products as the synthesiser finds them, or in instances of <name>_multiplier, whose output register is that of \
              the DSP block: faster, and every product takes a block.")

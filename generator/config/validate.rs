@@ -8,7 +8,7 @@ use super::nearest::nearest;
 use super::problems::{Problem, Problems, Violation, out_of_range, quoted, shown};
 use super::schema::{Key, Kind, Schema};
 use super::shared::Shared;
-use super::values::{Config, Value};
+use super::values::{Config, Value, is_integer};
 
 impl Key {
     /// Returns the problems of a value; none if the key accepts it.
@@ -24,7 +24,7 @@ impl Key {
             }
             (Kind::Choice(options), Value::Text(given)) => self
                 .unless(options.contains(&given.as_str()), || {
-                    if self.kind.is_integer_choice() {
+                    if is_integer(given) {
                         format!("`{name}` cannot be {}", shown(given))
                     } else {
                         format!("`{name}` cannot be {}", quoted(given))
@@ -85,8 +85,7 @@ impl Key {
             return violation;
         };
         // Among numbers the nearest spelling means nothing.
-        let near =
-            nearest(given, options.iter().copied()).filter(|_| !self.kind.is_integer_choice());
+        let near = nearest(given, options.iter().copied()).filter(|_| !is_integer(given));
         match near {
             None => violation,
             Some(near) => Violation {
@@ -105,8 +104,17 @@ impl Key {
                 format!("{zero}a number from {min:?} to {max:?}")
             }
             Kind::Choice(options) => {
-                let options: Vec<String> =
-                    options.iter().map(|option| Value::Text((*option).to_owned()).toml()).collect();
+                let (numbers, words): (Vec<&str>, Vec<&str>) =
+                    options.iter().copied().partition(|option| is_integer(option));
+                let text = |option: &&str| Value::Text((*option).to_owned()).toml();
+                // A long row of integers is said by its ends.
+                let options: Vec<String> = match numbers[..] {
+                    [first, .., last] if numbers.len() > 8 && !words.is_empty() => {
+                        let integers = format!("an integer from {first} to {last}");
+                        [integers].into_iter().chain(words.iter().map(text)).collect()
+                    }
+                    _ => options.iter().map(text).collect(),
+                };
                 match options.as_slice() {
                     [one] => one.clone(),
                     [start @ .., last] => format!("{} or {last}", start.join(", ")),
@@ -216,7 +224,27 @@ fn check(schema: &Schema, draft: &Draft, problems: &mut Problems) {
         );
     }
 
-    if keys.stream && keys.interval > 1 {
+    let aims = [keys.rate != 0.0, keys.max_multipliers != 0];
+    let doubtful = ["pipeline.rate", "pipeline.max_multipliers"]
+        .iter()
+        .any(|key| draft.doubtful.contains(key));
+    if keys.interval == "auto" && aims == [false; 2] && !doubtful {
+        problems.push(
+            "pipeline.interval",
+            "`pipeline.interval` = \"auto\" needs an aim".to_owned(),
+            "set pipeline.rate or pipeline.max_multipliers".to_owned(),
+        );
+    }
+    if aims == [true; 2] {
+        problems.push(
+            "pipeline.max_multipliers",
+            "`pipeline.max_multipliers` and `pipeline.rate` both say which interval it is"
+                .to_owned(),
+            "remove one of them".to_owned(),
+        );
+    }
+
+    if keys.stream && keys.interval != "1" {
         problems.push(
             "interface.stream",
             "`interface.stream` needs a pipeline that takes a point every clock".to_owned(),

@@ -8,7 +8,7 @@ use glint::dsl::{Designer, end, step, valid};
 use glint::equality::{Open, TextVerdict, Verdict, compare, compare_text};
 use glint::fixed::Format;
 use glint::hdl::netlist::{Design, Driver, NetId, Op};
-use glint::hdl::pipeline::{Delays, Goal, Options, pipeline};
+use glint::hdl::pipeline::{Delays, Goal, Interval, Options, pipeline};
 use glint::tools::{Tool, elaborate};
 
 use crate::common::cores::{all_configurations, configuration, configuration_with};
@@ -141,7 +141,7 @@ fn square(faulty: bool) -> Design {
 fn the_solver_finds_the_point_that_differs() {
     let goal = Goal::ClockMhz(100.0);
     let options = Options {
-        interval: 1,
+        interval: Interval::Clocks(1),
         target: &glint::target::TIMINGS[0],
         goal,
         registered: false,

@@ -33,7 +33,7 @@ fn every_device_is_what_its_golden_model_says() {
 /// A point every few clocks: fewer multipliers, registers that hold values, and a slot in which points are taken.
 #[test]
 fn every_device_with_shared_multipliers_is_what_its_golden_model_says() {
-    let interval = |clocks| ("pipeline.interval", Value::Integer(clocks));
+    let interval = |clocks: u32| ("pipeline.interval", Value::Text(clocks.to_string()));
     for device in devices() {
         for keys in [
             &[interval(2)][..],

@@ -8,6 +8,7 @@
 mod delay;
 mod gates;
 mod graph;
+mod interval;
 mod possible;
 mod rebuild;
 mod schedule;
@@ -26,6 +27,7 @@ use glint_base::target::Timing;
 
 pub use delay::delay_of;
 pub use graph::{Cell, Graph, Node, NodeId, Op};
+pub use interval::Interval;
 use schedule::{Refusal, Unreachable};
 pub use unroll::{
     Cycle, Held, Line, Unrolled, WalkRegister, any_cycle, carried, unroll, unroll_in_powers,
@@ -58,7 +60,7 @@ pub struct Options {
     /// The goal of the schedule.
     pub goal: Goal,
     /// A point is taken every so many clocks at most.
-    pub interval: usize,
+    pub interval: Interval,
     /// Products end in the register of a multiplier, where the target has a delay for it.
     pub registered: bool,
     /// The environment can hold the results back.
@@ -83,18 +85,10 @@ pub fn pipeline(sequential: &Design, options: &Options) -> Result<Design, Diagno
         split::split(&unroll::unroll_in_powers(sequential).map_err(sequentially)?, options.target);
     let unrolled = if options.registered { gates::gated(&unrolled) } else { unrolled };
     let results: Vec<_> = unrolled.results.iter().map(|&(_, value)| value).collect();
-    let problems = |registered: bool| {
+    let problems = |registered: bool, interval: usize| {
         let registered = options.target.registered.filter(|_| registered);
-        schedule::Problems::new(
-            &unrolled.graph,
-            options.target,
-            registered,
-            options.interval,
-            &results,
-        )
+        schedule::Problems::new(&unrolled.graph, options.target, registered, interval, &results)
     };
-    let unregistered = (!options.registered).then_some(&problems);
-    let problems = problems(options.registered);
     let wrong = |key: &'static str, message: String, remedy: String, at: Option<NodeId>| {
         let place =
             at.map_or(sequential.nets[0].location, |at| unrolled.graph.node(at).label.location);
@@ -105,15 +99,11 @@ pub fn pipeline(sequential: &Design, options: &Options) -> Result<Design, Diagno
     let steps = unrolled.steps.len();
     let most = latest_done(sequential).filter(|_| !decided_by_data(sequential).is_empty());
     let clocks = most.map_or(steps, |it| steps.max(it as usize)) + 1;
-    if options.interval > clocks {
-        let message = format!(
-            "`{name}` has no use for a point every {} clocks: its sequential core takes one every {clocks} and is smaller",
-            options.interval
-        );
-        let remedy =
-            format!("set pipeline.interval to {clocks} or less, or architecture = \"sequential\"");
-        return Err(wrong("pipeline.interval", message, remedy, None));
-    }
+    let with_interval = |interval| problems(options.registered, interval);
+    let interval = interval::clocks(name, options, clocks, with_interval)
+        .map_err(|it| wrong(it.key, it.message, it.remedy, None))?;
+    let registered = (!options.registered).then(|| problems(true, interval));
+    let problems = with_interval(interval);
     let unsolved = |why: String, at: Option<NodeId>| {
         let message = format!("`{name}` has no schedule: {why}; this is a mistake of Glint's");
         let remedy = "ask for another pipeline.clock_mhz or pipeline.stages";
@@ -131,9 +121,8 @@ pub fn pipeline(sequential: &Design, options: &Options) -> Result<Design, Diagno
                  most",
                 unrolled.graph.node(limiting).label.name
             );
-            let faster = unregistered.is_some_and(|problems| {
-                problems(true).fastest().is_some_and(|it| it.period * clock <= 1000.0)
-            });
+            let faster = registered.and_then(|problems| problems.fastest());
+            let faster = faster.is_some_and(|it| it.period * clock <= 1000.0);
             let faster = if faster { ", or pipeline.multipliers = \"registered\"" } else { "" };
             let remedy = format!("set pipeline.clock_mhz to {nearest} or less{faster}");
             let mut wrong = wrong("pipeline.clock_mhz", message, remedy, Some(limiting));
@@ -166,5 +155,5 @@ pub fn pipeline(sequential: &Design, options: &Options) -> Result<Design, Diagno
             schedule
         }
     };
-    Ok(stages::assemble(sequential, &unrolled, &problems, &schedule, options))
+    Ok(stages::assemble(sequential, &unrolled, &problems, &schedule, (options, interval)))
 }

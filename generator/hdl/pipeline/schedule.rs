@@ -216,6 +216,12 @@ impl<'a> Problems<'a> {
         }
     }
 
+    /// The multipliers of the target that products take.
+    pub fn multipliers(&self) -> usize {
+        let all = sharing::products(self.graph, self.target, &self.live).len();
+        all - self.kinds.iter().map(|kind| kind.products.len() - kind.units).sum::<usize>()
+    }
+
     /// The shortest period that one operation alone allows, and the operation. What the environment takes for an operand
     /// never makes a period unreachable.
     pub fn fastest(&self) -> Option<Unreachable> {

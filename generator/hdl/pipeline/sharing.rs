@@ -39,13 +39,17 @@ fn factors(graph: &Graph, id: NodeId) -> Option<[NodeId; 2]> {
     }
 }
 
-/// The products of a computation that share multipliers; none with an interval of 1. What synthesis makes of look-up tables
-/// shares nothing. A product without sign is one with sign where the multiplier has a bit to spare, and has company there.
-pub fn kinds(graph: &Graph, target: &Timing, live: &[NodeId], interval: usize) -> Vec<Kind> {
+/// The products of a computation that take a multiplier of the target, which those that synthesis makes of look-up tables do not.
+pub fn products(graph: &Graph, target: &Timing, live: &[NodeId]) -> Vec<NodeId> {
     let family = FAMILIES.iter().find(|family| family.name() == target.name);
     let least = family.map_or(0, |family| family.estimate.least_product);
     let products = live.iter().copied().filter(|&id| graph.width(id) >= least);
-    let products: Vec<NodeId> = products.filter(|&id| factors(graph, id).is_some()).collect();
+    products.filter(|&id| factors(graph, id).is_some()).collect()
+}
+
+/// The products of a computation that share multipliers; none with an interval of 1. A product without sign is one with sign where the multiplier has a bit to spare, and has company there.
+pub fn kinds(graph: &Graph, target: &Timing, live: &[NodeId], interval: usize) -> Vec<Kind> {
+    let products = products(graph, target, live);
     let signed = |id: &NodeId| graph.node(*id).format.signed;
     let has_room = |id: &NodeId| {
         let mut widths = factors(graph, *id).unwrap_or([*id; 2]).map(|it| graph.width(it));

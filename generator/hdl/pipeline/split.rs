@@ -273,7 +273,7 @@ mod tests {
     use crate::dsl::fixture::design;
     use crate::dsl::{Designer, Operand, Signal, step};
     use crate::netlist::{Design, Driver, Interpreter, Op};
-    use crate::pipeline::{Delays, Goal, Options, pipeline};
+    use crate::pipeline::{Delays, Goal, Interval, Options, pipeline};
     use glint_base::fixed::Format;
     use glint_base::target::{TIMINGS, Timing};
 
@@ -290,7 +290,7 @@ mod tests {
         let target: &Timing =
             Box::leak(Box::new(Timing { multiplier: (4, 4), ..TIMINGS[0].clone() }));
         let options = Options {
-            interval: 1,
+            interval: Interval::Clocks(1),
             target,
             goal: Goal::Stages(1),
             registered: false,

@@ -19,11 +19,11 @@ pub fn assemble(
     unrolled: &Unrolled,
     problems: &Problems<'_>,
     schedule: &Schedule,
-    options: &Options,
+    (options, interval): (&Options, usize),
 ) -> Design {
     let notes = sequential.about.notes.iter();
     let about = About {
-        title: match options.interval {
+        title: match interval {
             1 => format!("{}, a point a clock", sequential.about.title),
             clocks => format!("{}, a point every {clocks} clocks", sequential.about.title),
         },
@@ -39,7 +39,7 @@ pub fn assemble(
         stage_of: Vec::new(),
         value_of: Vec::new(),
         advance: None,
-        interval: options.interval,
+        interval,
         slot: None,
         loads: BTreeMap::new(),
         shared: HashMap::new(),
@@ -79,7 +79,7 @@ pub fn assemble(
             Goal::Stages(_) => megahertz(schedule.period),
         },
         most_mhz: problems.fastest().map_or(f64::INFINITY, |it| megahertz(it.period)),
-        interval: options.interval,
+        interval,
         slot,
         loads,
         units,

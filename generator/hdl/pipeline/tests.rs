@@ -1,4 +1,4 @@
-use super::{Delays, Goal, Options, pipeline};
+use super::{Delays, Goal, Interval, Options, pipeline};
 use crate::blocks::divider::Divider;
 use crate::dsl::fixture::design;
 use crate::dsl::{loop_while, step, wait_for_start};
@@ -11,7 +11,7 @@ fn options(goal: Goal) -> Options {
     Options {
         target,
         goal,
-        interval: 1,
+        interval: Interval::Clocks(1),
         registered: false,
         stall: true,
         side: 0,
@@ -292,6 +292,7 @@ fn products() -> Design {
 #[test]
 fn a_multiplier_serves_a_product_in_each_slot_and_no_more_than_are_needed() {
     let of = |interval: usize| {
+        let interval = Interval::Clocks(interval);
         let options = Options { interval, ..options(Goal::ClockMhz(100.0)) };
         let made = pipeline(&products(), &options).unwrap_or_else(|wrong| panic!("{wrong}"));
         let mistakes = made.verify();
@@ -313,11 +314,37 @@ fn a_multiplier_serves_a_product_in_each_slot_and_no_more_than_are_needed() {
 
 #[test]
 fn an_interval_beyond_the_sequential_clocks_is_refused_with_the_most() {
-    let made =
-        |interval| pipeline(&products(), &Options { interval, ..options(Goal::ClockMhz(100.0)) });
+    let made = |clocks| {
+        let interval = Interval::Clocks(clocks);
+        pipeline(&products(), &Options { interval, ..options(Goal::ClockMhz(100.0)) })
+    };
     let text = made(64).expect_err("no interval").to_string();
     assert!(text.contains("pipeline.interval") && text.contains("smaller"), "{text}");
     let most = text.split("set pipeline.interval to ").nth(1).expect("a remedy");
     let most: usize = most.split(' ').next().expect("a number").parse().expect("a number");
     assert!(made(most).is_ok() && made(most + 1).is_err());
+}
+
+#[test]
+fn an_interval_is_the_longest_for_a_rate_and_the_shortest_for_multipliers() {
+    let at = |goal, interval| {
+        let made = pipeline(&products(), &Options { interval, ..options(goal) });
+        made.map(|it| it.pipeline.expect("a pipeline").interval).map_err(|it| it.to_string())
+    };
+    let at_100 = |interval| at(Goal::ClockMhz(100.0), interval);
+    // The sequential core takes five clocks, with that of the write; there are three products.
+    for (rate, interval) in [(100.0, 1), (50.1, 1), (50.0, 2), (34.0, 2), (33.3, 3), (0.1, 5)] {
+        assert_eq!(at_100(Interval::Rate(rate)), Ok(interval), "{rate}");
+    }
+    for (most, interval) in [(1, 3), (2, 2), (3, 1), (9, 1)] {
+        assert_eq!(at_100(Interval::Multipliers(most)), Ok(interval), "{most}");
+    }
+    let refused = [
+        (at_100(Interval::Rate(100.1)), "pipeline.rate to 100 or less"),
+        (at_100(Interval::Multipliers(0)), "pipeline.max_multipliers to 1 or more"),
+        (at(Goal::Stages(4), Interval::Rate(1.0)), "set pipeline.clock_mhz in place"),
+    ];
+    for (refused, remedy) in refused {
+        assert!(refused.as_ref().is_err_and(|it| it.contains(remedy)), "{refused:?}");
+    }
 }

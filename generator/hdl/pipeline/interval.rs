@@ -1,0 +1,93 @@
+//! The clocks from a point to the next, as given or as what they are to reach.
+
+use super::schedule::Problems;
+use super::{Goal, Options};
+
+/// The clocks from a point to the next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Interval {
+    /// A number of clocks.
+    Clocks(usize),
+    /// The most that leave so many million points a second at the clock of the goal.
+    Rate(f64),
+    /// The fewest with which there are no more multipliers than this.
+    Multipliers(usize),
+}
+
+/// The key that is wrong, what is wrong with it, and the remedy.
+pub struct Unreached {
+    pub key: &'static str,
+    pub message: String,
+    pub remedy: String,
+}
+
+/// Returns the clocks from a point to the next. A sequential core takes a point every `most`.
+///
+/// # Errors
+/// An interval beyond the sequential core's, a rate that none reaches, more multipliers than are allowed with each.
+pub fn clocks<'a>(
+    name: &str,
+    options: &Options,
+    most: usize,
+    problems: impl Fn(usize) -> Problems<'a>,
+) -> Result<usize, Unreached> {
+    let wrong = |key, message, remedy| Err(Unreached { key, message, remedy });
+    // Muxes before a multiplier take time of the clock.
+    let reaches = |interval: &usize| match options.goal {
+        Goal::ClockMhz(clock) => {
+            problems(*interval).fastest().is_none_or(|it| it.period <= 1000.0 / clock + 1e-9)
+        }
+        Goal::Stages(_) => true,
+    };
+    match options.interval {
+        Interval::Clocks(interval) if interval > most => wrong(
+            "pipeline.interval",
+            format!(
+                "`{name}` has no use for a point every {interval} clocks: its sequential core takes one every {most} and is smaller"
+            ),
+            format!("set pipeline.interval to {most} or less, or architecture = \"sequential\""),
+        ),
+        Interval::Clocks(interval) => Ok(interval),
+        Interval::Rate(rate) => {
+            let Goal::ClockMhz(clock) = options.goal else {
+                return wrong(
+                    "pipeline.rate",
+                    format!(
+                        "pipeline.stages leaves the clock of `{name}` open, and with it the rate"
+                    ),
+                    "set pipeline.clock_mhz in place of pipeline.stages".to_owned(),
+                );
+            };
+            let longest = (clock / rate + 1e-9).floor() as usize;
+            if longest == 0 {
+                return wrong(
+                    "pipeline.rate",
+                    format!(
+                        "`{name}` takes {clock} million points a second at most: one every clock at {clock} MHz"
+                    ),
+                    format!(
+                        "set pipeline.rate to {clock} or less, or pipeline.clock_mhz to {rate} or more"
+                    ),
+                );
+            }
+            Ok((1..=longest.min(most)).rev().find(reaches).unwrap_or(1))
+        }
+        Interval::Multipliers(allowed) => {
+            let all = || (1..=most).filter(reaches).map(|it| (it, problems(it).multipliers()));
+            let Some((interval, fewest)) = all().min_by_key(|&(_, multipliers)| multipliers) else {
+                // The schedule says why.
+                return Ok(1);
+            };
+            if fewest > allowed {
+                return wrong(
+                    "pipeline.max_multipliers",
+                    format!(
+                        "`{name}` has {fewest} multipliers at the least: with a point every {interval} clocks"
+                    ),
+                    format!("set pipeline.max_multipliers to {fewest} or more"),
+                );
+            }
+            Ok(all().find(|&(_, multipliers)| multipliers <= allowed).map_or(interval, |it| it.0))
+        }
+    }
+}
