@@ -8,13 +8,13 @@ use clap::Args;
 use rayon::prelude::*;
 use serde_json::json;
 
-use super::load_sequential;
+use super::{cosim, load_sequential};
 use crate::base::input;
 use crate::certify::{self, Outcome, Statement, Subject, prove, questions, statements};
 use crate::cli::own_file::OwnFile;
 use crate::cli::{Configs, Output, progress, say, tables};
 use crate::cosim::exhaustive::Certificate;
-use crate::golden::Contract;
+use crate::golden::{Bound, Contract, Term};
 use crate::hdl::netlist::Design;
 use crate::package::digest;
 use crate::registry::Registry;
@@ -55,6 +55,16 @@ const DIGEST: &str = "# SHA-256 of the script below: ";
 
 /// The text before a point at which the hypotheses hold, in the next line.
 const WITNESS: &str = "# The hypotheses hold at ";
+
+/// Prints the terms of a bound that the contract states; of a device that is made of parts, the bounds of the parts are among them.
+fn tell_terms(bound: &Bound) {
+    if bound.is_stated() {
+        say!("  the contract states {:.3} units, which nothing here has checked:", bound.units);
+    }
+    for Term { key, what, units } in &bound.terms {
+        say!("  {units:.3}  {what} ({key})");
+    }
+}
 
 /// `glint certify`.
 pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
@@ -102,8 +112,15 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
                 }
                 if !output.json {
                     say!("{}: not certified: {step}", one.path);
+                    tell_terms(&contract.bound());
                 }
-                list.push(json!({ "config": one.path, "certified": false, "step": step }));
+                let terms = cosim::terms(&contract.bound());
+                list.push(json!({
+                    "config": one.path,
+                    "certified": false,
+                    "step": step,
+                    "terms": terms,
+                }));
                 continue;
             }
         };

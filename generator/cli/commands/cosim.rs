@@ -20,7 +20,7 @@ use crate::cli::{Configs, Output, TimeLimit, count, progress, say, tables, wrong
 use crate::core::{TEST_POINTS, TEST_SEED};
 use crate::cosim::exhaustive::{AxisValues, Shard, axis};
 use crate::cosim::{Outcome, Worst};
-use crate::golden::{Bound, Sweep};
+use crate::golden::{Bound, Sweep, Term};
 use crate::registry::Registry;
 use crate::tools;
 use benches::benches;
@@ -202,17 +202,18 @@ pub fn worst_operands(one: &Loaded, worst: &Worst) -> String {
     format!("{} for {}", worst.output, values.join(" "))
 }
 
+/// The terms of a bound for scripts.
+pub(super) fn terms(bound: &Bound) -> Vec<Value> {
+    let one = |term: &Term| json!({ "key": term.key, "what": term.what, "units": term.units });
+    bound.terms.iter().map(one).collect()
+}
+
 /// An outcome for scripts. What differs leaves a waveform.
 pub fn as_json(one: &Loaded, outcome: &Outcome, bound: &Bound, failed: &[String]) -> Result<Value> {
     let mismatch = outcome.mismatch.as_ref().map(|mismatch| {
         let reproducer = Reproducer::of_run(one, mismatch)?;
         anyhow::Ok(reproducer.json(mismatch))
     });
-    let terms: Vec<Value> = bound
-        .terms
-        .iter()
-        .map(|term| json!({ "key": term.key, "what": term.what, "units": term.units }))
-        .collect();
     Ok(json!({
         "device": one.core.device.name,
         "config": one.path,
@@ -221,7 +222,7 @@ pub fn as_json(one: &Loaded, outcome: &Outcome, bound: &Bound, failed: &[String]
         "clocks": outcome.clocks,
         "registers": outcome.registers,
         "outputs": outcome.outputs,
-        "bound": { "units": bound.units, "f": bound.f, "terms": terms },
+        "bound": { "units": bound.units, "f": bound.f, "terms": terms(bound) },
         "largest_error": outcome.worst.as_ref().map(|worst| json!({
             "units": worst.units,
             "output": worst.output,
