@@ -289,6 +289,10 @@ impl Graph {
                         Some(self.op(Op::Not(a), format, label))
                     }
                     (Op::And(..) | Op::Or(..), None) if a == b && same(self, a) => Some(a),
+                    (_, None) if self.is_inverse(a, b) || self.is_inverse(b, a) => {
+                        let bits = if matches!(op, Op::And(..)) { 0 } else { ones };
+                        Some(self.constant(bits, format, label))
+                    }
                     _ => None,
                 }
             }
@@ -340,6 +344,11 @@ impl Graph {
         }
     }
 
+    /// Whether a node is another one inverted.
+    fn is_inverse(&self, inverse: NodeId, of: NodeId) -> bool {
+        matches!(self.node(inverse).cell, Cell::Op(Op::Not(it)) if it == of)
+    }
+
     /// The bits of a slice that are not zeros in front of a number, where some are.
     fn without_zeros(&mut self, slice: NodeId, label: &Label) -> Option<NodeId> {
         let Cell::Op(Op::Slice { of, low }) = self.node(slice).cell else { return None };
@@ -376,6 +385,9 @@ impl Graph {
                 }
                 if low == 0 {
                     return Some(self.op(Op::Extend(a), format, label));
+                }
+                if inner.signed && width == 1 {
+                    return again(self, a, inner.width() - 1);
                 }
                 (low >= inner.width() && !inner.signed).then(|| self.constant(0, format, label))
             }
