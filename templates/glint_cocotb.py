@@ -920,3 +920,4 @@ def run(name: str, wrapper: str = "") -> None:
     sys.exit(1 if failed or not tests else 0)
 
 
+

@@ -74,9 +74,9 @@ fn lines(quantities: &[Quantity], code: fn(&str, i128) -> String) -> Vec<String>
 
 /// The driver, with a last line that vouches for those above.
 pub fn driver() -> OutputFile {
-    let text = include_str!("../../templates/glint_cocotb.py");
+    let text = fill!("glint_cocotb.py" {}).expect("a template without fields");
     OutputFile {
         path: "testbench/glint_cocotb.py".to_owned(),
-        contents: sealed(text.to_owned(), Seal::Python),
+        contents: sealed(text, Seal::Python),
     }
 }

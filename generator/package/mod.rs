@@ -23,8 +23,7 @@ macro_rules! fresh_names {
 /// The text of a template: its fields with their types and, where no variable has the name of the field, their values.
 macro_rules! fill {
     ($path:tt { $($field:ident: $kind:ty $(= $value:expr)?),* $(,)? }) => {{
-        #[derive(askama::Template)]
-        #[template(path = $path)]
+        #[glint_templates::template($path)]
         struct View<'a> {
             $($field: $kind,)*
             lifetime: std::marker::PhantomData<&'a ()>,

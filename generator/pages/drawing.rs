@@ -4,8 +4,8 @@ use anyhow::Result;
 use askama::Template;
 
 /// A drawing; units are those of the page at full size.
-#[derive(Clone, Debug, Template)]
-#[template(path = "drawing.svg")]
+#[derive(Clone, Debug)]
+#[glint_templates::template("drawing.svg")]
 pub struct Drawing {
     /// Unique on the page.
     pub id: String,

@@ -18,8 +18,7 @@ const WORDS: usize = 10;
 /// The mark of a page that Glint wrote: nothing else is overwritten.
 pub const MARKER: &str = "<meta name=\"generator\" content=\"glint report\">";
 
-#[derive(Template)]
-#[template(path = "report.html")]
+#[glint_templates::template("report.html")]
 struct Page<'a> {
     marker: &'static str,
     schlick: String,

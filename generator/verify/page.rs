@@ -8,8 +8,7 @@ use super::{Answer, CheckTime, Conclusion, Record, Verdict};
 /// The mark of a page that Glint wrote: nothing else is overwritten.
 pub const MARKER: &str = "<meta name=\"generator\" content=\"glint verify\">";
 
-#[derive(Template)]
-#[template(path = "verification.html")]
+#[glint_templates::template("verification.html")]
 struct Page<'a> {
     marker: &'static str,
     record: &'a Record,

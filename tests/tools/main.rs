@@ -16,6 +16,7 @@ mod equality;
 mod example;
 mod external;
 mod faults;
+mod foreign;
 mod formal;
 mod gate_level;
 mod litex;

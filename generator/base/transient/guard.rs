@@ -7,18 +7,34 @@ use std::process::{ChildStdin, Command, Stdio};
 
 /// Reads lists of children, a line each, until the pipe closes, as it does with the end of this process. Those on the last
 /// line, which is empty after an end in order, are killed with their descendants in other groups and with their own group.
-const SCRIPT: &str = r#"
+///
+/// A pipe closes shortly before the process is gone. With its end the groups of its children become orphans, and if one of
+/// them has a stopped process then, the system sends SIGHUP and SIGCONT to the whole group: a child that was stopped too early would be
+/// gone before its own children are listed. So the shell waits until it has another parent itself; the `sleep` behind
+/// that forks, which the system does after it has dealt with all children.
+pub(super) const SCRIPT: &str = r#"
 tree() {
-    kill -STOP "$1"
     for task in /proc/"$1"/task/*/children; do
         list=
         read -r list <"$task"
         for it in $list; do tree "$it"; done
     done
-    kill -KILL "$1"
+    case " $all " in
+    *" $1 "*) ;;
+    *) kill -STOP "$1"; all="$all $1"; more=yes ;;
+    esac
 }
 while read -r line; do children=$line; done
-for child in $children; do tree "$child"; kill -KILL "-$child"; done
+[ "$children" ] || exit 0
+while read -r _ _ _ parent _ <"/proc/$$/stat" && [ "$parent" = "$PPID" ]; do sleep 0.01; done
+sleep 0.01
+more=yes
+while [ "$more" ]; do
+    more=
+    for child in $children; do tree "$child"; done
+done
+kill -KILL $all
+for child in $children; do kill -KILL "-$child"; done
 "#;
 
 /// The pipe to the shell; none before the first child, and none on a system without a shell.
@@ -32,14 +48,17 @@ impl Guard {
 
     /// Tells which children are to be killed from now on.
     pub fn tell(&mut self, children: &BTreeSet<u32>) {
-        let pipe = self.0.take().or_else(|| {
-            let mut command = Command::new("/bin/sh");
-            // A group of its own: what is sent to that of this process does not reach it.
-            command.args(["-c", SCRIPT]).current_dir("/").process_group(0);
-            let shell = command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::null());
-            shell.spawn().ok()?.stdin
-        });
+        let pipe = self.0.take().or_else(|| shell(SCRIPT).spawn().ok()?.stdin);
         let line: Vec<String> = children.iter().map(u32::to_string).collect();
         self.0 = pipe.filter(|mut pipe| writeln!(pipe, "{}", line.join(" ")).is_ok());
     }
+}
+
+/// Returns the shell that a script of a guard runs in.
+pub(super) fn shell(script: &str) -> Command {
+    let mut command = Command::new("/bin/sh");
+    // A group of its own: what is sent to that of this process does not reach it.
+    command.args(["-c", script]).current_dir("/").process_group(0);
+    command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::null());
+    command
 }

@@ -1,7 +1,7 @@
 //! Children that hide their own children, and temporary paths.
 
 use std::fs;
-use std::process::Command;
+use std::process::{Command, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -41,6 +41,41 @@ fn a_killed_child_takes_a_session_of_its_child_along() {
         thread::sleep(PAUSE);
     }
     assert!(!is_alive(inner), "the solver of a killed tool runs on");
+}
+
+/// A process that ends in the time that a slow guard takes for a step: the end must not send a tool SIGHUP before
+/// its children are listed. The process is this test once more.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_slow_guard_ends_a_session_of_a_child_too() {
+    const PLACE: &str = "GLINT_TEST_OF_GUARD";
+    let Some(place) = std::env::var_os(PLACE) else {
+        let dir = Directory::new().unwrap();
+        let mut parent = Command::new(std::env::current_exe().unwrap());
+        parent.args(["--exact", "transient::tests::a_slow_guard_ends_a_session_of_a_child_too"]);
+        // A tool that runs on must not keep this test waiting for the end of its output.
+        parent.env(PLACE, dir.path()).stdout(Stdio::null()).stderr(Stdio::null());
+        assert!(parent.status().unwrap().success());
+        let inner = number_in(&dir.path().join("inner"));
+        let deadline = Instant::now() + Duration::from_secs(10);
+        while is_alive(inner) && Instant::now() < deadline {
+            thread::sleep(PAUSE);
+        }
+        assert!(!is_alive(inner), "the solver of a tool runs on");
+        return;
+    };
+    use std::io::Write;
+    use std::os::unix::process::CommandExt;
+    let slow = r#"kill() { command kill "$@"; sleep 0.1; }"#;
+    let mut guard = guard::shell(&format!("{slow}\n{}", guard::SCRIPT)).spawn().unwrap();
+    let script = "setsid sh -c 'echo $$ > inner; exec sleep 1000' & sleep 1000";
+    let mut tool = Command::new("sh");
+    let tool = tool.args(["-c", script]).current_dir(&place).process_group(0).spawn().unwrap();
+    number_in(&PathBuf::from(place).join("inner"));
+    writeln!(guard.stdin.as_ref().unwrap(), "{}", tool.id()).unwrap();
+    drop(guard.stdin.take());
+    thread::sleep(Duration::from_millis(50));
+    std::process::exit(0);
 }
 
 #[test]

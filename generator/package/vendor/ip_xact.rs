@@ -1,7 +1,6 @@
 //! `<top>.xml`: each module as a component of IP-XACT, IEEE 1685-2014.
 
 use anyhow::Result;
-use askama::Template;
 
 use crate::hdl::verilog::text::ascii;
 use crate::package::artifact::{Artifacts, Job, Kind};
@@ -9,8 +8,7 @@ use crate::package::map::{Access, Bits, Register};
 use crate::package::render;
 use crate::package::tops::{Face, Top};
 
-#[derive(Template)]
-#[template(path = "component.xml")]
+#[glint_templates::template("component.xml")]
 struct Component<'a> {
     top: &'a Top,
     title: String,

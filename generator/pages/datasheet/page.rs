@@ -22,8 +22,7 @@ use crate::pages::formula;
 use crate::pages::markup::html;
 use crate::pages::stages;
 
-#[derive(Template)]
-#[template(path = "datasheet.html")]
+#[glint_templates::template("datasheet.html")]
 struct Page<'a> {
     version: &'static str,
     design: &'a Design,

@@ -104,8 +104,7 @@ pub fn drawing(design: &Design) -> Drawing {
     }
 }
 
-#[derive(Template)]
-#[template(path = "standalone.svg")]
+#[glint_templates::template("standalone.svg")]
 struct Standalone<'a> {
     drawing: &'a str,
     width: i32,

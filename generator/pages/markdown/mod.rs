@@ -3,7 +3,6 @@
 mod prose;
 
 use anyhow::Result;
-use askama::Template;
 
 use super::account::{self, PageInputs};
 use super::stages;
@@ -11,8 +10,7 @@ use crate::hdl::netlist::Design;
 use crate::package::seal::{Seal, sealed};
 use prose::{prose, table};
 
-#[derive(Template)]
-#[template(path = "page.md")]
+#[glint_templates::template("page.md")]
 struct Page<'a> {
     title: String,
     device: &'a str,

@@ -1,0 +1,131 @@
+//! Crates outside the workspace that use Glint: by a path to the checkout, and by the packages as they would be published.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// What all builds here share, beside that of the tests.
+fn target() -> PathBuf {
+    let target = std::env::var_os("CARGO_TARGET_DIR");
+    target.map_or_else(|| root().join("target"), PathBuf::from).join("foreign")
+}
+
+/// A crate in a temporary directory.
+struct Foreign(tempfile::TempDir);
+
+impl Foreign {
+    /// A crate with these lines under `[dependencies]`, and the versions of others that the workspace has.
+    fn new(name: &str, dependencies: &str, main: &str) -> Self {
+        let foreign = Self(tempfile::tempdir().expect("a directory"));
+        let package =
+            format!("[package]\nname = \"{name}\"\nversion = \"0.1.0\"\nedition = \"2024\"\n");
+        foreign.write(
+            "Cargo.toml",
+            &format!("{package}[dependencies]\n{dependencies}\n[workspace]\n"),
+        );
+        fs::copy(root().join("Cargo.lock"), foreign.0.path().join("Cargo.lock")).expect("copied");
+        foreign.write("src/main.rs", main);
+        foreign
+    }
+
+    /// The program of `tests/tools/foreign`, with the device of the example beside it.
+    fn with_devices(dependencies: &str) -> Self {
+        let text = |file: &str| fs::read_to_string(root().join(file)).expect(file);
+        let foreign = Self::new("foreign", dependencies, &text("tests/tools/foreign/program.rs"));
+        for file in ["main", "description", "golden"] {
+            let name = format!("fresnel/{file}.rs");
+            foreign.write(&format!("src/{name}"), &text(&format!("examples/{name}")));
+        }
+        foreign
+    }
+
+    fn write(&self, name: &str, text: &str) {
+        let path = self.0.path().join(name);
+        fs::create_dir_all(path.parent().expect("a directory")).expect("made");
+        fs::write(path, text).expect("written");
+    }
+
+    /// Runs a subcommand of Cargo, and returns what it prints.
+    fn cargo(&self, arguments: &[&str]) -> String {
+        let mut cargo = Command::new(env!("CARGO"));
+        cargo.args(arguments).current_dir(&self.0).env("CARGO_TARGET_DIR", target());
+        let output = cargo.output().expect("cargo runs");
+        let errors = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{arguments:?}: {errors}");
+        String::from_utf8(output.stdout).expect("UTF-8")
+    }
+}
+
+/// The packages, unpacked, each in place of the one in the registry.
+fn packages() -> String {
+    let said = Command::new("bash").arg(root().join("tools/package")).output().expect("bash runs");
+    assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
+    let unpacked = String::from_utf8(said.stdout).expect("UTF-8");
+    let crates = unpacked.lines().map(|path| {
+        let name =
+            path.rsplit('/').next().and_then(|name| name.rsplit_once('-')).expect("a name").0;
+        format!("{name} = {{ path = {path:?} }}\n")
+    });
+    crates.collect()
+}
+
+#[test]
+fn a_program_made_of_the_packages_generates_and_simulates() {
+    let packages = packages();
+    assert_eq!(packages.lines().count(), root_members(), "{packages}");
+    let foreign = Foreign::with_devices("glint-hdl = \"0.1\"");
+    let manifest = fs::read_to_string(foreign.0.path().join("Cargo.toml")).expect("read");
+    foreign.write("Cargo.toml", &format!("{manifest}[patch.crates-io]\n{packages}"));
+    for device in ["fresnel", "function", "root"] {
+        let run =
+            |arguments: &[&str]| foreign.cargo(&[&["run", "--quiet", "--"], arguments].concat());
+        foreign.write("core.toml", &run(&["new", device]));
+        run(&["generate", "core.toml", "--out", "out", "--quiet"]);
+        let core = foreign.0.path().join("out/rtl_out").join(device).join(format!("{device}.v"));
+        let core = fs::read_to_string(core).expect("a core");
+        assert!(core.contains(&format!("module {device} (")), "{core}");
+        let cosim = run(&["cosim", "core.toml", "--points", "200", "--quiet", "--json"]);
+        let cosim: serde_json::Value = serde_json::from_str(&cosim).expect("JSON");
+        assert_eq!(cosim["configurations"][0]["verdict"], "holds", "{cosim}");
+    }
+}
+
+/// How many crates the workspace has.
+fn root_members() -> usize {
+    let manifest = fs::read_to_string(root().join("Cargo.toml")).expect("a manifest");
+    let manifest: toml::Table = manifest.parse().expect("TOML");
+    manifest["workspace"]["members"].as_array().expect("a list").len() + 1
+}
+
+#[test]
+fn a_crate_by_a_path_compiles_without_the_command_line_too() {
+    let path = root().display();
+    let foreign = Foreign::with_devices(&format!("glint-hdl = {{ path = \"{path}\" }}"));
+    foreign.cargo(&["check", "--quiet"]);
+    let dependency = format!("glint-hdl = {{ path = \"{path}\", default-features = false }}");
+    let main =
+        "fn main() { println!(\"{}\", glint::registry::Registry::shipped().devices().len()); }";
+    Foreign::new("listing", &dependency, main).cargo(&["check", "--quiet"]);
+}
+
+/// The example at the head of `glint-rtl`.
+#[test]
+fn a_program_of_the_hardware_crate_alone_runs() {
+    let head = fs::read_to_string(root().join("generator/hdl/lib.rs")).expect("a crate");
+    let lines = head.lines().skip_while(|line| *line != "//! ```").skip(1);
+    let lines = lines.take_while(|line| *line != "//! ```");
+    let code = lines.map(|line| line.trim_start_matches("//!").trim_start_matches(" # "));
+    let code = code.collect::<Vec<_>>().join("\n");
+    let at = |folder: &str| root().join(folder).display().to_string();
+    let dependencies = format!(
+        "anyhow = \"1\"\nglint-base = {{ path = {:?} }}\nglint-rtl = {{ path = {:?} }}",
+        at("generator/base"),
+        at("generator/hdl")
+    );
+    let main = format!("fn main() -> anyhow::Result<()> {{\n{code}\n}}\n");
+    Foreign::new("hardware", &dependencies, &main).cargo(&["run", "--quiet"]);
+}

@@ -1,0 +1,104 @@
+//! A program outside Glint's workspace: the device of `examples/fresnel`, the catalogue's `function`, and a device of which `function`
+//! is a part. `tests/tools/foreign.rs` makes a crate of it.
+
+#[allow(dead_code)]
+#[path = "fresnel/main.rs"]
+mod fresnel;
+
+use std::process::ExitCode;
+
+use glint::config::{Config, Schema, Value};
+use glint::devices::function::describe as rsqrt;
+use glint::dsl::{About, Designer};
+use glint::fixed::{Format, Overflow, Rounding, exp2};
+use glint::golden::device::{self, Formula};
+use glint::golden::frame::{Frame, State};
+use glint::golden::narrow::Narrow;
+use glint::golden::{self, Contract, Model, Term};
+use glint::keys::function;
+use glint::registry::{Device, Registry};
+
+/// The format of the result, u1.14.
+const RESULT: Format = Format::unsigned(1, 14);
+
+/// The part: 1/√x from 1 to 2.
+fn part() -> Config {
+    let values = [("formula", Value::Text("1/sqrt(x)".into())), ("from", Value::Text("1".into()))];
+    let mut values: Vec<_> = values.into();
+    values.push(("to", Value::Text("2".into())));
+    let values = values.into_iter().map(|(key, value)| (format!("function.{key}"), value));
+    Config::from_values(&function::schema(), "rsqrt", values.collect()).expect("sound keys")
+}
+
+fn operand() -> (Format, (i64, i64)) {
+    let (_, found) = function::found(&part()).expect("a function");
+    (found.operand, found.domain)
+}
+
+/// √x = x·(1/√x).
+fn describe(d: &Designer, _: &Config) {
+    d.about(About {
+        device: "root".into(),
+        title: "The square root".into(),
+        formula: "sqrt(x)".into(),
+        source: "x * (1 / sqrt(x))".into(),
+        notes: Vec::new(),
+    });
+    let x = d.operand("x", operand().0).q();
+    let inverse = d.instance("rsqrt", |d| rsqrt(d, &part()), &[("x", x)]).out("result_out");
+    let product = d.mul("product", x, inverse);
+    d.output("root_out", d.narrow("r", product, RESULT, Rounding::Nearest, Overflow::Saturate));
+    d.dataflow();
+}
+
+fn device() -> device::Device {
+    let (format, (first, last)) = operand();
+    let model = golden::function::model(&part());
+    let mut frame = Frame::default();
+    let x = frame.operand("x", format);
+    let inverse = frame.part("rsqrt", &*model, [("x", move |s: &State| s[x])]).out("result_out");
+    let places = format.frac + golden::function::contract(&part()).outputs()[0].format.frac;
+    let rounded = Narrow::new(places as u32, RESULT, Rounding::Nearest);
+    frame.output("root_out", RESULT, move |s| rounded.apply(s[x] * s[inverse]));
+    frame.dataflow().domain("x", first, last)
+}
+
+fn model(_: &Config) -> Box<dyn Model> {
+    device().model()
+}
+
+fn contract(_: &Config) -> Box<dyn Contract> {
+    device().contract(Root)
+}
+
+struct Root;
+
+impl Formula for Root {
+    fn exact(&self, x: &[f64]) -> Vec<f64> {
+        vec![x[0].sqrt()]
+    }
+
+    /// The part's error grows by x, which is at most 2.
+    fn terms(&self) -> Vec<Term> {
+        let part = golden::function::contract(&part());
+        let error = part.bound().units * exp2(-part.outputs()[0].format.frac);
+        let units = 2.0 * error * exp2(RESULT.frac);
+        let rounding = Term { key: "root", what: "rounding of the result", units: 0.5 };
+        vec![Term { key: "root", what: "the inverse root", units }, rounding]
+    }
+}
+
+const ROOT: Device = Device {
+    name: "root",
+    summary: "sqrt(x), of the inverse root",
+    schema: || Schema { device: "root", keys: Vec::new(), check: |_, _| {} },
+    describe,
+    model,
+    contract,
+};
+
+fn main() -> ExitCode {
+    let catalogue = Registry::catalogue();
+    let function = *catalogue.device("function").expect("a device of the catalogue");
+    glint::cli::run(&Registry::empty().with(fresnel::FRESNEL).with(function).with(ROOT))
+}
