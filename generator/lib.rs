@@ -32,47 +32,24 @@
 //! ```
 
 #[cfg(feature = "cli")]
-pub mod certify;
-#[cfg(feature = "cli")]
-pub mod cli;
-pub mod core;
-pub mod cosim;
-pub mod devices;
+pub use glint_cli as cli;
 #[cfg(feature = "cli")]
 #[doc(hidden)]
-pub mod equality;
+pub use glint_prove::{batch, certify, equality, mutate, synth, tune, verify};
 #[cfg(feature = "cli")]
 #[doc(hidden)]
-pub mod evidence;
+pub use glint_show::{evidence, pages, render};
 #[cfg(feature = "cli")]
 #[doc(hidden)]
-pub mod mutate;
-pub mod observation;
-pub mod package;
-#[cfg(feature = "cli")]
-#[doc(hidden)]
-pub mod pages;
-pub mod registry;
-#[cfg(feature = "cli")]
-#[doc(hidden)]
-pub mod render;
-#[cfg(feature = "cli")]
-#[doc(hidden)]
-pub mod synth;
-#[doc(hidden)]
-pub mod tools;
-#[cfg(feature = "cli")]
-#[doc(hidden)]
-pub mod tune;
-#[cfg(feature = "cli")]
-#[doc(hidden)]
-pub mod verify;
+pub use glint_tools as tools;
 
 pub use glint_approximate as approximate;
 pub use glint_base as base;
 pub use glint_base::{fixed, target};
+pub use glint_catalogue as devices;
 pub use glint_config as config;
 pub use glint_config::{choices, keys};
+pub use glint_core::{core, cosim, observation, package, registry};
 pub use glint_formula as formula;
 pub use glint_golden as golden;
 pub use glint_keys as keys;

@@ -10,7 +10,7 @@ use proc_macro::{Group, Span, TokenStream, TokenTree};
 
 /// Derives `askama::Template` for a structure from a file of this crate: `#[template("bench.v")]`.
 ///
-/// The escaping follows from the file's extension, by `askama.toml` beside it. The crate needs `askama` among its dependencies.
+/// The escaping follows from the file's extension, by `askama.toml` beside it. The crate needs `glint-base` among its dependencies.
 ///
 /// # Errors
 /// A file that is not there, as an error of the compiler with its path.
@@ -28,7 +28,7 @@ pub fn template(name: TokenStream, structure: TokenStream) -> TokenStream {
     }
     let config = here.join("askama.toml");
     let mut derived = at_place(format!(
-        "#[derive(askama::Template)] #[template(path = {path:?}, config = {config:?})]"
+        "#[derive(glint_base::template::askama::Template)] #[template(path = {path:?}, config = {config:?}, askama = glint_base::template::askama)]"
     ));
     derived.extend(structure);
     derived

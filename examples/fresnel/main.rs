@@ -82,6 +82,7 @@ pub const FRESNEL: Device = Device {
     describe: description::describe,
     model: golden::model,
     contract: golden::contract,
+    proved: false,
 };
 
 fn main() -> ExitCode {

@@ -122,6 +122,7 @@ pub const SMOOTHSTEP: Device = Device {
     describe,
     model,
     contract,
+    proved: false,
 };
 
 fn main() -> ExitCode {

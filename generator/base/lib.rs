@@ -9,5 +9,5 @@ pub mod interval;
 pub mod keywords;
 pub mod program;
 pub mod target;
+pub mod template;
 pub mod text;
-pub mod transient;

@@ -349,3 +349,23 @@ impl Timing {
         self.carry + self.carry_bit * f64::from(width)
     }
 }
+
+/// The resources that a design takes, before placement.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Usage {
+    /// Look-up tables.
+    pub luts: u64,
+    /// DSP blocks.
+    pub dsps: u64,
+    /// Block RAMs.
+    pub block_rams: u64,
+    /// Flip-flops.
+    pub flip_flops: u64,
+}
+
+impl Usage {
+    /// Look-up tables, DSP blocks and block RAMs.
+    pub fn taken(&self) -> [u64; 3] {
+        [self.luts, self.dsps, self.block_rams]
+    }
+}

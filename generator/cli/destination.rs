@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, anyhow};
 
-use crate::base::transient::Directory;
+use glint_tools::transient::Directory;
 
 /// The file while it is written, in a directory of its own.
 const UNFINISHED: &str = "unfinished";

@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use serde_json::{Value, json};
 
 use super::interrupt::Interrupted;
-use crate::config::Problems;
+use glint_config::Problems;
 
 /// A mistake on the command line itself, which only a command can see: exit code 2.
 #[derive(Debug)]
@@ -23,9 +23,9 @@ impl std::error::Error for WrongUsage {}
 
 /// Returns from a function with [`WrongUsage`], whose words it formats.
 macro_rules! wrong_usage {
-    ($($text:tt)*) => { anyhow::bail!($crate::cli::failure::WrongUsage(format!($($text)*))) };
+    ($($text:tt)*) => { anyhow::bail!($crate::failure::WrongUsage(format!($($text)*))) };
 }
-pub(in crate::cli) use wrong_usage;
+pub(crate) use wrong_usage;
 
 /// Several errors, none the cause of another: those of several configurations.
 #[derive(Debug)]

@@ -71,7 +71,7 @@ impl Drop for Deferred {
 pub fn listen() -> std::io::Result<()> {
     use std::io::Write;
 
-    use crate::base::transient;
+    use glint_tools::transient;
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 
     let ignored = ignored();

@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail};
 
 use super::destination;
-use crate::package::{OutputFile, Seal, is_sealed};
+use glint_core::package::{OutputFile, Seal, is_sealed};
 use staging::Staging;
 use survey::Survey;
 

@@ -204,9 +204,9 @@ pub fn print_line(line: &str) {
 
 /// Formats a line and prints it, as [`print_line`] does.
 macro_rules! say {
-    ($($text:tt)*) => { $crate::cli::tables::print_line(&format!($($text)*)) };
+    ($($text:tt)*) => { $crate::tables::print_line(&format!($($text)*)) };
 }
-pub(in crate::cli) use say;
+pub(crate) use say;
 
 /// Whether everything that was printed was written.
 ///

@@ -42,11 +42,10 @@ pub(super) fn read(path: &Path) -> Result<String, (String, String)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glint_base::transient::Directory;
 
     #[test]
     fn lines_are_points() {
-        let dir = Directory::new().unwrap();
+        let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("curve.csv");
         let of = |text: &str| {
             fs::write(&path, text).unwrap();

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, Result, anyhow, bail, ensure};
 
 use super::{Tool, capture};
-use crate::base::transient::Directory;
+use crate::transient::Directory;
 
 /// An event-driven or compiling Verilog simulator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -7,7 +7,7 @@ use anyhow::{Context, Result};
 
 use super::Simulator;
 use super::bench::{BuiltBench, Waveform};
-use crate::package::{WINDOW_FILE, window};
+use crate::window::{WINDOW_FILE, window};
 
 /// The first difference that a bench printed.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -8,7 +8,7 @@ use anyhow::{Context, Result};
 use serde_json::Value;
 
 use super::Tool;
-use crate::base::transient::Directory;
+use crate::transient::Directory;
 
 /// Files with the Yosys that reads them.
 pub struct Sources<'a> {

@@ -7,27 +7,8 @@ use serde_json::Value;
 
 use super::Tool;
 use super::sources::Sources;
-use crate::target::{Family, Kinds};
-
-/// The resources that a design takes, before placement.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Usage {
-    /// Look-up tables.
-    pub luts: u64,
-    /// DSP blocks.
-    pub dsps: u64,
-    /// Block RAMs.
-    pub block_rams: u64,
-    /// Flip-flops.
-    pub flip_flops: u64,
-}
-
-impl Usage {
-    /// Look-up tables, DSP blocks and block RAMs.
-    pub fn taken(&self) -> [u64; 3] {
-        [self.luts, self.dsps, self.block_rams]
-    }
-}
+pub use glint_base::target::Usage;
+use glint_base::target::{Family, Kinds};
 
 /// Synthesises the module `top` of Verilog and memory files, pairs of a plain name and contents.
 ///

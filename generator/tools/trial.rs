@@ -10,7 +10,7 @@ use anyhow::{Context, Result, bail};
 use serde::Deserialize;
 
 use super::Tool;
-use crate::base::transient::Directory;
+use crate::transient::Directory;
 
 /// A task for a tool, with what it must say of it.
 #[derive(Deserialize)]

@@ -232,6 +232,7 @@ fn results_that_depend_on_the_past_and_results_that_never_come_are_refused() {
         },
         model: |_| sum_model(true).model(),
         contract: |_| sum_model(true).contract(Sum),
+        proved: false,
     };
     let silent = Device { contract: |_| sum_model(false).contract(Sum), ..sum };
     for (device, expected) in [

@@ -39,8 +39,7 @@ fn every_device_has_its_page() {
     let readme = read("README.md");
     for (name, config) in names() {
         let file = format!("docs/devices/{name}.md");
-        let today = configuration(&config)
-            .page(&config, Path::new(PROOFS))
+        let today = glint::pages::of(&configuration(&config), &config, Path::new(PROOFS))
             .unwrap_or_else(|error| panic!("{config}: {error:?}"));
         let found = fs::read_to_string(&file).unwrap_or_default();
         assert!(
@@ -76,9 +75,12 @@ fn rows(page: &str, heading: &str) -> Vec<Vec<String>> {
 
 #[test]
 fn the_page_of_rough_reads_as_the_patent() {
-    let page = configuration("configs/rough.toml")
-        .page("configs/rough.toml", Path::new(PROOFS))
-        .expect("a page");
+    let page = glint::pages::of(
+        &configuration("configs/rough.toml"),
+        "configs/rough.toml",
+        Path::new(PROOFS),
+    )
+    .expect("a page");
     // Table 1 of UA 60139: V1 ... V9.
     let table = "000000001 000110001 011000001 011001001 101000001 \
         101000101 111000001 111000101 101000011 000000000";
@@ -98,7 +100,8 @@ fn the_page_of_rough_reads_as_the_patent() {
 fn a_line_has_all_its_points_and_clocks_in_its_length() {
     for name in ["quad_cosine", "cosine_squared"] {
         let path = format!("configs/{name}.toml");
-        let page = configuration(&path).page(&path, Path::new(PROOFS)).expect("a page");
+        let page =
+            glint::pages::of(&configuration(&path), &path, Path::new(PROOFS)).expect("a page");
         // A point a clock: register 8 and the synchronous ROM after the first word, done with the last point.
         for row in [
             "| `valid` is high, last     | 4 + `length` |",

@@ -137,7 +137,7 @@ impl Contract for Foreign {
 fn a_bound_is_proven_where_somebody_proved_it() {
     let own = configuration("configs/cosine_power.toml");
     let foreign = |contract| {
-        let device = Device { contract, ..own.device };
+        let device = Device { contract, proved: false, ..own.device };
         Core::new(device, own.config.clone()).expect("a design")
     };
     let honest = foreign(|config| Box::new(Foreign(cosine_power::contract(config), 1.0)));
@@ -148,7 +148,7 @@ fn a_bound_is_proven_where_somebody_proved_it() {
     assert_eq!(backing(&honest, Path::new("nowhere")), Backing::Author);
     assert_eq!(backing(&honest, Path::new("proofs")), record);
     assert_eq!(backing(&wrong, Path::new("proofs")), Backing::Author);
-    let page = wrong.page("mine.toml", Path::new("proofs")).expect("a page");
+    let page = glint::pages::of(&wrong, "mine.toml", Path::new("proofs")).expect("a page");
     assert!(
         page.contains("The bound is stated by its author") && !page.contains("proven"),
         "{page}"

@@ -9,16 +9,16 @@ use rayon::prelude::*;
 use serde_json::json;
 
 use super::{cosim, load_sequential};
-use crate::base::input;
-use crate::certify::{self, Outcome, Statement, Subject, prove, questions, statements};
-use crate::cli::own_file::OwnFile;
-use crate::cli::{Configs, Output, progress, say, tables};
-use crate::cosim::exhaustive::Certificate;
-use crate::golden::{Bound, Contract, Term};
-use crate::hdl::netlist::Design;
-use crate::package::digest;
-use crate::registry::Registry;
-use crate::tools::Tool;
+use crate::own_file::OwnFile;
+use crate::{Configs, Output, progress, say, tables};
+use glint_base::input;
+use glint_core::cosim::exhaustive::Certificate;
+use glint_core::package::digest;
+use glint_core::registry::Registry;
+use glint_golden::{Bound, Contract, Term};
+use glint_prove::certify::{self, Outcome, Statement, Subject, prove, questions, statements};
+use glint_rtl::netlist::Design;
+use glint_tools::Tool;
 
 /// Prove the error bound of a contract with Gappa, from the netlist and the microprogram
 ///

@@ -10,16 +10,16 @@ use clap::Args;
 use rayon::prelude::*;
 
 use super::{load, yosys};
-use crate::cli::{Output, TimeLimit, progress, wrong_usage};
-use crate::config::{Config, Schema, Value};
-use crate::core::Core;
-use crate::evidence::comparison::{self, Accuracy, Multiplier};
-use crate::golden::contract;
-use crate::registry::{Device, Registry};
-use crate::synth::Record;
-use crate::target::{FAMILIES, Family};
-use crate::tools::Tool;
-use crate::tools::synthesis::{self, Usage};
+use crate::{Output, TimeLimit, progress, wrong_usage};
+use glint_base::target::{FAMILIES, Family};
+use glint_config::{Config, Schema, Value};
+use glint_core::core::Core;
+use glint_core::registry::{Device, Registry};
+use glint_golden::contract;
+use glint_prove::synth::Record;
+use glint_show::evidence::comparison::{self, Accuracy, Multiplier};
+use glint_tools::Tool;
+use glint_tools::synthesis::{self, Usage};
 
 /// Compare all devices with cos^n gamma at one exponent, side by side
 ///
@@ -56,7 +56,7 @@ pub struct Arguments {
     #[arg(long)]
     csv: bool,
     /// Where records of `synth --out` are; that of a configuration is found by its digest
-    #[arg(long, value_name = "DIR", default_value = crate::synth::DIRECTORY)]
+    #[arg(long, value_name = "DIR", default_value = glint_prove::synth::DIRECTORY)]
     figures: PathBuf,
     /// Do not ask Yosys what the devices take
     #[arg(long)]

@@ -14,16 +14,16 @@ use serde_json::{Value, json};
 
 use super::mismatch::{self, Reproducer};
 use super::{Loaded, load, verdict};
-use crate::base::text;
-use crate::cli::failure::WrongUsage;
-use crate::cli::{Configs, Output, TimeLimit, count, progress, say, tables, wrong_usage};
-use crate::core::{TEST_POINTS, TEST_SEED};
-use crate::cosim::exhaustive::{AxisValues, Shard, axis};
-use crate::cosim::{Outcome, Worst};
-use crate::golden::{Bound, Sweep, Term};
-use crate::registry::Registry;
-use crate::tools;
+use crate::failure::WrongUsage;
+use crate::{Configs, Output, TimeLimit, count, progress, say, tables, wrong_usage};
 use benches::benches;
+use glint_base::text;
+use glint_core::core::{TEST_POINTS, TEST_SEED};
+use glint_core::cosim::exhaustive::{AxisValues, Shard, axis};
+use glint_core::cosim::{Outcome, Worst};
+use glint_core::registry::Registry;
+use glint_golden::{Bound, Sweep, Term};
+use glint_tools as tools;
 
 /// Compare the golden model with the simulated hardware, every register on every clock
 #[derive(Args)]

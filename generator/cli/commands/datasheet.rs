@@ -7,13 +7,15 @@ use clap::Args;
 use serde_json::json;
 
 use super::{Loaded, load, yosys};
-use crate::cli::store::{self, Written};
-use crate::cli::{Configs, Output, TimeLimit, progress, say, tables, wrong_usage};
-use crate::cosim::exhaustive::{PROOFS, Record};
-use crate::package::Seal;
-use crate::pages::datasheet::{self, Subject};
-use crate::registry::Registry;
-use crate::synth;
+use crate::store::{self, Written};
+use crate::{Configs, Output, TimeLimit, progress, say, tables, wrong_usage};
+use glint_core::cosim::exhaustive::{PROOFS, Record};
+use glint_core::package::Seal;
+use glint_core::registry::Registry;
+use glint_prove::synth;
+use glint_prove::synth::Yosys;
+use glint_show::evidence::hardware::Synthesis;
+use glint_show::pages::datasheet::{self, Subject};
 
 /// Write a datasheet, one HTML page that needs no network
 ///
@@ -83,6 +85,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     let steps: usize = steps.sum();
     let bar = progress::bar(output, steps as u64, "datasheets");
     bar.tick();
+    let synthesis = yosys.as_ref().map(|yosys| Yosys(yosys, limit));
     let mut report = Vec::new();
     for (one, (backing, proof, figures)) in loaded.iter().zip(records) {
         let subject = Subject {
@@ -91,7 +94,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
             backing,
             proof,
             figures,
-            synthesis: yosys.as_ref().map(|yosys| (yosys, limit)),
+            synthesis: synthesis.as_ref().map(|it| it as &dyn Synthesis),
         };
         let made = datasheet::datasheet(&subject, &|| bar.inc(1));
         let made = made.with_context(|| format!("`{}`", one.path))?;

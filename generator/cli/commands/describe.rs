@@ -7,11 +7,12 @@ use clap::Args;
 use serde_json::json;
 
 use super::load;
-use crate::cli::store::{self, Written};
-use crate::cli::{Configs, Output, say, tables};
-use crate::cosim::exhaustive::PROOFS;
-use crate::package::Seal;
-use crate::registry::Registry;
+use crate::store::{self, Written};
+use crate::{Configs, Output, say, tables};
+use glint_core::cosim::exhaustive::PROOFS;
+use glint_core::package::Seal;
+use glint_core::registry::Registry;
+use glint_show::pages;
 
 /// Print a page of documentation, in Markdown
 ///
@@ -39,7 +40,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     let loaded = load(registry, &arguments.configs.paths)?;
     let mut report = Vec::new();
     for (at, one) in loaded.iter().enumerate() {
-        let page = one.core.page(&one.path, Path::new(PROOFS));
+        let page = pages::of(&one.core, &one.path, Path::new(PROOFS));
         let page = page.with_context(|| format!("`{}`", one.path))?;
         let name = &one.core.config.name;
         let written = match &arguments.out {

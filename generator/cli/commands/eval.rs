@@ -11,12 +11,12 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::{Loaded, load_one};
-use crate::base::fixed::Format;
-use crate::cli::failure::WrongUsage;
-use crate::cli::{Output, say, tables, wrong_usage};
-use crate::cosim::Driven;
-use crate::golden::{self, Contract, Model, Operand};
-use crate::registry::Registry;
+use crate::failure::WrongUsage;
+use crate::{Output, say, tables, wrong_usage};
+use glint_base::fixed::Format;
+use glint_core::cosim::Driven;
+use glint_core::registry::Registry;
+use glint_golden::{self as golden, Contract, Model, Operand};
 
 /// Compute one point: golden registers, outputs and the formula in f64
 #[derive(Args)]

@@ -8,10 +8,10 @@ use rayon::prelude::*;
 use serde_json::json;
 
 use super::{Loaded, load};
-use crate::cli::store::{self, Written};
-use crate::cli::{Configs, Output, progress, say, tables};
-use crate::package::{self, OutputFile, Seal};
-use crate::registry::Registry;
+use crate::store::{self, Written};
+use crate::{Configs, Output, progress, say, tables};
+use glint_core::package::{self, OutputFile, Seal};
+use glint_core::registry::Registry;
 
 /// Write Verilog, ROM contents, manifest, FuseSoC core and test bench
 ///

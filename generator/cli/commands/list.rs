@@ -7,8 +7,8 @@ use clap::Args;
 use serde_json::json;
 
 use super::{CONFIGS, paths};
-use crate::cli::{Output, tables};
-use crate::registry::Registry;
+use crate::{Output, tables};
+use glint_core::registry::Registry;
 
 /// List the devices, and the configurations in configs/
 #[derive(Args)]

@@ -8,13 +8,13 @@ use serde_json::{Value, json};
 
 use super::mismatch::Reproducer;
 use super::{CONFIGS, FAILS, HOLDS, Loaded, OUTSIDE, cosim, generate, load, verdict};
-use crate::base::text;
-use crate::cli::{Output, progress, say, tables};
-use crate::core::{TEST_POINTS, TEST_SEED};
-use crate::cosim::Outcome;
-use crate::golden::Bound;
-use crate::package::Timing;
-use crate::registry::Registry;
+use crate::{Output, progress, say, tables};
+use glint_base::text;
+use glint_core::core::{TEST_POINTS, TEST_SEED};
+use glint_core::cosim::Outcome;
+use glint_core::package::Timing;
+use glint_core::registry::Registry;
+use glint_golden::Bound;
 
 /// The result of the main job for one configuration.
 struct Finding {

@@ -10,9 +10,9 @@ use super::cosim::SweepValues;
 use super::cosim::exhaustive::read;
 use super::cosim::exhaustive::show::{announce, report};
 use super::load;
-use crate::cli::{Output, tables};
-use crate::cosim::exhaustive::{Shard, State};
-use crate::registry::Registry;
+use crate::{Output, tables};
+use glint_core::cosim::exhaustive::{Shard, State};
+use glint_core::registry::Registry;
 
 /// Join the parts of a `cosim --exhaustive` that was divided by --shard
 #[derive(Args)]

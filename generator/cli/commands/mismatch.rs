@@ -8,10 +8,10 @@ use anyhow::{Context, Result};
 use serde_json::{Value, json};
 
 use super::Loaded;
-use crate::base::program::Program;
-use crate::cli::destination::Destination;
-use crate::cosim::exhaustive::{Clocks, Difference};
-use crate::cosim::{Lockstep, Mismatch, Outcome};
+use crate::destination::Destination;
+use glint_base::program::Program;
+use glint_core::cosim::exhaustive::{Clocks, Difference};
+use glint_core::cosim::{Lockstep, Mismatch, Outcome};
 
 /// Clocks in the waveform that ends with a difference.
 const WINDOW: u64 = 64;

@@ -30,16 +30,17 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, anyhow, bail};
 
 use super::failure::{self, Several};
-use crate::base::diagnostic::Diagnostics;
-use crate::base::input;
-use crate::base::program::Program;
-use crate::cli::wrong_usage;
-use crate::config::{self, Problems};
-use crate::core::Core;
-use crate::golden::Bound;
-use crate::package::{OutputFile, Unfit, Vectors};
-use crate::registry::Registry;
-use crate::tools::Tool;
+use crate::wrong_usage;
+use glint_base::diagnostic::Diagnostics;
+use glint_base::input;
+use glint_base::program::Program;
+use glint_config::{self as config, Problems};
+use glint_core::core::Core;
+use glint_core::package::{OutputFile, Unfit, Vectors};
+use glint_core::registry::Registry;
+use glint_golden::Bound;
+use glint_show::evidence::advice;
+use glint_tools::Tool;
 
 /// Where configurations are when none are named.
 const CONFIGS: &str = "configs";
@@ -232,7 +233,7 @@ impl Loaded {
             let limit = bound.limiting().map_or_else(String::new, |term| {
                 format!("; most of it, {:.3}, is of `{}` ({})", term.units, term.key, term.what)
             });
-            let advice = match self.core.advice() {
+            let advice = match advice::of(&self.core) {
                 Some(advice) => {
                     let keys = advice.changes.iter();
                     let places = keys.filter_map(|(key, ..)| self.locations.place(key));

@@ -10,15 +10,15 @@ use serde_json::{Value, json};
 
 use super::mismatch::{self, first_clock, traced};
 use super::{Loaded, load};
-use crate::base::program::Program;
-use crate::cli::own_file::OwnFile;
-use crate::cli::{Configs, Output, TimeLimit, progress, say, tables, wrong_usage};
-use crate::cosim::Lockstep;
-use crate::mutate::{
+use crate::own_file::OwnFile;
+use crate::{Configs, Output, TimeLimit, progress, say, tables, wrong_usage};
+use glint_base::program::Program;
+use glint_core::cosim::Lockstep;
+use glint_core::registry::Registry;
+use glint_prove::mutate::{
     self, Detector, Difference, Fault, Faults, Found, GOAL_MEMORY, GOAL_TEXT, Score, Share,
     TOLERATED, Tally, Text, TextFault, TextScore, Verdict,
 };
-use crate::registry::Registry;
 
 /// Plant faults one at a time, and show which of them the tests notice
 ///

@@ -4,11 +4,11 @@ use anyhow::{Result, bail};
 use clap::Args;
 use serde_json::json;
 
-use crate::cli::failure::WrongUsage;
-use crate::cli::{Output, tables, wrong_usage};
-use crate::config::{self, Config};
-use crate::keys::presets;
-use crate::registry::Registry;
+use crate::failure::WrongUsage;
+use crate::{Output, tables, wrong_usage};
+use glint_config::{self as config, Config};
+use glint_core::registry::Registry;
+use glint_keys::presets;
 
 /// Print a commented configuration of a device, or of a function by its name
 #[derive(Args)]

@@ -8,17 +8,19 @@ use clap::{Args, ValueEnum};
 use serde_json::json;
 
 use super::load_one;
-use crate::base::{input, text};
-use crate::cli::destination::Destination;
-use crate::cli::failure::{self, WrongUsage};
-use crate::cli::{Output, TimeLimit, number, progress, say, tables, wrong_usage};
-use crate::core::{self, Core};
-use crate::registry::Registry;
-use crate::render::{
+use crate::destination::Destination;
+use crate::failure::{self, WrongUsage};
+use crate::{Output, TimeLimit, number, progress, say, tables, wrong_usage};
+use glint_base::{input, text};
+use glint_core::core::Core;
+use glint_core::cosim::batch::{Engine, Golden, RustHdl};
+use glint_core::registry::Registry;
+use glint_prove::batch::Verilog;
+use glint_show::render::{
     self, BuiltIn, Difference, Light, Material, Mesh, Object, Relief, Rendered, Scene, Settings,
     Shape, Vector, View,
 };
-use crate::tools;
+use glint_tools::Simulator;
 
 /// The largest file that is read, in bytes: about the OBJ file of the largest mesh.
 const LARGEST_FILE: u64 = 4 << 30;
@@ -143,16 +145,17 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     let scene = scene(arguments, render::walks_lines(core.contract.as_ref()))?;
     render::check(&settings, &scene).map_err(|error| WrongUsage(error.to_string()))?;
     let destination = Destination::open(&arguments.out)?;
-    let through = match arguments.through {
-        Through::Golden => core::Through::Golden,
-        Through::RustHdl => core::Through::RustHdl,
-        Through::Verilator => {
-            core::Through::Verilog(tools::Simulator::Verilator, arguments.time_limit.get())
-        }
-    };
     let bar = progress::bar(output, u64::from(settings.size.1), "rows rendered");
     bar.tick();
-    let mut engine = core.engine(through)?;
+    let contract = core.contract.as_ref();
+    let mut engine: Box<dyn Engine> = match arguments.through {
+        Through::Golden => Box::new(Golden(contract)),
+        Through::RustHdl => Box::new(RustHdl::new(&core.design, contract)?),
+        Through::Verilator => {
+            let (simulator, limit) = (Simulator::Verilator, arguments.time_limit.get());
+            Box::new(Verilog::new(simulator, &core.design, contract, core.verilog()?, limit)?)
+        }
+    };
     let rendered = render::render(&core, engine.as_mut(), &scene, &settings, &mut |rows| {
         bar.set_position(rows);
     })?;

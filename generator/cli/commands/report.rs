@@ -7,13 +7,15 @@ use clap::Args;
 use serde_json::json;
 
 use super::yosys;
-use crate::cli::own_file::OwnFile;
-use crate::cli::{Output, TimeLimit, progress, say, tables};
-use crate::evidence;
-use crate::evidence::benchmark;
-use crate::evidence::claims::Verdict;
-use crate::pages::report;
-use crate::registry::Registry;
+use crate::own_file::OwnFile;
+use crate::{Output, TimeLimit, progress, say, tables};
+use glint_core::registry::Registry;
+use glint_prove::synth::Yosys;
+use glint_show::evidence;
+use glint_show::evidence::benchmark;
+use glint_show::evidence::claims::Verdict;
+use glint_show::evidence::hardware::Synthesis;
+use glint_show::pages::report;
 
 /// Measure all devices and the claims of their sources, and write a page about them
 ///
@@ -56,7 +58,8 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     let timed = arguments.benchmark.then(benchmark::run);
     let steps = evidence::steps(registry, yosys.is_some());
     let bar = progress::bar(output, steps as u64, "measurements");
-    let synthesis = yosys.as_ref().map(|yosys| (yosys, arguments.time_limit.get()));
+    let synthesis = yosys.as_ref().map(|yosys| Yosys(yosys, arguments.time_limit.get()));
+    let synthesis = synthesis.as_ref().map(|it| it as &dyn Synthesis);
     let evidence = evidence::gather(registry, synthesis, &|| bar.inc(1))?;
     bar.finish_and_clear();
     notes.extend(evidence.notes.iter().cloned());

@@ -6,7 +6,7 @@ use std::path::Path;
 use anyhow::{Context, Result, anyhow, ensure};
 use csv::{ReaderBuilder, StringRecord, Trim};
 
-use crate::base::input;
+use glint_base::input;
 
 /// Applies `of_row` to the rows of a file, or of standard input for `-`; `columns` understands the headings.
 ///

@@ -7,12 +7,12 @@ use clap::Args;
 use serde_json::{Value, json};
 
 use super::{Loaded, load, paths};
-use crate::base::text::counted;
-use crate::cli::{Configs, Output, say, store, tables};
-use crate::hdl::netlist::{Design, Pipeline};
-use crate::package::{Seal, sealed};
-use crate::pages::diagram;
-use crate::registry::Registry;
+use crate::{Configs, Output, say, store, tables};
+use glint_base::text::counted;
+use glint_core::package::{Seal, sealed};
+use glint_core::registry::Registry;
+use glint_rtl::netlist::{Design, Pipeline};
+use glint_show::pages::diagram;
 
 /// Show the stages of a pipeline
 ///

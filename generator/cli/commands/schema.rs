@@ -3,9 +3,9 @@
 use anyhow::Result;
 use clap::Args;
 
-use crate::cli::{Output, tables};
-use crate::config;
-use crate::registry::Registry;
+use crate::{Output, tables};
+use glint_config as config;
+use glint_core::registry::Registry;
 
 /// Print a JSON Schema of the configuration keys, for editors and validators
 ///

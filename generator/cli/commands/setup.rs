@@ -8,13 +8,13 @@ use csv::StringRecord;
 use serde_json::{Map, Value, json};
 
 use super::{Loaded, load_one, rows};
-use crate::base::program::Program;
-use crate::cli::failure::WrongUsage;
-use crate::cli::{Output, say, tables, wrong_usage};
-use crate::config;
-use crate::registry::Registry;
-use crate::render::setup::{Arc, direction, half};
-use crate::render::{self, Feed, Point, Vector};
+use crate::failure::WrongUsage;
+use crate::{Output, say, tables, wrong_usage};
+use glint_base::program::Program;
+use glint_config as config;
+use glint_core::registry::Registry;
+use glint_show::render::setup::{Arc, direction, half};
+use glint_show::render::{self, Feed, Point, Vector};
 
 /// With what the columns begin in which `setup` writes real values, and which `eval` leaves alone.
 pub const REAL: &str = "real_";

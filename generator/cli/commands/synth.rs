@@ -6,19 +6,19 @@ mod show;
 use std::path::PathBuf;
 
 use anyhow::{Context, Result, bail};
-use clap::{Args, ValueEnum};
+use clap::Args;
 use rayon::prelude::*;
 use serde::Serialize;
 
 use super::{Loaded, load};
-use crate::cli::own_file::OwnFile;
-use crate::cli::{Configs, Output, TimeLimit, progress, say};
-use crate::evidence::comparison;
-use crate::registry::Registry;
-use crate::synth::{Figures, Flow, Rate, Record, Subject, TARGETS, Target};
-use crate::tools::gates::cells::LIBERTY;
-use crate::tune::{Cost, Features};
+use crate::own_file::OwnFile;
+use crate::{Configs, Output, TimeLimit, progress, say};
 use cache::Cache;
+use glint_core::registry::Registry;
+use glint_prove::synth::{Figures, Flow, Rate, Record, Subject, TARGETS, Target};
+use glint_prove::tune::{Cost, Features};
+use glint_show::evidence::comparison;
+use glint_tools::gates::cells::LIBERTY;
 
 /// The exponent at which the clocks of a device are counted where they depend on it.
 const EXPONENT: f64 = 35.0;
@@ -60,16 +60,6 @@ pub struct Arguments {
     liberty: PathBuf,
     #[command(flatten)]
     time_limit: TimeLimit<3600>,
-}
-
-impl ValueEnum for Target {
-    fn value_variants<'a>() -> &'a [Self] {
-        &TARGETS
-    }
-
-    fn to_possible_value(&self) -> Option<clap::builder::PossibleValue> {
-        Some(clap::builder::PossibleValue::new(self.name()).help(self.title()))
-    }
 }
 
 /// A configuration with all that was measured of it.

@@ -9,14 +9,14 @@ use clap::Args;
 use indicatif::ProgressBar;
 use serde_json::{Value as Json, json};
 
-use crate::base::program::Program;
-use crate::cli::destination::Destination;
-use crate::cli::tables;
-use crate::cli::{Output, failure, number, progress, say, wrong_usage};
-use crate::config::{self, Config, Value};
-use crate::registry::{Device, Registry};
-use crate::synth::Target;
-use crate::tune::{self, Answer, Candidate, ErrorUnit, Goal, Objective};
+use crate::destination::Destination;
+use crate::tables;
+use crate::{Output, failure, number, progress, say, wrong_usage};
+use glint_base::program::Program;
+use glint_config::{self as config, Config, Value};
+use glint_core::registry::{Device, Registry};
+use glint_prove::synth::Target;
+use glint_prove::tune::{self, Answer, Candidate, ErrorUnit, Goal, Objective};
 
 /// Find the smallest configuration of a device for an error
 ///
@@ -171,7 +171,7 @@ fn base(registry: &Registry, arguments: &Arguments) -> Result<(Device, Config, V
 
 /// Where the bounds come from.
 fn origin(device: &Device) -> &'static str {
-    if device.is_of_catalogue() { "proved" } else { "stated by its author" }
+    if device.proved { "proved" } else { "stated by its author" }
 }
 
 /// The configuration as a file, with what led to it.

@@ -8,11 +8,11 @@ use clap::Args;
 use serde_json::json;
 
 use super::{Loaded, load};
-use crate::cli::own_file::OwnFile;
-use crate::cli::{Configs, Output, TimeLimit, progress, say, tables};
-use crate::cosim::exhaustive::PROOFS;
-use crate::registry::Registry;
-use crate::verify::{
+use crate::own_file::OwnFile;
+use crate::{Configs, Output, TimeLimit, progress, say, tables};
+use glint_core::cosim::exhaustive::PROOFS;
+use glint_core::registry::Registry;
+use glint_prove::verify::{
     Answer, CHECKS, CheckTime, Conclusion, Effort, Record, Subject, Verdict, page,
 };
 

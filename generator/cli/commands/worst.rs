@@ -9,12 +9,12 @@ use serde::{Deserialize, Serialize};
 use serde_json::json;
 
 use super::{Loaded, load};
-use crate::base::program::Program;
-use crate::base::{input, text};
-use crate::cli::own_file::OwnFile;
-use crate::cli::{Configs, Output, count, progress, say, tables};
-use crate::cosim::search::{self, Reached};
-use crate::registry::Registry;
+use crate::own_file::OwnFile;
+use crate::{Configs, Output, count, progress, say, tables};
+use glint_base::program::Program;
+use glint_base::{input, text};
+use glint_core::cosim::search::{self, Reached};
+use glint_core::registry::Registry;
 
 /// Search for the largest error of an output
 ///

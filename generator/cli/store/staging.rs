@@ -9,8 +9,8 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, ensure};
 
 use super::{create_directory, create_parent};
-use crate::base::transient::{self, Directory};
-use crate::package::OutputFile;
+use glint_core::package::OutputFile;
+use glint_tools::transient::{self, Directory};
 
 /// Complete new files, beside the directories that they are for.
 pub struct Staging {

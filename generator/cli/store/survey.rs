@@ -9,8 +9,8 @@ use anyhow::{Context, Result};
 use serde_json::Value;
 
 use super::{differs, directories};
-use crate::base::transient::{files_below, relative_name};
-use crate::package::{OutputFile, digest};
+use glint_core::package::{OutputFile, digest};
+use glint_tools::transient::{files_below, relative_name};
 
 /// The files that are there, held against those that are to be there. All lists are sorted.
 pub struct Survey {

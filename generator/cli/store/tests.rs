@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use super::*;
-use crate::package::digest;
+use glint_core::package::digest;
 
 /// A manifest that vouches for the other files, last.
 fn files(text: &str) -> Vec<OutputFile> {

@@ -7,7 +7,7 @@ use std::time::Duration;
 use anyhow::{Context, Result};
 
 use super::super::sources::Sources;
-use crate::tools::Tool;
+use crate::Tool;
 
 /// The library of Oklahoma State University for 0.18 µm, where Debian's `qflow-tech-osu018` has it.
 pub const LIBERTY: &str = "/usr/share/qflow/tech/osu018/osu018_stdcells.lib";

@@ -9,8 +9,8 @@ use std::time::Duration;
 use anyhow::{Context, Result, bail};
 
 use super::sources::Sources;
-use crate::target::Family;
-use crate::tools::Tool;
+use crate::Tool;
+use glint_base::target::Family;
 
 /// Models of the ECP5 cells for which Yosys has none.
 const ECP5: &str = include_str!("ecp5.v");

@@ -95,6 +95,7 @@ const ROOT: Device = Device {
     describe,
     model,
     contract,
+    proved: false,
 };
 
 fn main() -> ExitCode {

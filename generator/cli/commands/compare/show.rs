@@ -5,14 +5,14 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::{Arguments, Entry};
-use crate::base::program::Program;
-use crate::base::text;
-use crate::cli::{Output, failure, say, tables};
-use crate::evidence::comparison::{ANGLES, ANGLES_PER_DEGREE, Accuracy, Multiplier};
-use crate::golden::contract;
-use crate::synth::{Frequency, Rate, TARGETS, Target, tools};
-use crate::target::FAMILIES;
-use crate::tools::synthesis::Usage;
+use crate::{Output, failure, say, tables};
+use glint_base::program::Program;
+use glint_base::target::FAMILIES;
+use glint_base::text;
+use glint_golden::contract;
+use glint_prove::synth::{Frequency, Rate, TARGETS, Target, tools};
+use glint_show::evidence::comparison::{ANGLES, ANGLES_PER_DEGREE, Accuracy, Multiplier};
+use glint_tools::synthesis::Usage;
 
 /// Prints everything in the form that was asked for.
 pub fn show(

@@ -5,13 +5,13 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use super::Arguments;
-use crate::base::program::Program;
-use crate::cli::commands::Loaded;
-use crate::cli::commands::mismatch::{first_clock, waveform_of};
-use crate::cli::failure;
-use crate::cli::{Output, destination, progress, say, tables, wrong_usage};
-use crate::package;
-use crate::tools::{BenchDifference, BenchOutcome, Simulator, bench_waveform, run_bench};
+use crate::commands::Loaded;
+use crate::commands::mismatch::{first_clock, waveform_of};
+use crate::failure;
+use crate::{Output, destination, progress, say, tables, wrong_usage};
+use glint_base::program::Program;
+use glint_core::package;
+use glint_tools::{BenchDifference, BenchOutcome, Simulator, bench_waveform, run_bench};
 
 /// Points when an external simulator runs.
 const POINTS: u64 = 200;

@@ -11,12 +11,12 @@ use indicatif::HumanDuration;
 use serde_json::json;
 
 use super::Arguments;
-use crate::base::{input, text};
-use crate::cli::commands::load;
-use crate::cli::interrupt::Deferred;
-use crate::cli::{Output, destination, progress, say, tables, wrong_usage};
-use crate::cosim::exhaustive::{Job, Shard, State, kept};
-use crate::registry::Registry;
+use crate::commands::load;
+use crate::interrupt::Deferred;
+use crate::{Output, destination, progress, say, tables, wrong_usage};
+use glint_base::{input, text};
+use glint_core::cosim::exhaustive::{Job, Shard, State, kept};
+use glint_core::registry::Registry;
 use show::{announce, report};
 
 /// How often the state is written.

@@ -2,8 +2,8 @@
 
 use serde_json::{Value, json};
 
-use crate::cli::say;
-use crate::cosim::{CLASSES, Histogram};
+use crate::say;
+use glint_core::cosim::{CLASSES, Histogram};
 
 /// Prints the share of the points in each class.
 pub fn print(histogram: &Histogram) {

@@ -6,9 +6,9 @@ use anyhow::{Result, anyhow, bail};
 use serde_json::{Map, Value, json};
 
 use super::{formula, operands, outside};
-use crate::cli::commands::setup::REAL;
-use crate::cli::commands::{Loaded, rows};
-use crate::cli::{Output, tables};
+use crate::commands::setup::REAL;
+use crate::commands::{Loaded, rows};
+use crate::{Output, tables};
 
 /// The result of a point.
 struct Row {

@@ -1,8 +1,8 @@
 //! Operands as the user writes them: `0.99` is a value, `#1038090` a raw integer.
 
-use crate::config;
-use crate::cosim::trial;
-use crate::golden::{Contract, Operand};
+use glint_config as config;
+use glint_core::cosim::trial;
+use glint_golden::{Contract, Operand};
 
 /// The raw operands that `name=value` settings give.
 pub fn given(operands: &[Operand], settings: &[String]) -> Result<Vec<Option<i64>>, String> {

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::base::input;
-use crate::cli::destination;
-use crate::core::Core;
-use crate::synth::{Figures, Target};
+use crate::destination;
+use glint_base::input;
+use glint_core::core::Core;
+use glint_prove::synth::{Figures, Target};
 
 /// The folder beside configurations, which may be deleted at any time.
 const FOLDER: &str = ".glint";

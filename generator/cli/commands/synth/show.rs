@@ -4,9 +4,9 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::{Measured, Recorded};
-use crate::cli::say;
-use crate::cli::tables;
-use crate::synth::{Figures, Rate, tools};
+use crate::say;
+use crate::tables;
+use glint_prove::synth::{Figures, Rate, tools};
 
 /// The cell without a figure.
 const NONE: &str = "–";

@@ -3,9 +3,9 @@
 use anyhow::{Result, bail};
 
 use super::Arguments;
-use crate::evidence::chart::{Chart, ChartAxis, Series};
-use crate::pages::plots;
-use crate::tune::{Answer, Candidate, ErrorUnit};
+use glint_prove::tune::{Answer, Candidate, ErrorUnit};
+use glint_show::evidence::chart::{Chart, ChartAxis, Series};
+use glint_show::pages::plots;
 
 /// The rules that a page's style sheet has elsewhere.
 const STYLE: &str = "<style>svg{background:#fcfcfb}text{fill:#1c1d1f;font-family:sans-serif}.ink{stroke:#5b5f66}text.ink{stroke:#fcfcfb;stroke-width:16;paint-order:stroke}\

@@ -5,13 +5,13 @@ use std::collections::BTreeMap;
 use anyhow::Result;
 use serde_json::{Value, json};
 
-use crate::base::program::Program;
-use crate::base::text;
-use crate::cli::commands::Loaded;
-use crate::cli::commands::mismatch::Reproducer;
-use crate::cli::{Output, say};
-use crate::cosim::exhaustive::{Difference, Job, Proof, Shard, State};
-use crate::golden::Values;
+use crate::commands::Loaded;
+use crate::commands::mismatch::Reproducer;
+use crate::{Output, say};
+use glint_base::program::Program;
+use glint_base::text;
+use glint_core::cosim::exhaustive::{Difference, Job, Proof, Shard, State};
+use glint_golden::Values;
 
 /// Announces the work ahead, and what it leaves out.
 pub fn announce(one: &Loaded, job: &Job<'_>, state: &State) {

@@ -1,0 +1,36 @@
+//! Texts by templates of the crate `glint-templates`: macro [`fill!`](crate::fill).
+
+use anyhow::Result;
+pub use askama;
+pub use askama::Template;
+pub use glint_templates::template;
+
+/// Returns a template's text. Askama drops the newline that ends a template.
+///
+/// # Errors
+/// A value cannot be printed.
+pub fn render(template: &impl Template) -> Result<String> {
+    let mut text = template.render()?;
+    if !text.ends_with('\n') {
+        text.push('\n');
+    }
+    Ok(text)
+}
+
+/// Returns the text of a template: its fields with their types and, where no variable has the name of the field, their values.
+#[macro_export]
+macro_rules! fill {
+    ($path:tt { $($field:ident: $kind:ty $(= $value:expr)?),* $(,)? }) => {{
+        #[$crate::template::template($path)]
+        struct View<'a> {
+            $($field: $kind,)*
+            lifetime: std::marker::PhantomData<&'a ()>,
+        }
+        $crate::template::render(&View {
+            $($field: $crate::fill!(@value $field $($value)?),)*
+            lifetime: std::marker::PhantomData,
+        })
+    }};
+    (@value $field:ident) => { $field };
+    (@value $field:ident $value:expr) => { $value };
+}

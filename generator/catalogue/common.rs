@@ -1,0 +1,78 @@
+//! Operands, outputs and notes that several devices share.
+
+use glint_base::fixed::{Format, Rounding};
+use glint_keys::common as keys;
+use glint_rtl::blocks::colour::Colours;
+use glint_rtl::blocks::line::{LineBlocks, OperandBlocks};
+use glint_rtl::dsl::{Designer, Note, Operand, Signal, Step, Topic, end, step, valid};
+
+/// The operand `cos_gamma`, limited to 0 … 1.0.
+#[track_caller]
+pub fn cosine<'d>(d: &'d Designer, keys: &keys::Cosine) -> Operand<'d> {
+    d.operand_clamped("cos_gamma", keys.format(), 0.0, 1.0)
+        .doc("cosine of the angle between normal and half vector")
+}
+
+/// The operand `exponent`, of so many bits.
+#[track_caller]
+pub fn exponent(d: &Designer, bits: u32) -> Operand<'_> {
+    d.operand("exponent", Format::unsigned(bits as i32, 0)).doc("specular exponent n")
+}
+
+/// The outputs of colours by as many multipliers as the keys say, and the microinstructions that make
+/// them, which stand before the one with the result.
+#[track_caller]
+pub fn colour_products<'d>(
+    keys: &keys::Colours,
+    rounding: Rounding,
+    colours: &Colours<'d>,
+    f: Signal<'d>,
+) -> Vec<Step> {
+    if keys.in_turn() {
+        return colours.outputs_in_turn(f, rounding);
+    }
+    colours.outputs(f, rounding);
+    Vec::new()
+}
+
+/// Makes the colour outputs, with the microinstruction that has the result, which ends the microprogram.
+#[track_caller]
+pub fn colour_outputs<'d>(
+    keys: &keys::Colours,
+    rounding: Rounding,
+    colours: &Colours<'d>,
+    f: Signal<'d>,
+) -> Vec<Step> {
+    let mut steps = colour_products(keys, rounding, colours, f);
+    steps.push(step("result", [valid(), end()]));
+    steps
+}
+
+/// Returns the note on writes while the device is busy and on how long its outputs hold, where each colour has a
+/// multiplier of its own behind the register that `follow` names, until `until`.
+pub fn outputs_note(keys: &keys::Colours, follow: &str, until: &str) -> Note {
+    if keys.in_turn() {
+        return Topic::Writes.note(
+            "Writes while busy are ignored. One multiplier multiplies f by the colours, one after the other, and the \
+             outputs are registers: they hold from valid until the next computation reaches the products.",
+        );
+    }
+    Topic::Writes.note(format!(
+        "Writes while busy are ignored. The outputs follow {follow} and the colour registers: they hold from valid \
+         until a colour is written or the next computation {until}."
+    ))
+}
+
+/// Seed 000's numbers of the accumulator that walks a line.
+pub const LINE_BLOCKS: LineBlocks = LineBlocks {
+    delta: OperandBlocks { inputs: (17, 18), register: 2 },
+    start: OperandBlocks { inputs: (19, 20), register: 3 },
+    length_inputs: (23, 24),
+    counter: 5,
+    adder: 6,
+    mux: 7,
+    register: 8,
+    count: 34,
+    select: 36,
+    write: 37,
+};

@@ -1,0 +1,109 @@
+//! `cosine-power` — seed 002: the paper's W(n,γ) = `(n/m·(cos γ − 1) + 1)^m`, m ∈ {2, 4, 8, 16}.
+//!
+//! The paper gives no circuit; this is the least that its formula asks for: one multiplier, one
+//! accumulator. n/m is a shift by wiring. The sum is formed as a complement, `1 − n/m·(1 − cos γ)`, so that
+//! every number is a fraction from 0 to 1 and the clamp at the zero of W is the saturation of the
+//! first product.
+
+use glint_base::fixed::{Format, Overflow};
+use glint_config::Config;
+use glint_keys::cosine_power::Keys;
+use glint_rtl::blocks::colour::Colours;
+use glint_rtl::blocks::squaring::Squarings;
+use glint_rtl::dsl::{Designer, Signal, step};
+use glint_rtl::netlist::{About, Topic};
+
+use super::common;
+
+/// The device.
+pub fn describe(d: &Designer, config: &Config) {
+    let keys = Keys::of(config);
+    let count = keys.power.ilog2();
+    let f = keys.f.format();
+    d.about(about(&keys));
+
+    let cos_gamma = common::cosine(d, &keys.operands.cosine).q();
+    let exponent = common::exponent(d, keys.operands.exponent_bits).q();
+    let colours = Colours::new(d, keys.operands.colours.bits as i32, None);
+
+    // With power = 2 there is no power to square again.
+    let operand_select = d.select("operand_select", &["distance", "base", "power"]).partly_used();
+    let accumulator =
+        d.register("accumulator", f).doc("n/m*(1 - cos gamma), then the powers of W's base");
+    let squarings = Squarings::new(d, count);
+
+    let one = d.constant("one", 1.0, Format::unsigned(1, keys.operands.cosine.fraction as i32));
+    let complement = d.sub("complement", one, cos_gamma).doc("1.0 - cos gamma");
+    let zeta = exponent.shift_right(count as i32).named("zeta").doc("n/m, by wiring");
+    let base = base(d, cos_gamma, accumulator.q());
+
+    let first = d
+        .bus("first", operand_select, [complement, base, accumulator.q()])
+        .doc("first operand of the multiplier");
+    let second = d
+        .bus("second", operand_select, [zeta, base, accumulator.q()])
+        .doc("second operand of the multiplier");
+    let product = d
+        .shared_mul("product", &first, &second)
+        .doc_on(Topic::Microprogram, "the shared product; its point depends on the operands");
+    let rounding_f = keys.f.rounding;
+    let distance =
+        d.narrow("distance", product.of(complement, zeta), f, rounding_f, Overflow::Saturate);
+    let square = product.of_any(&[(base, base), (accumulator.q(), accumulator.q())]);
+    let square = d.narrow("square", square, f, rounding_f, Overflow::Saturate);
+    let next = d.mux_on("accumulator_next", operand_select, [distance, square, square]);
+    accumulator.takes(next.out());
+    let outputs = common::colour_outputs(
+        &keys.operands.colours,
+        keys.f.output_rounding,
+        &colours,
+        accumulator.q(),
+    );
+
+    let mut steps = vec![
+        step("operands 1 - cos gamma, n/m", []),
+        step(
+            "accumulator <- n/m * (1 - cos gamma)",
+            [accumulator.load()].into_iter().chain(squarings.load()),
+        ),
+    ];
+    steps.extend(squarings.steps(
+        accumulator,
+        [first.pick(base), second.pick(base)],
+        [first.pick(accumulator.q()), second.pick(accumulator.q())],
+    ));
+    d.microprogram(steps.into_iter().chain(outputs));
+}
+
+/// `1 − n/m·(1 − cos γ)` as the complement of the accumulator: an ulp too small, which is what keeps it
+/// a fraction. 0 when cos γ ≤ 0.
+fn base<'d>(d: &'d Designer, cos_gamma: Signal<'d>, accumulator: Signal<'d>) -> Signal<'d> {
+    let facing = d.any("facing", cos_gamma).doc("the surface faces the half vector");
+    let inverse = d.not("inverse", accumulator).doc("1.0 - accumulator, less an ulp");
+    let zero = d.raw_constant("zero", 0, accumulator.format());
+    d.choose("base", facing, [zero, inverse]).doc("base of the power")
+}
+
+fn about(keys: &Keys) -> About {
+    let m = keys.power;
+    About {
+        device: "cosine-power".to_owned(),
+        title: format!("Specular intensity by the cosine-power function, m = {m}"),
+        formula: format!("out = colour * (n/{m} * (cos(gamma) - 1) + 1)^{m}"),
+        source: "Seed 002, the paper's W(n, gamma) with zeta = n/m".to_owned(),
+        notes: vec![
+            "The paper gives no circuit; n/m is a shift by wiring.".into(),
+            Topic::Microprogram.note(
+                "The circuit is the least that the formula asks for: one multiplier and one accumulator.",
+            ),
+            "The sum is formed as a complement, 1 - n/m * (1 - cos gamma): every number is then a fraction from 0 \
+             to 1, and the clamp beyond the zero of W is the saturation of the first product. The complement is the \
+             accumulator inverted, an ulp too small, which the error bound counts."
+                .into(),
+            "Cosines are limited to 0 ... 1.0 as they are written; cos gamma <= 0 gives 0, and so does everything \
+             beyond the zero of W at cos gamma = (n - m)/n."
+                .into(),
+            common::outputs_note(&keys.operands.colours, "the accumulator", "begins"),
+        ],
+    }
+}

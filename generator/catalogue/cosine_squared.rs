@@ -1,0 +1,83 @@
+//! `cosine-squared` — seed 000's prototype (Abbas, Szirmay-Kalos, Horváth 2000): `cos²(a·δ)` along a scan line.
+//!
+//! The accumulator of `quad-cosine`; the host multiplies its angles by `a = √(n/2)`, so that nothing stands
+//! between register 8 and a single table.
+
+use glint_config::Config;
+use glint_keys::cosine_squared::Keys;
+use glint_rtl::blocks::angle;
+use glint_rtl::blocks::colour::Colours;
+use glint_rtl::blocks::line::Line;
+use glint_rtl::dsl::Designer;
+use glint_rtl::netlist::{About, Topic};
+
+use super::{common, quad_cosine};
+
+/// The device.
+pub fn describe(d: &Designer, config: &Config) {
+    let keys = Keys::of(config);
+    let table = keys.table_address as i32;
+    let f = keys.f_format();
+    // Registers behind the address and the word of ROM 12, and behind multiplier 13.
+    let staged = keys.stages == 5;
+    d.about(about(keys.stages));
+
+    let colours = Colours::amplitude(d, keys.colour_bits as i32, Some(quad_cosine::AMPLITUDE));
+    let line =
+        Line::new(d, keys.angle_format(), keys.length_bits as i32, Some(common::LINE_BLOCKS));
+    let folded = angle::fold(d, line.angle(), table);
+    let mut address = angle::address(d, "table_address", folded.magnitude, folded.within, table);
+    if staged {
+        address = d.pipeline("table_address_held", address);
+    }
+    let cosine = d
+        .rom("cosine", address, f, &angle::cosine_power_table(2, table, f.frac), true)
+        .block(12)
+        .doc(&format!("cos^2 in 2^{table} steps of a right angle"))
+        .comments(angle::step_comments(2, table));
+    let rounding = keys.output_rounding;
+    if staged {
+        colours.outputs_staged(d.pipeline("cosine_held", cosine.out()), rounding);
+    } else {
+        colours.outputs(cosine.out(), rounding);
+    }
+    // Register 8, ROM 12, and what is between.
+    line.microprogram(keys.stages);
+}
+
+fn about(stages: u32) -> About {
+    About {
+        device: "cosine-squared".to_owned(),
+        title: "Specular intensity along a scan line by a stretched cosine squared".to_owned(),
+        formula: "out = amplitude * cos^2(angle); angle = zeta_start + i * delta_zeta, stretched by sqrt(n/2)"
+            .to_owned(),
+        source: "Seed 000, the prototype: Abbas, Szirmay-Kalos, Horvath 2000".to_owned(),
+        notes: vec![
+            "The host multiplies both angles by a = sqrt(n/2) before it writes them: there is no exponent here. \
+             Angles are in right angles: 1.0 is 90 degrees. The intensity is 0 where the stretched angle is not in \
+             -90 (included) to 90 degrees."
+                .into(),
+            "A stretched angle is no angle on a circle: it must not wrap around within a line. With angle.integer = 7 \
+             the register holds 128 right angles either way; what a host can set up reaches 3*sqrt(n/2), that is 68 for n \
+             = 1000. Beyond, the register wraps around, in model and hardware alike."
+                .into(),
+            "The default has 22 fraction bits of the angle: over the longest line, of 4095 intervals, the host's roundings of delta_zeta and \
+             zeta_start add up to at most 2^11 ulps. The formula falls by at most 1.58 in a right angle, so that an \
+             amplitude of 255 drifts by at most 255 * 1.58 * 2^(11 - 22) = 0.20 units; with the contract's 0.82 and \
+             half a unit for the rounding of the amplitude, 1.52 from the host's unrounded numbers."
+                .into(),
+            "The seed does not draw the prototype. Its accumulator is taken to be that of the claimed device, and \
+             bears its block numbers: registers 1 to 3, counter 5, adder 6, mux 7, register 8, ROM 12, multiplier 13."
+                .into(),
+            Topic::Latency.note(format!(
+                "A start makes length + 1 points, one a clock: valid is high for each, {} clocks after output 37 \
+                 (write_angle) has written its angle. busy is high to the last point and done is high with it.",
+                if stages == 2 { "two".to_owned() } else { stages.to_string() }
+            )),
+            Topic::Writes.note(
+                "Writes while busy are ignored. The output follows the operand register of the amplitude: it holds \
+                 from valid until that is written or the next computation begins.",
+            ),
+        ],
+    }
+}

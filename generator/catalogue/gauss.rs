@@ -1,0 +1,59 @@
+//! `gauss` — exp(−n·γ²/2), γ = arccos c: the fourth function that seed 002 weighs.
+//!
+//! The seed gives no circuit, and prints the angle as ∠(H,L); its own formulas use ∠(N,H), which is taken
+//! here. exp(−n·γ²/2) = 2^(−n·decay) with the decay γ²/(2 ln 2), a smooth function of 1 − c.
+
+use std::f64::consts::LN_2;
+
+use glint_base::fixed::{Format, exp2};
+use glint_config::Config;
+use glint_keys::gauss::Keys;
+use glint_rtl::dsl::Designer;
+use glint_rtl::netlist::About;
+
+use super::common;
+use super::decay::{self, Curve};
+
+/// The device.
+pub fn describe(d: &Designer, config: &Config) {
+    let keys = Keys::of(config);
+    d.about(about(&keys));
+    let cos_gamma = common::cosine(d, &keys.operands.cosine).q();
+    let bits = keys.operands.cosine.fraction;
+    let fraction = cos_gamma.bits(0, Format::unsigned(bits as i32, 0));
+    let u = d.not("distance", fraction).doc("1.0 - cos gamma, less an ulp");
+    let table = move |u: f64| {
+        let gamma = libm::acos(1.0 - (u + 1.0) * exp2(-(bits as i32)));
+        gamma * gamma / (4.0 * LN_2)
+    };
+    decay::describe(
+        d,
+        &keys,
+        cos_gamma,
+        &Curve {
+            u,
+            operand_bits: bits,
+            table: &table,
+            octave: None,
+            // At cos γ = 0 the decay is 1.78: the table holds half of it.
+            scale: 1,
+            doc: "gamma^2/(4 ln 2), half the decay",
+        },
+    );
+}
+
+fn about(keys: &Keys) -> About {
+    let mut notes = vec![
+        "The seed gives no circuit. It prints gamma as the angle between H and L; the angle between N and H, \
+         which is what makes the function comparable with cos^n, is taken here."
+            .into(),
+    ];
+    notes.extend(decay::notes(keys));
+    About {
+        device: "gauss".to_owned(),
+        title: "Specular intensity by a Gaussian of the angle".to_owned(),
+        formula: "out = colour * exp(-n * gamma^2 / 2)".to_owned(),
+        source: "Seed 002, the fourth function that it weighs".to_owned(),
+        notes,
+    }
+}

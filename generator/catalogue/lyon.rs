@@ -1,0 +1,272 @@
+//! `lyon` — US 5 739 820, Fig. 7C and 7D (the first analogue in seed 000): `max(0, 1 − β·D²)^(2^s)` from
+//! the difference vector D = N − H.
+//!
+//! The seed lists the parts only: two adders, four multipliers, shift register, counter, comparator and
+//! mux. The wiring is our reading. Numbers count each kind of block.
+
+use glint_base::fixed::{Format, Overflow, Rounding};
+use glint_config::{Config, Shared};
+use glint_keys::lyon::{Keys, Scale};
+use glint_rtl::blocks::colour::Colours;
+use glint_rtl::blocks::squaring::Squarings;
+use glint_rtl::dsl::{Designer, Setting, Signal, Step, loop_while, step};
+use glint_rtl::netlist::{About, Note, Topic};
+
+use super::common;
+
+/// How D² is formed, to the fraction bits of the register that takes it.
+struct Distance<'d> {
+    value: Signal<'d>,
+    /// The microinstructions before the one that takes it.
+    steps: Vec<Step>,
+    /// The settings of that one.
+    settings: Vec<Setting>,
+}
+
+/// How beta·D² is formed: the words that do it, and the result.
+struct Scaled<'d> {
+    /// β·D², not limited to the fraction bits of f yet where a shift makes it.
+    value: Signal<'d>,
+    steps: Vec<Step>,
+    squarings: Squarings<'d>,
+}
+
+/// The device.
+pub fn describe(d: &Designer, config: &Config) {
+    let keys = Keys::of(config);
+    let f = keys.f.format();
+    let rounding_f = keys.f.rounding;
+    d.about(about(&keys, config));
+
+    let vector = Format::signed(1, keys.vector_fraction as i32);
+    let component = |name: &str, of: &str| {
+        d.operand(name, vector).doc(&format!("{of} of N - H, normal less half vector")).q()
+    };
+    let components = [component("dx", "x"), component("dy", "y"), component("dz", "z")];
+    let distance = if keys.squares_in_turn() {
+        distance_in_turn(d, &keys, components)
+    } else {
+        distance(d, &keys, components)
+    };
+    let scaled = match keys.scale {
+        Scale::Shift => by_shift(d, &keys, distance),
+        Scale::Multiplier => by_multiplier(d, &keys, distance),
+    };
+    let colours = Colours::new(d, keys.colours.bits as i32, None);
+    let accumulator = d.register("accumulator", f).doc("the powers of the base, in the end f");
+
+    let value = d.narrow(
+        "beta_distance",
+        scaled.value,
+        Format::unsigned(1, f.frac),
+        rounding_f,
+        Overflow::Saturate,
+    );
+    let base = base(d, value.doc("beta*D^2, to the point of f"), f);
+    let operand =
+        d.mux("multiplier4_operand", [base, accumulator.q()]).doc("what multiplier 4 squares");
+    let multiplier4 = d.mul("multiplier4", operand.out(), operand.out()).block(4);
+    accumulator.takes(d.narrow("square", multiplier4, f, rounding_f, Overflow::Saturate));
+    let outputs =
+        common::colour_outputs(&keys.colours, keys.f.output_rounding, &colours, accumulator.q());
+
+    let mut steps = scaled.steps;
+    let first = [operand.pick(base)].into_iter().chain(scaled.squarings.load());
+    let again = [operand.pick(accumulator.q())];
+    steps.extend(scaled.squarings.steps(accumulator, first, again));
+    d.microprogram(steps.into_iter().chain(outputs));
+}
+
+/// D² = dx² + dy² + dz², 0 … 12.0.
+fn distance<'d>(d: &'d Designer, keys: &Keys, components: [Signal<'d>; 3]) -> Distance<'d> {
+    let mut number = 0;
+    let squares = components.map(|component| {
+        number += 1;
+        d.mul(&format!("multiplier{number}"), component, component).block(number)
+    });
+    let adder1 = d.add("adder1", squares[0], squares[1]).block(1);
+    let adder2 = d.add("adder2", adder1, squares[2]).block(2).doc("D^2");
+    Distance { value: rounded_distance(d, keys, adder2), steps: Vec::new(), settings: Vec::new() }
+}
+
+/// Makes the distance by one multiplier and one adder: two squares to a register, before the third comes to them.
+fn distance_in_turn<'d>(d: &'d Designer, keys: &Keys, components: [Signal<'d>; 3]) -> Distance<'d> {
+    let sum = d
+        .register("distance_sum", Format::unsigned(4, 2 * components[0].format().frac))
+        .doc("dx^2, then dx^2 + dy^2");
+    let component = d.mux("component", components).doc("the component that is squared");
+    let zero = d.raw_constant("no_sum", 0, sum.format());
+    let addend = d.mux("addend", [zero, sum.q()]).doc("the squares before it");
+    let multiplier1 = d.mul("multiplier1", component.out(), component.out()).block(1);
+    let adder1 = d.add("adder1", multiplier1, addend.out()).block(1).doc("in the end D^2");
+    // As below, the interval knows nothing of squares.
+    let (rounding, overflow) = (Rounding::Truncate, Overflow::Wrap);
+    sum.takes(d.narrow("sum_next", adder1, sum.format(), rounding, overflow));
+    let [x, y, z] = components.map(|it| component.pick(it));
+    Distance {
+        value: rounded_distance(d, keys, adder1),
+        steps: vec![
+            step("distance_sum <- dx^2", [x, addend.pick(zero), sum.load()]),
+            step("distance_sum <- distance_sum + dy^2", [y, addend.pick(sum.q()), sum.load()]),
+        ],
+        settings: vec![z, addend.pick(sum.q())],
+    }
+}
+
+fn rounded_distance<'d>(d: &'d Designer, keys: &Keys, sum: Signal<'d>) -> Signal<'d> {
+    d.narrow(
+        "distance_rounded",
+        sum,
+        Format::unsigned(4, keys.distance_fraction as i32),
+        keys.distance_rounding,
+        // The interval of the sum knows nothing of squares; it is never negative, and 12.0 at most.
+        Overflow::Wrap,
+    )
+}
+
+/// The patent's scaling: a register that shifts one place a clock, under the counter.
+///
+/// It starts from half of D²/2^(s+1), by wiring, so that it shifts once at least. What has left the
+/// range stays at the largest word, above 1.0.
+fn by_shift<'d>(d: &'d Designer, keys: &Keys, distance: Distance<'d>) -> Scaled<'d> {
+    let count = keys.squarings();
+    let half_down = count as i32 + 2;
+    let shift =
+        d.operand("shift", shift_format(keys)).doc("log2 of the specular exponent n, rounded").q();
+    let register = d
+        .register("shift_register", Format::unsigned(1, distance.value.format().frac + half_down))
+        .doc("beta*D^2, once it has shifted");
+    let (squarings, counter, load_shift) = Squarings::sharing(d, count, shift);
+    let counter = counter.doc("shifts, then squarings, to come");
+    let small = distance
+        .value
+        .shift_right(half_down)
+        .named("distance_at_least_shift")
+        .doc("half of D^2 at shift 0, by wiring");
+    let doubled = d.narrow(
+        "doubled",
+        register.q().shift_left(1),
+        register.format(),
+        Rounding::Truncate,
+        Overflow::Saturate,
+    );
+    let input = d.mux("shift_input", [small, doubled]).doc("loads or shifts");
+    register.takes(input.out());
+    let more = d.any("more_shifts", counter.q()).doc("not the last shift");
+    let name = "shift_register <- 2 * shift_register";
+    let load = [input.pick(small), register.load()];
+    let shift_on: [Setting; 4] =
+        [input.pick(doubled), register.load(), counter.count(), loop_while(more, name)];
+    let load = load.into_iter().chain(load_shift).chain(distance.settings);
+    let mut steps = vec![step("operands dx, dy, dz", [])];
+    steps.extend(distance.steps);
+    steps.extend([step("shift_register <- D^2 / (4*power)", load), step(name, shift_on)]);
+    Scaled { value: register.q(), steps, squarings }
+}
+
+/// The exact β: a multiplier of ours, and n/2^(s+1) by wiring.
+fn by_multiplier<'d>(d: &'d Designer, keys: &Keys, distance: Distance<'d>) -> Scaled<'d> {
+    let count = keys.squarings();
+    let exponent = common::exponent(d, keys.exponent_bits).q();
+    let register = d.register("distance", distance.value.format()).doc("D^2");
+    register.takes(distance.value);
+    let squarings = Squarings::new(d, count);
+    let beta = exponent.shift_right(count as i32 + 1).named("beta").doc("n/(2*power), by wiring");
+    let multiplier5 = d.mul("multiplier5", register.q(), beta).block(5);
+    let scaled = d.register("scaled", Format::unsigned(1, keys.f.fraction as i32)).doc("beta*D^2");
+    scaled.takes(d.narrow(
+        "multiplier5_rounded",
+        multiplier5,
+        scaled.format(),
+        keys.f.rounding,
+        Overflow::Saturate,
+    ));
+    let load = [register.load()].into_iter().chain(distance.settings);
+    let mut steps = vec![step("operands dx, dy, dz", [])];
+    steps.extend(distance.steps);
+    steps.extend([
+        step("distance <- D^2", load),
+        step("scaled <- beta * distance", [scaled.load()]),
+    ]);
+    Scaled { value: scaled.q(), steps, squarings }
+}
+
+/// `1 − β·D²` as the complement of β·D²: an ulp too small, which is what keeps it a fraction. The comparator
+/// with 1.0 makes the mux pass 0 instead.
+fn base<'d>(d: &'d Designer, value: Signal<'d>, f: Format) -> Signal<'d> {
+    let one = d.constant("one", 1.0, Format::unsigned(1, f.frac));
+    let comparator = d.less("comparator", value, one).doc("beta*D^2 is below 1.0");
+    let inverse = d.not("inverse", value.bits(0, f)).doc("1.0 - beta*D^2, less an ulp");
+    let zero = d.raw_constant("zero", 0, f);
+    d.choose("base", comparator, [zero, inverse]).doc("base of the power, or 0")
+}
+
+/// Holds every log2 of an exponent, rounded: 0 … `exponent.bits`.
+fn shift_format(keys: &Keys) -> Format {
+    Format::holding(0, keys.exponent_bits.into(), 0)
+}
+
+/// From what the clocks of a point come.
+fn clocks_note(keys: &Keys, config: &Config) -> Note {
+    let shift = keys.scale == Scale::Shift;
+    let (squares, colours) = (keys.squares_in_turn(), keys.colours.in_turn());
+    let output = Shared::of(config).output_registered && !colours;
+    Topic::Latency.note(format!(
+        "Valid is {}{} clocks after start: one each for {}D^2, scaling, base{} and result, and one for each squaring \
+         after the first{}.",
+        keys.squarings()
+            + 4
+            + 2 * u32::from(squares)
+            + 3 * u32::from(colours)
+            + u32::from(output),
+        if shift { " + shift" } else { "" },
+        if squares { "the squares of dx and dy, " } else { "" },
+        match (colours, output) {
+            (true, _) => ", each colour",
+            (_, true) => ", the output registers",
+            _ => "",
+        },
+        if shift { " and for each place shifted after the first" } else { "" },
+    ))
+}
+
+fn about(keys: &Keys, config: &Config) -> About {
+    let m = keys.power;
+    let shift = keys.scale == Scale::Shift;
+    let (beta, scaling) = if shift {
+        (
+            "2^shift",
+            "The host loads shift = log2 n, rounded: beta is within a factor of 1.42 of n/(2*power).",
+        )
+    } else {
+        (
+            "n",
+            "Beta is n/(2*power) for every n: multiplier 5 is ours, and stands in for the patent's shift register.",
+        )
+    };
+    let mut notes = vec![
+        "The seed lists the parts; the wiring is an interpretation. For unit vectors D^2 = 2*(1 - cos gamma), so that this \
+         is the function of cosine-power, reached without a scalar product."
+            .into(),
+        scaling.into(),
+        clocks_note(keys, config),
+        "The formula knows no side that faces away: where cos gamma <= 0, that is D^2 >= 2, f is not 0 for small n. \
+         A host that wants it to be 0 does not start the device there."
+            .into(),
+        "Components may have any value; D^2 is whole up to 12.0, which is the most that three of them give."
+            .into(),
+        common::outputs_note(&keys.colours, "the accumulator", "begins"),
+    ];
+    let shifting = "The shift register shifts one place a clock under the counter, shift + 1 times, which then counts the \
+                    squarings.";
+    notes.extend(shift.then(|| Topic::Microprogram.note(shifting)));
+    About {
+        device: "lyon".to_owned(),
+        title: format!("Specular intensity from a difference vector, power {m}"),
+        formula: format!(
+            "out = colour * max(0, 1 - beta*D^2)^{m}, beta = {beta}/(2*{m}), D = N - H"
+        ),
+        source: "US 5 739 820, Fig. 7C and 7D, the first analogue in seed 000".to_owned(),
+        notes,
+    }
+}

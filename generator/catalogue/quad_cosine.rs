@@ -1,0 +1,167 @@
+//! `quad-cosine` — seed 000, the claimed device: `cosᵏ(√(n/k)·δ)` along a scan line, k ∈ {1, 2, 4, 16} by n.
+//!
+//! Block numbers are the patent's. Block 14's triggers become words of a microprogram with the same order
+//! of events; ROMs 9 and 12 are synchronous, and output 29 follows output 37 by two clocks.
+
+use glint_base::fixed::Format;
+use glint_config::Config;
+use glint_keys::quad_cosine::Keys;
+use glint_rtl::blocks::angle;
+use glint_rtl::blocks::colour::{ChannelBlocks, Colours};
+use glint_rtl::blocks::line::Line;
+use glint_rtl::dsl::{Designer, Signal};
+use glint_rtl::netlist::{About, Topic};
+
+use super::common;
+
+/// The powers, in the order of ROM 12's tables and of the decoder's outputs 30 to 33.
+const POWERS: [u32; 4] = [1, 2, 4, 16];
+
+/// The numbers of the amplitude's way through the figure.
+pub(super) const AMPLITUDE: ChannelBlocks =
+    ChannelBlocks { inputs: (15, 16), register: 1, multiplier: 13, output: 27 };
+
+/// The device.
+pub fn describe<'d>(d: &'d Designer, config: &Config) {
+    let keys = Keys::of(config);
+    let table = keys.table_address as i32;
+    let f = keys.f_format();
+    // Registers behind the magnitude and the root, multiplier 11, the address and the word of ROM 12, and multiplier 13.
+    let staged = keys.stages == 7;
+    let held =
+        |name: &str, source: Signal<'d>| if staged { d.pipeline(name, source) } else { source };
+    d.about(about(keys.stages));
+
+    let colours = Colours::amplitude(d, keys.colour_bits as i32, Some(AMPLITUDE));
+    let line =
+        Line::new(d, keys.angle_format(), keys.length_bits as i32, Some(common::LINE_BLOCKS));
+    let exponent = common::exponent(d, keys.exponent_bits).block(4).inputs(21, 22).q();
+
+    let root = d
+        .rom("root", exponent, root_format(&keys), &roots(&keys), true)
+        .block(9)
+        .doc("sqrt(n/k), k as decoder 10 picks it for n; n is the address")
+        .comments(
+            (0..1i64 << keys.exponent_bits)
+                .map(|n| format!("sqrt({n}/{})", POWERS[power_of(n)]))
+                .collect(),
+        );
+    let folded = angle::fold(d, line.angle(), keys.angle_multiplied as i32);
+    let magnitude = held("angle_magnitude_held", folded.magnitude);
+    let within = held("angle_within_held", folded.within);
+    let scaled = d
+        .mul("scaled_angle", magnitude, held("root_held", root.out()))
+        .block(11)
+        .doc("sqrt(n/k) * |angle|, in right angles");
+    let (scaled, within) = (held("scaled_angle_held", scaled), held("scaled_within_held", within));
+    let step = angle::address(d, "table_step", scaled, within, table);
+    let address =
+        d.concat("table_address", decoder(d, exponent), step).doc("which table, and where in it");
+    let address = held("table_address_held", address);
+    let words: Vec<i128> =
+        POWERS.iter().flat_map(|&power| angle::cosine_power_table(power, table, f.frac)).collect();
+    let comments = POWERS.iter().flat_map(|&power| angle::step_comments(power, table)).collect();
+    let cosine = d
+        .rom("cosine", address, f, &words, true)
+        .block(12)
+        .doc(&format!(
+            "cos^k for k = 1, 2, 4, 16, one table after another; 2^{table} steps of a right angle each"
+        ))
+        .comments(comments);
+    let rounding = keys.output_rounding;
+    if staged {
+        colours.outputs_staged(d.pipeline("cosine_held", cosine.out()), rounding);
+    } else {
+        colours.outputs(cosine.out(), rounding);
+    }
+    // Register 8, ROM 12, and what is between.
+    line.microprogram(keys.stages);
+}
+
+/// Decoder 10: outputs 30 to 33, one of them 1, and the number of the one.
+fn decoder<'d>(d: &'d Designer, exponent: Signal<'d>) -> Signal<'d> {
+    let constant = |name: &str, raw: i128| d.raw_constant(name, raw, exponent.format());
+    let first = constant("first_exponent", 1);
+    let second = constant("second_exponent", 2);
+    let high = constant("high_exponents", 7);
+    let power_1 = d.equal("power_1", exponent, first).doc("output 30 of decoder 10: n = 1");
+    let power_2 = d.equal("power_2", exponent, second).doc("output 31 of decoder 10: n = 2");
+    let above_2 = d.less("above_2", second, exponent);
+    let below_7 = d.less("below_7", exponent, high);
+    let power_4 = d.and("power_4", above_2, below_7).doc("output 32 of decoder 10: n = 3 to 6");
+    let small = d.or("power_1_or_2", power_1, power_2);
+    let small = d.or("power_below_16", small, power_4);
+    let power_16 = d.not("power_16", small).doc("output 33 of decoder 10: n = 0, and n from 7 on");
+    let high = d.or("power_4_or_16", power_4, power_16);
+    let low = d.or("power_2_or_16", power_2, power_16);
+    d.concat("power_code", high, low).block(10).doc("the number of the decoder's output that is 1")
+}
+
+/// Returns the place of the power for the exponent n.
+fn power_of(n: i64) -> usize {
+    match n {
+        1 => 0,
+        2 => 1,
+        3..=6 => 2,
+        _ => 3,
+    }
+}
+
+fn roots(keys: &Keys) -> Vec<i128> {
+    let format = Format::unsigned(8, keys.root_fraction as i32);
+    (0..1i64 << keys.exponent_bits)
+        .map(|n| format.quantise((n as f64 / f64::from(POWERS[power_of(n)])).sqrt()))
+        .collect()
+}
+
+fn root_format(keys: &Keys) -> Format {
+    let largest = roots(keys).into_iter().max().unwrap_or(0);
+    Format::holding(0, largest, keys.root_fraction as i32)
+}
+
+fn about(stages: u32) -> About {
+    About {
+        device: "quad-cosine".to_owned(),
+        title: "Specular intensity along a scan line by powers of a stretched cosine".to_owned(),
+        formula: "out = amplitude * cos^k(sqrt(n/k) * angle), k = 1, 2, 4, 16 by n; angle = zeta_start + i * delta_zeta"
+            .to_owned(),
+        source: "Seed 000, the claimed device: quadruple cosine".to_owned(),
+        notes: vec![
+            "Angles are in right angles: 1.0 is 90 degrees. The register holds one turn and wraps around where \
+             angles do, so no line overflows it. The intensity is 0 where the angle is not in -90 (included) to 90 \
+             degrees, and where the stretched angle is 90 degrees or more."
+                .into(),
+            Topic::Latency.note(format!(
+                "A start makes length + 1 points, one a clock: valid is high for each. Output 37 (write_angle) writes \
+                 the angle of a point; valid, which is the same net in the patent, follows it by {}. busy is high to the \
+                 last point and done is high with it.",
+                match stages {
+                    2 => "two clocks, for register 8 and for the synchronous ROM 12".to_owned(),
+                    stages => format!("{stages} clocks, for the registers on the way"),
+                }
+            )),
+            "Decoder 10 picks k = 1 for n = 1, 2 for n = 2, 4 for n = 3 to 6 and 16 for all other n, with n = 0 among \
+             them: its root is 0 and its intensity the amplitude wherever the surface faces. The patent drives four \
+             address bits of ROM 12 with the decoder's outputs 30 to 33; here their number drives two, and the ROM is \
+             a quarter as large. Its nine bits of n cannot hold 1000; ten can."
+                .into(),
+            "The patent's counter 5 is written by its strobe and used up by a line. Here the operand length keeps its \
+             value and loads the counter with the first point, so that a line can be repeated by start alone. A length \
+             of 0 makes one point: the microinstruction that adds is left out, as the patent's borrow from an empty counter \
+             leaves it out."
+                .into(),
+            "The default has 26 fraction bits of the angle: over the longest line, of 4095 intervals, the host's roundings of delta_zeta and \
+             zeta_start add up to at most 2^11 ulps. The formula falls by at most 30.6 in a right angle (n = 1000), so \
+             that an amplitude of 255 drifts by at most 255 * 30.6 * 2^(11 - 26) = 0.24 units. With the contract's 0.93 \
+             and half a unit for the rounding of the amplitude itself this is 1.67 units from the host's unrounded \
+             numbers. The accumulator adds exactly, and only multiplier 11 drops bits."
+                .into(),
+            "The root sqrt(n/k) is applied by multiplier 11 alone; the seed's formulas (13) and (16) apply it to the \
+             operands a second time. Output 28 is busy, high from start to end, as trigger 39 drives it."
+                .into(),
+            "Writes while busy are ignored. The output follows the operand registers of amplitude and exponent: it \
+             holds from valid until one of them is written or the next computation begins."
+                .into(),
+        ],
+    }
+}

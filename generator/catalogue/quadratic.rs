@@ -1,0 +1,142 @@
+//! `quadratic` — UA 20998 (the analogue in seed 001): `c + a(n)·(c² − c)`, with a(n) from ROM.
+//!
+//! The patent's blocks follow one another without a control block; two registers of ours cut the chain
+//! so that no clock holds more than one multiplier before the outputs. Numbers count each kind of block, as the
+//! seed's text does: register 1, adder 1, multiplier 1.
+
+mod coefficient;
+
+use glint_base::fixed::{Format, Overflow};
+use glint_config::Config;
+use glint_keys::quadratic::{Keys, Scheme};
+use glint_rtl::blocks::colour::{ChannelBlocks, Colours};
+use glint_rtl::dsl::{Designer, Rom, Signal, step};
+use glint_rtl::netlist::About;
+
+use super::common;
+
+/// The seed's numbers of the colour channels.
+const CHANNELS: [ChannelBlocks; 3] = [channel(1), channel(2), channel(3)];
+
+const fn channel(output: u16) -> ChannelBlocks {
+    ChannelBlocks {
+        inputs: (output + 2, output + 2),
+        register: output + 2,
+        multiplier: output + 1,
+        output,
+    }
+}
+
+/// The device.
+pub fn describe(d: &Designer, config: &Config) {
+    let keys = Keys::of(config);
+    d.about(about(&keys));
+
+    let exponent = common::exponent(d, keys.operands.exponent_bits).block(1).inputs(1, 1).q();
+    let cos_gamma = common::cosine(d, &keys.operands.cosine)
+        .block(2)
+        .inputs(2, 2)
+        .doc("c, the cosine of the angle between normal and half vector")
+        .q();
+    let colours = Colours::new(d, keys.operands.colours.bits as i32, Some(CHANNELS));
+
+    let difference = d
+        .register("difference", Format::signed(-2, keys.difference_fraction as i32))
+        .doc("c^2 - c, from -0.25 to 0");
+    let intensity = d.register("intensity", keys.f.format()).doc("the reflectance f");
+
+    difference.takes(d.narrow(
+        "adder1_rounded",
+        adder1(d, cos_gamma),
+        difference.format(),
+        keys.difference_rounding,
+        // The interval of the sum is wider than its values, which lie in -0.25 ... 0: nothing is lost.
+        Overflow::Wrap,
+    ));
+    let coefficient = coefficient_rom(d, &keys, exponent).out();
+    let multiplier1 = d.mul("multiplier1", difference.q(), coefficient).block(1);
+    let adder2 = d.add("adder2", multiplier1, cos_gamma).block(2).doc("c + a(n)*(c^2 - c)");
+    intensity.takes(d.narrow(
+        "clamped",
+        adder2,
+        intensity.format(),
+        keys.f.rounding,
+        Overflow::Saturate,
+    ));
+    let outputs = common::colour_outputs(
+        &keys.operands.colours,
+        keys.f.output_rounding,
+        &colours,
+        intensity.q(),
+    );
+
+    let steps = vec![
+        step("operands; ROM(n) addressed", []),
+        step("difference <- c^2 - c", [difference.load()]),
+        step("intensity <- c + a(n) * difference, not below 0", [intensity.load()]),
+    ];
+    d.microprogram(steps.into_iter().chain(outputs));
+}
+
+/// Adder 1: multiplier 5's c² plus the inverted c plus its carry-in.
+fn adder1<'d>(d: &'d Designer, cos_gamma: Signal<'d>) -> Signal<'d> {
+    let square = d.mul("multiplier5", cos_gamma, cos_gamma).block(5).doc("c^2");
+    let wide = cos_gamma.with_fraction(square.format().frac).as_signed();
+    let inverters = d.not("inverters", wide).doc("-c, less an ulp of the square");
+    let carry = d.raw_constant("carry", 1, Format::BIT).doc("carry-in of adder 1");
+    d.add_carry("adder1", square, inverters, carry).block(1).doc("c^2 - c")
+}
+
+fn coefficient_rom<'d>(d: &'d Designer, keys: &Keys, exponent: Signal<'d>) -> Rom<'d> {
+    let bits = keys.operands.exponent_bits;
+    let frac = keys.coefficient_fraction() as i32;
+    let widest = Format::unsigned(bits as i32, frac);
+    let values: Vec<f64> = (0..1 << bits).map(|n| value(keys.scheme, n)).collect();
+    let words: Vec<i128> = values.iter().map(|&a| widest.quantise(a)).collect();
+    let comments = values.iter().map(|a| format!("{a:.6}")).collect();
+    let most = words.iter().copied().max().unwrap_or(0);
+    let kind = if keys.scheme == Scheme::Minimax { "minimax" } else { "n - 1" };
+    d.rom("coefficient", exponent, Format::holding(0, most, frac), &words, true)
+        .doc(&format!("a(n), {kind}, for an exponent n (the address)"))
+        .comments(comments)
+}
+
+/// a(n) before it is rounded.
+fn value(scheme: Scheme, n: u32) -> f64 {
+    match scheme {
+        Scheme::Minimax => coefficient::minimax(n),
+        Scheme::Taylor => coefficient::taylor(n),
+    }
+}
+
+fn about(keys: &Keys) -> About {
+    let (first, last) = (keys.domain.least.max(1) as u32, keys.domain.most as u32);
+    let worst = |a: fn(u32) -> f64| {
+        (first..=last)
+            .map(|n| (coefficient::error(a(n), n), n))
+            .max_by(|a, b| a.0.total_cmp(&b.0))
+            .unwrap_or((0.0, first))
+    };
+    let (taylor, minimax) = (worst(coefficient::taylor), worst(coefficient::minimax));
+    let scheme = if keys.scheme == Scheme::Minimax { "minimax" } else { "taylor" };
+    About {
+        device: "quadratic".to_owned(),
+        title: format!("Specular intensity by a parabola in cos(gamma), {scheme} coefficients"),
+        formula: "out = colour * max(0, c + a(n) * (c^2 - c)), c = cos(gamma)".to_owned(),
+        source: "UA 20998, the analogue in seed 001".to_owned(),
+        notes: vec![
+            "Below its zero at c = 1 - 1/a(n) the parabola is clamped to 0. The seed has no clamp, but no negative numbers \
+             either."
+                .into(),
+            format!(
+                "The seed does not say what ROM(n) holds. Against cos^n over n = {first} ... {last} the formula itself \
+                 is off by up to {:.4} with a(n) = n - 1 (at n = {}), and by up to {:.4} with the minimax a(n) (at \
+                 n = {}).",
+                taylor.0, taylor.1, minimax.0, minimax.1
+            ).into(),
+            "n = 0 is taken as n = 1, where a(n) = 0 and f = c.".into(),
+            "Cosines are limited to 0 ... 1.0 as they are written; cos gamma <= 0 gives 0.".into(),
+            common::outputs_note(&keys.operands.colours, "register intensity", "has its result"),
+        ],
+    }
+}

@@ -1,0 +1,95 @@
+//! `schlick` — seed 002: the rival of the paper's function, `c / (n − n·c + c)`, c = cos γ.
+//!
+//! The paper names the division as what makes the function hard to build, and gives no circuit. This
+//! is the least: one multiplier for the divisor and an iterative divider, one bit of the quotient a
+//! clock. The divisor is formed as n·(1 − c) + c, in which every term is positive.
+
+use glint_base::fixed::{Format, Overflow, Rounding};
+use glint_config::Config;
+use glint_keys::schlick::Keys;
+use glint_rtl::blocks::colour::Colours;
+use glint_rtl::blocks::divider::Divider;
+use glint_rtl::dsl::{Designer, Signal, loop_while, step};
+use glint_rtl::netlist::{About, Topic};
+
+use super::common;
+
+/// The device.
+pub fn describe(d: &Designer, config: &Config) {
+    let keys = Keys::of(config);
+    d.about(about(&keys));
+
+    let cos_gamma = common::cosine(d, &keys.operands.cosine).q();
+    let exponent = common::exponent(d, keys.operands.exponent_bits).q();
+    let colours = Colours::new(d, keys.operands.colours.bits as i32, None);
+
+    let divisor = divisor(d, cos_gamma, exponent);
+    let quotient = Divider::new(d, "quotient", cos_gamma, divisor, keys.fraction as i32);
+    let outputs = common::colour_outputs(
+        &keys.operands.colours,
+        keys.output_rounding,
+        &colours,
+        quotient.quotient(),
+    );
+
+    let steps = vec![
+        step("operands cos gamma, n", []),
+        step("cos gamma by n*(1 - cos gamma) + cos gamma", quotient.load()),
+        step(
+            "next bit of the quotient",
+            quotient
+                .step()
+                .into_iter()
+                .chain([loop_while(quotient.more(), "next bit of the quotient")]),
+        ),
+    ];
+    d.microprogram(steps.into_iter().chain(outputs));
+}
+
+/// `n·(1 − cos γ) + cos γ`, exact; an ulp more where cos γ = 0, which only keeps it above 0: the
+/// quotient is 0 then, whatever the divisor.
+fn divisor<'d>(d: &'d Designer, cos_gamma: Signal<'d>, exponent: Signal<'d>) -> Signal<'d> {
+    let (c, n) = (cos_gamma.format(), exponent.format());
+    let one = d.constant("one", 1.0, Format::unsigned(1, c.frac));
+    let complement = d.sub("complement", one, cos_gamma).doc("1.0 - cos gamma");
+    let scaled = d.mul("scaled", complement, exponent).doc("n*(1 - cos gamma)");
+    let facing = d.any("facing", cos_gamma).doc("the surface faces the half vector");
+    let dark = d.not("dark", facing).doc("an ulp for the divisor, which n = 0 would leave at 0");
+    let sum = d.add_carry("denominator", scaled, cos_gamma, dark);
+    // It lies between cos γ and n, or 1.0, and is n and an ulp at the most.
+    let divisor = d.narrow(
+        "divisor",
+        sum,
+        Format::unsigned(n.int, c.frac),
+        Rounding::Truncate,
+        Overflow::Wrap,
+    );
+    divisor.doc("n - n*cos gamma + cos gamma, never 0")
+}
+
+fn about(keys: &Keys) -> About {
+    let bits = keys.fraction;
+    About {
+        device: "schlick".to_owned(),
+        title: "Specular intensity by Schlick's function".to_owned(),
+        formula: "out = colour * cos(gamma) / (n - n * cos(gamma) + cos(gamma))".to_owned(),
+        source: "Seed 002, Schlick's function, with which the paper compares its own".to_owned(),
+        notes: vec![
+            format!(
+                "The quotient is truncated to {bits} bits and exact to the last of them: the divider keeps the whole \
+                 remainder. The quotient 1.0, of cos gamma = 1.0 or n = 0, is the largest \
+                 fraction, an ulp less."
+            )
+            .into(),
+            Topic::Microprogram.note("One bit of the quotient takes a clock."),
+            "Cosines are limited to 0 ... 1.0 as they are written; cos gamma <= 0 gives 0. A division by zero \
+             cannot occur: the divisor is 0 for cos gamma = 0 and n = 0 alone, and cos gamma = 0 adds an ulp to \
+             it, so that this gives 0 too."
+                .into(),
+            "The seed prints the fraction as cos/n - n*cos + cos, without the fraction bar; the denominator is \
+             n - n*cos + cos."
+                .into(),
+            common::outputs_note(&keys.operands.colours, "the quotient", "begins"),
+        ],
+    }
+}

@@ -1,0 +1,173 @@
+//! `threshold` — UA 30041 (the prototype in seed 001): `(n/2·(cos γ − 1) + 1)²`, gated by a comparator
+//! against ROM(n).
+//!
+//! The patent's blocks follow one another without a control block; two registers that it does not have cut the chain
+//! so that no clock holds more than one multiplier before the outputs. Numbers count each kind of block, as the seed's
+//! text does: register 1, adder 1, multiplier 1.
+
+use glint_base::fixed::{Format, Overflow, Rounding, exp2};
+use glint_config::Config;
+use glint_keys::threshold::Keys;
+use glint_rtl::blocks::colour::{ChannelBlocks, Colours};
+use glint_rtl::dsl::{Designer, Rom, Signal, step};
+use glint_rtl::netlist::About;
+
+use super::common;
+
+/// The seed's numbers of the colour channels.
+const CHANNELS: [ChannelBlocks; 3] = [channel(3), channel(4), channel(5)];
+
+const fn channel(number: u16) -> ChannelBlocks {
+    ChannelBlocks {
+        inputs: (number, number),
+        register: number,
+        multiplier: number,
+        output: number - 2,
+    }
+}
+
+/// The device.
+pub fn describe(d: &Designer, config: &Config) {
+    let keys = Keys::of(config);
+    let f = keys.f.format();
+    let rounding_f = keys.f.rounding;
+    d.about(about(&keys));
+
+    let cos_gamma = common::cosine(d, &keys.operands.cosine).block(1).inputs(1, 1).q();
+    let exponent = common::exponent(d, keys.operands.exponent_bits).block(2).inputs(2, 2).q();
+    let colours = Colours::new(d, keys.operands.colours.bits as i32, Some(CHANNELS));
+
+    // From -1.0, where the parabola has its zero: the saturation of the product is the clamp.
+    let scaled =
+        d.register("scaled", Format::signed(0, f.frac)).doc("n/2*(cos gamma - 1), not below -1.0");
+    let intensity = d.register("intensity", f).doc("the reflectance f: what the gates passed");
+
+    let one = d.constant("one", 1.0, Format::unsigned(1, keys.operands.cosine.fraction as i32));
+    let adder1 = d.sub("adder1", cos_gamma, one).block(1).doc("cos gamma - 1.0");
+    let half_n = exponent.shift_right(1).named("half_exponent").doc("n/2, by wiring");
+    let multiplier1 = d.mul("multiplier1", adder1, half_n).block(1);
+    scaled.takes(d.narrow(
+        "multiplier1_rounded",
+        multiplier1,
+        scaled.format(),
+        rounding_f,
+        Overflow::Saturate,
+    ));
+    let one = d.constant("base_one", 1.0, Format::unsigned(1, f.frac));
+    let adder2 = d.add("adder2", scaled.q(), one).block(2).doc("base of the square, 0 ... 1.0");
+    let multiplier2 = d.mul("multiplier2", adder2, adder2).block(2);
+    let square = d.narrow("square", multiplier2, f, rounding_f, Overflow::Saturate);
+    intensity.takes(gates(d, &keys, cos_gamma, exponent, square));
+    let outputs = common::colour_outputs(
+        &keys.operands.colours,
+        keys.f.output_rounding,
+        &colours,
+        intensity.q(),
+    );
+
+    let steps = vec![
+        step("operands; ROM(n) addressed", []),
+        step("scaled <- n/2 * (cos gamma - 1)", [scaled.load()]),
+        step("intensity <- (scaled + 1)^2, or 0 below ROM(n)", [intensity.load()]),
+    ];
+    d.microprogram(steps.into_iter().chain(outputs));
+}
+
+/// The square, or 0 where it is below ROM(n) or the surface faces away.
+fn gates<'d>(
+    d: &'d Designer,
+    keys: &Keys,
+    cos_gamma: Signal<'d>,
+    exponent: Signal<'d>,
+    square: Signal<'d>,
+) -> Signal<'d> {
+    let level = level_rom(d, keys, exponent).out();
+    let comparator =
+        d.less("comparator", square, level).doc("the square is below the level of visibility");
+    let visible = d.not("visible", comparator);
+    let facing = d.any("facing", cos_gamma).doc("the surface faces the half vector");
+    let pass = d.and("pass", facing, visible).doc("opens the gates");
+    let zero = d.raw_constant("zero", 0, square.format());
+    d.choose("gates", pass, [zero, square]).doc("block of keys: the square or 0")
+}
+
+fn level_rom<'d>(d: &'d Designer, keys: &Keys, exponent: Signal<'d>) -> Rom<'d> {
+    let words: Vec<i128> = (0..1i64 << keys.operands.exponent_bits)
+        .map(|n| level_word(keys, hundredths(keys, n)))
+        .collect();
+    let comments = (0i64..)
+        .take(words.len())
+        .map(|n| {
+            let level = hundredths(keys, n);
+            format!("{}.{:02} units", level / 100, level % 100)
+        })
+        .collect();
+    // As wide as f, so that the memory file can be exchanged for one of other levels.
+    let format = keys.f.format();
+    d.rom("levels", exponent, format, &words, true)
+        .doc("the smallest f that is shown for an exponent n (the address)")
+        .comments(comments)
+}
+
+/// The level for n: that of its octave.
+fn hundredths(keys: &Keys, n: i64) -> u32 {
+    let levels = &keys.levels;
+    let octave = n.max(1).ilog2() as usize;
+    levels[octave.min(levels.len() - 1)]
+}
+
+/// The smallest word of f, but the largest word at most, whose product with the largest colour reaches a level.
+fn level_word(keys: &Keys, hundredths: u32) -> i128 {
+    let unit = 100 * ((1 << keys.operands.colours.bits) - 1);
+    let words = 1i128 << keys.f.fraction;
+    // 1.0 itself is no word.
+    ((i128::from(hundredths) * words + unit - 1) / unit).min(words - 1)
+}
+
+fn about(keys: &Keys) -> About {
+    About {
+        device: "threshold".to_owned(),
+        title: "Specular intensity by a parabola's square, above a level of visibility".to_owned(),
+        formula: "out = colour * f, f = max(0, n/2 * (cos(gamma) - 1) + 1)^2; 0 where f < ROM(n)"
+            .to_owned(),
+        source: "UA 30041, the prototype in seed 001".to_owned(),
+        notes: vec![
+            "The seed multiplies by n; for cos^n to be approximated it must be n/2, which is wiring.".into(),
+            "\"- 1\" and \"+ 1\" are 1.0 here. The seed's adder 1 adds all ones and its adder 2 a carry: an ulp \
+             down and up, which stands for 1.0 only where numbers are modulo 1.0."
+                .into(),
+            "The seed does not say what ROM(n) holds: here it holds the smallest f that is shown. Nothing passes where \
+             the base is negative, whose square would rise again."
+                .into(),
+            comparator_note(keys).into(),
+            "Cosines are limited to 0 ... 1.0 as they are written; cos gamma <= 0 gives 0.".into(),
+            common::outputs_note(&keys.operands.colours, "register intensity", "has its result"),
+        ],
+    }
+}
+
+/// Whether the comparator ever matters beyond the clamp.
+fn comparator_note(keys: &Keys) -> String {
+    let largest = (1i128 << keys.operands.colours.bits) - 1;
+    let blocked = (0..1i64 << keys.operands.exponent_bits)
+        .map(|n| level_word(keys, hundredths(keys, n)) - 1)
+        .max()
+        .unwrap_or(0)
+        .max(0);
+    let units = (blocked * largest) as f64 * exp2(-(keys.f.fraction as i32));
+    let shown = match keys.f.output_rounding {
+        Rounding::Nearest => (units + 0.5).floor(),
+        Rounding::Truncate => units.floor(),
+    };
+    if shown == 0.0 {
+        format!(
+            "The comparator changes no output: the largest f that it blocks is {units:.3} of a unit at the largest \
+             colour, which rounds to 0 anyhow. All that is seen is the work of the clamp."
+        )
+    } else {
+        format!(
+            "The comparator is seen: it blocks up to {units:.3} units at the largest colour, so that an output goes \
+             from {shown} to 0 at the rim of the highlight, where the clamp alone would let it fade."
+        )
+    }
+}

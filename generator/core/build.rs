@@ -1,0 +1,48 @@
+//! Tells the build what it is made of: `GLINT_SOURCES` is a digest of the sources that take part in a proof.
+//!
+//! A proof that is interrupted, or divided among machines, may go on only with what began it.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use sha2::{Digest, Sha256};
+
+/// What computes: formats, configurations, golden models, descriptions, simulator, and the proof itself.
+const SOURCES: [&str; 10] = [
+    "../approximate",
+    "../base",
+    "../catalogue",
+    "../config",
+    "../formula",
+    "../golden",
+    "../hdl",
+    "../keys",
+    "../../Cargo.lock",
+    "cosim",
+];
+
+fn main() {
+    let mut files = Vec::new();
+    for source in SOURCES {
+        println!("cargo::rerun-if-changed={source}");
+        collect(Path::new(source), &mut files);
+    }
+    files.sort();
+    let mut digest = Sha256::new();
+    for path in files {
+        // Names with `/` and lines without carriage returns: the same on every machine.
+        let name = path.to_string_lossy().replace('\\', "/");
+        let text = fs::read_to_string(&path).unwrap_or_default().replace("\r\n", "\n");
+        digest.update(format!("{name}\n{}\n{text}", text.len()));
+    }
+    let digest: String = digest.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
+    println!("cargo::rustc-env=GLINT_SOURCES={digest}");
+}
+
+fn collect(path: &Path, files: &mut Vec<PathBuf>) {
+    match fs::read_dir(path) {
+        Ok(entries) => entries.flatten().for_each(|entry| collect(&entry.path(), files)),
+        // An installed crate has no `Cargo.lock`.
+        Err(_) => files.extend(path.is_file().then(|| path.to_owned())),
+    }
+}

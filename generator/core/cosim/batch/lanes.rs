@@ -1,0 +1,129 @@
+//! Points through the built-in simulator, many instances at a time.
+
+use std::array;
+use std::collections::VecDeque;
+use std::mem;
+use std::ops::Range;
+
+use anyhow::{Result, ensure};
+use rayon::prelude::*;
+
+use super::{Engine, LANES, Points};
+use crate::cosim::instances::Instances;
+use glint_golden::Contract;
+use glint_rtl::netlist::{Design, NetId, Role};
+
+/// More clocks than any computation takes.
+const LIMIT: u64 = 1 << 16;
+
+/// rust_hdl: as many simulators as there are threads, each of many instances of the design.
+pub struct RustHdl {
+    teams: Vec<Team>,
+}
+
+impl RustHdl {
+    /// Simulators of a design, at power-up and reset.
+    ///
+    /// # Errors
+    /// As of [`glint_rtl::sim::Simulator::new`], and a contract that speaks of ports that the design does not have.
+    pub fn new(design: &Design, contract: &dyn Contract) -> Result<Self> {
+        let latency = design.pipeline.as_ref().map(|pipeline| pipeline.stages.len() as u64);
+        let in_ready = design.port(|role| role == Role::InReady).map(|port| port.net);
+        let team = |_| Ok(Team { instances: Instances::new(design, contract)?, latency, in_ready });
+        Ok(Self { teams: (0..rayon::current_num_threads()).map(team).collect::<Result<_>>()? })
+    }
+}
+
+impl Engine for RustHdl {
+    fn compute(&mut self, points: &Points) -> Result<Vec<i64>> {
+        let count = self.teams.len();
+        let share = |at: usize| points.len() * at / count..points.len() * (at + 1) / count;
+        let teams = self.teams.par_iter_mut().enumerate();
+        let parts: Vec<Vec<i64>> =
+            teams.map(|(at, team)| team.compute(points, share(at))).collect::<Result<_>>()?;
+        Ok(parts.concat())
+    }
+}
+
+/// The instances of one thread.
+struct Team {
+    instances: Instances<LANES>,
+    /// The clocks from a point to its results, of a pipeline.
+    latency: Option<u64>,
+    /// The output that says when a pipeline takes a point; the same in all instances.
+    in_ready: Option<NetId>,
+}
+
+/// A computation of an instance.
+struct Task {
+    point: usize,
+    /// Results so far.
+    shown: usize,
+    /// The clock that took it.
+    taken: u64,
+}
+
+impl Team {
+    /// Every instance takes the next point as soon as it can: a core when it is free, a pipeline when it is ready.
+    fn compute(&mut self, points: &Points, range: Range<usize>) -> Result<Vec<i64>> {
+        let Self { instances, latency, in_ready } = self;
+        let width = instances.ports.results.len();
+        let base = points.results[range.start];
+        let mut out = vec![0; (points.results[range.end] - base) * width];
+        // The first was taken first.
+        let mut tasks: [VecDeque<Task>; LANES] = array::from_fn(|_| VecDeque::new());
+        let (mut left, mut waiting) = (range.len(), range);
+        let mut offering = false;
+        for clock in 1.. {
+            if left == 0 {
+                break;
+            }
+            let ready = in_ready.is_none_or(|net| instances.simulator.lane(net, 0) == 1);
+            let takes = |tasks: &VecDeque<Task>| latency.map_or(tasks.is_empty(), |_| ready);
+            for tasks in tasks.iter_mut().filter(|tasks| takes(tasks)) {
+                tasks.extend(waiting.next().map(|point| Task { point, shown: 0, taken: clock }));
+            }
+            let taken = |tasks: &VecDeque<Task>| {
+                let newest = tasks.back().filter(|task| task.taken == clock);
+                newest.map(|task| points.operands(task.point))
+            };
+            let offered: [Option<&[i64]>; LANES] = array::from_fn(|lane| taken(&tasks[lane]));
+            let was_offering = mem::replace(&mut offering, offered.iter().any(Option::is_some));
+            if offering {
+                instances.offer(offered);
+            } else if was_offering {
+                instances.release();
+            }
+            instances.simulator.clock()?;
+            let valid = instances.simulator.lanes(instances.ports.valid);
+            let busy = instances.ports.busy.map(|busy| instances.simulator.lanes(busy));
+            for (lane, tasks) in tasks.iter_mut().enumerate() {
+                let Some(task) = tasks.front_mut() else { continue };
+                let clocks = clock + 1 - task.taken;
+                let results = points.results(task.point);
+                let shows = valid[lane] == 1;
+                if let Some(latency) = latency {
+                    let due = clocks == *latency;
+                    ensure!(shows == due, "a point has results after {clocks} clocks: {shows}");
+                }
+                if shows {
+                    ensure!(task.shown < results, "there are more than {results} results");
+                    let to = (points.results[task.point] - base + task.shown) * width;
+                    out[to..to + width]
+                        .iter_mut()
+                        .zip(instances.results(lane))
+                        .for_each(|(to, raw)| *to = raw);
+                    task.shown += 1;
+                }
+                ensure!(clocks < LIMIT, "the device does not end");
+                if busy.map_or(shows, |busy| busy[lane] == 0) {
+                    let shown = task.shown;
+                    ensure!(shown == results, "there are {shown} results, not {results}");
+                    tasks.pop_front();
+                    left -= 1;
+                }
+            }
+        }
+        Ok(out)
+    }
+}

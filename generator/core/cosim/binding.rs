@@ -1,0 +1,103 @@
+//! The binding of a golden model to a design: which port or register each signal of the model is.
+
+use std::sync::Arc;
+
+use anyhow::Result;
+
+use super::combinations::Space;
+use super::measure::Measure;
+use super::pipelined::Pipe;
+use super::points::Points;
+use super::ports::Ports;
+use super::sequential::{Core, registers};
+use glint_golden::{Contract, Model};
+use glint_rtl::netlist::{Design, NetId};
+
+/// The prediction of a device, whatever its architecture.
+#[derive(Clone)]
+pub(super) enum Host {
+    Core(Core),
+    Pipe(Pipe),
+}
+
+/// A design and its golden model, bound by the names of ports and registers.
+pub(super) struct Binding<'a> {
+    pub(super) design: &'a Design,
+    pub(super) measure: Measure<'a>,
+    pub(super) ports: Arc<Ports>,
+    /// At power-up; every stream runs a copy of it.
+    pub(super) host: Host,
+    pub(super) outputs: Vec<NetId>,
+    /// The nets that the host predicts, in its order.
+    pub(super) compared: Vec<NetId>,
+    /// How many of them are registers of the golden model.
+    pub(super) registers: usize,
+    /// The address of the microprogram.
+    pub(super) address: Option<NetId>,
+    pub(super) space: Arc<Space>,
+    pub(super) points: Points<'a>,
+}
+
+impl<'a> Binding<'a> {
+    /// Pairs them.
+    ///
+    /// # Errors
+    /// A name of one side that the other does not have.
+    pub(super) fn new(
+        design: &'a Design,
+        model: Box<dyn Model>,
+        contract: &'a dyn Contract,
+    ) -> Result<Self> {
+        let ports = Arc::new(Ports::new(design, contract)?);
+        let (host, compared, measure, registers) = if let Some(pipeline) = &design.pipeline {
+            let (pipe, compared, results) = Pipe::new(design, pipeline, model, &ports)?;
+            let measure = Measure::new(design, contract, &results)?;
+            (Host::Pipe(pipe), compared, measure, pipeline.checkpoints.len())
+        } else {
+            let (core, compared) = Core::new(design, model, &ports)?;
+            let measure = Measure::new(design, contract, &compared)?;
+            (Host::Core(core), compared, measure, registers(design).count())
+        };
+        let address = || design.register(design.control.address).q;
+        Ok(Self {
+            outputs: design.outputs().map(|port| port.net).collect(),
+            address: design.pipeline.is_none().then(address),
+            space: Arc::new(Space::new(&ports)),
+            points: Points::new(contract),
+            design,
+            measure,
+            ports,
+            host,
+            compared,
+            registers,
+        })
+    }
+
+    /// Whether the design is a pipeline.
+    pub(super) fn is_pipeline(&self) -> bool {
+        self.address.is_none()
+    }
+
+    /// Holds operands at raw values: combinations are of the others alone, and the stimulus seldom draws
+    /// anything else.
+    pub(super) fn holding(mut self, held: &[(String, i64)]) -> Self {
+        for (name, raw) in held {
+            self.points.hold(name, *raw);
+        }
+        Arc::make_mut(&mut self.space).hold(held);
+        self
+    }
+
+    /// Draws lines of at most `results` results.
+    pub(super) fn shorten(&mut self, results: i64) {
+        self.points.shorten(results - 1);
+    }
+
+    /// A bound on the results of one computation.
+    pub(super) fn longest(&self) -> u64 {
+        let operands = self.measure.contract.operands();
+        // A length of 0 is a result too.
+        let results = |at: usize| operands[at].domain.1.unsigned_abs() + 1;
+        self.points.length().map_or(1, results)
+    }
+}

@@ -1,0 +1,149 @@
+//! Every combination of the bit patterns of all operands, one computation after another.
+//!
+//! A combination is the bits of all operands side by side. They come in an order in which one has little in
+//! common with the one before it, so that a register that should have been loaded and was not seldom holds
+//! what was wanted by chance: *place* p has the combination p·k mod 2^bits for an odd constant k. Operands
+//! that are held are no part of it.
+
+use std::sync::Arc;
+
+use super::ports::{OperandPort, Ports};
+use glint_base::fixed::mask;
+
+/// Odd, and without a pattern in its bits: 2^64 by the golden ratio.
+const SCATTER: u64 = 0x9e37_79b9_7f4a_7c15;
+
+/// The combinations of operands, by place.
+#[derive(Clone)]
+pub(super) struct Space {
+    ports: Arc<Ports>,
+    /// For each port the bit pattern of its operand, where it is the same in all combinations.
+    held: Vec<Option<u64>>,
+    /// The raw operands at the first places, where they are given; those of the others are made of the place.
+    listed: Vec<Vec<i64>>,
+}
+
+impl Space {
+    /// All combinations.
+    pub(super) fn new(ports: &Arc<Ports>) -> Self {
+        Self { held: vec![None; ports.operands.len()], listed: Vec::new(), ports: ports.clone() }
+    }
+
+    /// Combinations that begin with these raw operands, each in the order of the contract.
+    pub(super) fn listed(ports: &Arc<Ports>, list: &[Vec<i64>]) -> Self {
+        Self { listed: list.to_vec(), ..Self::new(ports) }
+    }
+
+    /// Holds operands at raw values: all combinations are of the others alone.
+    pub(super) fn hold(&mut self, held: &[(String, i64)]) {
+        for (name, raw) in held {
+            let operands = self.ports.operands.iter().zip(&mut self.held);
+            for (port, held) in operands.filter(|(port, _)| port.name == *name) {
+                *held = Some(*raw as u64 & mask(port.format.width()));
+            }
+        }
+    }
+
+    /// The bits of all operands together that are not held.
+    pub(super) fn bits(&self) -> u32 {
+        let operands = self.ports.operands.iter().zip(&self.held);
+        let free = operands.filter(|(_, held)| held.is_none());
+        free.map(|(port, _)| port.format.width()).sum()
+    }
+
+    /// The bit patterns of the operands at a place, in the order of the ports.
+    fn at(&self, place: u64) -> impl Iterator<Item = (&OperandPort, u64)> {
+        let mut bits = place.wrapping_mul(SCATTER);
+        let listed = usize::try_from(place).ok().and_then(|place| self.listed.get(place));
+        self.ports.operands.iter().zip(&self.held).map(move |(port, held)| {
+            if let Some(raw) = listed {
+                return (port, port.pattern(raw));
+            }
+            if let Some(pattern) = held {
+                return (port, *pattern);
+            }
+            let width = port.format.width();
+            let pattern = bits & mask(width);
+            bits = bits.checked_shr(width).unwrap_or(0);
+            (port, pattern)
+        })
+    }
+
+    /// The bit patterns of the operands at a place, by name.
+    pub(super) fn named(&self, place: u64) -> Vec<(String, u64)> {
+        let operands = self.at(place);
+        operands.map(|(port, pattern)| (port.name.clone(), pattern)).collect()
+    }
+}
+
+/// The inputs of a device that goes through combinations, clock by clock: one clock of reset; then all
+/// operands are written in the clock of `start`, and the next computation starts in the first clock in
+/// which the device is not busy, or a pipeline ready. While it is, the data show the complement of what was written.
+pub(super) struct Combinations {
+    space: Arc<Space>,
+    first: u64,
+    count: u64,
+    started: u64,
+    since_start: u64,
+    reset: bool,
+    inputs: Vec<u64>,
+}
+
+impl Combinations {
+    /// The combinations at `count` places, from the first on.
+    pub(super) fn new(space: Arc<Space>, first: u64, count: u64) -> Self {
+        let mut inputs = vec![0; space.ports.inputs];
+        space.ports.out_ready.into_iter().for_each(|at| inputs[at] = 1);
+        Self { space, first, count, started: 0, since_start: 0, reset: false, inputs }
+    }
+
+    /// Whether no computation is left to start.
+    pub(super) fn all_started(&self) -> bool {
+        self.started == self.count
+    }
+
+    /// The place of the computation that runs, or ran last.
+    pub(super) fn place(&self) -> u64 {
+        self.first + self.started.saturating_sub(1)
+    }
+
+    /// Clocks since `start`: 0 for the one that takes it.
+    pub(super) fn since_start(&self) -> u64 {
+        self.since_start
+    }
+
+    /// The inputs of the next clock, in which the device takes a computation if it is `ready`.
+    pub(super) fn next(&mut self, ready: bool) -> &[u64] {
+        let ports = &*self.space.ports;
+        let starting = ready && self.reset && self.started < self.count;
+        self.inputs[ports.reset] = u64::from(self.reset);
+        if starting {
+            let place = self.first + self.started;
+            for (port, pattern) in self.space.at(place) {
+                self.inputs[port.data] = pattern;
+                self.inputs[port.strobe] = 1;
+            }
+            if let Some((at, mask)) = ports.side_in {
+                self.inputs[at] = place & mask;
+            }
+            self.started += 1;
+            self.since_start = 0;
+        } else {
+            self.since_start += 1;
+            if self.since_start == 1 {
+                for port in &ports.operands {
+                    self.inputs[port.data] ^= mask(port.format.width());
+                    self.inputs[port.strobe] = 0;
+                }
+            }
+        }
+        self.inputs[ports.start] = u64::from(starting);
+        self.reset = true;
+        &self.inputs
+    }
+
+    /// The latest inputs.
+    pub(super) fn inputs(&self) -> &[u64] {
+        &self.inputs
+    }
+}

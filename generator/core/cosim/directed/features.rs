@@ -1,0 +1,181 @@
+//! The features of a computation within a design, in bits: the inputs of muxes that it takes, the sides of comparisons,
+//! the bits that it sets and clears, the words that it reads.
+
+use super::side_by_side::{LANES, Lanes};
+use glint_base::fixed::mask;
+use glint_rtl::netlist::{Design, Driver, NetId, Op};
+use glint_rtl::sim::Machine;
+
+/// How bright the results of a computation are, by the largest: a thing that is done in the dark shows nothing.
+pub const CLASSES: usize = 3;
+
+/// A bit of what is watched.
+enum Watched {
+    /// The bits that are 1, and those that are 0.
+    Ones(NetId),
+    Zeros(NetId, u64),
+    /// The inputs that a mux takes, where another would be different.
+    Choice(NetId, Vec<NetId>),
+    /// The outcomes of a comparison: less, greater, equal, and less or greater by one.
+    Comparison(NetId, NetId, u64, u64),
+    /// The bits that alone are 1, and none.
+    Alone(NetId, u64),
+    /// The four combinations of two bits.
+    Pair(NetId, NetId),
+}
+
+/// The watched features of a design, and those that the computations in the lanes have shown.
+pub struct Watch {
+    watched: Vec<Watched>,
+    done: Vec<[u64; LANES]>,
+    /// The address of each ROM, and for each word the number of its feature.
+    addresses: Vec<(NetId, usize, usize)>,
+    read: Vec<Vec<u32>>,
+}
+
+impl Watch {
+    /// Everything that is watched in a design.
+    pub fn new(design: &Design) -> Self {
+        let mut watched = Vec::new();
+        let zeros = |net| Watched::Zeros(net, mask(design.width(net)));
+        for (id, net) in design.iter() {
+            match &net.driver {
+                Driver::Constant(_) | Driver::Undriven | Driver::Op(Op::Relabel(_)) => continue,
+                _ => watched.extend([Watched::Ones(id), zeros(id)]),
+            }
+            let Driver::Op(op) = &net.driver else { continue };
+            match op {
+                Op::Mux { select, inputs } => {
+                    watched.push(Watched::Choice(*select, inputs.clone()))
+                }
+                &Op::Equal(a, b) | &Op::Less(a, b) | &Op::Sub(a, b) => {
+                    let width = design.width(a);
+                    let sign = if design.net(a).format.signed { 1 << (width - 1) } else { 0 };
+                    watched.push(Watched::Comparison(a, b, mask(width), sign));
+                }
+                &Op::Any(of) => watched.push(Watched::Alone(of, 0)),
+                &Op::All(of) => watched.push(Watched::Alone(of, mask(design.width(of)))),
+                &(Op::And(a, b) | Op::Or(a, b) | Op::Xor(a, b)) if design.width(a) == 1 => {
+                    watched.push(Watched::Pair(a, b));
+                }
+                _ => {}
+            }
+        }
+        let mut words = 0;
+        let mut addresses = Vec::new();
+        for (at, rom) in design.roms.iter().enumerate() {
+            if at != design.control.rom.index() {
+                addresses.push((rom.address, words, rom.words.len()));
+            }
+            words += rom.words.len();
+        }
+        Self {
+            done: vec![[0; LANES]; watched.len()],
+            watched,
+            addresses,
+            read: vec![Vec::new(); LANES],
+        }
+    }
+
+    /// How many features there are, without words.
+    pub fn count(&self) -> usize {
+        64 * CLASSES * self.watched.len()
+    }
+
+    /// A clock, in which these lanes are busy.
+    pub fn note(&mut self, machine: &Machine<LANES>, busy: Lanes) {
+        for (watched, done) in self.watched.iter().zip(&mut self.done) {
+            let mut add = |of: &dyn Fn(usize) -> u64| {
+                for (lane, done) in done.iter_mut().enumerate() {
+                    if busy >> lane & 1 == 1 {
+                        *done |= of(lane);
+                    }
+                }
+            };
+            match watched {
+                Watched::Ones(net) => {
+                    let bits = machine.lanes(*net);
+                    add(&|lane| bits[lane]);
+                }
+                Watched::Zeros(net, mask) => {
+                    let bits = machine.lanes(*net);
+                    add(&|lane| !bits[lane] & mask);
+                }
+                Watched::Choice(select, inputs) => {
+                    let select = machine.lanes(*select);
+                    add(&|lane| {
+                        let taken = (select[lane] as usize).min(inputs.len() - 1);
+                        let bits = machine.lane(inputs[taken], lane);
+                        let others = |&input: &NetId| machine.lane(input, lane) != bits;
+                        u64::from(inputs.iter().any(others)) << taken.min(63)
+                    });
+                }
+                Watched::Comparison(a, b, mask, sign) => {
+                    let (a, b) = (machine.lanes(*a), machine.lanes(*b));
+                    add(&|lane| {
+                        let (a, b) = (a[lane], b[lane]);
+                        let off = a.wrapping_sub(b) & mask;
+                        let side = if off == 0 {
+                            0
+                        } else if a ^ sign < b ^ sign {
+                            1
+                        } else {
+                            2
+                        };
+                        1 << side | u64::from(off == 1) << 3 | u64::from(off == *mask) << 4
+                    });
+                }
+                Watched::Alone(net, flip) => {
+                    let bits = machine.lanes(*net);
+                    add(&|lane| {
+                        let bits = bits[lane] ^ flip;
+                        if bits.is_power_of_two() { bits } else { 0 }
+                    });
+                }
+                Watched::Pair(a, b) => {
+                    let (a, b) = (machine.lanes(*a), machine.lanes(*b));
+                    add(&|lane| 1 << (2 * a[lane] + b[lane]));
+                }
+            }
+        }
+        self.note_words(machine, busy);
+    }
+
+    /// Notes the words alone of a clock.
+    pub fn note_words(&mut self, machine: &Machine<LANES>, busy: Lanes) {
+        for &(address, first, count) in &self.addresses {
+            let bits = machine.lanes(address);
+            for (lane, read) in self.read.iter_mut().enumerate() {
+                let word = (bits[lane] as usize).min(count);
+                if busy >> lane & 1 == 1 && word < count {
+                    read.push((first + word) as u32);
+                }
+            }
+        }
+    }
+
+    /// Returns the features of the computation in a lane, for results as bright as this, and the words that it has
+    /// read, numbered through all ROMs. The lane is clean then.
+    pub fn take(&mut self, lane: usize, class: usize) -> (Vec<u32>, Vec<u32>) {
+        let mut features = Vec::new();
+        for (at, done) in self.done.iter_mut().enumerate() {
+            let mut bits = std::mem::take(&mut done[lane]);
+            while bits != 0 {
+                let bit = bits.trailing_zeros() as usize;
+                features.push(((64 * at + bit) * CLASSES + class) as u32);
+                bits &= bits - 1;
+            }
+        }
+        let mut read = std::mem::take(&mut self.read[lane]);
+        read.sort_unstable();
+        read.dedup();
+        (features, read)
+    }
+}
+
+/// The design with all of its nets named, so that each can be watched.
+pub fn observable(design: &Design) -> Design {
+    let mut design = design.clone();
+    design.nets.iter_mut().for_each(|net| net.named = true);
+    design
+}

@@ -1,0 +1,67 @@
+//! A design whose tables are there once for each lane of a machine, so that every lane can have a fault of its own.
+
+use glint_base::fixed::Format;
+use glint_rtl::netlist::{Design, Driver, Net, NetId, Op, Port, Role};
+use glint_rtl::sim::Machine;
+
+/// Where the words of a design's tables are in the copies of every lane.
+pub struct Memories {
+    /// The input port that says which copy is read.
+    pub lane: NetId,
+    /// For each ROM the number of its first word among those of the design, the number of its first word here, and how
+    /// far the copies lie apart.
+    roms: Vec<(u32, usize, usize)>,
+}
+
+impl Memories {
+    /// Gives each of so many lanes, a power of two, tables of its own; the control ROM is one for all.
+    pub fn copied(design: &mut Design, lanes: usize) -> Self {
+        let lane_bits = lanes.ilog2();
+        let lane = add(design, "lane", lane_bits, Driver::Input);
+        design.ports.push(Port { net: lane, role: Role::Strobe });
+        let mut roms = Vec::new();
+        let (mut first, mut first_here) = (0, 0);
+        for at in 0..design.roms.len() {
+            let count = design.roms[at].words.len();
+            let mut apart = 0;
+            if at != design.control.rom.index() {
+                let address = design.roms[at].address;
+                let bits = design.width(address);
+                apart = 1 << bits;
+                let both = Driver::Op(Op::Concat(vec![lane, address]));
+                let address = add(design, "word_of_lane", bits + lane_bits, both);
+                let rom = &mut design.roms[at];
+                rom.address = address;
+                rom.comments.clear();
+                rom.words.resize(apart, 0);
+                rom.words = rom.words.repeat(lanes);
+            }
+            roms.push((first, first_here, apart));
+            first += count as u32;
+            first_here += design.roms[at].words.len();
+        }
+        Self { lane, roms }
+    }
+
+    /// Inverts bits of a word, numbered through all ROMs of the design, in one lane; the same call takes it back.
+    pub fn invert<const LANES: usize>(
+        &self,
+        machine: &mut Machine<LANES>,
+        lane: usize,
+        word: u32,
+        bits: u64,
+    ) {
+        let after = self.roms.partition_point(|(first, ..)| *first <= word);
+        let (first, first_here, apart) = self.roms[after - 1];
+        machine.invert(first_here + lane * apart + (word - first) as usize, bits);
+    }
+}
+
+/// A net of unsigned numbers.
+fn add(design: &mut Design, name: &str, bits: u32, driver: Driver) -> NetId {
+    let like = design.net(design.roms[design.control.rom.index()].address);
+    let (name, format) =
+        (format!("{name}_{}", design.nets.len()), Format::unsigned(bits as i32, 0));
+    let net = Net::new(name, format, driver, like.location);
+    design.add_net(Net { named: false, ..net })
+}

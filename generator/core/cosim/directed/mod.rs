@@ -1,0 +1,159 @@
+//! The computations of a bench that notices what is wrong with a core.
+//!
+//! Whoever ports a core, edits a memory or takes another tool relies on the bench that goes with it, and points at
+//! random reach neither every word of a table nor both sides of every comparison. Out of a pool of
+//! computations some are chosen, by what they do in the design:
+//!
+//! - for each word of a ROM that any of them reads, and every bit of its upper half, one whose results differ when the
+//!   bit is inverted, or one near them that is searched for; of lines, which read a word a clock, those that read it;
+//! - of a device that walks lines one to the end of the domain of its length;
+//! - every combination of the ends of the control operands;
+//! - for each bit of each net, each input of a mux, each outcome of a comparison and what else is watched, some
+//!   that do it with bright results, some with dim ones, some in the dark.
+//!
+//! Nothing here depends on time or on threads: the same design gives the same computations.
+
+mod features;
+mod memories;
+mod pool;
+mod side_by_side;
+mod words;
+
+use std::collections::{BinaryHeap, HashSet};
+use std::sync::Arc;
+
+use anyhow::Result;
+
+use features::{CLASSES, Watch, observable};
+use glint_base::fixed::mask;
+use glint_golden::Contract;
+use glint_rtl::netlist::Design;
+use glint_rtl::sim::{Machine, Program};
+use side_by_side::{LANES, Shown, SideBySide};
+
+/// So many computations do what is watched, if there are so many.
+const TIMES: u8 = 2;
+
+/// Clocks of all computations together.
+const MOST_CLOCKS: u32 = 20_000;
+
+/// A computation of the pool.
+struct Candidate {
+    operands: Vec<i64>,
+    shown: Shown,
+    /// How bright its results are, as a class.
+    class: usize,
+    features: Vec<u32>,
+    /// The words that it reads, numbered through all ROMs.
+    read: Vec<u32>,
+}
+
+/// The raw operands of the computations, in the order of the contract.
+///
+/// # Errors
+/// A design that cannot be simulated, or does not belong to the contract.
+pub fn computations(design: &Design, contract: &dyn Contract) -> Result<Vec<Vec<i64>>> {
+    let observed = observable(design);
+    let machine = Machine::new(Arc::new(Program::new(&observed)?));
+    let mut device = SideBySide::new(&observed, contract, machine)?;
+    let mut watch = Watch::new(&observed);
+    let mut candidates = Vec::new();
+    let pool = pool::pool(contract);
+    let watched = [&pool.corners, &pool.drawn].into_iter().flat_map(|all| all.chunks(LANES));
+    let watched = watched.map(|batch| (batch, true));
+    let others = [&pool.readers, &pool.sweeps].into_iter().flat_map(|all| all.chunks(LANES));
+    let batches = watched.chain(others.map(|batch| (batch, false)));
+    for (batch, watched) in batches {
+        let shown = device.run(batch.iter().map(Vec::as_slice), |machine, busy| {
+            if watched { watch.note(machine, busy) } else { watch.note_words(machine, busy) }
+        })?;
+        for (lane, (operands, shown)) in batch.iter().zip(shown).enumerate() {
+            let class = class(contract, &shown);
+            let (features, read) = watch.take(lane, class);
+            candidates.push(Candidate { operands: operands.clone(), shown, class, features, read });
+        }
+    }
+    let mut chosen: Vec<usize> = (0..pool.corners.len()).collect();
+    if contract.length().is_some() {
+        let bright = candidates.iter_mut().filter(|candidate| candidate.class + 1 == CLASSES);
+        let first = watch.count() as u32;
+        bright.for_each(|it| it.features.extend(it.read.iter().map(|word| first + word)));
+        let sweeping = candidates.len() - pool.sweeps.len();
+        chosen.extend(sweeps(&candidates[sweeping..]).into_iter().map(|at| sweeping + at));
+    }
+    let is_line = |at: &&usize| candidates[**at].shown.clocks > words::LONGEST;
+    let known =
+        chosen.iter().filter(is_line).flat_map(|&at| candidates[at].read.iter().copied()).collect();
+    let of_words = words::chosen(design, contract, &candidates, &known)?;
+    chosen.extend(of_words.chosen);
+    chosen.sort_unstable();
+    chosen.dedup();
+    let words: usize = design.roms.iter().map(|rom| rom.words.len()).sum();
+    choose(&candidates, watch.count(), watch.count() + words, &mut chosen);
+    let chosen = chosen.into_iter().map(|at| candidates[at].operands.clone());
+    Ok(chosen.chain(of_words.found).collect())
+}
+
+/// Returns, of lines that read table after table, the first, which is the longest, and those of which most words are new.
+fn sweeps(lines: &[Candidate]) -> Vec<usize> {
+    let mut read = HashSet::new();
+    let mut chosen = Vec::new();
+    for (at, line) in lines.iter().enumerate() {
+        let news = line.read.iter().filter(|word| !read.contains(*word)).count();
+        if at == 0 || 2 * news > line.shown.clocks as usize {
+            read.extend(line.read.iter().copied());
+            chosen.push(at);
+        }
+    }
+    chosen
+}
+
+/// How bright the brightest result is: 0 in the dark, 1 dim, 2 beyond a sixteenth of what a colour can be.
+fn class(contract: &dyn Contract, shown: &Shown) -> usize {
+    let mut class = 0;
+    for (_, outputs) in &shown.results {
+        for (it, &output) in contract.outputs().iter().zip(outputs) {
+            let most = mask(it.format.width());
+            class = class.max(usize::from(output > 0) + usize::from(output > most / 16));
+        }
+    }
+    class
+}
+
+/// Adds the candidates that do most of what has not been done often enough, per clock, until all is done or there are
+/// enough clocks. Features from `words` on are words, which are read once.
+fn choose(candidates: &[Candidate], words: usize, count: usize, chosen: &mut Vec<usize>) {
+    let mut wanted = vec![TIMES; count];
+    wanted[words..].fill(1);
+    let mut clocks = 0;
+    let done = |wanted: &mut [u8], clocks: &mut u32, at: usize| {
+        *clocks += candidates[at].shown.clocks;
+        for &feature in &candidates[at].features {
+            let wanted = &mut wanted[feature as usize];
+            *wanted = wanted.saturating_sub(1);
+        }
+    };
+    for &at in &*chosen {
+        done(&mut wanted, &mut clocks, at);
+    }
+    let gain = |wanted: &[u8], at: usize| {
+        let candidate = &candidates[at];
+        let news = candidate.features.iter().filter(|&&feature| wanted[feature as usize] > 0);
+        ((news.count() as u64) << 20) / u64::from(candidate.shown.clocks.max(1))
+    };
+    // What a candidate brings only falls as others are chosen: the first whose gain stands is the best.
+    let mut heap: BinaryHeap<(u64, std::cmp::Reverse<usize>)> =
+        (0..candidates.len()).map(|at| (gain(&wanted, at), std::cmp::Reverse(at))).collect();
+    while let Some((stated, std::cmp::Reverse(at))) = heap.pop() {
+        let now = gain(&wanted, at);
+        if now == 0 {
+            continue;
+        }
+        if now < stated {
+            heap.push((now, std::cmp::Reverse(at)));
+        } else if clocks + candidates[at].shown.clocks <= MOST_CLOCKS {
+            done(&mut wanted, &mut clocks, at);
+            chosen.push(at);
+        }
+    }
+}

@@ -1,0 +1,200 @@
+//! Computations to choose from.
+
+use crate::cosim::{Points, Random};
+use glint_golden::{Contract, Highlight};
+
+/// Points that are drawn as those of the default test are.
+const DRAWN: usize = 1024;
+
+/// Points with the other operands such that they are seen. Of three one is drawn evenly and reads words far from the peak,
+/// one by its distance from the ends of the domains, since tables have a word for each octave of it, and one is near the
+/// peak for operands from anywhere in their formats.
+const SHOWN: usize = 3840;
+
+/// Every value of an operand without a fraction is a point, and the edges of the highlight there, if it has no more
+/// values than this.
+const MOST_VALUES: u64 = 4096;
+
+/// The values above the lowest, of operands that choose a table, for which lines go through the highlight, and the
+/// bits of their lengths.
+const FIRST_VALUES: [i64; 6] = [0, 1, 2, 3, 7, 15];
+const LINE_BITS: std::ops::RangeInclusive<u32> = 8..=12;
+
+/// The longest line among those that are drawn, in intervals.
+const LONGEST: i64 = 1023;
+
+/// Where the formula is seen best.
+const VALUE: f64 = 0.6;
+
+/// The control operands are combined at the ends of their formats too if that gives no more points than this.
+const MOST_CORNERS: usize = 128;
+
+/// The length of a line there.
+const CORNER_LENGTH: i64 = 2;
+
+/// Computations to choose from.
+pub struct Pool {
+    /// The computations with every control operand at an end of its domain or of its format.
+    pub corners: Vec<Vec<i64>>,
+    /// The computations that are watched in all that they do.
+    pub drawn: Vec<Vec<i64>>,
+    /// The computations that read words.
+    pub readers: Vec<Vec<i64>>,
+    /// Lines that read a table from its beginning to its end.
+    pub sweeps: Vec<Vec<i64>>,
+}
+
+/// The pool for a contract; a function of it alone.
+pub fn pool(contract: &dyn Contract) -> Pool {
+    let mut random = Random::new(1);
+    let mut points = Points::new(contract);
+    points.shorten(LONGEST);
+    let count = points.operands().len();
+    let mut drawn = vec![vec![0; count]; DRAWN];
+    let mut readers = Vec::new();
+    let mut sweeps = Vec::new();
+    for values in &mut drawn {
+        points.draw(&mut random, values, u64::MAX);
+    }
+    let control = points.operands().iter().filter(|operand| !operand.colour).count();
+    let bright = |values: &mut [i64]| {
+        for (value, operand) in values.iter_mut().zip(points.operands()).skip(control) {
+            *value = operand.domain.1;
+        }
+    };
+    if contract.length().is_none() {
+        for number in 0..SHOWN {
+            let mut values = points.evenly(&mut random);
+            match number % 3 {
+                0 => {}
+                1 => near_ends(&points, &mut random, &mut values),
+                _ => anywhere(&points, &mut random, &mut values),
+            }
+            bright(&mut values);
+            points.show(&mut values[..control]);
+            readers.push(values);
+        }
+    }
+    if let Some((length, highlight)) = points.length().zip(contract.highlight()) {
+        sweeps = lines(highlight, &points, length, &bright);
+    }
+    for at in 0..control {
+        let operand = &points.operands()[at];
+        let (low, high) = operand.domain;
+        let is_length = contract.length() == Some(operand.name.as_str());
+        if operand.format.frac > 0 || is_length || low.abs_diff(high) >= MOST_VALUES {
+            continue;
+        }
+        for value in low..=high {
+            let mut values = points.evenly(&mut random);
+            bright(&mut values);
+            values[at] = value;
+            if let Some(length) = points.length() {
+                values[length] = random.within(0, 2);
+            }
+            for edge in points.edge(&values[..control]).into_iter().flatten() {
+                readers.push([&edge, &values[control..]].concat());
+            }
+            points.to_value(&mut values[..control], VALUE);
+            readers.push(values);
+        }
+    }
+    // Together in the lanes of a simulator run those that are of a length.
+    if let Some(length) = points.length() {
+        drawn.sort_by_key(|values| values[length]);
+        readers.sort_by_key(|values| values[length]);
+    }
+    Pool { corners: corners(&points, &bright), drawn, readers, sweeps }
+}
+
+/// Moves operands with a fraction toward the ends of their domains, most to the upper, where a cosine is that of no angle.
+fn near_ends(points: &Points<'_>, random: &mut Random, values: &mut [i64]) {
+    for (value, operand) in values.iter_mut().zip(points.operands()) {
+        let (low, high) = operand.domain;
+        let off = random.magnitude(high.abs_diff(low)) as i64;
+        match random.below(4) {
+            _ if operand.format.frac <= 0 => {}
+            0 | 1 => *value = high.saturating_sub(off),
+            2 => *value = low.saturating_add(off),
+            _ => {}
+        }
+    }
+}
+
+/// Draws operands from their formats, beyond the domains too, and moves them to where the formula has some value. A word
+/// that is read far from the peak alone within the domain is read near it there, and counts for more.
+fn anywhere(points: &Points<'_>, random: &mut Random, values: &mut [i64]) {
+    let control = points.operands().iter().filter(|operand| !operand.colour).count();
+    for (value, operand) in values[..control].iter_mut().zip(points.operands()) {
+        let format = operand.format;
+        *value = random.within(format.min_raw() as i64, format.max_raw() as i64);
+    }
+    points.to_value(&mut values[..control], random.unit());
+}
+
+/// Every combination of the ends of the control operands' domains, and of their formats if those are not too many.
+fn corners(points: &Points<'_>, bright: &dyn Fn(&mut [i64])) -> Vec<Vec<i64>> {
+    let ends = |with_format: bool| -> Vec<Vec<i64>> {
+        let of = points.operands().iter().enumerate().map(|(at, operand)| {
+            let (low, high) = operand.domain;
+            if operand.colour {
+                return vec![high];
+            }
+            if points.length() == Some(at) {
+                return vec![high.min(CORNER_LENGTH)];
+            }
+            let format = operand.format;
+            let mut ends = vec![low, high];
+            if with_format {
+                ends.extend([format.min_raw() as i64, format.max_raw() as i64]);
+            }
+            ends.sort_unstable();
+            ends.dedup();
+            ends
+        });
+        of.collect()
+    };
+    let count = |ends: &[Vec<i64>]| ends.iter().map(Vec::len).product::<usize>();
+    let ends = Some(ends(true)).filter(|ends| count(ends) <= MOST_CORNERS).unwrap_or(ends(false));
+    let mut corners = vec![Vec::new()];
+    for ends in ends {
+        let with = |corner: Vec<i64>| ends.iter().map(move |&end| [&corner[..], &[end]].concat());
+        corners = corners.into_iter().flat_map(with).collect();
+    }
+    corners.truncate(MOST_CORNERS);
+    corners.iter_mut().for_each(|corner| bright(corner));
+    corners
+}
+
+/// Lines from the peak to the edge of the highlight, which read the words of a table one after another: for the first
+/// values of each other operand, and for each power of two of intervals, or the end of the domain if that is less. The
+/// longest are first.
+fn lines(
+    highlight: &Highlight,
+    points: &Points,
+    length: usize,
+    bright: &dyn Fn(&mut [i64]),
+) -> Vec<Vec<i64>> {
+    let mut random = Random::new(2);
+    let mut lines = Vec::new();
+    let operands = points.operands();
+    let free =
+        |at: &usize| !operands[*at].colour && *at != length && operands[*at].format.frac <= 0;
+    let others: Vec<usize> = (0..operands.len()).filter(free).collect();
+    for (bits, first) in LINE_BITS.rev().flat_map(|bits| FIRST_VALUES.map(|first| (bits, first))) {
+        let mut values = points.evenly(&mut random);
+        bright(&mut values);
+        for &at in &others {
+            let (low, high) = operands[at].domain;
+            values[at] = (low + first).min(high);
+        }
+        let control = values.len() - highlight.outputs().len();
+        let Some([_, edge]) = points.edge(&values[..control]) else { continue };
+        let mut peak = values[..control].to_vec();
+        points.to_value(&mut peak, f64::INFINITY);
+        let most = highlight.operands()[length].domain.1;
+        peak[length] = ((1 << bits) - 1).min(most);
+        lines.push([&highlight.line(&peak, &edge), &values[control..]].concat());
+    }
+    lines
+}

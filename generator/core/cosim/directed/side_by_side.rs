@@ -1,0 +1,167 @@
+//! Computations side by side in the lanes of a machine.
+
+use anyhow::{Context, Result, bail};
+
+use super::memories::Memories;
+use crate::cosim::ports::Ports;
+use glint_base::fixed::mask;
+use glint_golden::Contract;
+use glint_rtl::netlist::{Design, NetId};
+use glint_rtl::sim::Machine;
+
+/// Computations that run together.
+pub const LANES: usize = 32;
+
+/// More clocks than any computation takes.
+const LIMIT: u32 = 1 << 16;
+
+/// A set of lanes.
+pub type Lanes = u32;
+
+/// The outputs of a computation.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Shown {
+    /// Clocks from `start` to the next.
+    pub clocks: u32,
+    /// The result outputs whenever `valid` is high, with the clock.
+    pub results: Vec<(u32, Vec<u64>)>,
+}
+
+impl Shown {
+    /// How much it differs, in the bits of results as numbers; most where the clocks differ.
+    pub fn differs(&self, from: &Self) -> u64 {
+        if self.results.len() != from.results.len() || self.clocks != from.clocks {
+            return u64::MAX;
+        }
+        let outputs = |shown: &Self| -> Vec<u64> {
+            shown.results.iter().flat_map(|(_, outputs)| outputs.iter().copied()).collect()
+        };
+        let pairs = outputs(self).into_iter().zip(outputs(from));
+        pairs.fold(0, |sum: u64, (a, b)| sum.saturating_add(a.abs_diff(b)))
+    }
+}
+
+/// A design whose lanes each run one computation at a time: all operands are written in the clock of `start`, and
+/// while it runs their ports show the complement.
+pub struct SideBySide {
+    pub machine: Machine<LANES>,
+    ports: Ports,
+    busy: NetId,
+    inputs: Vec<[u64; LANES]>,
+    /// The memories of a design whose lanes have tables of their own.
+    copies: Option<Memories>,
+}
+
+impl SideBySide {
+    /// After reset.
+    ///
+    /// # Errors
+    /// A contract and a design that do not belong together.
+    pub fn new(
+        design: &Design,
+        contract: &dyn Contract,
+        mut machine: Machine<LANES>,
+    ) -> Result<Self> {
+        let ports = Ports::new(design, contract)?;
+        let mut inputs = vec![[0; LANES]; ports.inputs];
+        machine.update(false, Some(&inputs));
+        machine.update(true, None);
+        inputs[ports.reset] = [1; LANES];
+        let busy = ports.busy.context("a pipeline runs no computations one by one")?;
+        Ok(Self { machine, ports, busy, inputs, copies: None })
+    }
+
+    /// With tables for each lane, which are in the design.
+    ///
+    /// # Errors
+    /// They are those of another design.
+    pub fn with_copies(mut self, design: &Design, copies: Memories) -> Result<Self> {
+        let port = design.input_position(copies.lane)?;
+        (0..LANES).for_each(|lane| self.inputs[port][lane] = lane as u64);
+        self.copies = Some(copies);
+        Ok(self)
+    }
+
+    /// As [`SideBySide::run`], of each lane with these bits of a word inverted. Words are numbered through all ROMs.
+    ///
+    /// # Errors
+    /// As of [`SideBySide::run`].
+    pub fn run_with(
+        &mut self,
+        computations: &[&[i64]],
+        word: u32,
+        faults: &[u64],
+    ) -> Result<Vec<Shown>> {
+        self.invert(word, faults);
+        let shown = self.run(computations.iter().copied(), |_, _| ());
+        self.invert(word, faults);
+        shown
+    }
+
+    fn invert(&mut self, word: u32, faults: &[u64]) {
+        let Some(copies) = &self.copies else { return };
+        for (lane, &bits) in faults.iter().enumerate() {
+            copies.invert(&mut self.machine, lane, word, bits);
+        }
+    }
+
+    /// Runs computations with these raw operands to their ends, as many as there are lanes or fewer. `see` is shown
+    /// every clock before its edge, with the lanes that are busy.
+    ///
+    /// # Errors
+    /// One that does not end.
+    pub fn run<'c>(
+        &mut self,
+        computations: impl IntoIterator<Item = &'c [i64]>,
+        mut see: impl FnMut(&Machine<LANES>, Lanes),
+    ) -> Result<Vec<Shown>> {
+        let mut shown = Vec::new();
+        for (lane, computation) in computations.into_iter().enumerate() {
+            for port in &self.ports.operands {
+                self.inputs[port.data][lane] = port.pattern(computation);
+                self.inputs[port.strobe][lane] = 1;
+            }
+            self.inputs[self.ports.start][lane] = 1;
+            shown.push(Shown::default());
+        }
+        self.clock();
+        for port in &self.ports.operands {
+            let mask = mask(port.format.width());
+            self.inputs[port.data].iter_mut().for_each(|bits| *bits ^= mask);
+            self.inputs[port.strobe] = [0; LANES];
+        }
+        self.inputs[self.ports.start] = [0; LANES];
+        for clock in 1..LIMIT {
+            self.machine.update(false, Some(&self.inputs));
+            let bits = |net| lanes(self.machine.lanes(net));
+            let (busy, valid) = (bits(self.busy), bits(self.ports.valid));
+            let ended = |(lane, shown): (usize, &Shown)| shown.clocks > 0 || busy >> lane & 1 == 0;
+            for (lane, shown) in shown.iter_mut().enumerate().filter(|(_, shown)| shown.clocks == 0)
+            {
+                if busy >> lane & 1 == 0 {
+                    shown.clocks = clock;
+                } else if valid >> lane & 1 == 1 {
+                    let results = self.ports.results.iter();
+                    let outputs = results.map(|&(net, _)| self.machine.lane(net, lane));
+                    shown.results.push((clock, outputs.collect()));
+                }
+            }
+            if shown.iter().enumerate().all(ended) {
+                return Ok(shown);
+            }
+            see(&self.machine, busy);
+            self.machine.update(true, None);
+        }
+        bail!("a computation does not end within {LIMIT} clocks")
+    }
+
+    fn clock(&mut self) {
+        self.machine.update(false, Some(&self.inputs));
+        self.machine.update(true, None);
+    }
+}
+
+/// The lanes in which a net of one bit is 1.
+fn lanes(bits: [u64; LANES]) -> Lanes {
+    bits.iter().enumerate().fold(0, |set, (lane, &bit)| set | (bit as Lanes & 1) << lane)
+}

@@ -1,0 +1,229 @@
+//! Computations that notice a fault in a word of a ROM.
+
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use anyhow::Result;
+
+use super::Candidate;
+use super::memories::Memories;
+use super::side_by_side::{LANES, Shown, SideBySide};
+use crate::cosim::{Points, Random};
+use glint_golden::Contract;
+use glint_rtl::netlist::Design;
+use glint_rtl::sim::{Machine, Program};
+
+/// Readers of a word that take more clocks than this are not asked: lines that read a table from end to end.
+pub const LONGEST: u32 = 64;
+
+/// Where no reader of a word notices a fault, so many times others are tried that are near readers: within the domain,
+/// and then beyond it.
+const ROUNDS: usize = 6;
+const ROUNDS_BEYOND: usize = 6;
+
+/// The number of tried computations that remain, those which show a larger fault in the word most: others near them are tried next.
+const KEPT: usize = 8;
+
+/// The computations that notice faults in words.
+#[derive(Default)]
+pub struct Chosen {
+    /// The numbers of the chosen candidates.
+    pub chosen: BTreeSet<usize>,
+    /// Others, by their operands.
+    pub found: Vec<Vec<i64>>,
+}
+
+/// Computations that notice every bit of the upper half of a word, inverted, that any of the candidates notices or one
+/// near them that is searched for; of all words but those in `known`.
+///
+/// # Errors
+/// A design that cannot be simulated.
+pub fn chosen(
+    design: &Design,
+    contract: &dyn Contract,
+    candidates: &[Candidate],
+    known: &BTreeSet<u32>,
+) -> Result<Chosen> {
+    let mut copied = design.clone();
+    let memories = Memories::copied(&mut copied, LANES);
+    let machine = Machine::new(Arc::new(Program::new(&copied)?));
+    let device = SideBySide::new(&copied, contract, machine)?.with_copies(&copied, memories)?;
+    let points = Points::new(contract);
+    let random = Random::new(3);
+    let mut search = Search { device, points, random, candidates, result: Chosen::default() };
+    let mut widths = Vec::new();
+    for (at, rom) in design.roms.iter().enumerate() {
+        let width = if at == design.control.rom.index() { 0 } else { design.width(rom.data) };
+        widths.extend(std::iter::repeat_n(width, rom.words.len()));
+    }
+    for (word, readers) in readers(candidates) {
+        let width = widths[word as usize];
+        let upper = (width / 2..width).fold(0, |bits, bit| bits | 1 << bit);
+        if !known.contains(&word) {
+            search.word(word, upper, &readers)?;
+        }
+    }
+    Ok(search.result)
+}
+
+/// For each word the brightest of its readers, as many as there are lanes.
+fn readers(candidates: &[Candidate]) -> BTreeMap<u32, Vec<usize>> {
+    let mut order: Vec<usize> = (0..candidates.len()).collect();
+    order.retain(|&at| candidates[at].shown.clocks <= LONGEST);
+    order.sort_by_key(|&at| Reverse(candidates[at].class));
+    let mut readers: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+    for at in order {
+        for &word in &candidates[at].read {
+            let readers = readers.entry(word).or_default();
+            if readers.len() < LANES {
+                readers.push(at);
+            }
+        }
+    }
+    readers
+}
+
+struct Search<'a> {
+    device: SideBySide,
+    points: Points<'a>,
+    random: Random,
+    candidates: &'a [Candidate],
+    result: Chosen,
+}
+
+impl Search<'_> {
+    /// Chooses what notices these bits of a word.
+    fn word(&mut self, word: u32, mut left: u64, readers: &[usize]) -> Result<()> {
+        let candidates = self.candidates;
+        let chosen = readers.iter().filter(|at| self.result.chosen.contains(at));
+        for at in chosen.copied().collect::<Vec<_>>() {
+            left &= !self.noticed(word, left, &candidates[at].operands, &candidates[at].shown)?;
+        }
+        let mut nearest: Vec<&[i64]> =
+            readers.iter().map(|&at| candidates[at].operands.as_slice()).collect();
+        let all = nearest.clone();
+        // What notices the lowest bit mostly notices those above it, which weigh more.
+        let mut unnoticed = 0;
+        // Of what is noticed at all the least.
+        let mut least = highest(left.max(1));
+        while left & !unnoticed != 0 {
+            let bit = lowest(left & !unnoticed);
+            let shown = self.run(&all, word, bit)?;
+            let pairs = readers.iter().zip(&shown);
+            let differs = pairs.filter(|(at, shown)| candidates[**at].shown != **shown);
+            let noticing: Vec<usize> = differs.map(|(at, _)| *at).collect();
+            let Some(&first) = noticing.first() else {
+                unnoticed |= bit;
+                continue;
+            };
+            nearest = noticing.iter().map(|&at| candidates[at].operands.as_slice()).collect();
+            least = bit;
+            self.result.chosen.insert(first);
+            let Candidate { operands, shown, .. } = &candidates[first];
+            left &= !(bit | self.noticed(word, left, operands, shown)?);
+        }
+        self.climb(word, left, least, nearest.iter().map(|operands| operands.to_vec()).collect())
+    }
+
+    /// Looks for what notices these bits of a word, from computations that notice another: to where that shows more and
+    /// more. Within the domain some words are read far from any highlight alone, so that at last the operands are taken
+    /// from all of their formats, where the device is what its golden model says too.
+    fn climb(
+        &mut self,
+        word: u32,
+        mut left: u64,
+        mut probe: u64,
+        nearest: Vec<Vec<i64>>,
+    ) -> Result<()> {
+        let mut round = 0;
+        let mut kept: Vec<(u64, Vec<i64>)> = Vec::new();
+        let mut tried = nearest;
+        while left != 0 && round < ROUNDS + ROUNDS_BEYOND {
+            let operands: Vec<&[i64]> = tried.iter().map(Vec::as_slice).collect();
+            let fault_free = self.run(&operands, word, 0)?;
+            let bit = highest(left);
+            let shown = self.run(&operands, word, bit)?;
+            if let Some(at) = fault_free.iter().zip(&shown).position(|(right, it)| right != it) {
+                left &= !(bit | self.noticed(word, left, &tried[at], &fault_free[at])?);
+                self.result.found.push(tried[at].clone());
+                probe = bit;
+                kept = vec![(1, tried[at].clone())];
+            } else {
+                let shown = self.run(&operands, word, probe)?;
+                let shows = fault_free.iter().zip(&shown).map(|(right, it)| it.differs(right));
+                kept.extend(shows.zip(tried));
+                kept.sort_by_key(|(shows, _)| Reverse(*shows));
+                kept.truncate(KEPT);
+                round += 1;
+            }
+            tried = self.near(&kept, round > ROUNDS);
+        }
+        Ok(())
+    }
+
+    /// Returns the outputs of computations with bits of a word inverted.
+    fn run(&mut self, computations: &[&[i64]], word: u32, bits: u64) -> Result<Vec<Shown>> {
+        let faults: Vec<u64> = vec![bits; computations.len()];
+        self.device.run_with(computations, word, &faults)
+    }
+
+    /// Returns the bits of a word which a computation notices, one inverted at a time. `right` is its output without a fault.
+    fn noticed(&mut self, word: u32, bits: u64, operands: &[i64], right: &Shown) -> Result<u64> {
+        let bits: Vec<u64> =
+            (0..u64::BITS).map(|bit| bits & 1 << bit).filter(|&bit| bit != 0).collect();
+        let mut noticed = 0;
+        for faults in bits.chunks(LANES) {
+            let shown = self.device.run_with(&vec![operands; faults.len()], word, faults)?;
+            let pairs = faults.iter().zip(shown).filter(|(_, shown)| shown != right);
+            noticed |= pairs.fold(0, |bits, (bit, _)| bits | bit);
+        }
+        Ok(noticed)
+    }
+
+    /// Computations near these: each control operand as it is, or moved by a random magnitude within its domain (within
+    /// its format, if it may be beyond), or, without a fraction, drawn anew; some of them are then moved to where the
+    /// formula has some value. The colours are bright.
+    fn near(&mut self, kept: &[(u64, Vec<i64>)], beyond: bool) -> Vec<Vec<i64>> {
+        let Self { points, random, .. } = self;
+        let operands = points.operands();
+        let control = operands.iter().filter(|operand| !operand.colour).count();
+        let mut moved = |lane: usize| {
+            let pairs = operands.iter().zip(&kept[lane % kept.len()].1).enumerate();
+            let values = pairs.map(|(at, (operand, &raw))| {
+                let (low, high) = if beyond && !operand.colour {
+                    (operand.format.min_raw() as i64, operand.format.max_raw() as i64)
+                } else {
+                    operand.domain
+                };
+                if operand.colour {
+                    return high - random.magnitude(high.abs_diff(low) / 8) as i64;
+                }
+                if points.length() == Some(at) {
+                    return raw;
+                }
+                let off = random.magnitude(high.abs_diff(low)) as i64;
+                match random.below(8) {
+                    0 | 1 => raw.saturating_add(off).clamp(low, high),
+                    2 | 3 => raw.saturating_sub(off).clamp(low, high),
+                    4 if operand.format.frac <= 0 => random.within(low, high),
+                    _ => raw,
+                }
+            });
+            let mut values: Vec<i64> = values.collect();
+            if lane.is_multiple_of(4) {
+                points.to_value(&mut values[..control], random.unit());
+            }
+            values
+        };
+        (0..LANES).map(&mut moved).collect()
+    }
+}
+
+fn lowest(bits: u64) -> u64 {
+    bits & bits.wrapping_neg()
+}
+
+fn highest(bits: u64) -> u64 {
+    1 << bits.ilog2()
+}

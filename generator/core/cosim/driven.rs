@@ -1,0 +1,80 @@
+//! A golden model on its own, a computation at a time.
+
+use anyhow::{Context, Result};
+
+use glint_golden::Model;
+
+/// A golden model whose handshake is driven.
+#[derive(Clone)]
+pub struct Driven {
+    model: Box<dyn Model>,
+    inputs: Vec<u64>,
+    reset: usize,
+    start: usize,
+    /// Data and strobe of each operand.
+    operands: Vec<(usize, usize)>,
+    pub(super) busy: usize,
+    pub(super) valid: usize,
+}
+
+impl Driven {
+    /// A model at power-up, with the operands that it is given by name.
+    ///
+    /// # Errors
+    /// A name that the model does not have.
+    pub fn new<'n>(model: Box<dyn Model>, operands: impl Iterator<Item = &'n str>) -> Result<Self> {
+        let input = |name: &str| {
+            let at = model.inputs().iter().position(|other| other == name);
+            at.with_context(|| format!("the golden model has no input `{name}`"))
+        };
+        let operands = operands.map(|name| Ok((input(name)?, input(&format!("{name}_write"))?)));
+        Ok(Self {
+            inputs: vec![0; model.inputs().len()],
+            reset: input("rst_n")?,
+            start: input("start")?,
+            operands: operands.collect::<Result<_>>()?,
+            busy: signal(model.as_ref(), "busy")?,
+            valid: signal(model.as_ref(), "valid")?,
+            model,
+        })
+    }
+
+    /// The first clock of a computation with these bit patterns.
+    pub fn start(&mut self, patterns: impl Iterator<Item = u64>) {
+        for (bits, &(data, strobe)) in patterns.zip(&self.operands) {
+            self.inputs[data] = bits;
+            self.inputs[strobe] = 1;
+        }
+        self.inputs[self.reset] = 1;
+        self.inputs[self.start] = 1;
+        self.clock();
+        self.inputs.fill(0);
+        self.inputs[self.reset] = 1;
+    }
+
+    /// One clock.
+    pub fn clock(&mut self) {
+        self.model.clock(&self.inputs);
+    }
+
+    /// Whether there is a result.
+    pub fn is_valid(&self) -> bool {
+        self.values()[self.valid] == 1
+    }
+
+    /// All signals, with their names in [`Driven::names`].
+    pub fn values(&self) -> &[u64] {
+        self.model.values()
+    }
+
+    /// The names of all signals.
+    pub fn names(&self) -> &[String] {
+        self.model.signals()
+    }
+}
+
+/// The position of a signal of a model.
+pub(super) fn signal(model: &dyn Model, name: &str) -> Result<usize> {
+    let at = model.signals().iter().position(|other| other == name);
+    at.with_context(|| format!("the golden model does not predict `{name}`"))
+}

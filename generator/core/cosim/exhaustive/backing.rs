@@ -1,0 +1,98 @@
+//! The evidence for a stated bound: a proof in the catalogue, a record of all operands, a certificate, or its author's word.
+
+use std::fmt;
+use std::path::Path;
+
+use anyhow::Result;
+use serde::{Deserialize, Serialize};
+
+use super::Record;
+use glint_base::input;
+use glint_base::program::Program;
+use glint_golden::Contract;
+
+/// The directory of certificates inside that of the records.
+const CERTIFICATES: &str = "certificates";
+
+/// How far the recorded bound may be from today's, in units.
+const SAME: f64 = 1e-9;
+
+/// The evidence for a stated bound.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Backing {
+    /// The proof beside the golden model of a device of the catalogue.
+    Catalogue,
+    /// The record of a check of every combination of operands.
+    Exhaustive(String),
+    /// The record of statements that Gappa accepted.
+    Certificate(String),
+    /// Its author's word.
+    Author,
+}
+
+/// The record of `glint certify`: what was proved of a configuration.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Certificate {
+    /// The version of Glint; a record begins with it.
+    pub glint: String,
+    /// As the command line names it.
+    pub config: String,
+    /// Tells what is proved: [`crate::core::Core::contract_digest`].
+    pub contract: String,
+    /// In output units.
+    pub bound: f64,
+    /// Whether Gappa accepted all statements.
+    pub certified: bool,
+}
+
+impl Backing {
+    /// Returns the evidence in the records of a directory for a contract outside the catalogue.
+    ///
+    /// # Errors
+    /// A record that cannot be read.
+    pub fn of_records(directory: &Path, digest: &str, contract: &dyn Contract) -> Result<Self> {
+        let shown = |path: &Path| path.display().to_string().replace('\\', "/");
+        if let Some(record) = Record::find(directory, digest, contract)?
+            && record.proves(contract)
+        {
+            return Ok(Self::Exhaustive(shown(&record.path)));
+        }
+        let units = contract.bound().units;
+        let proves = |it: &Certificate| {
+            it.certified && it.contract == digest && (it.bound - units).abs() <= SAME
+        };
+        let certificates =
+            input::records::<Certificate>(&directory.join(CERTIFICATES))?.into_iter();
+        let mut found = certificates.filter(|(_, it)| proves(it)).map(|(path, _)| shown(&path));
+        Ok(found.next().map_or(Self::Author, Self::Certificate))
+    }
+
+    /// A sentence in front of the terms of the bound.
+    pub fn sentence(&self) -> String {
+        match self {
+            Self::Catalogue => "The bound is proven, not measured".to_owned(),
+            Self::Exhaustive(path) => {
+                format!("The bound holds for every combination of operands, by the record `{path}`")
+            }
+            Self::Certificate(path) => {
+                format!("The bound is proven by Gappa, by the record `{path}`")
+            }
+            Self::Author => format!(
+                "The bound is stated by its author, and nothing here proves it: `{Program} certify`, and `{Program} \
+                 cosim --exhaustive --json` where it can go through all operands, do"
+            ),
+        }
+    }
+}
+
+/// As an attribute of the bound.
+impl fmt::Display for Backing {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Catalogue => "proven",
+            Self::Exhaustive(_) => "proven by all operands",
+            Self::Certificate(_) => "proven by Gappa",
+            Self::Author => "stated by its author",
+        })
+    }
+}

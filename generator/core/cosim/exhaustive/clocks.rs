@@ -1,0 +1,225 @@
+//! Every register and every output at every clock, for every combination of operands.
+//!
+//! What cannot be done for the operands of a device of full width is done for those of a narrow one.
+//! Combinations are numbered by *place*; a block of places goes through the lanes of one simulator, each
+//! with a run of them from power-up on. A computation thus begins with the registers that the one before
+//! it in its lane has left, and neither the order of blocks nor their number has any influence.
+
+use std::fmt;
+use std::io::Write;
+use std::ops::Range;
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, Result, ensure};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use crate::cosim::binding::Binding;
+use crate::cosim::lockstep::LANES;
+use crate::cosim::outcome::{Course, Mismatch};
+use crate::cosim::runner::Runner;
+use glint_base::program::Program;
+use glint_golden::{Contract, Model};
+use glint_rtl::netlist::Design;
+
+/// The most bits of operands of which all combinations are gone through.
+pub const MOST_BITS: u32 = 26;
+
+/// Combinations of a lane.
+const RUN: u64 = 512;
+
+/// Combinations of a block.
+const BLOCK: u64 = RUN * LANES as u64;
+
+/// How far the combinations have come.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Steps {
+    /// The number of blocks of the shard that are done, which are the first.
+    pub done: u64,
+    /// The first place at which something differs, after which no other is of interest.
+    pub differs: Option<u64>,
+}
+
+/// The first combination for which model and hardware differ.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Difference {
+    /// Its place.
+    pub place: u64,
+    /// Clocks since its `start`: 0 for the one that takes it.
+    pub clock: u64,
+    /// The operands, as bit patterns.
+    pub operands: Vec<(String, u64)>,
+    /// The mismatch; its clocks count from the power-up of the lane.
+    pub mismatch: Mismatch,
+}
+
+impl fmt::Display for Difference {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let operands = self.operands.iter();
+        let operands: Vec<String> =
+            operands.map(|(name, bits)| format!("{name}={bits:#x}")).collect();
+        write!(
+            f,
+            "combination {} ({}), clock {} of its computation, {}",
+            self.place,
+            operands.join(" "),
+            self.clock,
+            self.mismatch
+        )
+    }
+}
+
+/// All combinations of the operands of a design, against its golden model: one computation after another in a core, a point
+/// every clock in a pipeline.
+pub struct Clocks<'a> {
+    binding: Binding<'a>,
+}
+
+impl<'a> Clocks<'a> {
+    /// Pairs them by the names of ports and registers.
+    ///
+    /// # Errors
+    /// A name of one side that the other does not have.
+    pub fn new(
+        design: &'a Design,
+        model: Box<dyn Model>,
+        contract: &'a dyn Contract,
+    ) -> Result<Self> {
+        Ok(Self { binding: Binding::new(design, model, contract)? })
+    }
+
+    /// Holds some operands at raw values: the combinations are those of the others.
+    #[must_use]
+    pub fn holding(self, held: &[(String, i64)]) -> Self {
+        Self { binding: self.binding.holding(held) }
+    }
+
+    /// The bits of all operands together.
+    pub fn bits(&self) -> u32 {
+        self.binding.space.bits()
+    }
+
+    /// How many combinations there are; 0 if they are too many to go through.
+    pub fn count(&self) -> u64 {
+        match self.bits() {
+            bits @ ..=MOST_BITS => 1 << bits,
+            _ => 0,
+        }
+    }
+
+    /// Returns the part that is not covered, in a sentence: why there are no combinations, or what going through them leaves to
+    /// random stimulus.
+    pub fn omits(&self) -> String {
+        match self.count() {
+            0 => format!(
+                "registers at every clock: the operands have {} bits, and all combinations are gone through for up to {MOST_BITS}, of a narrower configuration of the device",
+                self.bits()
+            ),
+            _ if self.binding.is_pipeline() => format!(
+                "pauses between points, results that wait, resets with points on their way; `{Program} cosim` draws these at \
+                 random"
+            ),
+            _ => format!(
+                "idle gaps, operands written one by one, writes and starts while busy, resets within a computation, and other contents of the registers before it than those that one other computation leaves; `{Program} cosim` draws these at random"
+            ),
+        }
+    }
+
+    /// How many blocks they are cut into.
+    pub fn blocks(&self) -> u64 {
+        self.count().div_ceil(BLOCK)
+    }
+
+    fn of_block(&self, block: u64) -> Range<u64> {
+        block * BLOCK..((block + 1) * BLOCK).min(self.count())
+    }
+
+    /// How many combinations some blocks have.
+    pub(super) fn visits(&self, blocks: impl Iterator<Item = u64>) -> u64 {
+        let count = |block| {
+            let places = self.of_block(block);
+            places.end - places.start
+        };
+        blocks.map(count).sum()
+    }
+
+    /// The first place in some blocks, in ascending order, at which something differs; on all threads of
+    /// rayon's pool. `progress` is called with the number of combinations of each block that is done.
+    ///
+    /// # Errors
+    /// A design that cannot be simulated, or does not settle.
+    pub fn check(&self, blocks: Vec<u64>, progress: &(dyn Fn(u64) + Sync)) -> Result<Option<u64>> {
+        let check = |block| {
+            let places = self.of_block(block);
+            let count = places.end - places.start;
+            let found = self.first(places);
+            progress(count);
+            found.transpose()
+        };
+        blocks.into_par_iter().find_map_first(check).transpose()
+    }
+
+    /// The first of some places at which something differs, each lane with a run of them from power-up on.
+    fn first(&self, places: Range<u64>) -> Result<Option<u64>> {
+        let runs =
+            places.clone().step_by(RUN as usize).map(|first| (first, RUN.min(places.end - first)));
+        self.first_of(runs)
+    }
+
+    fn first_of(&self, runs: impl Iterator<Item = (u64, u64)>) -> Result<Option<u64>> {
+        let courses = runs.map(|(first, count)| Course::Combinations { first, count });
+        let mut lanes = Runner::<LANES>::new(&self.binding, courses)?;
+        while !lanes.ended() {
+            lanes.run()?;
+        }
+        let mismatch = lanes.into_seen()?.into_iter().find_map(|seen| seen.mismatch);
+        Ok(mismatch.map(|mismatch| mismatch.seed))
+    }
+
+    /// Returns the difference at a place that [`Clocks::check`] found.
+    ///
+    /// # Errors
+    /// Nothing differs there; those of [`Clocks::check`].
+    pub fn difference(&self, place: u64) -> Result<Difference> {
+        let mut alone = self.alone(place)?;
+        alone.go_on(u64::MAX)?;
+        let found = alone.first();
+        let mismatch = found.seen.mismatch.clone().filter(|mismatch| mismatch.seed == place);
+        Ok(Difference {
+            place,
+            clock: found.since_start,
+            operands: self.binding.space.named(place),
+            mismatch: mismatch
+                .with_context(|| format!("nothing differs at combination {place}"))?,
+        })
+    }
+
+    /// Writes the waveform of the clocks that end with a difference, from clock `from` of its lane on.
+    ///
+    /// # Errors
+    /// As of [`Clocks::difference`]; the file cannot be written.
+    pub fn trace(&self, place: u64, from: u64, file: impl Write + Send + 'static) -> Result<()> {
+        self.alone(place)?.trace(from, file)
+    }
+
+    /// The run that has a place, up to it, in a simulator of its own.
+    fn alone(&self, place: u64) -> Result<Runner<'_, 1>> {
+        ensure!(place < self.count(), "there is no combination {place}");
+        let first = place - place % RUN;
+        let course = Course::Combinations { first, count: place - first + 1 };
+        Runner::new(&self.binding, [course])
+    }
+
+    /// How long one combination takes on one thread.
+    ///
+    /// # Errors
+    /// As of [`Clocks::check`].
+    pub(super) fn pace(&self) -> Result<Duration> {
+        let places = 0..self.count().min(BLOCK / 8);
+        let count = places.end as u32;
+        let runs = places.step_by(RUN as usize / 8).map(|first| (first, RUN / 8));
+        let begin = Instant::now();
+        self.first_of(runs)?;
+        Ok(begin.elapsed() / count)
+    }
+}

@@ -1,0 +1,381 @@
+//! A proof as a job that can be interrupted, resumed, and divided among machines.
+//!
+//! Blocks of places are dealt out: shard i of N has every N-th block, from block i − 1 on. What a shard has
+//! done is a [`State`], a few numbers that stand in a file; joining the states of all shards gives exactly
+//! what one uninterrupted run gives, because a peak does not depend on the order in which it was found.
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::ops::ControlFlow;
+use std::str::FromStr;
+use std::time::Duration;
+
+use anyhow::{Context, Result, ensure};
+use serde::{Deserialize, Serialize};
+
+use super::clocks::{Clocks, Steps};
+use super::places::{Peak, Places};
+use glint_base::text::grouped;
+use glint_golden::{Contract, Sweep};
+
+/// A division into more parts than machines would ever take is a slip of the pen.
+pub const MOST_SHARDS: u64 = 1_000_000;
+
+/// Missing shards that are named.
+const NAMED: usize = 10;
+
+/// Blocks for each thread between two looks at the state: some tenths of a second.
+const CHUNK: u64 = 4;
+
+/// One part of a divided job.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Shard {
+    /// From 1.
+    pub number: u64,
+    /// The number of shards.
+    pub of: u64,
+}
+
+impl Shard {
+    /// The whole job.
+    pub const WHOLE: Self = Self { number: 1, of: 1 };
+
+    /// Whether there is such a part.
+    fn is_valid(self) -> bool {
+        (1..=MOST_SHARDS).contains(&self.of) && (1..=self.of).contains(&self.number)
+    }
+
+    /// The blocks of the shard, of `blocks` in all.
+    fn count(self, blocks: u64) -> u64 {
+        (blocks + self.of - self.number) / self.of
+    }
+
+    /// Block number `at` of the shard.
+    fn block(self, at: u64) -> u64 {
+        self.number - 1 + at * self.of
+    }
+
+    /// The next blocks of the shard, which has `count`, after `done` of them; and how many are done then.
+    fn chunk(self, done: u64, count: u64) -> (u64, Vec<u64>) {
+        let end = (done + CHUNK * rayon::current_num_threads() as u64).min(count);
+        (end, (done..end).map(|at| self.block(at)).collect())
+    }
+}
+
+impl fmt::Display for Shard {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}/{}", self.number, self.of)
+    }
+}
+
+impl FromStr for Shard {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let parts = text.split_once('/');
+        let numbers = parts.and_then(|(number, of)| Some((number.parse().ok()?, of.parse().ok()?)));
+        match numbers {
+            Some((number, of)) if (Self { number, of }).is_valid() => Ok(Self { number, of }),
+            _ => Err(format!(
+                "a shard is i/N with i from 1 to N, as 3/16, and N at most {}",
+                grouped(MOST_SHARDS)
+            )),
+        }
+    }
+}
+
+/// How far one part of a job has come.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Progress {
+    /// The number of blocks of the shard that are done, which are the first.
+    pub done: u64,
+    /// The peak of those.
+    pub peak: Peak,
+}
+
+/// How far a shard has come.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct State {
+    /// Tells one configuration, and what computes with it, from another.
+    pub digest: String,
+    /// The part of the job.
+    pub shard: Shard,
+    /// The sweep of `f`.
+    pub f: Progress,
+    /// The colour products.
+    pub colours: Progress,
+    /// The combinations of operands, clock by clock.
+    pub clocks: Steps,
+}
+
+impl State {
+    /// Nothing done.
+    pub fn new(digest: &str, shard: Shard) -> Self {
+        let nothing = Progress { done: 0, peak: Peak::NONE };
+        Self {
+            digest: digest.to_owned(),
+            shard,
+            f: nothing,
+            colours: nothing,
+            clocks: Steps::default(),
+        }
+    }
+}
+
+/// A proof to be made.
+pub struct Job<'a> {
+    /// The places of `f`.
+    pub f: Places<'a>,
+    /// The colour products.
+    pub colours: Places<'a>,
+    /// The combinations of operands, clock by clock.
+    pub clocks: Option<Clocks<'a>>,
+}
+
+impl<'a> Job<'a> {
+    /// The proof of a contract.
+    pub fn new(contract: &'a dyn Contract) -> Self {
+        Self::of_sweep(contract, contract.sweep())
+    }
+
+    /// The job by a sweep with other values than those of the contract.
+    pub fn of_sweep(contract: &'a dyn Contract, sweep: Sweep) -> Self {
+        let (f, colours) = (Places::of_sweep(contract, sweep), Places::of_colours(contract));
+        Self { f, colours, clocks: None }
+    }
+
+    /// How much there is to evaluate, in words.
+    pub fn words(&self) -> String {
+        let places = grouped(self.f.count());
+        match self.colours.count() {
+            0 => format!("{places} evaluations of the outputs"),
+            colours => {
+                format!("{places} evaluations of f and {} colour products", grouped(colours))
+            }
+        }
+    }
+
+    /// Adds every combination of operands clock by clock, if they are not too many.
+    #[must_use]
+    pub fn with(mut self, clocks: Clocks<'a>) -> Self {
+        self.clocks = Some(clocks);
+        self
+    }
+
+    /// Blocks of the combinations of operands.
+    fn blocks_of_clocks(&self) -> u64 {
+        self.clocks.as_ref().map_or(0, Clocks::blocks)
+    }
+
+    /// Places of the shard that are still to be visited.
+    pub fn remaining(&self, state: &State) -> u64 {
+        self.parts_remaining(state).iter().sum()
+    }
+
+    /// Returns the remaining work of each part: of `f`, of the colours, of the combinations.
+    fn parts_remaining(&self, state: &State) -> [u64; 3] {
+        let shard = state.shard;
+        let blocks = |done: u64, blocks| {
+            let count = shard.count(blocks);
+            (done.min(count)..count).map(move |at| shard.block(at))
+        };
+        let part = |places: &Places<'_>, done| places.visits(blocks(done, places.blocks()));
+        let clocks =
+            |clocks: &Clocks<'_>| clocks.visits(blocks(state.clocks.done, clocks.blocks()));
+        [
+            part(&self.f, state.f.done),
+            part(&self.colours, state.colours.done),
+            self.clocks.as_ref().map_or(0, clocks),
+        ]
+    }
+
+    /// Makes sure that a state which comes from outside can be one of this job: its numbers are in range, and the
+    /// largest errors are found again where it says that they are.
+    ///
+    /// # Errors
+    /// The state cannot be of this job.
+    pub fn validate(&self, state: &State) -> Result<()> {
+        let shard = state.shard;
+        ensure!(shard.is_valid(), "there is no shard {shard}");
+        for (what, places, progress) in
+            [("f", &self.f, state.f), ("the colours", &self.colours, state.colours)]
+        {
+            let count = shard.count(places.blocks());
+            let Progress { done, peak } = progress;
+            ensure!(done <= count, "of {what}, {done} blocks are done of {count} in all");
+            if done == 0 {
+                ensure!(peak == Peak::NONE, "of {what}, nothing is done, and yet there is a peak");
+                continue;
+            }
+            ensure!(
+                peak.place < places.count(),
+                "of {what}, the largest error is at place {}, and there are {} places",
+                peak.place,
+                places.count()
+            );
+            let block = Places::block_of(peak.place);
+            ensure!(
+                block % shard.of == shard.number - 1 && block / shard.of < done,
+                "of {what}, the largest error is at place {}, which the shard has not done",
+                peak.place
+            );
+            ensure!(
+                places.error(peak.place) == peak.error,
+                "of {what}, the error at place {} is {:e}, not {:e}",
+                peak.place,
+                places.error(peak.place),
+                peak.error
+            );
+        }
+        let count = shard.count(self.blocks_of_clocks());
+        let Steps { done, differs } = state.clocks;
+        ensure!(done <= count, "of the combinations, {done} blocks are done of {count} in all");
+        let combinations = self.clocks.as_ref().map_or(0, Clocks::count);
+        ensure!(
+            differs.is_none_or(|place| place < combinations && done == count),
+            "of the combinations, one is said to differ that was not tried"
+        );
+        Ok(())
+    }
+
+    /// How long the rest of the shard takes on `threads` threads: a short sample of each part is timed.
+    ///
+    /// # Errors
+    /// A design that cannot be simulated, or does not settle.
+    pub fn estimate(&self, state: &State, threads: usize) -> Result<Duration> {
+        let [f, colours, clocks] = self.parts_remaining(state);
+        let seconds = |count: u64, pace: Duration| count as f64 * pace.as_secs_f64();
+        let mut sum = 0.0;
+        for (count, places) in [(f, &self.f), (colours, &self.colours)] {
+            if count > 0 {
+                sum += seconds(count, places.pace());
+            }
+        }
+        if let Some(own) = self.clocks.as_ref().filter(|_| clocks > 0) {
+            sum += seconds(clocks, own.pace()?);
+        }
+        Ok(Duration::from_secs_f64(sum / threads.max(1) as f64))
+    }
+
+    /// Goes on from `state` to the end of its shard, or until `look`, which sees the state now and then,
+    /// breaks; `progress` is called with the number of places of each block that is done.
+    ///
+    /// # Errors
+    /// A design that cannot be simulated, or does not settle.
+    pub fn run(
+        &self,
+        state: &mut State,
+        progress: &(dyn Fn(u64) + Sync),
+        look: &mut dyn FnMut(&State) -> ControlFlow<()>,
+    ) -> Result<ControlFlow<()>> {
+        let shard = state.shard;
+        for part in [Part::F, Part::Colours] {
+            let places = part.places(self);
+            let count = shard.count(places.blocks());
+            while part.progress(state).done < count {
+                let own = part.progress(state);
+                let (end, blocks) = shard.chunk(own.done, count);
+                own.peak = own.peak.join(places.check(blocks, progress));
+                own.done = end;
+                if look(state).is_break() {
+                    return Ok(ControlFlow::Break(()));
+                }
+            }
+        }
+        let count = shard.count(self.blocks_of_clocks());
+        while let Some(clocks) = &self.clocks
+            && state.clocks.done < count
+        {
+            let (end, blocks) = shard.chunk(state.clocks.done, count);
+            state.clocks.differs = clocks.check(blocks, progress)?;
+            state.clocks.done = match state.clocks.differs {
+                Some(_) => count,
+                None => end,
+            };
+            if look(state).is_break() {
+                return Ok(ControlFlow::Break(()));
+            }
+        }
+        Ok(ControlFlow::Continue(()))
+    }
+
+    /// Merges the shards of one job.
+    ///
+    /// # Errors
+    /// Shards of different jobs, shards that are missing, twice there, or not done. `names` say which,
+    /// in the order of `states`.
+    pub fn merge(&self, states: &[State], names: &[String]) -> Result<State> {
+        let Some(first) = states.first() else {
+            anyhow::bail!("nothing to merge");
+        };
+        let of = first.shard.of;
+        let mut merged = State::new(&first.digest, Shard::WHOLE);
+        let mut seen: BTreeMap<u64, &String> = BTreeMap::new();
+        for (state, name) in states.iter().zip(names) {
+            ensure!(
+                state.digest == first.digest,
+                "`{name}` is not of the same configuration and build of Glint as `{}`",
+                names[0]
+            );
+            ensure!(
+                state.shard.of == of,
+                "`{name}` is shard {}, and `{}` is shard {}: they are not of one division",
+                state.shard,
+                names[0],
+                first.shard
+            );
+            self.validate(state).with_context(|| format!("`{name}` is damaged"))?;
+            ensure!(
+                self.remaining(state) == 0,
+                "`{name}` is not complete; go on with --shard {} --resume {name}",
+                state.shard
+            );
+            if let Some(other) = seen.insert(state.shard.number, name) {
+                anyhow::bail!("`{other}` and `{name}` are both shard {}", state.shard);
+            }
+            merged.f.peak = merged.f.peak.join(state.f.peak);
+            merged.colours.peak = merged.colours.peak.join(state.colours.peak);
+            let differ = merged.clocks.differs.into_iter().chain(state.clocks.differs);
+            merged.clocks.differs = differ.min();
+        }
+        let missing = of - seen.len() as u64;
+        if missing > 0 {
+            let absent = (1..=of).filter(|number| !seen.contains_key(number)).take(NAMED);
+            let named: Vec<String> =
+                absent.map(|number| Shard { number, of }.to_string()).collect();
+            let more = match missing.saturating_sub(NAMED as u64) {
+                0 => String::new(),
+                more => format!(" and {} more", grouped(more)),
+            };
+            anyhow::bail!("missing: shard {}{more}", named.join(", "));
+        }
+        merged.f.done = self.f.blocks();
+        merged.colours.done = self.colours.blocks();
+        merged.clocks.done = self.blocks_of_clocks();
+        Ok(merged)
+    }
+}
+
+/// The parts of a job.
+#[derive(Clone, Copy)]
+enum Part {
+    F,
+    Colours,
+}
+
+impl Part {
+    fn places<'j, 'a>(self, job: &'j Job<'a>) -> &'j Places<'a> {
+        match self {
+            Self::F => &job.f,
+            Self::Colours => &job.colours,
+        }
+    }
+
+    fn progress(self, state: &mut State) -> &mut Progress {
+        match self {
+            Self::F => &mut state.f,
+            Self::Colours => &mut state.colours,
+        }
+    }
+}

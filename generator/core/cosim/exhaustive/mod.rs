@@ -1,0 +1,108 @@
+//! The factored proof of an accuracy contract: every place of its sweep for `f`, every word `f` with every
+//! colour, and what both give together. And, of a device with few bits of operands, every combination of
+//! them clock by clock.
+//!
+//! Places are numbered, the last axis fastest, and cut into blocks; any set of blocks can be checked
+//! anywhere, in any order, and the outcomes joined: the result does not depend on how the work was divided.
+
+pub mod axis;
+mod backing;
+mod clocks;
+mod job;
+pub mod kept;
+mod places;
+mod record;
+
+#[cfg(test)]
+mod tests;
+
+pub use axis::AxisValues;
+pub use backing::{Backing, Certificate};
+pub use clocks::{Clocks, Difference, MOST_BITS, Steps};
+pub use job::{Job, MOST_SHARDS, Progress, Shard, State};
+pub use places::{Peak, Places};
+pub use record::Record;
+
+use glint_golden::{Contract, Sweep};
+
+/// Where records are by default.
+pub const PROOFS: &str = "proofs";
+
+/// The rounding of f64 itself, in units.
+const F64: f64 = 1e-6;
+
+/// The result of the proof.
+#[derive(Clone, Debug)]
+pub struct Proof {
+    /// Whether what is swept is the f of a highlight, and not the outputs themselves.
+    of_f: bool,
+    /// The largest error of `f`, or of an output in units.
+    pub f: Peak,
+    /// The error of f in output units, for the largest colour.
+    pub f_units: f64,
+    /// The largest error of a colour multiplier, in output units.
+    pub colours: Peak,
+    /// The failures: an error above the stated bound, or one unit and more though the bound is below.
+    pub failures: Vec<String>,
+}
+
+impl Proof {
+    /// Weighs the peaks against the contract's bound.
+    pub fn new(contract: &dyn Contract, f: Peak, colours: Peak) -> Self {
+        let colour = contract.operands().iter().find(|operand| operand.colour);
+        let largest = colour.map_or(1.0, |operand| operand.domain.1 as f64);
+        let bound = contract.bound();
+        let of_f = contract.highlight().is_some();
+        let mut proof = Self { of_f, f, f_units: f.error * largest, colours, failures: Vec::new() };
+        if f.error > bound.f + F64 / largest {
+            let what = if of_f { "f is" } else { "an output is, in units," };
+            proof.failures.push(format!(
+                "{what} off by {:e}, beyond the stated bound of {:e}",
+                f.error, bound.f
+            ));
+        }
+        if proof.together() > bound.units + F64 {
+            proof.failures.push(format!(
+                "an output may be off by {:.4} units, beyond the stated bound of {:.4}",
+                proof.together(),
+                bound.units
+            ));
+        }
+        proof
+    }
+
+    /// Returns the verdict: "proved" only if the sweep left no control operands out, and only of a bound that keeps
+    /// the contract.
+    pub fn verdict(&self, contract: &dyn Contract, sweep: &Sweep) -> &'static str {
+        if !self.failures.is_empty() {
+            "FAILS"
+        } else if !contract.bound().is_stated() {
+            "no bound is stated"
+        } else if contract.bound().units >= 1.0 {
+            "within its bound, outside the contract"
+        } else if sweep.omits.is_empty() {
+            "proved"
+        } else {
+            "passed, not proved"
+        }
+    }
+
+    /// The largest errors in words, `at` after the first.
+    pub fn words(&self, at: &str) -> String {
+        if !self.of_f {
+            return format!("an output is off by {:.3} units at most{at}", self.together());
+        }
+        format!(
+            "f is off by {:.3e} at most, {:.3} units{at}; a colour multiplier by {:.3}; together {:.3}",
+            self.f.error,
+            self.f_units,
+            self.colours.error,
+            self.together()
+        )
+    }
+
+    /// The most by which an output can be off, in its units.
+    pub fn together(&self) -> f64 {
+        self.f_units + self.colours.error
+    }
+}

@@ -1,0 +1,209 @@
+//! Places by number: what an exhaustive check goes through, in blocks.
+
+use std::ops::Range;
+use std::time::{Duration, Instant};
+
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use glint_golden::{Axis, Contract, Sweep, Values};
+
+/// Places of a block: some milliseconds of work.
+pub const BLOCK: u64 = 1 << 17;
+
+/// Places of which the time is taken.
+const SAMPLE: u64 = 4096;
+
+/// The largest error of some places, and the first of them at which it occurs.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Peak {
+    /// Absolute.
+    pub error: f64,
+    /// The number of the place.
+    pub place: u64,
+}
+
+impl Peak {
+    /// The peak of no places.
+    pub const NONE: Self = Self { error: 0.0, place: u64::MAX };
+
+    /// Returns the peak of two sets of places together.
+    #[must_use]
+    pub fn join(self, other: Self) -> Self {
+        let later = self.place > other.place;
+        if other.error > self.error || (other.error == self.error && later) { other } else { self }
+    }
+}
+
+/// The quantity that is measured at a place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Measure {
+    /// As [`Contract::sweep_error`] has it: of a highlight the error of `f`.
+    F,
+    /// The error that a colour multiplier adds, in output units.
+    Colour,
+}
+
+/// The places of a contract, by number, the last axis fastest.
+pub struct Places<'a> {
+    contract: &'a dyn Contract,
+    measure: Measure,
+    sweep: Sweep,
+}
+
+impl<'a> Places<'a> {
+    /// The contract's sweep of `f`.
+    pub fn of_f(contract: &'a dyn Contract) -> Self {
+        Self::of_sweep(contract, contract.sweep())
+    }
+
+    /// A sweep of `f` with other values than those of the contract.
+    pub fn of_sweep(contract: &'a dyn Contract, sweep: Sweep) -> Self {
+        Self { contract, measure: Measure::F, sweep }
+    }
+
+    /// Every word `f` with every value of a colour operand (they are all alike).
+    pub fn of_colours(contract: &'a dyn Contract) -> Self {
+        let axis = |name: &str, values| Axis { name: name.to_owned(), values };
+        let colour = contract.operands().iter().find(|operand| operand.colour);
+        let axes = match contract.highlight().zip(colour) {
+            Some((highlight, colour)) => {
+                let f = highlight.f_format();
+                vec![
+                    axis("f", Values::Range(f.min_raw() as i64, f.max_raw() as i64)),
+                    axis("colour", Values::Range(colour.domain.0, colour.domain.1)),
+                ]
+            }
+            // Without colours there is no product, and no place.
+            None => vec![axis("f", Values::List(Vec::new()))],
+        };
+        Self { contract, measure: Measure::Colour, sweep: Sweep { axes, omits: String::new() } }
+    }
+
+    /// Axes, and what they leave out.
+    pub fn sweep(&self) -> &Sweep {
+        &self.sweep
+    }
+
+    /// How many places there are.
+    pub fn count(&self) -> u64 {
+        self.sweep.axes.iter().map(|axis| axis.values.count()).product()
+    }
+
+    /// How many blocks they are cut into.
+    pub fn blocks(&self) -> u64 {
+        self.count().div_ceil(BLOCK)
+    }
+
+    /// The value on each axis of place `number`.
+    pub fn place(&self, mut number: u64) -> Vec<i64> {
+        let mut values: Vec<i64> = self
+            .sweep
+            .axes
+            .iter()
+            .rev()
+            .map(|axis| {
+                let count = axis.values.count();
+                let value = axis.values.value(number % count);
+                number /= count;
+                value
+            })
+            .collect();
+        values.reverse();
+        values
+    }
+
+    /// The error at place `number`.
+    pub fn error(&self, number: u64) -> f64 {
+        self.error_at(&self.place(number))
+    }
+
+    /// The errors at some places that are spread evenly.
+    pub fn glimpse(&self) -> Vec<f64> {
+        let step = (self.count() / SAMPLE).max(1);
+        (0..self.count()).step_by(step as usize).map(|place| self.error(place)).collect()
+    }
+
+    #[inline]
+    fn error_at(&self, place: &[i64]) -> f64 {
+        match self.measure {
+            Measure::F => self.contract.sweep_error(place),
+            Measure::Colour => self.contract.highlight().map_or(0.0, |highlight| {
+                let exact = (place[0] * place[1]) as f64 * highlight.f_format().to_f64(1);
+                (highlight.colour(place[0], place[1]) as f64 - exact).abs()
+            }),
+        }
+    }
+
+    /// The block that has a place.
+    pub(super) fn block_of(place: u64) -> u64 {
+        place / BLOCK
+    }
+
+    /// The places of one block.
+    fn of_block(&self, block: u64) -> Range<u64> {
+        block * BLOCK..((block + 1) * BLOCK).min(self.count())
+    }
+
+    /// How many places some blocks have.
+    pub(super) fn visits(&self, blocks: impl Iterator<Item = u64>) -> u64 {
+        blocks
+            .map(|block| {
+                let places = self.of_block(block);
+                places.end - places.start
+            })
+            .sum()
+    }
+
+    /// How long one place takes on one thread.
+    pub(super) fn pace(&self) -> Duration {
+        let count = self.count().min(SAMPLE);
+        let first = (self.count() - count) / 2;
+        let begin = Instant::now();
+        self.peak(first..first + count);
+        begin.elapsed() / count.max(1) as u32
+    }
+
+    /// The peak of places that follow one another.
+    fn peak(&self, places: Range<u64>) -> Peak {
+        let mut peak = Peak::NONE;
+        let Some(inner) = self.sweep.axes.last() else {
+            return peak;
+        };
+        let count = inner.values.count();
+        let mut number = places.start;
+        while number < places.end {
+            // Along the last axis only its own value moves.
+            let mut place = self.place(number);
+            let last = place.len() - 1;
+            let at = number % count;
+            let steps = (count - at).min(places.end - number);
+            for step in 0..steps {
+                place[last] = inner.values.value(at + step);
+                let error = self.error_at(&place);
+                if error > peak.error || peak == Peak::NONE {
+                    peak = Peak { error, place: number + step };
+                }
+            }
+            number += steps;
+        }
+        peak
+    }
+
+    /// The peak of some blocks, on all cores; `progress` is called with the number of places of each block that is done.
+    pub fn check(
+        &self,
+        blocks: impl IntoParallelIterator<Item = u64>,
+        progress: &(dyn Fn(u64) + Sync),
+    ) -> Peak {
+        blocks
+            .into_par_iter()
+            .map(|block| {
+                let places = self.of_block(block);
+                let peak = self.peak(places.clone());
+                progress(places.end - places.start);
+                peak
+            })
+            .reduce(|| Peak::NONE, Peak::join)
+    }
+}

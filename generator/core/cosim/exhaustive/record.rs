@@ -1,0 +1,194 @@
+//! The record of an exhaustive check, as `{Program} cosim --exhaustive --json` writes it: found by what it was
+//! made of, and checked again in part.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+use serde::Deserialize;
+
+use super::{Peak, Places, Proof};
+use glint_base::input;
+use glint_base::program::Program;
+use glint_golden::{Axis, Contract, Sweep, Values};
+
+/// How near a recorded figure must come to that of today.
+const SAME: f64 = 1e-9;
+
+/// The record of a check.
+#[derive(Clone, Debug, Deserialize)]
+pub struct Record {
+    axes: Vec<RecordedAxis>,
+    /// Evaluations of f.
+    pub evaluations: u64,
+    /// Words f times colours; 0 of a device that is no highlight.
+    pub colour_products: u64,
+    /// The largest error of f; of a device that is no highlight, of an output in units.
+    pub f: RecordedPeak,
+    /// The largest error of a colour multiplier, in output units.
+    colour_units: f64,
+    /// The largest error of an output that the check allows for, in output units.
+    pub together: f64,
+    /// Whether the bound held everywhere.
+    pub holds: bool,
+    /// The file that it stands in.
+    #[serde(skip)]
+    pub path: PathBuf,
+}
+
+/// The largest error of f.
+#[derive(Clone, Copy, Debug, Deserialize)]
+pub struct RecordedPeak {
+    /// Absolute.
+    pub error: f64,
+    /// In output units, for the largest colour.
+    pub units: f64,
+    /// Where it is.
+    place: u64,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+struct RecordedAxis {
+    name: String,
+    from: Option<i64>,
+    to: Option<i64>,
+    #[serde(default)]
+    values: Vec<i64>,
+}
+
+impl RecordedAxis {
+    /// Whether the record visited every value of an axis, and perhaps more.
+    fn covers(&self, axis: &Axis) -> bool {
+        self.name == axis.name
+            && match &axis.values {
+                Values::Range(low, high) => (self.from, self.to) == (Some(*low), Some(*high)),
+                Values::List(values) => values.iter().all(|value| self.values.contains(value)),
+            }
+    }
+
+    fn axis(&self) -> Axis {
+        let values = match (self.from, self.to) {
+            (Some(low), Some(high)) => Values::Range(low, high),
+            _ => Values::List(self.values.clone()),
+        };
+        Axis { name: self.name.clone(), values }
+    }
+}
+
+#[derive(Deserialize)]
+struct Report {
+    /// Each tells by `configuration` what was checked: [`crate::core::Core::contract_digest`].
+    configurations: Vec<serde_json::Value>,
+}
+
+impl Record {
+    /// The record of a configuration, among all in a directory; `None` where there is none, and where there is no
+    /// such directory. Files that are no records are left alone.
+    ///
+    /// # Errors
+    /// The directory or a file in it cannot be read, a record is damaged; the record's sweep is not that of the contract.
+    pub fn find(directory: &Path, digest: &str, contract: &dyn Contract) -> Result<Option<Self>> {
+        for (path, report) in input::records::<Report>(directory)? {
+            let found = report.configurations.into_iter().find(|it| it["configuration"] == digest);
+            if let Some(found) = found {
+                let found: Self =
+                    serde_json::from_value(found).with_context(|| input::damaged(&path))?;
+                let found = Self { path, ..found };
+                found.is_of(contract)?;
+                return Ok(Some(found));
+            }
+        }
+        Ok(None)
+    }
+
+    /// Returns the sweep of the check: the contract's, or more values of an axis that lists some.
+    pub fn sweep(&self, contract: &dyn Contract) -> Sweep {
+        let axes = self.axes.iter().map(RecordedAxis::axis).collect();
+        Sweep { axes, omits: contract.sweep().omits }
+    }
+
+    /// Refuses a record that leaves out a part of the contract's sweep. Its bound is that of its day: what it found is
+    /// held against today's.
+    fn is_of(&self, contract: &dyn Contract) -> Result<()> {
+        let sweep = contract.sweep();
+        let same_axes = self.axes.len() == sweep.axes.len()
+            && self.axes.iter().zip(&sweep.axes).all(|(found, axis)| found.covers(axis));
+        anyhow::ensure!(
+            same_axes,
+            "the record `{}` is of another version of Glint: its sweep is not today's; \
+             `{Program} cosim --exhaustive --json` makes a new one",
+            self.path.display()
+        );
+        Ok(())
+    }
+
+    /// Whether the check went through every combination of operands, and what it found is within today's bound. The
+    /// error at its place is computed again.
+    pub fn proves(&self, contract: &dyn Contract) -> bool {
+        let sweep = self.sweep(contract);
+        let is_whole = sweep.omits.is_empty();
+        let places = Places::of_sweep(contract, sweep);
+        let place = self.f.place;
+        let is_same = place < places.count() && (places.error(place) - self.f.error).abs() <= SAME;
+        is_whole && is_same && self.holds && self.proof(contract).failures.is_empty()
+    }
+
+    fn proof(&self, contract: &dyn Contract) -> Proof {
+        let f = Peak { error: self.f.error, place: self.f.place };
+        Proof::new(contract, f, Peak { error: self.colour_units, place: 0 })
+    }
+
+    /// The largest errors in words.
+    pub fn words(&self, contract: &dyn Contract) -> String {
+        self.proof(contract).words("")
+    }
+
+    /// How many evaluations [`Record::recheck`] makes if it is to make about `places` of `f`.
+    pub fn steps(&self, contract: &dyn Contract, places: u64) -> u64 {
+        let f = Places::of_sweep(contract, self.sweep(contract));
+        let colours = Places::of_colours(contract);
+        f.visits(part(&f, places).into_iter()) + colours.count()
+    }
+
+    /// Checks a part of the places again, about `places` spread evenly over all, the place of the largest error,
+    /// and all products with colours; says how many evaluations of `f` these were, and what is not as recorded.
+    pub fn recheck(
+        &self,
+        contract: &dyn Contract,
+        places: u64,
+        progress: &(dyn Fn(u64) + Sync),
+    ) -> (u64, Vec<String>) {
+        let f = Places::of_sweep(contract, self.sweep(contract));
+        let colours = Places::of_colours(contract);
+        let mut failures = Vec::new();
+        let path = self.path.display();
+        let mut differs = |what: &str, found: f64, recorded: f64| {
+            failures.push(format!("{what} is {found:e}, and {recorded:e} in the record `{path}`"));
+        };
+        let at_peak = if self.f.place < f.count() { f.error(self.f.place) } else { 0.0 };
+        if (at_peak - self.f.error).abs() > SAME {
+            differs("the error of f at its recorded place", at_peak, self.f.error);
+        }
+        let blocks = part(&f, places);
+        let visits = f.visits(blocks.iter().copied());
+        let again = f.check(blocks, progress);
+        if again.error > self.f.error + SAME {
+            differs("the error of f at a place that was checked again", again.error, self.f.error);
+        }
+        let colour = colours.check(0..colours.blocks(), progress);
+        if (colour.error - self.colour_units).abs() > SAME {
+            differs("the error of a colour multiplier", colour.error, self.colour_units);
+        }
+        let peak = Peak { error: self.f.error, place: self.f.place };
+        failures.extend(Proof::new(contract, peak, colour).failures);
+        if !self.holds {
+            failures.push(format!("the record `{path}` says that the bound does not hold"));
+        }
+        (visits + 1, failures)
+    }
+}
+
+/// Blocks that have about `count` places, spread evenly.
+fn part(places: &Places<'_>, count: u64) -> Vec<u64> {
+    let stride = (places.count() / count).max(1);
+    (0..places.blocks()).step_by(stride as usize).collect()
+}

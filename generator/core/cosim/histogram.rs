@@ -1,0 +1,73 @@
+//! How the points of a run are spread over the values of `f`.
+
+use glint_base::fixed::Format;
+
+/// The classes, in the order of [`Histogram::counts`].
+pub const CLASSES: [&str; 9] =
+    ["0", "<0.001", "<0.01", "<0.1", "<0.5", "<0.9", "<1", "1", "outside"];
+
+/// The upper ends of those between 0 and 1.
+const ENDS: [f64; 5] = [0.001, 0.01, 0.1, 0.5, 0.9];
+
+/// Results by the word `f` that they are made of.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Histogram {
+    counts: [u64; CLASSES.len()],
+}
+
+impl Histogram {
+    /// Adds a result with this word `f`.
+    pub(super) fn add(&mut self, format: Format, f: i64) {
+        // Just below 1.0 is as much as a fraction can be.
+        let class = if f <= 0 {
+            0
+        } else if i128::from(f) + 1 >= 1 << format.frac {
+            CLASSES.len() - 2
+        } else {
+            let value = format.to_f64(i128::from(f));
+            1 + ENDS.iter().take_while(|&&end| value >= end).count()
+        };
+        self.counts[class] += 1;
+    }
+
+    /// Adds a result whose operands are outside the domain.
+    pub(super) fn add_outside(&mut self) {
+        self.counts[CLASSES.len() - 1] += 1;
+    }
+
+    /// Adds those of another.
+    pub(super) fn merge(&mut self, other: &Self) {
+        self.counts.iter_mut().zip(&other.counts).for_each(|(sum, count)| *sum += count);
+    }
+
+    /// How many results are in each of [`CLASSES`].
+    pub fn counts(&self) -> [u64; CLASSES.len()] {
+        self.counts
+    }
+
+    /// The share of all results with `0 < f < 1 − ulp`.
+    pub fn share_inside(&self) -> f64 {
+        let inside: u64 = self.counts[1..CLASSES.len() - 2].iter().sum();
+        inside as f64 / self.counts.iter().sum::<u64>().max(1) as f64
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_are_counted_by_decade() {
+        let mut histogram = Histogram::default();
+        // u0.10: 0, 1/1024, 0.0098, 0.0107, 0.499, 0.5, 1 − 2 ulp, 1 − ulp.
+        for word in [0, 1, 10, 11, 511, 512, 1022, 1023] {
+            histogram.add(Format::unsigned(0, 10), word);
+        }
+        histogram.add_outside();
+        assert_eq!(histogram.counts(), [1, 1, 1, 1, 1, 1, 1, 1, 1]);
+        assert_eq!(histogram.share_inside(), 6.0 / 9.0);
+        let twice = histogram.clone();
+        histogram.merge(&twice);
+        assert_eq!(histogram.counts(), [2; 9]);
+    }
+}

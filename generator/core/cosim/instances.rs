@@ -1,0 +1,53 @@
+//! Instances of a design in one simulator, each of which is given computations.
+
+use anyhow::Result;
+
+use super::ports::Ports;
+use glint_golden::Contract;
+use glint_rtl::netlist::Design;
+use glint_rtl::sim::Simulator;
+
+/// Instances of a design behind their reset; results of a pipeline are always taken.
+pub(super) struct Instances<const LANES: usize> {
+    pub(super) simulator: Simulator<LANES>,
+    pub(super) ports: Ports,
+}
+
+impl<const LANES: usize> Instances<LANES> {
+    /// # Errors
+    /// As of [`Ports::new`] and [`Simulator::new`].
+    pub(super) fn new(design: &Design, contract: &dyn Contract) -> Result<Self> {
+        let ports = Ports::new(design, contract)?;
+        let mut simulator = Simulator::<LANES>::new(design)?;
+        simulator.clock()?;
+        for at in ports.out_ready.into_iter().chain([ports.reset]) {
+            simulator.set_lanes(at, [1; LANES]);
+        }
+        Ok(Self { simulator, ports })
+    }
+
+    /// Has the instances that are given raw operands, in the order of the contract, take a computation in the next clock.
+    pub(super) fn offer(&mut self, computations: [Option<&[i64]>; LANES]) {
+        let taking = computations.map(|raw| u64::from(raw.is_some()));
+        for port in &self.ports.operands {
+            // The data of those that take none do not matter: their strobe is low.
+            let bits = computations.map(|raw| raw.map_or(0, |raw| port.pattern(raw)));
+            self.simulator.set_lanes(port.data, bits);
+            self.simulator.set_lanes(port.strobe, taking);
+        }
+        self.simulator.set_lanes(self.ports.start, taking);
+    }
+
+    /// Has no instance take a computation; the data stay.
+    pub(super) fn release(&mut self) {
+        for at in self.ports.operands.iter().map(|port| port.strobe).chain([self.ports.start]) {
+            self.simulator.set_lanes(at, [0; LANES]);
+        }
+    }
+
+    /// The raw results in a lane, in the order of the contract.
+    pub(super) fn results(&self, lane: usize) -> impl Iterator<Item = i64> {
+        let results = self.ports.results.iter();
+        results.map(move |&(net, format)| format.raw(self.simulator.lane(net, lane)) as i64)
+    }
+}

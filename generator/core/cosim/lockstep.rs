@@ -1,0 +1,296 @@
+//! Golden model and simulated hardware side by side, whatever the architecture: every signal compared on every clock.
+//!
+//! A run is divided into *streams*: each starts at power-up, with a stimulus of its own. How many there
+//! are, their seeds and their points depend on the seed and the points of the run alone. Up to [`LANES`] of
+//! them go through one simulator together, and as many simulators run as there are threads; neither
+//! has any influence on what is found. What counts is what streams showed in their order up to the
+//! first that differs.
+
+use std::io::Write;
+use std::ops::Range;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use anyhow::{Result, bail, ensure};
+use rayon::prelude::*;
+
+use super::binding::Binding;
+use super::outcome::{Course, Outcome, Seen, share, stream_seed};
+use super::recorded::Recording;
+use super::runner::Runner;
+use crate::package::Vectors;
+use glint_golden::{Contract, Model};
+use glint_rtl::netlist::Design;
+use glint_rtl::sim::Simulator;
+
+/// Streams that share a simulator.
+pub(super) const LANES: usize = 32;
+
+/// The number of streams that keeps two threads busy. A longer run has a multiple of it.
+const STREAMS: u64 = 2 * LANES as u64;
+
+/// The fewest points of a stream.
+const FEWEST_POINTS: u64 = 64;
+
+/// A stream has at least as many points as this number of the longest computations has results.
+const COMPUTATIONS: u64 = 2;
+
+/// The fewest points of a stream where there are more than [`STREAMS`].
+const MANY_POINTS: u64 = 1024;
+
+/// A run of fewer streams is not divided.
+const FEWEST_STREAMS: u64 = 8;
+
+/// The points of a stream of a pipeline, and the fewest streams into which a run is divided there.
+const PIPELINE_POINTS: u64 = 2048;
+const FEWEST_PIPELINES: u64 = 4;
+
+/// Points after which progress is told.
+const TOLD: u64 = 1024;
+
+/// Golden model and simulator of one design.
+pub struct Lockstep<'a> {
+    binding: Binding<'a>,
+    seed: u64,
+}
+
+impl<'a> Lockstep<'a> {
+    /// Model and simulator of a design, paired by the names of ports and registers.
+    ///
+    /// # Errors
+    /// A name of one side that the other does not have.
+    pub fn new(
+        design: &'a Design,
+        model: Box<dyn Model>,
+        contract: &'a dyn Contract,
+        seed: u64,
+    ) -> Result<Self> {
+        Ok(Self { binding: Binding::new(design, model, contract)?, seed })
+    }
+
+    /// Holds some operands at raw values: the stimulus seldom draws others for them.
+    #[must_use]
+    pub fn holding(self, held: &[(String, i64)]) -> Self {
+        Self { binding: self.binding.holding(held), ..self }
+    }
+
+    /// Limits lines to at most `results` results.
+    #[must_use]
+    pub fn with_lines_of(mut self, results: i64) -> Self {
+        self.binding.shorten(results);
+        self
+    }
+
+    /// Runs until `points` results were seen or something differs, on all threads of rayon's pool.
+    ///
+    /// `progress` is called now and then with the number of points since its last call.
+    ///
+    /// # Errors
+    /// A design that cannot be simulated, or does not settle.
+    pub fn run(&self, points: u64, progress: &(dyn Fn(u64) + Sync)) -> Result<Outcome> {
+        let streams = self.streams(points);
+        // The first stream known to differ: those after it are of no interest.
+        let differs = AtomicU64::new(u64::MAX);
+        if streams == 1 {
+            let course = self.course(points, 1, 0);
+            return Ok(self.outcome(self.group::<1>([course], 0, &differs, progress)?));
+        }
+        let together = streams.div_ceil(2).min(LANES as u64);
+        let numbers = |first: u64| -> Range<u64> { first..streams.min(first + together) };
+        let groups: Vec<Vec<Seen>> = (0..streams.div_ceil(together))
+            .into_par_iter()
+            .map(|group| {
+                let first = group * together;
+                let courses = numbers(first).map(|number| self.course(points, streams, number));
+                self.group::<LANES>(courses, first, &differs, progress)
+            })
+            .collect::<Result<_>>()?;
+        Ok(self.outcome(groups.into_iter().flatten()))
+    }
+
+    /// Streams from this number on, in one simulator; cut short when one before them differs.
+    fn group<const L: usize>(
+        &self,
+        courses: impl IntoIterator<Item = Course>,
+        first: u64,
+        differs: &AtomicU64,
+        progress: &(dyn Fn(u64) + Sync),
+    ) -> Result<Vec<Seen>> {
+        if differs.load(Ordering::Relaxed) < first {
+            return Ok(Vec::new());
+        }
+        let mut group = Runner::<L>::new(&self.binding, courses)?;
+        let mut points = 0;
+        while !group.ended() && differs.load(Ordering::Relaxed) >= first {
+            points += group.run()?;
+            if points >= TOLD {
+                progress(std::mem::take(&mut points));
+            }
+        }
+        progress(points);
+        if let Some(at) = group.first_that_differs() {
+            differs.fetch_min(first + at as u64, Ordering::Relaxed);
+        }
+        group.into_seen()
+    }
+
+    /// As [`Lockstep::run`], in one stream.
+    ///
+    /// # Errors
+    /// As of [`Lockstep::run`].
+    pub fn run_alone(&self, points: u64) -> Result<Outcome> {
+        let mut alone = self.alone(points)?;
+        alone.go_on(u64::MAX)?;
+        Ok(self.outcome(alone.into_seen()?))
+    }
+
+    /// Goes through the streams of a run of `points` results, each alone. `begin` makes what watches a stream,
+    /// of its seed; after each clock `note` shows it the results so far and the simulator. They come back
+    /// in the order of the streams.
+    ///
+    /// # Errors
+    /// As of [`Lockstep::run`].
+    pub fn watch<W: Send>(
+        &self,
+        points: u64,
+        begin: impl Fn(u64) -> W + Sync,
+        note: impl Fn(&mut W, u64, &Simulator) + Sync,
+    ) -> Result<Vec<W>> {
+        let streams = self.streams(points);
+        (0..streams)
+            .into_par_iter()
+            .map(|number| {
+                let mut watch = begin(stream_seed(self.seed, number));
+                let mut alone =
+                    Runner::<1>::new(&self.binding, [self.course(points, streams, number)])?;
+                while !alone.ended() {
+                    alone.run()?;
+                    let points = alone.first().seen.points;
+                    note(&mut watch, points, &alone.simulator);
+                }
+                Ok(watch)
+            })
+            .collect()
+    }
+
+    /// Stimulus and expected outputs for a bench: the inputs of every clock of one stream of `points`
+    /// results, and the outputs before its edge; then those of computations with these raw operands, in the order of
+    /// the contract, one after another.
+    ///
+    /// # Errors
+    /// Golden model and simulation differ; a design that cannot be simulated, or does not settle.
+    pub fn record(&self, points: u64, computations: &[Vec<i64>]) -> Result<Vectors> {
+        let mut alone = self.alone(points)?;
+        let mut vectors = Vectors::default();
+        self.add(&mut vectors, &mut alone)?;
+        // A pipeline goes on until no point is on its way.
+        if self.binding.is_pipeline() || !computations.is_empty() {
+            alone.first().follow(&self.binding, computations);
+            self.add(&mut vectors, &mut alone)?;
+        }
+        Ok(vectors)
+    }
+
+    /// The clocks of a stream to its end.
+    fn add(&self, vectors: &mut Vectors, alone: &mut Runner<'_, 1>) -> Result<()> {
+        let shows = |alone: &Runner<'_, 1>| alone.simulator.value(self.binding.ports.valid) == 1;
+        while !alone.ended() {
+            alone.prepare()?;
+            alone.simulator.settle()?;
+            let before = shows(alone);
+            let outputs = self.binding.outputs.iter();
+            vectors.expected.push(outputs.map(|&net| alone.simulator.value(net)).collect());
+            vectors.inputs.push(alone.first().inputs().to_vec());
+            alone.simulate()?;
+            // Nothing is left of the power-up: of a core from the first result on, of a pipeline from the clock after it.
+            let shown = if self.binding.is_pipeline() { before } else { shows(alone) };
+            if vectors.known_from == 0 && shown {
+                vectors.known_from = vectors.expected.len();
+            }
+        }
+        if let Some(mismatch) = &alone.first().seen.mismatch {
+            bail!(
+                "golden model and simulation differ (seed {}, after clock {}): {mismatch}",
+                mismatch.seed,
+                mismatch.clock
+            );
+        }
+        Ok(())
+    }
+
+    /// Golden model and simulation from power-up on under recorded inputs, those of [`Lockstep::record`] say: by stream,
+    /// then by clock, then by input. Each stream is gone through for `clocks` clocks, again from its beginning after its
+    /// end. Results are compared with the golden model, and not with the formula.
+    ///
+    /// # Errors
+    /// As of [`Lockstep::run`]; a stream without a clock, or a clock with more or fewer inputs than the design.
+    pub fn replay(&self, streams: &[Vec<Vec<u64>>], clocks: u64) -> Result<Outcome> {
+        let inputs = self.binding.ports.inputs;
+        for (number, stream) in streams.iter().enumerate() {
+            ensure!(!stream.is_empty(), "recorded stream {number} has no clock");
+            let wrong = stream.iter().position(|clock| clock.len() != inputs);
+            if let Some(clock) = wrong {
+                let found = stream[clock].len();
+                bail!(
+                    "clock {clock} of recorded stream {number} has {found} inputs and not {inputs}"
+                );
+            }
+        }
+        let course = |inputs: &Vec<Vec<u64>>| Course::Recorded {
+            recording: Arc::new(Recording::new(inputs)),
+            clocks,
+        };
+        let nowhere = AtomicU64::new(u64::MAX);
+        let groups: Vec<Vec<Seen>> = streams
+            .par_chunks(LANES)
+            .map(|streams| self.group::<LANES>(streams.iter().map(course), 0, &nowhere, &|_| ()))
+            .collect::<Result<_>>()?;
+        Ok(self.outcome(groups.into_iter().flatten()))
+    }
+
+    /// As [`Lockstep::run`], in one stream, of which `file` takes the waveform from clock `from` on.
+    ///
+    /// # Errors
+    /// As of [`Lockstep::run`]; the file cannot be written.
+    pub fn trace(
+        &self,
+        points: u64,
+        from: u64,
+        file: impl Write + Send + 'static,
+    ) -> Result<Outcome> {
+        let mut alone = self.alone(points)?;
+        alone.trace(from, file)?;
+        Ok(self.outcome(alone.into_seen()?))
+    }
+
+    /// One stream of `points` points under the seed of the run.
+    fn alone(&self, points: u64) -> Result<Runner<'_, 1>> {
+        Runner::new(&self.binding, [self.course(points, 1, 0)])
+    }
+
+    /// One of the streams of a run.
+    fn course(&self, points: u64, streams: u64, number: u64) -> Course {
+        Course::Random {
+            seed: stream_seed(self.seed, number),
+            points: share(points, streams, number),
+        }
+    }
+
+    fn outcome(&self, streams: impl IntoIterator<Item = Seen>) -> Outcome {
+        Outcome::of(self.binding.registers, self.binding.outputs.len(), streams)
+    }
+
+    /// Into how many streams a run is divided.
+    fn streams(&self, points: u64) -> u64 {
+        if self.binding.is_pipeline() {
+            let streams = points.div_ceil(PIPELINE_POINTS);
+            return if streams < FEWEST_PIPELINES { 1 } else { streams };
+        }
+        let fewest = FEWEST_POINTS.max(self.binding.longest().saturating_mul(COMPUTATIONS));
+        match points / fewest {
+            ..FEWEST_STREAMS => 1,
+            most @ ..STREAMS => most,
+            _ => STREAMS * (points / (STREAMS * MANY_POINTS.max(fewest))).max(1),
+        }
+    }
+}

@@ -1,0 +1,90 @@
+//! Measures results against the formula in f64.
+
+use anyhow::{Context, Result, ensure};
+
+use super::outcome::{Seen, Worst};
+use glint_base::fixed::{Format, MAX_WIDTH, exp2};
+use glint_golden::{Contract, Output, nearer};
+use glint_rtl::netlist::{Design, NetId};
+
+/// The outputs of a contract among values that are compared.
+pub(super) struct Measure<'a> {
+    pub(super) contract: &'a dyn Contract,
+    /// In the order of the contract.
+    outputs: Vec<Quantity>,
+}
+
+/// A value that carries a number.
+struct Quantity {
+    /// Its position.
+    at: usize,
+    format: Format,
+    /// The weight of its last place, and its inverse.
+    unit: f64,
+    per_unit: f64,
+}
+
+impl Quantity {
+    fn value(&self, bits: u64) -> f64 {
+        if self.format.signed {
+            let drop = MAX_WIDTH - self.format.width();
+            ((bits << drop) as i64 >> drop) as f64 * self.unit
+        } else {
+            bits as f64 * self.unit
+        }
+    }
+}
+
+impl<'a> Measure<'a> {
+    /// Values are those of these nets.
+    ///
+    /// # Errors
+    /// An output that is not there, or has another format in the design.
+    pub(super) fn new(design: &Design, contract: &'a dyn Contract, nets: &[NetId]) -> Result<Self> {
+        let quantity = |Output { name, format }: &Output| {
+            let at = |net| Some((nets.iter().position(|&it| it == net)?, net));
+            let (at, net) = (design.find(name).and_then(at))
+                .with_context(|| format!("the contract takes `{name}` for an output"))?;
+            let real = design.net(net).format;
+            ensure!(real == *format, "the contract takes `{name}` for {format}, and it is {real}");
+            Ok(Quantity { at, format: real, unit: exp2(-real.frac), per_unit: exp2(real.frac) })
+        };
+        let outputs = contract.outputs().iter().map(quantity).collect::<Result<_>>()?;
+        Ok(Self { contract, outputs })
+    }
+
+    /// Whether raw operands, in the order of the contract, are in its domain.
+    pub(super) fn inside(&self, operands: &[i64]) -> bool {
+        let mut pairs = self.contract.operands().iter().zip(operands);
+        pairs.all(|(operand, raw)| (operand.domain.0..=operand.domain.1).contains(raw))
+    }
+
+    /// Takes note of the result among these values, number `index` of the computation with these operands of the
+    /// domain: of the word `f`, and of the largest error.
+    #[inline]
+    pub(super) fn note(&self, seen: &mut Seen, operands: &[i64], index: u64, values: &[u64]) {
+        seen.exact.clear();
+        if let Some(highlight) = self.contract.highlight() {
+            let f = highlight.measured(operands, index, &mut seen.point, &mut seen.exact);
+            seen.histogram.add(highlight.f_format(), f);
+        } else {
+            self.contract.exact(operands, index, &mut seen.exact);
+        }
+        let mut largest = (seen.worst.as_ref().map_or(-1.0, |worst| worst.units), None);
+        for (number, (output, &exact)) in self.outputs.iter().zip(&seen.exact).enumerate() {
+            let units = nearer(output.value(values[output.at]), exact) * output.per_unit;
+            if units > largest.0 {
+                largest = (units, Some(number));
+            }
+        }
+        let (units, Some(number)) = largest else {
+            return;
+        };
+        let names = self.contract.operands().iter().map(|it| it.name.clone());
+        seen.worst = Some(Worst {
+            units,
+            output: self.contract.outputs()[number].name.clone(),
+            operands: names.zip(operands.iter().copied()).collect(),
+        });
+    }
+}

@@ -1,0 +1,151 @@
+//! The outcome of runs: results, errors, and the first difference.
+
+use std::fmt;
+use std::sync::Arc;
+
+use super::histogram::Histogram;
+use super::random::Random;
+use super::recorded::Recording;
+use glint_golden::Bound;
+
+/// The outcome of a run.
+#[derive(Clone, Debug, Default)]
+pub struct Outcome {
+    /// Results seen.
+    pub points: u64,
+    /// Clocks run, each compared.
+    pub clocks: u64,
+    /// Registers compared on every clock.
+    pub registers: usize,
+    /// Outputs compared on every clock.
+    pub outputs: usize,
+    /// The largest error of an output against the formula in f64.
+    pub worst: Option<Worst>,
+    /// How the results are spread over the values of `f`.
+    pub histogram: Histogram,
+    /// The first difference, at which the run ended.
+    pub mismatch: Option<Mismatch>,
+}
+
+impl Outcome {
+    /// Joins the records of streams, up to the first that differs; registers and outputs are counts.
+    pub(super) fn of(
+        registers: usize,
+        outputs: usize,
+        streams: impl IntoIterator<Item = Seen>,
+    ) -> Self {
+        let mut outcome = Self { registers, outputs, ..Self::default() };
+        for seen in streams {
+            outcome.points += seen.points;
+            outcome.clocks += seen.clocks;
+            outcome.histogram.merge(&seen.histogram);
+            let units = |worst: &Option<Worst>| worst.as_ref().map_or(-1.0, |worst| worst.units);
+            if units(&seen.worst) > units(&outcome.worst) {
+                outcome.worst = seen.worst;
+            }
+            if seen.mismatch.is_some() {
+                outcome.mismatch = seen.mismatch;
+                break;
+            }
+        }
+        outcome
+    }
+
+    /// Returns the failures, with a contract whose bound this is.
+    pub fn failures(&self, bound: &Bound) -> Vec<String> {
+        let mut failures = Vec::new();
+        if let Some(mismatch) = &self.mismatch {
+            failures.push(format!(
+                "seed {}, after clock {}, {mismatch}",
+                mismatch.seed, mismatch.clock
+            ));
+        }
+        if let Some(worst) = &self.worst
+            && worst.units > bound.units
+        {
+            failures.push(format!(
+                "`{}` is off by {:.4} units, beyond the stated bound of {:.4}",
+                worst.output, worst.units, bound.units
+            ));
+        }
+        failures
+    }
+}
+
+/// The largest error against the formula, and where.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Worst {
+    /// In output units.
+    pub units: f64,
+    /// The output.
+    pub output: String,
+    /// Raw operands, by name.
+    pub operands: Vec<(String, i64)>,
+}
+
+/// A signal on which model and hardware differ.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mismatch {
+    /// The seed of the stream: a run with it that is not divided, [`Lockstep::trace`](super::Lockstep::trace)
+    /// say, goes the same way from the first clock on. Where combinations are gone through, the place of the one that runs.
+    pub seed: u64,
+    /// Rising edges of the stream so far.
+    pub clock: u64,
+    /// Its name.
+    pub signal: String,
+    /// The golden model's value, a bit pattern.
+    pub golden: u64,
+    /// The simulated hardware's value.
+    pub simulated: u64,
+    /// The microinstruction that was executed at the edge, ``microinstruction `count` ``, or the signal's stage of a pipeline, `stage 3`.
+    pub during: String,
+}
+
+impl fmt::Display for Mismatch {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "{}: `{}` is {:#x} in the simulated hardware and {:#x} in the golden model",
+            self.during, self.signal, self.simulated, self.golden
+        )
+    }
+}
+
+/// The record of a stream.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Seen {
+    pub(super) points: u64,
+    pub(super) clocks: u64,
+    pub(super) worst: Option<Worst>,
+    pub(super) histogram: Histogram,
+    pub(super) mismatch: Option<Mismatch>,
+    /// The control operands of the latest result, and what the formula says of it.
+    pub(super) point: Vec<i64>,
+    pub(super) exact: Vec<[f64; 2]>,
+}
+
+/// The seed of a stream; the first has that of the run.
+pub(super) fn stream_seed(seed: u64, number: u64) -> u64 {
+    if number == 0 {
+        seed
+    } else {
+        // Drawn, so that the streams are at distant places of the generator's cycle.
+        Random::new(seed ^ number.wrapping_mul(0xd134_2543_de82_ef95)).bits()
+    }
+}
+
+/// The points of stream `number` of a run of `points`.
+pub(super) fn share(points: u64, streams: u64, number: u64) -> u64 {
+    points / streams + u64::from(number < points % streams)
+}
+
+/// The course of a stream.
+#[derive(Clone, Debug)]
+pub(super) enum Course {
+    /// `points` results under the stimulus of a seed.
+    Random { seed: u64, points: u64 },
+    /// The combinations of operands at `count` places, from the first on.
+    Combinations { first: u64, count: u64 },
+    /// Recorded inputs, again and again, for `clocks` clocks.
+    Recorded { recording: Arc<Recording>, clocks: u64 },
+}

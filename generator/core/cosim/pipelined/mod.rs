@@ -1,0 +1,160 @@
+//! The golden model's prediction of a pipeline, clock by clock.
+//!
+//! The model of the sequential core runs each point on its own. After every clock the handshake is predicted, the results
+//! and the side channel where there are any, and, for the point in each stage, every value that a register of the
+//! sequential core has: what the model's register holds in that microinstruction.
+
+mod reference;
+#[cfg(test)]
+mod tests;
+
+use std::sync::Arc;
+
+use anyhow::Result;
+
+use super::measure::Measure;
+use super::outcome::Seen;
+use super::ports::Ports;
+use glint_golden::Model;
+use glint_golden::pipeline::Occupancy;
+use glint_rtl::netlist::{Design, NetId, Pipeline, Role};
+use reference::{Expected, Reference};
+
+/// A point on its way.
+#[derive(Clone, Debug)]
+struct Point {
+    /// Raw operands, in the order of the contract.
+    operands: Vec<i64>,
+    side: u64,
+    expected: Expected,
+    /// The place of a combination, and the clock that took it.
+    place: u64,
+    taken: u64,
+}
+
+/// The points on their way through a pipeline.
+#[derive(Clone)]
+pub(super) struct Pipe {
+    columns: Arc<Vec<(Column, usize)>>,
+    reference: Reference,
+    stages: Occupancy<Point>,
+    out_ready: bool,
+    /// Whether the offer of the latest clock was taken.
+    pub(super) taken: bool,
+}
+
+/// A value that is compared.
+#[derive(Clone, Copy)]
+enum Column {
+    OutValid,
+    InReady,
+    Side,
+    Result(usize),
+    Checkpoint(usize),
+}
+
+impl Pipe {
+    /// A pipeline without points; the nets that are compared after a clock, the first to be told first; and those of the
+    /// results among them.
+    ///
+    /// # Errors
+    /// A name of one side that the other does not have.
+    pub(super) fn new(
+        design: &Design,
+        pipeline: &Pipeline,
+        model: Box<dyn Model>,
+        ports: &Ports,
+    ) -> Result<(Self, Vec<NetId>, Vec<NetId>)> {
+        let is_result = |role: Role| matches!(role, Role::Result | Role::Status);
+        let outputs = design.ports.iter().filter(|port| is_result(port.role));
+        let results: Vec<NetId> = outputs.map(|port| port.net).collect();
+        let in_ready = design.port(|role| role == Role::InReady).map(|port| port.net);
+        let latency = pipeline.stages.len();
+        let mut nets = vec![ports.valid];
+        nets.extend(in_ready);
+        nets.extend(ports.side_out);
+        let mut columns = vec![Column::OutValid];
+        columns.extend(in_ready.map(|_| Column::InReady));
+        columns.extend(ports.side_out.map(|_| Column::Side));
+        nets.extend(&results);
+        columns.extend((0..results.len()).map(Column::Result));
+        let mut columns: Vec<_> = columns.into_iter().map(|column| (column, latency)).collect();
+        for (at, checkpoint) in pipeline.checkpoints.iter().enumerate() {
+            nets.push(checkpoint.net);
+            columns.push((Column::Checkpoint(at), pipeline.stage_of[checkpoint.net.index()]));
+        }
+        let pipe = Self {
+            columns: Arc::new(columns),
+            reference: Reference::new(design, pipeline, model, ports, &results)?,
+            stages: Occupancy::empty(latency, pipeline.interval),
+            out_ready: true,
+            taken: true,
+        };
+        Ok((pipe, nets, results))
+    }
+
+    /// Moves the points by the inputs of a clock; one that is taken has this place. The error of a result is taken
+    /// by `measure`, if there is one.
+    ///
+    /// # Errors
+    /// A model that does not come to an end.
+    pub(super) fn clock(
+        &mut self,
+        ports: &Ports,
+        inputs: &[u64],
+        place: u64,
+        measure: Option<&Measure>,
+        seen: &mut Seen,
+    ) -> Result<()> {
+        let rst_n = inputs[ports.reset] == 1;
+        self.out_ready = ports.out_ready.is_none_or(|at| inputs[at] == 1);
+        self.taken = self.stages.takes(self.out_ready);
+        let mut point = None;
+        if self.taken && rst_n && inputs[ports.start] == 1 {
+            let mut operands = vec![0; ports.operands.len()];
+            ports.operands.iter().for_each(|port| operands[port.at] = port.raw(inputs));
+            let patterns = ports.operands.iter().map(|port| inputs[port.data]);
+            let expected = self.reference.point(patterns)?;
+            let side = ports.side_in.map_or(0, |(at, _)| inputs[at]);
+            point = Some(Point { operands, side, expected, place, taken: seen.clocks });
+        }
+        let Some(point) = self.stages.clock(rst_n, point, self.out_ready) else { return Ok(()) };
+        seen.points += 1;
+        let Some(measure) = measure else { return Ok(()) };
+        if measure.inside(&point.operands) {
+            measure.note(seen, &point.operands, 0, &point.expected.results);
+        } else {
+            seen.histogram.add_outside();
+        }
+        Ok(())
+    }
+
+    /// Returns the value expected after the latest clock of the net at this position among those that are compared.
+    #[inline]
+    pub(super) fn expected(&self, at: usize) -> Option<u64> {
+        let (column, stage) = self.columns[at];
+        let point = self.stages.stage(stage);
+        match column {
+            Column::OutValid => Some(point.is_some().into()),
+            Column::InReady => Some(self.stages.takes(self.out_ready).into()),
+            Column::Side => point.map(|point| point.side),
+            Column::Result(at) => point.map(|point| point.expected.results[at]),
+            Column::Checkpoint(at) => point.and_then(|point| point.expected.registers[at]),
+        }
+    }
+
+    /// Returns the place of the point that the net at this position speaks of, and the clock that took it.
+    pub(super) fn point(&self, at: usize) -> Option<(u64, u64)> {
+        self.stages.stage(self.columns[at].1).map(|point| (point.place, point.taken))
+    }
+
+    /// Whether a point is taken in the next clock if the results are.
+    pub(super) fn is_ready(&self) -> bool {
+        self.stages.takes(true)
+    }
+
+    /// Whether a point is on its way with a place before this one.
+    pub(super) fn has_before(&self, place: u64) -> bool {
+        self.stages.points().any(|(_, point)| point.place < place)
+    }
+}

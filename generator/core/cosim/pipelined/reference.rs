@@ -1,0 +1,95 @@
+//! The golden model's values for one point: its results, and its registers along the microprogram.
+
+use anyhow::{Result, bail};
+
+use crate::cosim::driven::{Driven, signal};
+use crate::cosim::ports::Ports;
+use glint_golden::Model;
+use glint_rtl::netlist::{Design, NetId, Pipeline};
+
+/// The most clocks of a computation.
+const MOST_CLOCKS: usize = 8192;
+
+/// The golden model of the sequential core, run a point at a time.
+#[derive(Clone)]
+pub(super) struct Reference {
+    model: Driven,
+    address: usize,
+    /// The signals of the results.
+    results: Vec<usize>,
+    /// For each checkpoint, its signal.
+    registers: Vec<usize>,
+    /// For each microinstruction, the checkpoints in it: how often it was executed before, and which.
+    due: Vec<Vec<(usize, usize)>>,
+    visits: Vec<usize>,
+}
+
+/// The values that are expected of a point.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Expected {
+    /// The results, bit patterns.
+    pub results: Vec<u64>,
+    /// For each checkpoint the value of its register, if the point came there.
+    pub registers: Vec<Option<u64>>,
+}
+
+impl Reference {
+    /// # Errors
+    /// A name of one side that the other does not have.
+    pub(super) fn new(
+        design: &Design,
+        pipeline: &Pipeline,
+        model: Box<dyn Model>,
+        ports: &Ports,
+        results: &[NetId],
+    ) -> Result<Self> {
+        let signal = |name: &str| signal(model.as_ref(), name);
+        let checkpoints = &pipeline.checkpoints;
+        let length = checkpoints.iter().map(|it| it.address + 1).max().unwrap_or(0);
+        let mut due = vec![Vec::new(); length];
+        for (at, checkpoint) in checkpoints.iter().enumerate() {
+            due[checkpoint.address].push((checkpoint.visit, at));
+        }
+        let results = results.iter().map(|&net| signal(&design.net(net).name));
+        let registers = checkpoints.iter().map(|it| signal(&it.register));
+        Ok(Self {
+            address: signal("word_address")?,
+            results: results.collect::<Result<_>>()?,
+            registers: registers.collect::<Result<_>>()?,
+            visits: vec![0; length],
+            due,
+            model: Driven::new(model, ports.operands.iter().map(|port| port.name.as_str()))?,
+        })
+    }
+
+    /// One computation, of these bit patterns in the order of the ports.
+    ///
+    /// # Errors
+    /// A model that does not come to an end.
+    pub(super) fn point(&mut self, patterns: impl Iterator<Item = u64>) -> Result<Expected> {
+        self.model.start(patterns);
+        self.visits.fill(0);
+        let mut expected =
+            Expected { results: Vec::new(), registers: vec![None; self.registers.len()] };
+        for _ in 0..MOST_CLOCKS {
+            let values = self.model.values();
+            if values[self.model.busy] == 0 {
+                return Ok(expected);
+            }
+            let address = values[self.address] as usize;
+            if let Some(due) = self.due.get(address) {
+                for &(visit, at) in due {
+                    if visit == self.visits[address] {
+                        expected.registers[at] = Some(values[self.registers[at]]);
+                    }
+                }
+                self.visits[address] += 1;
+            }
+            if values[self.model.valid] == 1 && expected.results.is_empty() {
+                expected.results.extend(self.results.iter().map(|&at| values[at]));
+            }
+            self.model.clock();
+        }
+        bail!("the golden model does not end")
+    }
+}

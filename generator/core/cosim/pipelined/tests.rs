@@ -1,0 +1,128 @@
+use crate::cosim::Lockstep;
+use crate::registry::{Device, Registry};
+use glint_config::{Config, Value};
+
+/// The default configuration of a device with these keys.
+fn pipelined(device: &Device, keys: &[(&str, Value)]) -> Config {
+    let mut values = vec![("architecture".to_owned(), Value::Text("pipelined".to_owned()))];
+    values.extend(keys.iter().map(|(name, value)| ((*name).to_owned(), value.clone())));
+    Config::from_values(&(device.schema)(), "device", values).expect("keys that there are")
+}
+
+/// The devices that compute a point at a time.
+fn devices() -> Vec<Device> {
+    let registry = Registry::catalogue();
+    let lines = ["quad-cosine", "cosine-squared"];
+    registry.devices().iter().filter(|it| !lines.contains(&it.name)).copied().collect()
+}
+
+#[test]
+fn every_device_is_what_its_golden_model_says() {
+    for device in devices() {
+        let config = pipelined(&device, &[]);
+        let design = device.design(&config).unwrap_or_else(|wrong| panic!("{wrong}"));
+        let contract = (device.contract)(&config);
+        let lockstep =
+            Lockstep::new(&design, (device.model)(&config), contract.as_ref(), 1).unwrap();
+        let outcome = lockstep.run_alone(500).unwrap();
+        assert_eq!(outcome.mismatch, None, "{}", device.name);
+        assert!(outcome.registers > 0, "{}", device.name);
+    }
+}
+
+/// A point every few clocks: fewer multipliers, registers that hold values, and a slot in which points are taken.
+#[test]
+fn every_device_with_shared_multipliers_is_what_its_golden_model_says() {
+    let interval = |clocks: u32| ("pipeline.interval", Value::Text(clocks.to_string()));
+    for device in devices() {
+        for keys in [
+            &[interval(2)][..],
+            &[interval(3), ("pipeline.side", Value::Integer(9))],
+            &[interval(4), ("pipeline.stall", Value::Text("none".to_owned()))],
+            &[interval(4), ("pipeline.multipliers", Value::Text("registered".to_owned()))],
+        ] {
+            let config = pipelined(&device, keys);
+            let design = device.design(&config).unwrap_or_else(|wrong| panic!("{wrong}"));
+            let contract = (device.contract)(&config);
+            let model = (device.model)(&config);
+            let lockstep = Lockstep::new(&design, model, contract.as_ref(), 1).unwrap();
+            let outcome = lockstep.run_alone(200).unwrap();
+            assert_eq!(outcome.mismatch, None, "{} {keys:?}", device.name);
+            assert!(outcome.registers > 0 && outcome.clocks >= 400, "{}", device.name);
+        }
+    }
+}
+
+/// Every key of `[pipeline]`: the side channel is compared too.
+#[test]
+fn a_pipeline_with_a_side_channel_or_without_stalls_is_what_its_golden_model_says() {
+    let registry = Registry::catalogue();
+    let device = registry.device("cosine-power").expect("a device");
+    let (stall, side) = ("pipeline.stall", "pipeline.side");
+    let none = || Value::Text("none".to_owned());
+    let keys: [&[(&str, Value)]; 4] = [
+        &[(side, Value::Integer(1))],
+        &[(side, Value::Integer(64))],
+        &[(stall, none())],
+        &[(stall, none()), (side, Value::Integer(17)), ("pipeline.stages", Value::Integer(1))],
+    ];
+    for keys in keys {
+        let config = pipelined(device, keys);
+        let design = device.design(&config).unwrap_or_else(|wrong| panic!("{wrong}"));
+        let contract = (device.contract)(&config);
+        let lockstep =
+            Lockstep::new(&design, (device.model)(&config), contract.as_ref(), 1).unwrap();
+        let outcome = lockstep.run_alone(500).unwrap();
+        assert_eq!(outcome.mismatch, None, "{keys:?}");
+    }
+}
+
+/// A side value that stays behind, or goes ahead, is noticed.
+#[test]
+fn a_wrong_side_value_is_noticed() {
+    let registry = Registry::catalogue();
+    let device = registry.device("cosine-power").expect("a device");
+    let config = pipelined(device, &[("pipeline.side", Value::Integer(8))]);
+    let mut design = device.design(&config).unwrap_or_else(|wrong| panic!("{wrong}"));
+    let [before, q] = design.pipeline.as_ref().expect("a pipeline").side_values[..2] else {
+        panic!("two stages")
+    };
+    let next = design.registers.iter().find(|it| it.data == Some(q)).expect("a stage more").q;
+    let wrong = design.registers.iter_mut().find(|it| it.q == next).expect("it");
+    wrong.data = Some(before);
+    let contract = (device.contract)(&config);
+    let lockstep = Lockstep::new(&design, (device.model)(&config), contract.as_ref(), 1).unwrap();
+    let mismatch = lockstep.run_alone(500).unwrap().mismatch.expect("a difference");
+    assert_eq!(mismatch.signal, "side_out");
+}
+
+/// Every point of a list comes out, in its order, behind those that are drawn: none is withdrawn or reset.
+#[test]
+fn a_recording_goes_through_every_point_of_a_list() {
+    let registry = Registry::catalogue();
+    let device = registry.device("cosine-power").expect("a device");
+    let config = pipelined(device, &[]);
+    let design = device.design(&config).unwrap_or_else(|wrong| panic!("{wrong}"));
+    let contract = (device.contract)(&config);
+    let lockstep = Lockstep::new(&design, (device.model)(&config), contract.as_ref(), 1).unwrap();
+    // Colours count upward, so that each differs from the one before.
+    let point = |number: i64| -> Vec<i64> {
+        let operands = contract.operands().iter();
+        operands.map(|it| if it.colour { number % 256 } else { it.domain.1 }).collect()
+    };
+    let listed: Vec<Vec<i64>> = (0..300).map(point).collect();
+    let vectors = lockstep.record(40, &listed).unwrap();
+    let names: Vec<&str> = design.inputs().map(|port| design.net(port.net).name.as_str()).collect();
+    let at = |name: &str| names.iter().position(|it| *it == name).expect("a port");
+    let [valid, red, reset] = ["in_valid", "red", "rst_n"].map(at);
+    let outputs: Vec<&str> =
+        design.outputs().map(|port| design.net(port.net).name.as_str()).collect();
+    let ready = outputs.iter().position(|it| *it == "in_ready").expect("a port");
+    let clocks = vectors.inputs.iter().zip(&vectors.expected);
+    let taken = clocks.filter(|(inputs, outputs)| inputs[valid] == 1 && outputs[ready] == 1);
+    let taken: Vec<u64> = taken.map(|(inputs, _)| inputs[red]).collect();
+    let last: Vec<u64> = listed.iter().map(|point| (point[point.len() - 1] % 256) as u64).collect();
+    assert_eq!(taken[taken.len() - 300..], last);
+    let end = &vectors.inputs[vectors.inputs.len() - 300..];
+    assert!(end.iter().all(|inputs| inputs[reset] == 1));
+}

@@ -1,0 +1,114 @@
+//! The ports of a design, as everything that drives it and reads it takes them: looked up once.
+
+use anyhow::{Context, Result, ensure};
+
+use glint_base::fixed::{Format, mask};
+use glint_golden::Contract;
+use glint_rtl::netlist::{Design, NetId, Role};
+
+/// The ports of a design. Inputs are positions among its inputs.
+#[derive(Clone, Debug)]
+pub(super) struct Ports {
+    /// How many inputs there are.
+    pub(super) inputs: usize,
+    pub(super) reset: usize,
+    /// `start`; of a pipeline `in_valid`.
+    pub(super) start: usize,
+    pub(super) out_ready: Option<usize>,
+    /// With the mask of its bits.
+    pub(super) side_in: Option<(usize, u64)>,
+    /// The operands of the contract, in the order of the design.
+    pub(super) operands: Vec<OperandPort>,
+    pub(super) valid: NetId,
+    /// The outputs `busy` and `done` of a core.
+    pub(super) busy: Option<NetId>,
+    pub(super) done: Option<NetId>,
+    /// Whether `start` is heard while `done` is high.
+    pub(super) overlaps: bool,
+    pub(super) side_out: Option<NetId>,
+    /// The outputs of the contract, in its order.
+    pub(super) results: Vec<(NetId, Format)>,
+}
+
+/// An operand among the inputs.
+#[derive(Clone, Debug)]
+pub(super) struct OperandPort {
+    pub(super) name: String,
+    pub(super) data: usize,
+    /// Its strobe; of a pipeline, which takes all operands at once, `in_valid`.
+    pub(super) strobe: usize,
+    pub(super) format: Format,
+    /// Its position among the operands of the contract.
+    pub(super) at: usize,
+}
+
+impl OperandPort {
+    /// The bit pattern at the port of its value among raw operands, in the order of the contract.
+    #[inline]
+    pub(super) fn pattern(&self, raw: &[i64]) -> u64 {
+        raw[self.at] as u64 & mask(self.format.width())
+    }
+
+    /// Its raw value among the inputs.
+    #[inline]
+    pub(super) fn raw(&self, inputs: &[u64]) -> i64 {
+        self.format.raw(inputs[self.data]) as i64
+    }
+}
+
+impl Ports {
+    /// The ports of a design.
+    ///
+    /// # Errors
+    /// The design lacks a port of the handshake, or has a strobe that is no input; design and contract do not have the
+    /// same operands, or the design lacks an output.
+    pub(super) fn new(design: &Design, contract: &dyn Contract) -> Result<Self> {
+        let pipelined = design.pipeline.is_some();
+        let find = |role: Role| design.port(|other| other == role).map(|port| port.net);
+        let input = |role: Role| design.inputs().position(|port| port.role == role);
+        let lacks = |name: &str| format!("`{}` has no port `{name}`", design.name);
+        let (start, valid) = if pipelined {
+            (input(Role::InValid), (find(Role::Valid), "out_valid"))
+        } else {
+            (input(Role::Start), (find(Role::Valid), "valid"))
+        };
+        let start = start.with_context(|| lacks(if pipelined { "in_valid" } else { "start" }))?;
+        let mut operands = Vec::new();
+        for (data, port) in design.inputs().enumerate() {
+            let strobe = match port.role {
+                Role::Operand { strobe } => design.input_position(strobe)?,
+                Role::Point => start,
+                _ => continue,
+            };
+            let net = design.net(port.net);
+            let name = net.name.clone();
+            let at = contract.operands().iter().position(|operand| operand.name == name);
+            let at = at.with_context(|| format!("the contract has no operand `{name}`"))?;
+            operands.push(OperandPort { name, data, strobe, format: net.format, at });
+        }
+        for operand in contract.operands() {
+            let found = operands.iter().any(|port| port.name == operand.name);
+            ensure!(found, "the contract speaks of operand `{}`", operand.name);
+        }
+        let results = contract.outputs().iter().map(|output| {
+            let net = design.find(&output.name).with_context(|| lacks(&output.name))?;
+            Ok((net, design.net(net).format))
+        });
+        let side = design.pipeline.as_ref().map(|pipeline| mask(pipeline.side));
+        let core = if pipelined { None } else { Some(design.handshake()?) };
+        Ok(Self {
+            inputs: design.inputs().count(),
+            reset: input(Role::Reset).with_context(|| lacks("rst_n"))?,
+            start,
+            out_ready: input(Role::OutReady),
+            side_in: input(Role::SideIn).zip(side),
+            operands,
+            valid: valid.0.with_context(|| lacks(valid.1))?,
+            busy: core.as_ref().map(|it| it.busy),
+            done: core.as_ref().map(|it| it.done),
+            overlaps: !pipelined && design.control.overlaps,
+            side_out: find(Role::SideOut),
+            results: results.collect::<Result<_>>()?,
+        })
+    }
+}

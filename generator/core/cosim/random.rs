@@ -1,0 +1,172 @@
+//! Numbers at random, the same on every machine.
+
+use glint_base::fixed::{exp2, mask};
+use glint_golden::Operand;
+
+/// A small deterministic generator (SplitMix64): the same numbers on every machine, and fast enough
+/// not to matter beside the simulation.
+#[derive(Clone, Debug)]
+pub struct Random(u64);
+
+/// From the state of one number to that of the next.
+const STEP: u64 = 0x9e37_79b9_7f4a_7c15;
+
+/// The values among those of [`Random::of_domain`] that each of its choices takes, of a domain on both sides of 0 and
+/// of any other.
+const AROUND_ZERO: [usize; 16] = [0, 1, 2, 3, 3, 6, 5, 6, 5, 6, 5, 6, 5, 6, 2, 2];
+const TO_ONE_SIDE: [usize; 16] = [0, 1, 2, 3, 3, 4, 4, 4, 4, 2, 2, 2, 2, 2, 2, 2];
+
+/// An integer from 0 to `below - 1` of random bits.
+#[inline]
+fn scaled(bits: u64, below: u64) -> u64 {
+    ((u128::from(bits) * u128::from(below)) >> 64) as u64
+}
+
+/// An integer from `low` to `high` of random bits.
+#[inline]
+fn within(bits: u64, low: i64, high: i64) -> i64 {
+    let span = high.wrapping_sub(low).wrapping_add(1) as u64;
+    if span == 0 { bits as i64 } else { low.wrapping_add(scaled(bits, span) as i64) }
+}
+
+/// An integer from 0 to `most` of random bits, of each magnitude as often as of any other.
+#[inline]
+fn magnitude([first, second]: [u64; 2], most: u64) -> u64 {
+    let bits = scaled(first, u64::from(64 - most.max(1).leading_zeros()) + 1);
+    scaled(second, 1 << bits.min(62)).min(most)
+}
+
+impl Random {
+    /// The sequence of a seed.
+    pub fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
+    /// The next 64 bits.
+    pub fn bits(&mut self) -> u64 {
+        let bits = self.ahead(1);
+        self.skip(1);
+        bits
+    }
+
+    /// The bits that come after so many more, 1 for the next.
+    #[inline]
+    fn ahead(&self, draws: u64) -> u64 {
+        let mut z = self.0.wrapping_add(STEP.wrapping_mul(draws));
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    #[inline]
+    fn skip(&mut self, draws: u64) {
+        self.0 = self.0.wrapping_add(STEP.wrapping_mul(draws));
+    }
+
+    /// An integer from 0 to `below - 1`.
+    pub fn below(&mut self, below: u64) -> u64 {
+        scaled(self.bits(), below)
+    }
+
+    /// True once in `times`.
+    pub fn once_in(&mut self, times: u64) -> bool {
+        self.below(times) == 0
+    }
+
+    /// An integer from `low` to `high`.
+    pub fn within(&mut self, low: i64, high: i64) -> i64 {
+        within(self.bits(), low, high)
+    }
+
+    /// A raw value from `low` to `high`: often one of its ends or close to one (or to 0, which is as good as an
+    /// end).
+    ///
+    /// The choice cannot be foreseen: all are worked out, and one is taken without a branch. It is as though only
+    /// what that one needs had been drawn.
+    #[inline]
+    pub fn of_domain(&mut self, (low, high): (i64, i64)) -> i64 {
+        let [choice, first, second] = [1, 2, 3].map(|draws| self.ahead(draws));
+        let off = magnitude([first, second], high.abs_diff(low)) as i64;
+        let values = [
+            low,
+            high,
+            within(first, low, high),
+            // Off by a random power of two: from the upper end, from the lower, from 0 where that is between
+            // (an angle, the component of a vector).
+            high.wrapping_sub(off),
+            low.wrapping_add(off),
+            off.min(high),
+            (-off).max(low),
+        ];
+        let places = if low < 0 && high > 0 { &AROUND_ZERO } else { &TO_ONE_SIDE };
+        let place = places[scaled(choice, 16) as usize];
+        self.skip([1, 1, 2, 3, 3, 3, 3][place]);
+        values[place]
+    }
+
+    /// A bit pattern for an operand: mostly of its domain, as [`Random::of_domain`] draws it, at times any.
+    pub fn pattern(&mut self, operand: &Operand) -> u64 {
+        let raw =
+            if self.once_in(16) { self.bits() as i64 } else { self.of_domain(operand.domain) };
+        raw as u64 & mask(operand.format.width())
+    }
+
+    /// An integer from 0 to `most`, of each magnitude as often as of any other.
+    pub fn magnitude(&mut self, most: u64) -> u64 {
+        magnitude([self.bits(), self.bits()], most)
+    }
+
+    /// A number from 0 to just below 1.
+    pub fn unit(&mut self) -> f64 {
+        (self.bits() >> 11) as f64 * exp2(-53)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_drawn_of_a_domain_is_in_it() {
+        let mut random = Random::new(5);
+        for (low, high) in [(0, 0), (7, 7), (0, 1), (-3, -2), (-4, 9), (i64::MIN, i64::MAX)] {
+            let mut ends = [false; 2];
+            for _ in 0..500 {
+                let raw = random.of_domain((low, high));
+                assert!((low..=high).contains(&raw), "{raw} of {low}..={high}");
+                ends = [ends[0] || raw == low, ends[1] || raw == high];
+            }
+            assert_eq!(ends, [true; 2], "{low}..={high}");
+        }
+    }
+    /// Draws numbers of a domain one after the other, and no more of them than are needed.
+    fn one_by_one(random: &mut Random, (low, high): (i64, i64)) -> i64 {
+        let choice = random.below(16);
+        match choice {
+            0 => low,
+            1 => high,
+            3..=13 if choice <= 8 || low < 0 && high > 0 => {
+                let off = random.magnitude(high.abs_diff(low)) as i64;
+                match choice {
+                    3 | 4 => high.wrapping_sub(off),
+                    _ if low >= 0 || high <= 0 => low.wrapping_add(off),
+                    _ if choice.is_multiple_of(2) => off.min(high),
+                    _ => (-off).max(low),
+                }
+            }
+            _ => random.within(low, high),
+        }
+    }
+
+    #[test]
+    fn what_is_not_taken_counts_as_not_drawn() {
+        let mut random = Random::new(9);
+        for (low, high) in [(0, 9), (-9, 0), (3, 3), (-4, 900), (i64::MIN, i64::MAX)] {
+            for _ in 0..500 {
+                let mut plain = random.clone();
+                assert_eq!(random.of_domain((low, high)), one_by_one(&mut plain, (low, high)));
+                assert_eq!(random.0, plain.0);
+            }
+        }
+    }
+}

@@ -1,0 +1,90 @@
+//! Inputs that were recorded before, again and again.
+
+use std::sync::Arc;
+
+/// The inputs of some clocks, one clock after another.
+#[derive(Debug)]
+pub(super) struct Recording {
+    words: Vec<u64>,
+    /// How many there are in a clock.
+    inputs: usize,
+}
+
+impl Recording {
+    /// The recording of the inputs of each clock, as many in each; of at least one clock.
+    pub(super) fn new(clocks: &[Vec<u64>]) -> Self {
+        Self { words: clocks.concat(), inputs: clocks[0].len() }
+    }
+}
+
+/// A stream of recorded inputs.
+pub(super) struct Recorded {
+    recording: Arc<Recording>,
+    /// Where those of the next clock begin.
+    next: usize,
+}
+
+impl Recorded {
+    pub(super) fn new(recording: &Arc<Recording>) -> Self {
+        Self { recording: Arc::clone(recording), next: 0 }
+    }
+
+    /// The inputs of the next clock.
+    #[inline]
+    pub(super) fn next(&mut self) -> &[u64] {
+        let Recording { words, inputs } = &*self.recording;
+        let first = if self.next == words.len() { 0 } else { self.next };
+        self.next = first + inputs;
+        &words[first..self.next]
+    }
+
+    /// The latest inputs.
+    #[inline]
+    pub(super) fn inputs(&self) -> &[u64] {
+        &self.recording.words[self.next - self.recording.inputs..self.next]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::core::Core;
+    use crate::cosim::Lockstep;
+    use crate::registry::Registry;
+    use glint_config::{Config, Value};
+
+    /// The streams begin at power-up, and come to what a computation left when they begin again.
+    #[test]
+    fn replayed_inputs_show_what_drawn_ones_do() {
+        ["sequential", "pipelined"].into_iter().for_each(replayed);
+    }
+
+    fn replayed(architecture: &str) {
+        let registry = Registry::catalogue();
+        let device = *registry.device("threshold").expect("a device");
+        let config = |rounding: &str| {
+            let keys = [("output.rounding", rounding), ("architecture", architecture)];
+            let keys = keys.map(|(key, text)| (key.to_owned(), Value::Text(text.to_owned())));
+            Config::from_values(&(device.schema)(), "device", keys.into()).expect("its keys")
+        };
+        let core = Core::new(device, config("nearest")).unwrap();
+        // More than there are lanes.
+        let streams: Vec<_> = (0..40).map(|seed| core.vectors(5, seed).unwrap().inputs).collect();
+        let most = streams.iter().map(Vec::len).max().unwrap_or_default() as u64;
+        let outcome = core.lockstep(1).unwrap().replay(&streams, 3 * most).unwrap();
+        assert_eq!((outcome.mismatch, outcome.clocks), (None, 40 * 3 * most));
+        assert!(outcome.points > 2 * 40 * 5, "{}", outcome.points);
+
+        let other = (device.model)(&config("truncate"));
+        let lockstep = Lockstep::new(&core.design, other, core.contract.as_ref(), 1).unwrap();
+        let mismatch =
+            lockstep.replay(&streams, 3 * most).unwrap().mismatch.expect("another model");
+        assert!(mismatch.signal.ends_with("_out"), "{mismatch}");
+
+        let refused =
+            |streams: &[Vec<Vec<u64>>]| lockstep.replay(streams, 1).unwrap_err().to_string();
+        assert_eq!(refused(&[vec![]]), "recorded stream 0 has no clock");
+        let (fewer, inputs) = (vec![vec![0; 3]], core.design.inputs().count());
+        let message = format!("clock 0 of recorded stream 0 has 3 inputs and not {inputs}");
+        assert_eq!(refused(&[fewer]), message);
+    }
+}

@@ -1,0 +1,214 @@
+//! Streams side by side in the lanes of one simulator, every signal compared on every clock.
+
+use std::io::Write;
+use std::mem;
+
+use anyhow::Result;
+
+use super::binding::Binding;
+use super::outcome::{Course, Seen};
+use super::stream::Stream;
+use glint_rtl::sim::Simulator;
+
+/// Clocks for which each of many streams of a core in turn is ahead of the simulator. Its model and stimulus then stay in
+/// the processor's cache and their branches are foreseen, and what they leave for the simulator still fits in.
+const AHEAD: usize = 4;
+
+/// As many streams as there are lanes, or fewer.
+///
+/// A stream reacts to `busy` as its model predicts it. That is what the simulation does, unless they
+/// differ. A stream that is ahead of the simulator, and in which anything differs, is gone through once more, alone.
+pub(super) struct Runner<'a, const LANES: usize> {
+    binding: &'a Binding<'a>,
+    pub(super) simulator: Simulator<LANES>,
+    /// The first are in the first lanes.
+    streams: Vec<Stream>,
+    /// The streams that were ahead of the simulator when something differed.
+    differ: [bool; LANES],
+    /// The clocks to come.
+    ahead: Vec<Clock<LANES>>,
+}
+
+/// The inputs of a clock and what is predicted after it, for each lane.
+struct Clock<const LANES: usize> {
+    /// The inputs; those of a single clock are the simulator's own.
+    inputs: Vec<[u64; LANES]>,
+    /// Lanes whose inputs are those of a clock in which nothing is driven.
+    idle: [bool; LANES],
+    predicted: Vec<[u64; LANES]>,
+    /// All ones where something is predicted; nothing of a core, where everything is.
+    known: Vec<[u64; LANES]>,
+    /// Streams that have ended before are not compared: all ones where one has not.
+    compared: [u64; LANES],
+}
+
+impl<'a, const LANES: usize> Runner<'a, LANES> {
+    /// Streams at power-up.
+    ///
+    /// # Errors
+    /// A design that cannot be simulated.
+    pub(super) fn new(
+        binding: &'a Binding<'a>,
+        courses: impl IntoIterator<Item = Course>,
+    ) -> Result<Self> {
+        let simulator = Simulator::new(binding.design)?;
+        let busy = binding.ports.busy.is_some_and(|busy| simulator.lane(busy, 0) == 1);
+        let stream = |course| Stream::new(binding, course, busy);
+        let pipeline = binding.is_pipeline();
+        let ahead = if pipeline || LANES == 1 { 1 } else { AHEAD };
+        let lanes = |count| vec![[0; LANES]; count];
+        let clock = || Clock {
+            inputs: lanes(if ahead == 1 { 0 } else { binding.ports.inputs }),
+            idle: [false; LANES],
+            predicted: lanes(binding.compared.len()),
+            known: lanes(if pipeline { binding.compared.len() } else { 0 }),
+            compared: [0; LANES],
+        };
+        Ok(Self {
+            binding,
+            streams: courses.into_iter().take(LANES).map(stream).collect(),
+            differ: [false; LANES],
+            ahead: std::iter::repeat_with(clock).take(ahead).collect(),
+            simulator,
+        })
+    }
+
+    /// Whether every stream has ended up to the first that differs.
+    pub(super) fn ended(&self) -> bool {
+        for (stream, differs) in self.streams.iter().zip(self.differ) {
+            if differs || !stream.ended() || stream.seen.mismatch.is_some() {
+                return differs || stream.ended();
+            }
+        }
+        true
+    }
+
+    /// The first stream in which something differs.
+    pub(super) fn first_that_differs(&self) -> Option<usize> {
+        let mut streams = self.streams.iter().zip(self.differ);
+        streams.position(|(stream, differs)| differs || stream.seen.mismatch.is_some())
+    }
+
+    /// The first stream.
+    pub(super) fn first(&mut self) -> &mut Stream {
+        &mut self.streams[0]
+    }
+
+    /// Some clocks of all streams that have not ended. The results seen in them.
+    ///
+    /// # Errors
+    /// A simulation that does not settle, or a VCD that cannot be written; a model that does not end.
+    pub(super) fn run(&mut self) -> Result<u64> {
+        let points = |streams: &[Stream]| streams.iter().map(|it| it.seen.points).sum::<u64>();
+        let before = points(&self.streams);
+        self.prepare()?;
+        self.simulate()?;
+        Ok(points(&self.streams) - before)
+    }
+
+    /// Has all streams that have not ended say the inputs of the next clocks, and what is predicted after each.
+    ///
+    /// # Errors
+    /// A model that does not end.
+    pub(super) fn prepare(&mut self) -> Result<()> {
+        let single = self.ahead.len() == 1;
+        for (lane, stream) in (0..LANES).zip(&mut self.streams) {
+            for clock in &mut self.ahead {
+                if self.differ[lane] || stream.ended() {
+                    clock.compared[lane] = 0;
+                    continue;
+                }
+                clock.compared[lane] = u64::MAX;
+                stream.clock(self.binding)?;
+                let was_idle = mem::replace(&mut clock.idle[lane], stream.is_idle());
+                // Most of the time nothing is driven, and stands there already.
+                if !(was_idle && clock.idle[lane]) {
+                    let inputs =
+                        if single { self.simulator.inputs_mut() } else { &mut clock.inputs[..] };
+                    for (input, &bits) in inputs.iter_mut().zip(stream.inputs()) {
+                        input[lane] = bits;
+                    }
+                }
+                stream.predict(&mut clock.predicted, &mut clock.known, lane);
+                if !single {
+                    stream.note(self.binding);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// These clocks, and everything that can be compared after each.
+    ///
+    /// # Errors
+    /// A simulation that does not settle, or a VCD that cannot be written.
+    pub(super) fn simulate(&mut self) -> Result<()> {
+        let single = self.ahead.len() == 1;
+        let address = self.binding.address.filter(|_| single);
+        let address = address.map_or([0; LANES], |net| self.simulator.lanes(net));
+        for clock in &mut self.ahead {
+            if single {
+                self.simulator.clock()?;
+            } else {
+                self.simulator.clock_with(&mut clock.inputs)?;
+            }
+            let (nets, known) = (&self.binding.compared, &clock.known);
+            let known = (!known.is_empty()).then_some(known.as_slice());
+            let differences = self.simulator.differences(nets, &clock.predicted, known);
+            for (lane, stream) in self.streams.iter_mut().enumerate() {
+                let differs = differences[lane] & clock.compared[lane] != 0;
+                if !single {
+                    self.differ[lane] |= differs;
+                } else if differs {
+                    let simulated = |net| self.simulator.lane(net, lane);
+                    stream.compare(self.binding, address[lane], simulated);
+                } else if clock.compared[lane] != 0 {
+                    stream.note(self.binding);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Returns the record of each, up to the first that differs.
+    ///
+    /// # Errors
+    /// As of [`Runner::run`].
+    pub(super) fn into_seen(self) -> Result<Vec<Seen>> {
+        let mut all = Vec::new();
+        for (stream, differs) in self.streams.into_iter().zip(self.differ) {
+            if differs {
+                let mut alone = Runner::<1>::new(self.binding, [stream.course])?;
+                alone.go_on(u64::MAX)?;
+                all.extend(alone.into_seen()?);
+                break;
+            }
+            all.push(stream.seen);
+        }
+        Ok(all)
+    }
+}
+
+impl Runner<'_, 1> {
+    /// Goes on to the end, or until so many clocks are done.
+    ///
+    /// # Errors
+    /// As of [`Runner::run`].
+    pub(super) fn go_on(&mut self, clocks: u64) -> Result<()> {
+        while !self.ended() && self.first().seen.clocks < clocks {
+            self.run()?;
+        }
+        Ok(())
+    }
+
+    /// Goes to the end; `file` takes the waveform from clock `from` on.
+    ///
+    /// # Errors
+    /// As of [`Runner::run`].
+    pub(super) fn trace(&mut self, from: u64, file: impl Write + Send + 'static) -> Result<()> {
+        self.go_on(from)?;
+        self.simulator.trace(file)?;
+        self.go_on(u64::MAX)?;
+        self.simulator.end_trace()
+    }
+}

@@ -1,0 +1,249 @@
+//! The largest error of an output that can be found: climbed to, and not drawn.
+//!
+//! Random points seldom meet what rounds unluckily in every step. From points that the stimulus draws each operand, and each
+//! pair of those with a fraction, is moved by powers of two as long as the error grows: of a highlight first that of `f`,
+//! and then that of an output, with its worst colour. Around the highest places of f all values of each pair of operands are
+//! looked at, for rounding makes the last steps too rough to climb. What is found is a lower limit of the largest error, and
+//! no proof.
+
+use rayon::prelude::*;
+
+use super::points::Points;
+use super::random::Random;
+use glint_base::fixed::exp2;
+use glint_golden::{Contract, Highlight, nearer};
+
+/// Colours of more bits than this are tried at their upper end alone.
+const MOST_COLOURS: i64 = 256;
+
+/// Operands are moved by powers of two below this.
+const MOST_BITS: u32 = 24;
+
+/// How many of the highest places are looked around, and at how many values around each.
+const HIGHEST: usize = 16;
+const AROUND: u64 = 1 << 18;
+
+/// How many starts are climbed from before only the highest places are kept: memory does not grow with the starts.
+const BATCH: u64 = 1 << 10;
+
+/// An error of an output, and where.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reached {
+    /// In output units.
+    pub units: f64,
+    /// The raw operands, in the order of the contract.
+    pub operands: Vec<i64>,
+    /// The output, by its position in the contract.
+    pub output: usize,
+    /// The output, in its units, and the formula's value.
+    pub raw: i64,
+    pub exact: f64,
+}
+
+impl Reached {
+    /// The largest error of an output at raw operands; `None` without an output.
+    pub fn at(contract: &dyn Contract, operands: Vec<i64>) -> Option<Self> {
+        let (mut raw, mut exact) = (Vec::new(), Vec::new());
+        contract.results(&operands, 0, &mut raw);
+        contract.exact(&operands, 0, &mut exact);
+        let outputs = contract.outputs().iter().zip(&raw).zip(exact).enumerate();
+        let errors = outputs.map(|(output, ((it, &raw), exact))| {
+            let unit = exp2(-it.format.frac);
+            let exact = exact.map(|value| value / unit);
+            let near = |value: f64| (raw as f64 - value).abs();
+            let exact = if near(exact[1]) < near(exact[0]) { exact[1] } else { exact[0] };
+            Self { units: near(exact), operands: operands.clone(), output, raw, exact }
+        });
+        errors.reduce(larger)
+    }
+}
+
+/// The first of two, unless the error of the second is larger.
+fn larger(a: Reached, b: Reached) -> Reached {
+    if b.units > a.units { b } else { a }
+}
+
+/// The largest error that is reached from `starts` starts, drawn by a seed: the same on any number of threads. `progress`
+/// is called after each. `None` for no start.
+pub fn worst(
+    contract: &dyn Contract,
+    starts: u64,
+    seed: u64,
+    progress: &(dyn Fn() + Sync),
+) -> Option<Reached> {
+    let points = Points::new(contract);
+    let climber = Climber::new(contract);
+    let climb = |start: u64| {
+        let mut random = Random::new(seed ^ start.wrapping_mul(0xd134_2543_de82_ef95));
+        let end = climber.from(points.of_domain(&mut random));
+        progress();
+        end
+    };
+    let (mut climbed, mut highest) = (None, Vec::<End>::new());
+    let mut first = 0;
+    while first < starts {
+        let next = first.saturating_add(BATCH).min(starts);
+        let ends: Vec<End> = (first..next).into_par_iter().map(climb).collect();
+        // Of errors that are equal that of the first start, whatever the order in which they come.
+        let outputs = ends.iter().filter_map(|end| Reached::at(contract, end.operands.clone()));
+        climbed = climbed.into_iter().chain(outputs).reduce(larger);
+        highest.extend(ends);
+        highest.sort_by(|one, other| other.height.total_cmp(&one.height));
+        highest.truncate(HIGHEST);
+        first = next;
+    }
+    let around: Vec<Vec<i64>> =
+        highest.par_iter().map(|end| climber.look_around(end.highest.clone())).collect();
+    let found = around.into_iter().filter_map(|operands| Reached::at(contract, operands));
+    Some(found.fold(climbed?, larger))
+}
+
+/// Where a climb ends.
+struct End {
+    /// The largest error of f of a highlight, else of an output, and the moved operands where it is.
+    height: f64,
+    highest: Vec<i64>,
+    /// The operands, of a highlight with the colour of the largest error of an output that was climbed to from there.
+    operands: Vec<i64>,
+}
+
+struct Climber<'a> {
+    contract: &'a dyn Contract,
+    /// The domains of the operands that are moved.
+    domains: Vec<(i64, i64)>,
+    /// Operands that are moved together, with their signs.
+    moves: Vec<Vec<(usize, i64)>>,
+    /// The colours of a highlight.
+    colours: std::ops::RangeInclusive<i64>,
+}
+
+impl<'a> Climber<'a> {
+    fn new(contract: &'a dyn Contract) -> Self {
+        let moved: Vec<_> = contract.operands().iter().filter(|it| !it.colour).collect();
+        let mut moves: Vec<Vec<(usize, i64)>> = Vec::new();
+        for (a, first) in moved.iter().enumerate() {
+            moves.extend([vec![(a, 1)], vec![(a, -1)]]);
+            for (b, second) in moved.iter().enumerate().skip(a + 1) {
+                if first.format.frac > 0 && second.format.frac > 0 {
+                    let signs = [(1, 1), (-1, -1), (1, -1), (-1, 1)];
+                    moves.extend(signs.map(|(one, other)| vec![(a, one), (b, other)]));
+                }
+            }
+        }
+        let mut colours = contract.operands().iter().filter(|it| it.colour);
+        let (low, high) = colours.next().map_or((1, 1), |it| it.domain);
+        Self {
+            contract,
+            domains: moved.iter().map(|it| it.domain).collect(),
+            moves,
+            colours: low.max(high - MOST_COLOURS)..=high,
+        }
+    }
+
+    /// The end of the climb from some operands.
+    fn from(&self, operands: Vec<i64>) -> End {
+        // Control operands come first.
+        let mut highest = operands;
+        highest.truncate(self.domains.len());
+        let Some(highlight) = self.contract.highlight() else {
+            let height = self.climb(&mut highest, |operands| self.contract.largest_error(operands));
+            return End { height, operands: highest.clone(), highest };
+        };
+        let height = self.climb(&mut highest, |control| of_f(highlight, control));
+        let mut control = highest.clone();
+        self.climb(&mut control, |control| self.of_output(highlight, control).0);
+        End { height, highest, operands: self.with_colours(highlight, control) }
+    }
+
+    /// The control operands with the colour that makes the largest error.
+    fn with_colours(&self, highlight: &Highlight, mut control: Vec<i64>) -> Vec<i64> {
+        let (_, colour) = self.of_output(highlight, &control);
+        control.resize(highlight.operands().len(), colour);
+        control
+    }
+
+    /// The operands of the largest error among all values of each pair of operands around some, and around what is found so.
+    fn look_around(&self, mut operands: Vec<i64>) -> Vec<i64> {
+        let highlight = self.contract.highlight();
+        let terms = self.contract.bound().terms;
+        let rounding = terms.iter().find(|term| term.key == "output.rounding");
+        let (rounding, colour) = (rounding.map_or(1.0, |it| it.units), *self.colours.end() as f64);
+        // An output is no further off than f and its own rounding allow.
+        let error = |operands: &[i64], known: f64| match highlight {
+            Some(it) if of_f(it, operands) * colour + rounding <= known => 0.0,
+            Some(it) => self.of_output(it, operands).0,
+            None => self.contract.largest_error(operands),
+        };
+        let pairs = operands.len() * operands.len().saturating_sub(1) / 2;
+        let far = (AROUND / pairs.max(1) as u64).isqrt() as i64 / 2;
+        let near = |at: usize, value: i64| {
+            let (low, high) = self.domains[at];
+            (value - far).max(low)..=(value + far).min(high)
+        };
+        let mut height = error(&operands, 0.0);
+        loop {
+            let before = height;
+            for (a, b) in (0..operands.len()).flat_map(|b| (0..b).map(move |a| (a, b))) {
+                let mut next = operands.clone();
+                for (one, other) in near(a, operands[a])
+                    .flat_map(|one| near(b, operands[b]).map(move |other| (one, other)))
+                    .collect::<Vec<_>>()
+                {
+                    (next[a], next[b]) = (one, other);
+                    let there = error(&next, height);
+                    if there > height {
+                        (height, operands) = (there, next.clone());
+                    }
+                }
+            }
+            if height <= before {
+                return highlight.map_or(operands.clone(), |it| self.with_colours(it, operands));
+            }
+        }
+    }
+
+    /// Moves operands as long as that makes `of` larger; returns how large.
+    fn climb(&self, operands: &mut Vec<i64>, of: impl Fn(&[i64]) -> f64) -> f64 {
+        let mut height = of(operands);
+        loop {
+            let before = height;
+            for bit in (0..MOST_BITS).rev() {
+                for each in &self.moves {
+                    let mut next = operands.clone();
+                    for &(at, sign) in each {
+                        let (low, high) = self.domains[at];
+                        next[at] = next[at].saturating_add(sign << bit).clamp(low, high);
+                    }
+                    if next == *operands {
+                        continue;
+                    }
+                    let there = of(&next);
+                    if there > height {
+                        (height, *operands) = (there, next);
+                    }
+                }
+            }
+            if height <= before {
+                return height;
+            }
+        }
+    }
+
+    /// The largest error of an output, in units, and its colour.
+    fn of_output(&self, highlight: &Highlight, control: &[i64]) -> (f64, i64) {
+        let point = highlight.point(control, 0);
+        let (f, right) = (highlight.f(&point), highlight.references(&point));
+        let errors = self.colours.clone().map(|colour| {
+            let output = highlight.colour(f, colour) as f64;
+            (nearer(output, right.map(|right| right * colour as f64)), colour)
+        });
+        errors.fold((-1.0, 0), |most, next| if next.0 > most.0 { next } else { most })
+    }
+}
+
+/// The error of `f`.
+fn of_f(highlight: &Highlight, control: &[i64]) -> f64 {
+    let point = highlight.point(control, 0);
+    let f = highlight.f_format().to_f64(i128::from(highlight.f(&point)));
+    nearer(f, highlight.references(&point))
+}

@@ -1,0 +1,135 @@
+//! The golden model's prediction of a core, clock by clock.
+
+use std::mem;
+
+use anyhow::{Context, Result, anyhow, ensure};
+
+use super::measure::Measure;
+use super::outcome::Seen;
+use super::ports::Ports;
+use glint_golden::Model;
+use glint_rtl::netlist::{Design, NetId, RegisterKind};
+
+/// A golden model under the inputs of a core.
+#[derive(Clone)]
+pub(super) struct Core {
+    model: Box<dyn Model>,
+    /// For each input of the model its position among the design's; none if the orders are the same.
+    order: Option<Vec<usize>>,
+    /// The model's inputs, where it has an order of its own.
+    reordered: Vec<u64>,
+    /// Positions among the signals: of `busy`, of `valid`, and of `done` where `start` is heard while it is high.
+    busy: usize,
+    valid: usize,
+    overlaps: Option<usize>,
+    /// Whether it does not hear `start`.
+    pub(super) deaf: bool,
+    /// Results since the latest start.
+    index: u64,
+    /// The operands of the computation that shows results, and whether they are in the domain.
+    operands: Vec<i64>,
+    inside: bool,
+}
+
+impl Core {
+    /// The model of a core, and the nets that it predicts, in its order.
+    ///
+    /// # Errors
+    /// A name of one side that the other does not have.
+    pub(super) fn new(
+        design: &Design,
+        model: Box<dyn Model>,
+        ports: &Ports,
+    ) -> Result<(Self, Vec<NetId>)> {
+        let find = |name: &String| {
+            design.find(name).ok_or_else(|| {
+                anyhow!("the golden model speaks of `{name}`, which the design does not have")
+            })
+        };
+        let inputs: Vec<NetId> = design.inputs().map(|port| port.net).collect();
+        let input = |name: &String| {
+            let id = find(name)?;
+            let at = inputs.iter().position(|&input| input == id);
+            at.with_context(|| format!("the golden model takes `{name}` for an input"))
+        };
+        let order = model.inputs().iter().map(input).collect::<Result<Vec<_>>>()?;
+        let compared = model.signals().iter().map(find).collect::<Result<Vec<_>>>()?;
+        for id in design.outputs().map(|port| port.net).chain(registers(design)) {
+            let name = &design.net(id).name;
+            ensure!(compared.contains(&id), "the golden model does not predict `{name}`");
+        }
+        // The outputs of the handshake are among them.
+        let position = |net: NetId| compared.iter().position(|&it| it == net);
+        let core = Self {
+            order: (!order.iter().copied().eq(0..inputs.len())).then_some(order),
+            reordered: Vec::new(),
+            busy: ports.busy.and_then(position).context("a core has an output `busy`")?,
+            valid: position(ports.valid).context("a core has an output `valid`")?,
+            overlaps: ports.done.filter(|_| ports.overlaps).and_then(position),
+            deaf: false,
+            index: 0,
+            operands: Vec::new(),
+            inside: false,
+            model,
+        };
+        Ok((core, compared))
+    }
+
+    /// Clocks the model.
+    #[inline]
+    pub(super) fn clock(&mut self, inputs: &[u64]) {
+        match &self.order {
+            None => self.model.clock(inputs),
+            Some(order) => {
+                self.reordered.clear();
+                self.reordered.extend(order.iter().map(|&at| inputs[at]));
+                self.model.clock(&self.reordered);
+            }
+        }
+    }
+
+    /// Returns the prediction of the model after the latest clock.
+    #[inline]
+    pub(super) fn predicted(&self) -> &[u64] {
+        self.model.values()
+    }
+
+    /// Takes note of a result, if there is one, as predicted; `accepted` are the operands of the computation that was
+    /// started last, if they are known.
+    #[inline]
+    pub(super) fn note(&mut self, measure: &Measure, seen: &mut Seen, accepted: Option<&[i64]>) {
+        let values = self.model.values();
+        let deaf = values[self.busy] == 1 && self.overlaps.is_none_or(|done| values[done] == 0);
+        let was_deaf = mem::replace(&mut self.deaf, deaf);
+        if deaf && !was_deaf {
+            self.index = 0;
+        }
+        if values[self.valid] != 1 {
+            return;
+        }
+        seen.points += 1;
+        // All combinations against the formula: that is the proof of the contract. Of recorded inputs nobody says which
+        // operands a result is of.
+        let Some(accepted) = accepted else {
+            return;
+        };
+        if self.index == 0 {
+            self.operands.clear();
+            self.operands.extend(accepted);
+            self.inside = measure.inside(&self.operands);
+        }
+        if self.inside {
+            measure.note(seen, &self.operands, self.index, values);
+        } else {
+            seen.histogram.add_outside();
+        }
+        self.index += 1;
+    }
+}
+
+/// The registers that a golden model must predict.
+pub(super) fn registers(design: &Design) -> impl Iterator<Item = NetId> {
+    let registers = design.registers.iter();
+    let registers = registers.filter(|register| register.kind != RegisterKind::Internal);
+    registers.map(|register| register.q)
+}

@@ -1,0 +1,328 @@
+//! Drives the inputs, clock by clock.
+//!
+//! A stimulus is a mix of everything that a device meets: points with idle gaps and back to back,
+//! operands written one after another, all at once or together with `start`, some left from the point
+//! before, writes and starts while busy, and resets in the middle of a computation. It reacts to `busy`,
+//! as a host does, and is a function of its seed.
+//!
+//! Whether a computation is to be reset, and when, is drawn as it starts, with short and long times alike:
+//! resets come often in the middle of a computation of ten clocks, and still let most of one of thousands
+//! come to its end.
+
+use std::sync::Arc;
+
+use super::points::Points;
+use super::ports::{OperandPort, Ports};
+use super::random::Random;
+use glint_base::fixed::mask;
+
+/// Resets come within 2⁰, 2¹, … clocks after a start, in equal parts up to this many powers: as long as
+/// the longest line.
+const RESET_MAGNITUDES: u64 = 13;
+
+#[derive(Clone, Copy, PartialEq)]
+enum Phase {
+    /// The clocks for which `rst_n` stays low.
+    Reset(u32),
+    /// Writing; the operands still to be written, as a mask.
+    Writing(u64),
+    /// The idle clocks until `start` is due.
+    Starting(u32),
+    /// A computation runs; the clocks to its reset, when one is due.
+    Running(Option<u64>),
+}
+
+/// The inputs of a device, clock by clock.
+pub(super) struct Stimulus {
+    ports: Arc<Ports>,
+    random: Random,
+    phase: Phase,
+    inputs: Vec<u64>,
+    /// Nothing is driven but `rst_n`, high.
+    idle: bool,
+    /// The raw operands of the next point, in the order of the points.
+    next: Vec<i64>,
+    /// The raw values that were last written where the device could take them.
+    written: Vec<i64>,
+    /// The operands that the latest `start` took of buffers.
+    taken: Option<Vec<i64>>,
+    first: bool,
+}
+
+impl Stimulus {
+    /// From power-up on.
+    pub(super) fn new(ports: &Arc<Ports>, seed: u64) -> Self {
+        let nothing = vec![0; ports.operands.len()];
+        Self {
+            random: Random::new(seed),
+            phase: Phase::Reset(2),
+            inputs: vec![0; ports.inputs],
+            idle: false,
+            next: nothing.clone(),
+            written: nothing.clone(),
+            taken: ports.overlaps.then_some(nothing),
+            first: true,
+            ports: ports.clone(),
+        }
+    }
+
+    /// The raw values of the latest computation, in the order of the points.
+    pub(super) fn accepted(&self) -> &[i64] {
+        self.taken.as_ref().unwrap_or(&self.written)
+    }
+
+    /// The inputs of the next clock; `busy`: a `start` that stands before the edge is not heard.
+    pub(super) fn next(&mut self, busy: bool, points: &Points) -> &[u64] {
+        if !self.idle {
+            self.inputs.fill(0);
+            self.inputs[self.ports.reset] = 1;
+            self.idle = true;
+        }
+        match self.phase {
+            Phase::Reset(left) => {
+                self.idle = false;
+                self.inputs[self.ports.reset] = 0;
+                if !self.first {
+                    self.noise(busy, points);
+                }
+                self.phase =
+                    if left > 0 { Phase::Reset(left - 1) } else { self.next_point(points) };
+            }
+            Phase::Writing(left) => self.write(left),
+            Phase::Starting(idle) => {
+                if idle == 0 {
+                    self.begin();
+                } else {
+                    self.phase = Phase::Starting(idle - 1);
+                }
+            }
+            Phase::Running(reset) => self.run(busy, reset, points),
+        }
+        self.accept(busy);
+        &self.inputs
+    }
+
+    /// Whether the latest inputs are those of any clock in which nothing is driven.
+    #[inline]
+    pub(super) fn is_idle(&self) -> bool {
+        self.idle
+    }
+
+    /// The latest inputs.
+    #[inline]
+    pub(super) fn inputs(&self) -> &[u64] {
+        &self.inputs
+    }
+
+    fn begin(&mut self) {
+        self.idle = false;
+        self.inputs[self.ports.start] = 1;
+        self.first = false;
+        let reset = self.random.once_in(16).then(|| {
+            let magnitude = self.random.below(RESET_MAGNITUDES);
+            self.random.below(1 << magnitude)
+        });
+        self.phase = Phase::Running(reset);
+    }
+
+    /// A clock after `start`: until the device has ended, now and then something that it must ignore,
+    /// or a reset.
+    fn run(&mut self, busy: bool, reset: Option<u64>, points: &Points) {
+        if busy {
+            if self.random.once_in(6) {
+                self.noise(true, points);
+            }
+            self.phase = Phase::Running(reset.map(|clocks| clocks.saturating_sub(1)));
+            if reset == Some(0) {
+                self.idle = false;
+                self.inputs[self.ports.reset] = 0;
+                self.phase = Phase::Reset(self.random.below(3) as u32);
+            }
+            return;
+        }
+        // Ended, and the device takes operands again in this very clock.
+        self.phase = self.next_point(points);
+        match self.phase {
+            Phase::Writing(left) => self.write(left),
+            Phase::Starting(0) => self.begin(),
+            Phase::Starting(idle) => self.phase = Phase::Starting(idle - 1),
+            _ => {}
+        }
+    }
+
+    /// Returns the first phase of the next point.
+    fn next_point(&mut self, points: &Points) -> Phase {
+        let all = (1u64 << self.ports.operands.len()) - 1;
+        let written = if self.first {
+            all
+        } else {
+            match self.random.below(8) {
+                // The same operands once more.
+                0 => return Phase::Starting(self.random.below(4) as u32),
+                // Some of them.
+                1 | 2 => self.random.bits() & all,
+                _ => all,
+            }
+        };
+        let places = self.ports.operands.iter().enumerate();
+        let drawn = places.filter(|(at, _)| written >> at & 1 == 1);
+        let free = drawn.fold(0, |free, (_, port)| free | 1 << port.at);
+        self.next.copy_from_slice(&self.written);
+        points.draw(&mut self.random, &mut self.next, free);
+        // What leads to the peak is written too.
+        let moved = |port: &OperandPort| self.next[port.at] != self.written[port.at];
+        let moved = self.ports.operands.iter().enumerate().filter(|(_, port)| moved(port));
+        Phase::Writing(moved.fold(written, |written, (at, _)| written | 1 << at))
+    }
+
+    /// Writes of the operands in `left`: one, or all at once, perhaps together with `start`.
+    fn write(&mut self, left: u64) {
+        self.idle = false;
+        let now = match self.random.below(4) {
+            0 if left != 0 => 1 << left.trailing_zeros(),
+            1 => left & self.random.bits(),
+            _ => left,
+        };
+        for (at, port) in self.ports.operands.iter().enumerate() {
+            if now >> at & 1 == 1 {
+                self.inputs[port.data] = port.pattern(&self.next);
+                self.inputs[port.strobe] = 1;
+            }
+        }
+        let left = left & !now;
+        if left != 0 {
+            self.phase = Phase::Writing(left);
+        } else if self.random.once_in(3) {
+            // Together with the last write.
+            self.begin();
+        } else {
+            self.phase = Phase::Starting(if self.random.once_in(4) {
+                self.random.below(6) as u32
+            } else {
+                0
+            });
+        }
+    }
+
+    /// Strobes, data and `start` at random: ignored while busy.
+    fn noise(&mut self, busy: bool, points: &Points) {
+        self.idle = false;
+        let random = &mut self.random;
+        for port in &self.ports.operands {
+            let any = random.once_in(8);
+            let raw = if any { points.any(random, port.at) } else { points.one(random, port.at) };
+            self.inputs[port.data] = raw as u64 & mask(port.format.width());
+            self.inputs[port.strobe] = u64::from(random.once_in(3));
+        }
+        if busy {
+            self.inputs[self.ports.start] = u64::from(self.random.once_in(2));
+        }
+    }
+
+    /// Notes what registers or buffers take at this edge.
+    fn accept(&mut self, busy: bool) {
+        if self.idle || busy && self.taken.is_none() {
+            return;
+        }
+        for port in &self.ports.operands {
+            if self.inputs[port.strobe] == 1 {
+                self.written[port.at] = port.raw(&self.inputs);
+            }
+        }
+        if let Some(taken) = &mut self.taken
+            && !busy
+            && self.inputs[self.ports.start] == 1
+        {
+            taken.copy_from_slice(&self.written);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::points::tests::Pulse;
+    use super::*;
+    use glint_base::fixed::Format;
+    use glint_rtl::dsl::{Designer, end, step, valid};
+    use glint_rtl::netlist::{Design, Role};
+
+    /// A design with one operand; how long a computation takes is for the tests to say.
+    fn design() -> Design {
+        let d = Designer::new("device");
+        let x = d.operand("x", Format::unsigned(12, 0));
+        let y = d.register("y", x.q().format());
+        y.takes(x.q());
+        d.output("y_out", y.q());
+        let load = step("load", [y.load()]);
+        d.microprogram([step("idle", []), load, step("result", [valid(), end()])]);
+        d.finish().unwrap()
+    }
+
+    /// The events in computations of some length.
+    #[derive(Debug, Default)]
+    struct Events {
+        complete: u32,
+        reset: u32,
+        written: u32,
+        started_again: u32,
+        with_last_write: u32,
+    }
+
+    fn events(length: u32, clocks: u32) -> Events {
+        let pulse = Pulse::single(false);
+        let points = Points::new(&pulse);
+        let ports = Arc::new(Ports::new(&design(), &pulse).unwrap());
+        let mut stimulus = Stimulus::new(&ports, 1);
+        let (reset, start, strobe) = (ports.reset, ports.start, ports.operands[0].strobe);
+        let mut left = 0;
+        let mut events = Events::default();
+        for _ in 0..clocks {
+            let busy = left > 0;
+            let inputs = stimulus.next(busy, &points);
+            let (reset, start) = (inputs[reset] == 0, inputs[start] == 1);
+            let strobe = inputs[strobe] == 1;
+            events.written += u32::from(busy && strobe);
+            events.started_again += u32::from(busy && start);
+            events.with_last_write += u32::from(!busy && start && strobe);
+            if reset {
+                events.reset += u32::from(busy);
+                left = 0;
+            } else if busy {
+                left -= 1;
+                events.complete += u32::from(left == 0);
+            } else if start {
+                left = length;
+            }
+        }
+        events
+    }
+
+    #[test]
+    fn a_strobe_that_is_no_input_is_refused() {
+        let (pulse, mut design) = (Pulse::single(false), design());
+        let busy = design.handshake().unwrap().busy;
+        let operand = |role: Role| matches!(role, Role::Operand { .. });
+        let port = design.ports.iter_mut().find(|port| operand(port.role)).unwrap();
+        port.role = Role::Operand { strobe: busy };
+        let error = Ports::new(&design, &pulse).err().unwrap();
+        assert_eq!(error.to_string(), "`busy` is no input of `device`");
+    }
+
+    #[test]
+    fn short_computations_meet_everything() {
+        let events = events(10, 100_000);
+        assert!(events.complete > 5_000, "{events:?}");
+        // One in some forty.
+        assert!(events.reset > 100 && events.reset < 500, "{events:?}");
+        assert!(events.written > 2_000, "{events:?}");
+        assert!(events.started_again > 2_000, "{events:?}");
+        assert!(events.with_last_write > 1_000, "{events:?}");
+    }
+
+    #[test]
+    fn most_long_computations_come_to_their_end() {
+        let events = events(4100, 4_000_000);
+        assert!(events.complete > 800, "{events:?}");
+        assert!(events.reset > 30 && events.reset < 150, "{events:?}");
+    }
+}

@@ -1,0 +1,247 @@
+//! A stream: inputs from power-up on, and the golden model under them.
+
+use anyhow::Result;
+
+use super::binding::{Binding, Host};
+use super::combinations::{Combinations, Space};
+use super::offers::Offers;
+use super::outcome::{Course, Mismatch, Seen};
+use super::recorded::Recorded;
+use super::stimulus::Stimulus;
+use glint_rtl::netlist::NetId;
+
+/// Where the inputs come from.
+enum Source {
+    /// At random, for a core.
+    Stimulus(Stimulus),
+    /// At random, for a pipeline.
+    Offers(Offers),
+    Combinations(Combinations),
+    Recorded(Recorded),
+}
+
+impl Source {
+    /// The latest inputs.
+    #[inline]
+    fn inputs(&self) -> &[u64] {
+        match self {
+            Self::Stimulus(stimulus) => stimulus.inputs(),
+            Self::Offers(offers) => offers.inputs(),
+            Self::Combinations(combinations) => combinations.inputs(),
+            Self::Recorded(recorded) => recorded.inputs(),
+        }
+    }
+
+    /// Whether no computation is left to start.
+    fn is_over(&self) -> bool {
+        match self {
+            Self::Combinations(combinations) => combinations.all_started(),
+            Self::Offers(offers) => offers.is_over(),
+            Self::Stimulus(_) | Self::Recorded(_) => false,
+        }
+    }
+
+    /// The place of the combination that was started last.
+    fn place(&self) -> Option<u64> {
+        match self {
+            Self::Combinations(combinations) => Some(combinations.place()),
+            _ => None,
+        }
+    }
+}
+
+/// A stream. What the simulated hardware makes of it is for others to say.
+pub(super) struct Stream {
+    pub(super) seen: Seen,
+    /// Its course, for another to go the same way.
+    pub(super) course: Course,
+    source: Source,
+    host: Host,
+    /// Clocks from the start of the combination that differs to the difference.
+    pub(super) since_start: u64,
+}
+
+impl Stream {
+    /// At power-up, when the device shows `busy`.
+    pub(super) fn new(binding: &Binding, course: Course, busy: bool) -> Self {
+        let mut host = binding.host.clone();
+        if let Host::Core(core) = &mut host {
+            core.deaf = busy;
+        }
+        let source = match &course {
+            Course::Random { seed, .. } if binding.is_pipeline() => {
+                Source::Offers(Offers::new(&binding.ports, *seed))
+            }
+            Course::Random { seed, .. } => Source::Stimulus(Stimulus::new(&binding.ports, *seed)),
+            Course::Combinations { first, count } => {
+                Source::Combinations(Combinations::new(binding.space.clone(), *first, *count))
+            }
+            Course::Recorded { recording, .. } => Source::Recorded(Recorded::new(recording)),
+        };
+        Self { seen: Seen::default(), course, source, host, since_start: 0 }
+    }
+
+    /// Whether it has come to the end of its course, or something differs. Of combinations in a pipeline those before the
+    /// one that differs are still gone through.
+    pub(super) fn ended(&self) -> bool {
+        match (&self.course, &self.seen.mismatch) {
+            (Course::Combinations { .. }, Some(found)) => {
+                !matches!(&self.host, Host::Pipe(pipe) if pipe.has_before(found.seed))
+            }
+            (_, Some(_)) => true,
+            (Course::Random { points, .. }, _) => self.seen.points >= *points,
+            (Course::Combinations { .. }, _) => {
+                let idle = match &self.host {
+                    Host::Core(core) => !core.deaf,
+                    Host::Pipe(pipe) => !pipe.has_before(u64::MAX),
+                };
+                idle && self.source.is_over()
+            }
+            (Course::Recorded { clocks, .. }, _) => self.seen.clocks >= *clocks,
+        }
+    }
+
+    /// Goes on with computations of these raw operands, in the order of the contract, as the device stands.
+    pub(super) fn follow(&mut self, binding: &Binding, computations: &[Vec<i64>]) {
+        let count = computations.len() as u64;
+        self.course = Course::Combinations { first: 0, count };
+        if let Source::Offers(offers) = &mut self.source {
+            offers.follow(computations);
+        } else {
+            let space = Space::listed(&binding.ports, computations);
+            self.source = Source::Combinations(Combinations::new(space.into(), 0, count));
+        }
+    }
+
+    /// Clocks the model.
+    #[inline]
+    pub(super) fn clock(&mut self, binding: &Binding) -> Result<()> {
+        let (deaf, taken) = match &self.host {
+            Host::Core(core) => (core.deaf, !core.deaf),
+            Host::Pipe(pipe) => (false, pipe.taken),
+        };
+        let inputs = match &mut self.source {
+            Source::Stimulus(stimulus) => stimulus.next(deaf, &binding.points),
+            Source::Offers(offers) => offers.next(taken, &binding.points),
+            Source::Combinations(combinations) => combinations.next(match &self.host {
+                Host::Core(core) => !core.deaf,
+                Host::Pipe(pipe) => pipe.is_ready(),
+            }),
+            Source::Recorded(recorded) => recorded.next(),
+        };
+        self.seen.clocks += 1;
+        match &mut self.host {
+            Host::Core(core) => core.clock(inputs),
+            Host::Pipe(pipe) => {
+                let inputs = self.source.inputs();
+                let drawn = matches!(self.source, Source::Offers(_));
+                let measure = drawn.then_some(&binding.measure);
+                let place = self.source.place().unwrap_or(0);
+                pipe.clock(&binding.ports, inputs, place, measure, &mut self.seen)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The inputs of the latest clock.
+    #[inline]
+    pub(super) fn inputs(&self) -> &[u64] {
+        self.source.inputs()
+    }
+
+    /// Whether the latest inputs are those of any clock in which the stream drives nothing.
+    #[inline]
+    pub(super) fn is_idle(&self) -> bool {
+        matches!(&self.source, Source::Stimulus(stimulus) if stimulus.is_idle())
+    }
+
+    /// Writes what is predicted after the latest clock into a lane of `expected`, and all ones into `known` where
+    /// something is predicted at all: of a core that is everything.
+    #[inline]
+    pub(super) fn predict<const L: usize>(
+        &self,
+        expected: &mut [[u64; L]],
+        known: &mut [[u64; L]],
+        lane: usize,
+    ) {
+        match &self.host {
+            Host::Core(core) => {
+                for (column, &bits) in expected.iter_mut().zip(core.predicted()) {
+                    column[lane] = bits;
+                }
+            }
+            Host::Pipe(pipe) => {
+                for (at, (expected, known)) in expected.iter_mut().zip(known).enumerate() {
+                    let predicted = pipe.expected(at);
+                    expected[lane] = predicted.unwrap_or(0);
+                    known[lane] = if predicted.is_some() { u64::MAX } else { 0 };
+                }
+            }
+        }
+    }
+
+    /// Takes note of the first signal on which simulation and model differ after the latest clock, if they do. The
+    /// microinstruction at `address` was executed at the edge.
+    pub(super) fn compare(
+        &mut self,
+        binding: &Binding,
+        address: u64,
+        simulated: impl Fn(NetId) -> u64,
+    ) {
+        let place = match &self.course {
+            Course::Random { seed, .. } => *seed,
+            _ => self.source.place().unwrap_or(0),
+        };
+        let since = match &self.source {
+            Source::Combinations(combinations) => combinations.since_start(),
+            _ => 0,
+        };
+        let differences = binding.compared.iter().enumerate().filter_map(|(at, &net)| {
+            let (golden, from) = match &self.host {
+                Host::Core(core) => (core.predicted()[at], None),
+                Host::Pipe(pipe) => (pipe.expected(at)?, pipe.point(at)),
+            };
+            let from = from.filter(|_| self.source.place().is_some());
+            let from = from.map(|(place, taken)| (place, self.seen.clocks - taken));
+            (simulated(net) != golden).then(|| (at, golden, from.unwrap_or((place, since))))
+        });
+        // Of several points in a pipeline the first is told.
+        let Some((at, golden, (seed, since))) = differences.min_by_key(|(.., (seed, _))| *seed)
+        else {
+            return;
+        };
+        if self.seen.mismatch.as_ref().is_some_and(|found| found.seed <= seed) {
+            return;
+        }
+        let net = binding.compared[at];
+        let during = match &binding.design.pipeline {
+            Some(pipeline) => format!("stage {}", pipeline.stage_of[net.index()]),
+            None => {
+                let microprogram = &binding.design.control.microprogram;
+                let executed = usize::try_from(address).ok().and_then(|at| microprogram.get(at));
+                executed.map_or_else(String::new, |it| format!("microinstruction `{}`", it.name))
+            }
+        };
+        self.since_start = since;
+        self.seen.mismatch = Some(Mismatch {
+            seed,
+            clock: self.seen.clocks,
+            signal: binding.design.net(net).name.clone(),
+            golden,
+            simulated: simulated(net),
+            during,
+        });
+    }
+
+    /// Takes note of a result of a core, if there is one, as predicted.
+    #[inline]
+    pub(super) fn note(&mut self, binding: &Binding) {
+        if let Host::Core(core) = &mut self.host {
+            let accepted = match &self.source {
+                Source::Stimulus(stimulus) => Some(stimulus.accepted()),
+                _ => None,
+            };
+            core.note(&binding.measure, &mut self.seen, accepted);
+        }
+    }
+}

@@ -1,0 +1,387 @@
+//! One computation of a design in the built-in simulator: its timing, a worked example, a recording, and a
+//! list of computations for whoever checks the device without a model.
+
+use anyhow::{Context, Result, ensure};
+
+use super::instances::Instances;
+use super::points::length;
+use super::ports::Ports;
+use super::{Points, Random, through};
+use crate::package::{Computation, LineClocks, Linear, Quantity, Shown, Timing, WorkedExample};
+use glint_base::fixed::Format;
+use glint_golden::{Contract, Highlight, Operand};
+use glint_rtl::netlist::{self, Design, NetId};
+use glint_rtl::sim::Simulator;
+
+/// More clocks than any device takes.
+const LIMIT: u32 = 1 << 16;
+
+/// Computations in a list, the first of them the corners of the domain.
+const COMPUTATIONS: usize = 40;
+
+/// The longest line of a computation in a list, in intervals.
+const SHORT: i64 = 9;
+
+/// The longest line of which the clocks are measured, beyond the shortest.
+const LONG: i64 = 1000;
+
+/// Points of a recording of a pipeline.
+const POINTS: usize = 3;
+
+/// Clocks for which the first result of such a recording waits.
+const PAUSE: usize = 2;
+
+/// Hints of a contract that are tried for a worked example.
+const TRIES: u32 = 256;
+
+/// The record of one computation.
+struct Trial {
+    timing: Timing,
+    /// The raw results whenever `valid` is high.
+    results: Vec<(u32, Vec<i64>)>,
+    /// The first clock with a microinstruction whose successor an operand decides.
+    decision: Option<u32>,
+}
+
+impl Trial {
+    /// The clocks from each result to the next; where it is as from the one before, it is left out.
+    fn distances(&self) -> Vec<u32> {
+        let pairs = self.results.windows(2);
+        let mut distances: Vec<u32> = pairs.map(|pair| pair[1].0 - pair[0].0).collect();
+        distances.dedup();
+        distances
+    }
+}
+
+/// The clocks between the events of the handshake, where the microprogram makes them the same for all operands
+/// that the ports take, inside the domain or not. Clocks from result to result are those of operands from the
+/// corners of the ports.
+///
+/// # Errors
+/// A device that never ends, or never raises `valid`.
+pub fn timing(design: &Design, contract: &dyn Contract) -> Result<Timing> {
+    let ports = |it: &Operand| (it.format.min_raw(), it.format.max_raw());
+    let trials: Vec<Trial> = corners(contract, ports)
+        .iter()
+        .map(|operands| run(design, contract, operands, &mut |_| Ok(())))
+        .collect::<Result<_>>()?;
+    let seen = &trials[0].timing;
+    // What the control word brings about up to this clock, no operand has an influence on.
+    let decision = trials[0].decision;
+    let valid = match (netlist::delay_of_valid(design), seen.start_to_valid) {
+        (Some(delay), Some(clock)) if decision.is_none_or(|at| clock - delay <= at) => Some(clock),
+        _ => None,
+    };
+    let fixed = |clock: Option<u32>| clock.filter(|_| decision.is_none());
+    let mut distances: Vec<u32> = trials.iter().flat_map(Trial::distances).collect();
+    distances.dedup();
+    Ok(Timing {
+        start_to_valid: valid,
+        valid_to_valid: match distances[..] {
+            [only] => Some(only),
+            _ => None,
+        },
+        start_to_done: fixed(seen.start_to_done),
+        start_to_done_at_most: decision.and_then(|_| netlist::latest_done(design)),
+        start_to_start: fixed(seen.start_to_start),
+    })
+}
+
+/// The lowest operands within these ends, the highest, and those in the middle.
+fn corners(contract: &dyn Contract, ends: fn(&Operand) -> (i128, i128)) -> [Vec<i64>; 3] {
+    let corner = |pick: fn(i128, i128) -> i128| {
+        let raw = |(low, high)| pick(low, high) as i64;
+        contract.operands().iter().map(|operand| raw(ends(operand))).collect()
+    };
+    [corner(|low, _| low), corner(|_, high| high), corner(i128::midpoint)]
+}
+
+/// Computations with all that they show, over the domain: its corners, and points at random. The golden
+/// model computes the same results.
+///
+/// # Errors
+/// As of [`timing`]; golden model and simulation do not agree.
+pub fn computations(design: &Design, contract: &dyn Contract) -> Result<Vec<Computation>> {
+    let mut random = Random::new(1);
+    let mut points = Points::new(contract);
+    points.shorten(SHORT);
+    let domain = |it: &Operand| (it.domain.0.into(), it.domain.1.into());
+    let mut list = Vec::from(corners(contract, domain).map(|corner| points.clamped(corner)));
+    list.resize_with(COMPUTATIONS, || points.of_domain(&mut random));
+    list.into_iter().map(|operands| computation(design, contract, operands)).collect()
+}
+
+fn computation(
+    design: &Design,
+    contract: &dyn Contract,
+    operands: Vec<i64>,
+) -> Result<Computation> {
+    let trial = run(design, contract, &operands, &mut |_| Ok(()))?;
+    let mut shown = Vec::with_capacity(trial.results.len());
+    for (index, (clock, simulated)) in trial.results.iter().enumerate() {
+        let mut right = Vec::new();
+        contract.results(&operands, index as u64, &mut right);
+        ensure!(
+            right == *simulated,
+            "golden model and simulation of `{}` do not agree on result {index} of {}: {} and {}",
+            design.name,
+            listed(contract.operands().iter().map(|it| it.name.as_str()), &operands),
+            listed(contract.outputs().iter().map(|output| output.name.as_str()), &right),
+            listed(contract.outputs().iter().map(|output| output.name.as_str()), simulated),
+        );
+        shown.push(Shown { clock: *clock, outputs: right });
+    }
+    Ok(Computation {
+        done: trial.timing.start_to_done.context("it is never done")?,
+        results: shown,
+        operands,
+    })
+}
+
+/// `red=#255 green=#0`: raw values with their names.
+fn listed<'a>(names: impl Iterator<Item = &'a str>, raw: &[i64]) -> String {
+    let each: Vec<String> = names.zip(raw).map(|(name, raw)| format!("{name}=#{raw}")).collect();
+    each.join(" ")
+}
+
+/// The clocks of one computation, from `start` to the next, and the results that it shows.
+///
+/// # Errors
+/// As of [`timing`].
+pub fn throughput(
+    design: &Design,
+    contract: &dyn Contract,
+    operands: &[i64],
+) -> Result<(u32, u32)> {
+    let trial = run(design, contract, operands, &mut |_| Ok(()))?;
+    let clocks = trial.timing.start_to_start.context("it does not end")?;
+    Ok((clocks, trial.results.len() as u32))
+}
+
+/// The clocks of a line in terms of its length, measured at the shortest lines and a long one; `None` for a device that
+/// walks none, or whose clocks are no constant and a multiple of the length.
+///
+/// # Errors
+/// As of [`timing`].
+pub fn line(design: &Design, contract: &dyn Contract) -> Result<Option<LineClocks>> {
+    let mut operands = typical(contract, &[]);
+    let Some(at) = length(contract) else { return Ok(None) };
+    let Operand { name, domain: (low, high), .. } = contract.operands()[at].clone();
+    let mut seen: Vec<(i64, [i64; 3])> = Vec::new();
+    for length in [low, low + 1, low + 2, low + 3, high.min(low + LONG)] {
+        operands[at] = length.min(high);
+        let trial = run(design, contract, &operands, &mut |_| Ok(()))?;
+        let (last, _) = trial.results.last().context("it shows no result")?;
+        let done = trial.timing.start_to_done.context("it is never done")?;
+        let next = trial.timing.start_to_start.context("it does not end")?;
+        seen.push((operands[at], [*last, done, next].map(i64::from)));
+    }
+    let [valid, done, next] = [0, 1, 2].map(|event| {
+        let each = seen[1].1[event] - seen[0].1[event];
+        let clocks = Linear { constant: seen[0].1[event] - each * low, each };
+        let holds = seen.iter().all(|(length, at)| clocks.at(*length) == at[event]);
+        holds.then_some(clocks)
+    });
+    let (Some(last_valid), Some(done), Some(next_start)) = (valid, done, next) else {
+        return Ok(None);
+    };
+    Ok(Some(LineClocks { length: name, last_valid, done, next_start }))
+}
+
+/// A computation with all its numbers: operands of the domain for which f, if there is one, is neither 0 nor 1. Of several
+/// results it shows the first.
+///
+/// # Errors
+/// As of [`timing`].
+pub fn example(design: &Design, contract: &dyn Contract) -> Result<WorkedExample> {
+    let operands = typical(contract, &[]);
+    let trial = run(design, contract, &operands, &mut |_| Ok(()))?;
+    let quantity = |name: &str, format: Format, raw: i64| Quantity {
+        name: name.to_owned(),
+        raw: i128::from(raw),
+        value: format.to_f64(i128::from(raw)),
+    };
+    let outputs = |(_, raw): &(u32, Vec<i64>)| -> Vec<Quantity> {
+        let pairs = contract.outputs().iter().zip(raw);
+        pairs.map(|(output, &raw)| quantity(&output.name, output.format, raw)).collect()
+    };
+    let results: Vec<Vec<Quantity>> = trial.results.iter().map(outputs).collect();
+    Ok(WorkedExample {
+        operands: contract
+            .operands()
+            .iter()
+            .zip(&operands)
+            .map(|(operand, &raw)| quantity(&operand.name, operand.format, raw))
+            .collect(),
+        outputs: results.first().context("it shows no result")?.clone(),
+        results,
+    })
+}
+
+/// Typical operands around those that are given: of the fractions among those of control the first that can (a cosine, an
+/// angle) is lowered until f is well inside 0 … 1.
+pub fn typical(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<i64> {
+    let given = |at: usize| given.get(at).copied().flatten();
+    let mut colour = 0;
+    let mut values: Vec<i64> = contract
+        .operands()
+        .iter()
+        .enumerate()
+        .map(|(at, operand)| {
+            let (low, high) = operand.domain;
+            if let Some(raw) = given(at) {
+                raw
+            } else if operand.colour {
+                colour += 1;
+                high - high * (colour - 1) / 3
+            } else if operand.format.frac > 0 {
+                // Close to 1.0 for a cosine, close to 0 for what has a sign.
+                if low < 0 { high / 64 } else { high - (high - low) / 64 }
+            } else {
+                20.clamp(low, high) * i64::from(high > 1)
+            }
+        })
+        .collect();
+    let Some(highlight) = contract.highlight() else {
+        let hinted = hinted(contract).unwrap_or(values.clone());
+        return (0..).zip(hinted).map(|(at, raw)| given(at).unwrap_or(raw)).collect();
+    };
+    let control = highlight.control();
+    let movable = |at: &usize| contract.operands()[*at].format.frac > 0 && given(*at).is_none();
+    for at in (0..control).filter(movable) {
+        let (low, high) = contract.operands()[at].domain;
+        let typical = values[at];
+        for step in 0..256 {
+            values[at] = if low < 0 {
+                // What has a sign goes toward 0 by twentieths: its scale may be any.
+                (high as f64 * libm::pow(0.95, step as f64)) as i64
+            } else {
+                high - (high - low) / 256 * step
+            };
+            let f = highlight.reference(&highlight.point(&values[..control], 0));
+            if (0.4..0.8).contains(&f) {
+                slow_down(contract, highlight, &mut values, &movable);
+                return values;
+            }
+        }
+        values[at] = typical;
+    }
+    values
+}
+
+/// Lowers the operands of a line that f does not depend on at its first point, until f at its middle is a quarter of that.
+fn slow_down(
+    contract: &dyn Contract,
+    highlight: &Highlight,
+    values: &mut [i64],
+    movable: &dyn Fn(&usize) -> bool,
+) {
+    let Some(middle) = length(contract).map(|at| values[at] as u64 / 2) else { return };
+    let control = highlight.control();
+    let f =
+        |values: &[i64], index| highlight.reference(&highlight.point(&values[..control], index));
+    let first = f(values, 0);
+    for at in (0..control).filter(movable) {
+        let typical = values[at];
+        let low = contract.operands()[at].domain.0.max(0);
+        while f(values, 0) == first && f(values, middle) < first / 4.0 && values[at] > low {
+            values[at] = (values[at] - values[at] / 5 - 1).max(low);
+        }
+        if f(values, 0) != first {
+            values[at] = typical;
+        }
+    }
+}
+
+/// The first operands that the contract hints at for which no output is 0 or at an end of its format.
+fn hinted(contract: &dyn Contract) -> Option<Vec<i64>> {
+    let (mut random, points) = (Random::new(1), Points::new(contract));
+    let inside = |operands: &Vec<i64>| {
+        let mut raw = Vec::new();
+        contract.results(operands, 0, &mut raw);
+        let ends = |format: Format| [0, format.min_raw(), format.max_raw()];
+        let mut outputs = contract.outputs().iter().zip(raw);
+        outputs.all(|(output, raw)| !ends(output.format).contains(&i128::from(raw)))
+    };
+    (0..TRIES).map_while(|_| points.hint(&mut random)).find(inside)
+}
+
+/// Records what nets carry in each clock of the computation of [`example`], from clock 0, in which `start` is high, to the
+/// first in which the device is idle again: the bit patterns just before the clock's rising edge, in the order of
+/// `nets`, all of which are named.
+///
+/// # Errors
+/// As of [`timing`].
+pub fn record(design: &Design, contract: &dyn Contract, nets: &[NetId]) -> Result<Vec<Vec<u64>>> {
+    let mut clocks = Vec::new();
+    run(design, contract, &typical(contract, &[]), &mut |simulator| {
+        simulator.settle()?;
+        clocks.push(nets.iter().map(|&net| simulator.value(net)).collect());
+        Ok(())
+    })?;
+    Ok(clocks)
+}
+
+/// Records nets in each clock while three points go through a pipeline, the first of them that of [`example`]: one clock
+/// has no point, and the first result waits, where it can, for two.
+///
+/// # Errors
+/// As of [`timing`].
+pub fn record_points(
+    design: &Design,
+    contract: &dyn Contract,
+    nets: &[NetId],
+) -> Result<Vec<Vec<u64>>> {
+    let (mut random, points) = (Random::new(1), Points::new(contract));
+    let mut list = vec![typical(contract, &[])];
+    list.resize_with(POINTS, || points.of_domain(&mut random));
+    through::record(design, contract, (&list, PAUSE), nets, LIMIT)
+}
+
+/// Sees the simulator in each clock, before its rising edge.
+type Watch<'a> = &'a mut dyn FnMut(&mut Simulator) -> Result<()>;
+
+/// Resets, writes the operands, starts, and waits for the end: of a pipeline, for the results.
+fn run(
+    design: &Design,
+    contract: &dyn Contract,
+    operands: &[i64],
+    watch: Watch<'_>,
+) -> Result<Trial> {
+    let mut instance = Instances::<1>::new(design, contract)?;
+    instance.offer([Some(operands)]);
+    watch(&mut instance.simulator)?;
+    instance.simulator.clock()?;
+    instance.release();
+    let Ports { valid, busy, done, overlaps, .. } = instance.ports;
+    let address = |_| (design.register(design.control.address).q, netlist::decided_by_data(design));
+    let decided = busy.map(address);
+    let mut trial = Trial { timing: Timing::default(), results: Vec::new(), decision: None };
+    // Clock 0 was the one that took `start`.
+    for clock in 1..LIMIT {
+        watch(&mut instance.simulator)?;
+        let high = |net| instance.simulator.value(net) == 1;
+        let address = |net| instance.simulator.value(net) as usize;
+        if decided.as_ref().is_some_and(|(net, decided)| decided.contains(&address(*net))) {
+            trial.decision.get_or_insert(clock);
+        }
+        let shows = high(valid);
+        if shows {
+            trial.timing.start_to_valid.get_or_insert(clock);
+            trial.results.push((clock, instance.results(0).collect()));
+        }
+        if done.map_or(shows, high) {
+            trial.timing.start_to_done = Some(clock);
+            trial.timing.start_to_start = overlaps.then_some(clock);
+        }
+        if busy.map_or(shows, |busy| !high(busy)) {
+            let interval = design.pipeline.as_ref().map(|pipeline| pipeline.interval as u32);
+            let next = interval.unwrap_or(clock);
+            trial.timing.start_to_start.get_or_insert(next);
+            ensure!(trial.timing.start_to_valid.is_some(), "`{}` never raises valid", design.name);
+            return Ok(trial);
+        }
+        instance.simulator.clock()?;
+    }
+    anyhow::bail!("`{}` does not end within {LIMIT} clocks", design.name)
+}

@@ -1,0 +1,9 @@
+//! From a configuration to everything that is made of it: its files, and whether they do what they should.
+//!
+//! No process, thread of its own or signal is in this crate or below it: it works where there is no operating system.
+
+pub mod core;
+pub mod cosim;
+pub mod observation;
+pub mod package;
+pub mod registry;

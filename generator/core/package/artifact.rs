@@ -1,0 +1,110 @@
+//! The files of a configuration while they are made. The kind of a file says where it goes, and in which order it is listed.
+
+use super::bus::Bus;
+use super::map::Map;
+use super::{EmitInputs, OutputFile};
+use glint_rtl::netlist::Design;
+use glint_rtl::verilog::naming::Naming;
+
+/// The purpose of a file, in the order in which files are listed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Kind {
+    /// Verilog of the core, the top module first.
+    Rtl,
+    /// Verilog of a target, `<target>/<file>`, in place of the file of that name among the portable ones.
+    Primitive,
+    /// Verilog around the core.
+    Wrapper,
+    /// ROM contents.
+    Memory,
+    /// The FuseSoC core of the device.
+    Core,
+    /// Timing constraints.
+    Constraint,
+    /// Scripts and descriptions for vendors' tools.
+    Script,
+    /// Benches in Python.
+    Python,
+    /// Proofs of wrappers.
+    WrapperProof,
+    /// The proof of the core.
+    Proof,
+    /// Benches in Verilog with their vectors, that of the core first.
+    Bench,
+    /// The FuseSoC core of the benches.
+    BenchCore,
+    /// The model in C, and what else software begins with.
+    Software,
+}
+
+impl Kind {
+    fn folder(self) -> &'static str {
+        match self {
+            Self::Software => "software",
+            Self::Python | Self::WrapperProof | Self::Proof | Self::Bench | Self::BenchCore => {
+                "testbench"
+            }
+            _ => "rtl_out",
+        }
+    }
+}
+
+/// A file: a plain name, and its text.
+struct Artifact {
+    kind: Kind,
+    name: String,
+    text: String,
+}
+
+/// The files that were made so far, in any order.
+#[derive(Default)]
+pub struct Artifacts(Vec<Artifact>);
+
+impl Artifacts {
+    /// Adds a file.
+    pub fn add(&mut self, kind: Kind, name: impl Into<String>, text: String) {
+        self.0.push(Artifact { kind, name: name.into(), text });
+    }
+
+    /// The names of the files of some kinds, in the order of the kinds and, among one kind, in which they were added.
+    pub fn names(&self, kinds: &[Kind]) -> Vec<String> {
+        let all = kinds.iter().flat_map(|kind| self.0.iter().filter(move |it| it.kind == *kind));
+        all.map(|file| file.name.clone()).collect()
+    }
+
+    /// Returns all files in order, with their paths.
+    pub fn files(mut self, design: &str) -> Vec<OutputFile> {
+        self.0.sort_by_key(|file| file.kind);
+        let file = |Artifact { kind, name, text }| OutputFile {
+            path: format!("{}/{design}/{name}", Kind::folder(kind)),
+            contents: text,
+        };
+        self.0.into_iter().map(file).collect()
+    }
+}
+
+/// A design with everything that its files are made of.
+pub struct Job<'a> {
+    pub design: &'a Design,
+    pub inputs: &'a EmitInputs,
+    pub naming: &'a Naming,
+    /// The bus that the configuration asks for, and the registers on it.
+    pub registers: Option<(&'static Bus, Map)>,
+}
+
+impl<'a> Job<'a> {
+    /// The name of the core.
+    pub fn name(&self) -> &'a str {
+        &self.design.name
+    }
+
+    /// The command that makes the files again.
+    pub fn regenerate(&self) -> &'a str {
+        &self.inputs.regenerate
+    }
+
+    /// Returns whether the core computes lines of points.
+    pub fn is_line(&self) -> bool {
+        self.inputs.accuracy.as_ref().is_some_and(|accuracy| accuracy.length.is_some())
+    }
+}

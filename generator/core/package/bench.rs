@@ -1,0 +1,197 @@
+//! The self-checking test bench and its vectors.
+
+use anyhow::{Result, ensure};
+use glint_base::fill;
+
+use super::Vectors;
+use super::artifact::{Artifacts, Job, Kind};
+use glint_base::fixed::mask;
+use glint_rtl::netlist::{Design, Port, Role};
+use glint_rtl::verilog::rows::{connections, variables};
+use glint_rtl::verilog::text::{Names, ascii, comment, literal, statement};
+
+fresh_names!(Variables {
+    stimulus,
+    expected,
+    want,
+    clock,
+    errors,
+    was_reset,
+    dut,
+    write_microinstruction
+});
+
+/// An output and its place in the expected word.
+struct Output {
+    name: String,
+    select: String,
+}
+
+/// A microinstruction.
+struct Microinstruction {
+    label: String,
+    address: usize,
+    name: String,
+}
+
+/// Adds the bench, the stimulus and the expected outputs.
+///
+/// # Errors
+/// Vectors that do not fit the ports.
+pub fn files(job: &Job, vectors: &Vectors, files: &mut Artifacts) -> Result<()> {
+    let design = job.design;
+    let inputs: Vec<_> = design.inputs().collect();
+    let outputs: Vec<_> = design.outputs().collect();
+    ensure!(!inputs.is_empty() && !outputs.is_empty(), "a bench needs inputs and outputs");
+    ensure!(!vectors.inputs.is_empty(), "a bench needs at least one clock of stimulus");
+    ensure!(
+        vectors.inputs.len() == vectors.expected.len(),
+        "{} clocks of stimulus, {} of expected outputs",
+        vectors.inputs.len(),
+        vectors.expected.len()
+    );
+    ensure!(
+        vectors.known_from <= vectors.inputs.len(),
+        "results are compared from clock {} on, but there are {} clocks",
+        vectors.known_from,
+        vectors.inputs.len()
+    );
+    let stimulus = vector_file(design, "stimulus", &inputs, &vectors.inputs)?;
+    let expected = vector_file(design, "expected outputs", &outputs, &vectors.expected)?;
+    let name = job.name();
+    files.add(Kind::Bench, format!("{name}_tb.v"), bench(job, vectors)?);
+    files.add(Kind::Bench, format!("{name}_stimulus.mem"), stimulus);
+    files.add(Kind::Bench, format!("{name}_expected.mem"), expected);
+    Ok(())
+}
+
+fn bench(job: &Job, vectors: &Vectors) -> Result<String> {
+    let design = job.design;
+    let port_name = |port: &Port| design.net(port.net).name.clone();
+    let mut names = Names::of_ports(design);
+    let own = Variables::new(&mut names);
+    let total = |ports: &[&Port]| ports.iter().map(|port| design.width(port.net)).sum::<u32>();
+    let inputs: Vec<_> = design.inputs().collect();
+    let outputs: Vec<_> = design.outputs().collect();
+    let mut low = total(&outputs);
+    let (mut handshake, mut results, mut shown) = (Vec::new(), Vec::new(), None);
+    for port in &outputs {
+        let width = design.width(port.net);
+        low -= width;
+        let select = match width {
+            1 => format!("{}[{low}]", own.want),
+            _ => format!("{}[{}:{low}]", own.want, low + width - 1),
+        };
+        if design.pipeline.is_some() && port.role == Role::Valid {
+            shown = Some(select.clone());
+        }
+        let output = Output { name: port_name(port), select };
+        match port.role {
+            role if role.is_status() => handshake.push(output),
+            _ => results.push(output),
+        }
+    }
+    let address = design.registers.get(design.control.address.index()).map(|register| register.q);
+    let address_width = address.map_or(1, |address| design.width(address));
+    let microprogram: Vec<_> = design
+        .control
+        .microprogram
+        .iter()
+        .enumerate()
+        .map(|(at, it)| Microinstruction {
+            label: literal(at as u64, address_width),
+            address: at,
+            // Within a string literal of Verilog.
+            name: ascii(&it.name).replace('\\', "/").replace('"', "'").replace('%', "%%"),
+        })
+        .collect();
+    let reset = design.port(|role| role == Role::Reset).map(port_name);
+    let stimulus: Vec<_> = inputs.iter().map(|port| port_name(port)).collect();
+    let stimulus = format!("{{{}}} = {}[{}];", stimulus.join(", "), own.stimulus, own.clock);
+    fill!("bench.v" {
+        name: String = format!("{}_tb", design.name),
+        module: &'a str = job.name(),
+        stimulus_file: String = format!("{}_stimulus.mem", design.name),
+        expected_file: String = format!("{}_expected.mem", design.name),
+        stimulus_last: u32 = total(&inputs) - 1,
+        expected_last: u32 = total(&outputs) - 1,
+        clocks: usize = vectors.inputs.len(),
+        known_from: usize = vectors.known_from,
+        declarations: Vec<String> = variables(design, true),
+        // The assignment of a word of stimulus to the inputs.
+        stimulus: Vec<String> = statement(12, &stimulus),
+        connections: Vec<String> = connections(design),
+        // What `was_reset` begins with: without a reset there is nothing to wait for.
+        reset_seen: &'a str = if reset.is_some() { "1'b0" } else { "1'b1" },
+        reset: Option<String>,
+        handshake: Vec<Output>,
+        results: Vec<Output>,
+        // Of a pipeline, where the expected word says that results are those of a point: in a bubble they mean nothing.
+        shown: Option<String>,
+        // None without a microprogram.
+        address: Option<String> = address.map(|address| {
+            let address = &design.net(address).name;
+            format!("{}.{}.{address}", own.dut, job.naming.control_instance)
+        }),
+        microprogram: Vec<Microinstruction>,
+        names: Variables = own,
+    })
+}
+
+fn vector_file(design: &Design, title: &str, ports: &[&Port], rows: &[Vec<u64>]) -> Result<String> {
+    let widths: Vec<_> = ports.iter().map(|port| design.width(port.net)).collect();
+    let mut words = Vec::with_capacity(rows.len());
+    for (clock, row) in rows.iter().enumerate() {
+        ensure!(
+            row.len() == ports.len(),
+            "clock {clock} of the {title} has {} values for {} ports",
+            row.len(),
+            ports.len()
+        );
+        for ((value, width), port) in row.iter().zip(&widths).zip(ports) {
+            ensure!(
+                value & !mask(*width) == 0,
+                "clock {clock} of the {title}: {value:#x} does not fit the {width} bits of `{}`",
+                design.net(port.net).name
+            );
+        }
+        words.push(packed(row, &widths));
+    }
+    let columns = ports.iter().map(|port| {
+        let net = design.net(port.net);
+        format!("{} [{}]", net.name, net.format.width())
+    });
+    let columns = columns.collect::<Vec<_>>().join(", ");
+    let mut lines = vec![format!("// {}: {title}, a word a clock", design.name)];
+    lines.extend(comment(0, &format!("From the top bit, with widths: {columns}")));
+    lines.extend(words);
+    Ok(lines.join("\n") + "\n")
+}
+
+/// The values side by side, the first on top, in hexadecimal digits.
+pub(super) fn packed(row: &[u64], widths: &[u32]) -> String {
+    let total: u32 = widths.iter().sum();
+    let mut digits = vec![0u8; total.div_ceil(4) as usize];
+    let last = digits.len() - 1;
+    let mut bit = 0usize;
+    for (value, width) in row.iter().zip(widths).rev() {
+        for at in 0..*width {
+            if value >> at & 1 == 1 {
+                digits[last - bit / 4] |= 1 << (bit % 4);
+            }
+            bit += 1;
+        }
+    }
+    digits.into_iter().filter_map(|digit| char::from_digit(u32::from(digit), 16)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::packed;
+
+    #[test]
+    fn rows_are_packed_first_port_on_top() {
+        assert_eq!(packed(&[1, 0xab, 0x3], &[1, 8, 2]), "6af");
+        assert_eq!(packed(&[u64::MAX, 1], &[64, 1]), "1ffffffffffffffff");
+    }
+}

@@ -1,0 +1,83 @@
+//! The bench in Python, for cocotb, and the driver that those of all configurations share.
+
+use anyhow::Result;
+use glint_base::fill;
+
+use super::artifact::{Artifacts, Job, Kind};
+use super::seal::{Seal, sealed};
+use super::{ContractFacts, OutputFile, Quantity, WorkedExample};
+
+/// The tests of the driver for a core with a microprogram; the first needs a formula.
+const SEQUENTIAL: [&str; 5] = [
+    "formula_holds_at_random_points",
+    "computations_are_exact",
+    "held_start_repeats",
+    "reset_ends_a_computation",
+    "writes_and_starts_while_busy_are_ignored",
+];
+
+/// In place of the last, where operands have buffers.
+const BUFFERED: &str = "writes_while_busy_are_for_the_next_computation";
+
+/// The names for a pipeline.
+const PIPELINE: [&str; 4] = [
+    "random_points_follow_the_formula",
+    "points_are_exact",
+    "bubbles_and_stalls_change_nothing",
+    "reset_drops_every_point",
+];
+
+/// Adds the bench of a design.
+///
+/// # Errors
+/// A template that fails.
+pub fn file(
+    job: &Job,
+    example: &WorkedExample,
+    accuracy: &ContractFacts,
+    files: &mut Artifacts,
+) -> Result<()> {
+    let (name, design) = (job.name(), job.design);
+    let pipeline = design.pipeline.is_some();
+    let all = if pipeline { &PIPELINE[..] } else { &SEQUENTIAL[..] };
+    let mut tests = all[usize::from(accuracy.f.is_empty())..].to_vec();
+    if design.control.overlaps {
+        tests.pop();
+        tests.push(BUFFERED);
+    }
+    tests.sort_unstable();
+    let text = fill!("test.py" {
+        name: &'a str,
+        operands: Vec<String> = lines(&example.operands, |name, raw| format!("{name}={raw},")),
+        outputs: Vec<String> = lines(&example.outputs, |name, raw| format!("\"{name}\": {raw},")),
+        // What is imported of the driver, sorted.
+        tests: Vec<&'static str>,
+        pipeline: bool,
+        // The results of the example.
+        shown: &'a str = if pipeline { "shown" } else { "shown.results[0]" },
+    })?;
+    files.add(Kind::Python, format!("test_{name}.py"), text);
+    Ok(())
+}
+
+/// A line a number; where it has a fraction, with what the integer stands for.
+fn lines(quantities: &[Quantity], code: fn(&str, i128) -> String) -> Vec<String> {
+    let line = |quantity: &Quantity| {
+        let code = code(&quantity.name, quantity.raw);
+        if quantity.value == quantity.raw as f64 {
+            code
+        } else {
+            format!("{code}  # {}", quantity.value)
+        }
+    };
+    quantities.iter().map(line).collect()
+}
+
+/// The driver, with a last line that vouches for those above.
+pub fn driver() -> OutputFile {
+    let text = fill!("glint_cocotb.py" {}).expect("a template without fields");
+    OutputFile {
+        path: "testbench/glint_cocotb.py".to_owned(),
+        contents: sealed(text, Seal::Python),
+    }
+}

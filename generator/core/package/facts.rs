@@ -1,0 +1,277 @@
+//! The facts of a device: ports, fields, microprogram, ROMs.
+//!
+//! The manifest writes them as JSON, the page as tables.
+
+use serde::{Serialize, Serializer, ser::SerializeMap};
+
+use glint_rtl::netlist::{self, Design, FieldKind, NetId, Role, RomId};
+use glint_rtl::verilog::naming::{Naming, is_control_rom};
+
+/// A port of the top module.
+#[derive(Serialize)]
+pub struct Port<'a> {
+    /// Its name.
+    pub name: &'a str,
+    /// `input` or `output`.
+    pub direction: &'static str,
+    /// The role of the port.
+    pub role: &'static str,
+    /// In bits.
+    pub width: u32,
+    /// The format of operands, results and status.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub format: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    signed: Option<bool>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    fraction_bits: Option<i32>,
+    /// The port that writes the operand.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub strobe: Option<&'a str>,
+    /// The number in the source's figure.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub block: Option<u16>,
+    /// One line.
+    #[serde(skip_serializing_if = "str::is_empty")]
+    pub doc: &'a str,
+}
+
+/// A field of the control word.
+#[derive(Serialize)]
+pub struct Field<'a> {
+    /// Its name.
+    pub name: &'a str,
+    /// The kind of the field: `select`, `enable`, `flag` or `sequence`.
+    pub kind: &'static str,
+    /// Its lowest bit in the control word.
+    pub low: u32,
+    /// In bits.
+    pub width: u32,
+    /// The choices of a select's values, from 0.
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    pub choices: &'a [String],
+    /// The numbers of its lines in the source's figure.
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    pub lines: &'a [u16],
+}
+
+/// A microinstruction.
+#[derive(Serialize)]
+pub struct Microinstruction<'a> {
+    /// Its address.
+    pub address: usize,
+    /// The name of the operation.
+    pub name: &'a str,
+    /// The value of each field, in their order.
+    #[serde(serialize_with = "as_map")]
+    pub fields: Vec<(&'a str, u64)>,
+    /// The successor.
+    pub sequence: Sequence<'a>,
+}
+
+/// Where control goes after a microinstruction.
+#[derive(Serialize)]
+#[serde(untagged)]
+pub enum Sequence<'a> {
+    /// `next`, `wait for start` or `end`.
+    Plain(&'static str),
+    /// Around a loop.
+    Loop {
+        /// The address to go to.
+        loop_to: usize,
+        /// The net that must be 1 for that.
+        #[serde(rename = "while")]
+        condition: &'a str,
+    },
+    /// Over some microinstructions.
+    Jump {
+        /// The address to go to.
+        jump_to: usize,
+        /// The net that must be 1 for that.
+        #[serde(rename = "if")]
+        condition: &'a str,
+    },
+}
+
+/// A ROM.
+#[derive(Serialize)]
+pub struct Rom<'a> {
+    /// Its name in the description.
+    pub name: &'a str,
+    /// The file of its contents, unless they stand in the Verilog.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub file: Option<&'a str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    parameter: Option<&'a str>,
+    /// Words.
+    pub depth: usize,
+    /// Bits of a word.
+    pub width: u32,
+    /// Bits in all.
+    pub bits: u64,
+    /// The format of the net that takes a word.
+    pub format: String,
+    /// Reads on the clock.
+    pub synchronous: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    radix: Option<u8>,
+    /// Its words, where no file has them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    words: Option<&'a [u64]>,
+    /// The meaning of an entry.
+    pub doc: &'a [String],
+    /// The number in the source's figure.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub block: Option<u16>,
+}
+
+fn as_map<S: Serializer>(pairs: &[(&str, u64)], serializer: S) -> Result<S::Ok, S::Error> {
+    let mut map = serializer.serialize_map(Some(pairs.len()))?;
+    for (name, value) in pairs {
+        map.serialize_entry(name, value)?;
+    }
+    map.end()
+}
+
+/// The ports, the clock first.
+pub fn ports(design: &Design) -> Vec<Port<'_>> {
+    let clock = Port {
+        name: "clk",
+        direction: "input",
+        role: "clock",
+        width: 1,
+        format: None,
+        signed: None,
+        fraction_bits: None,
+        strobe: None,
+        block: None,
+        doc: "",
+    };
+    let of_port = |port: &netlist::Port| {
+        let net = design.net(port.net);
+        let strobe = match port.role {
+            Role::Operand { strobe } => Some(name(design, strobe)),
+            _ => None,
+        };
+        let number =
+            matches!(port.role, Role::Operand { .. } | Role::Point | Role::Result | Role::Status);
+        Port {
+            name: &net.name,
+            direction: if port.role.is_input() { "input" } else { "output" },
+            role: role(port.role),
+            width: net.format.width(),
+            format: number.then(|| net.format.to_string()),
+            signed: number.then_some(net.format.signed),
+            fraction_bits: number.then_some(net.format.frac),
+            strobe,
+            block: net.block,
+            doc: &net.doc,
+        }
+    };
+    std::iter::once(clock).chain(design.ports.iter().map(of_port)).collect()
+}
+
+fn name(design: &Design, net: NetId) -> &str {
+    &design.net(net).name
+}
+
+fn role(role: Role) -> &'static str {
+    match role {
+        Role::Reset => "reset",
+        Role::Start => "start",
+        Role::Operand { .. } => "operand",
+        Role::Strobe => "strobe",
+        Role::Valid => "valid",
+        Role::Busy => "busy",
+        Role::Done => "done",
+        Role::Result => "result",
+        Role::Status => "status",
+        Role::InValid => "in_valid",
+        Role::InReady => "in_ready",
+        Role::Point => "operand",
+        Role::SideIn => "side_in",
+        Role::SideOut => "side_out",
+        Role::OutReady => "out_ready",
+    }
+}
+
+/// The fields of the control word, from the top bits.
+pub fn fields(design: &Design) -> Vec<Field<'_>> {
+    let positions = design.field_positions();
+    design
+        .control
+        .fields
+        .iter()
+        .zip(positions)
+        .map(|(field, low)| {
+            let (kind, choices): (_, &[String]) = match &field.kind {
+                FieldKind::Select(choices) => ("select", choices),
+                FieldKind::Enable => ("enable", &[]),
+                FieldKind::Flag => ("flag", &[]),
+                FieldKind::Sequence => ("sequence", &[]),
+            };
+            Field {
+                name: &field.name,
+                kind,
+                low,
+                width: design.width(field.net),
+                choices,
+                lines: &field.lines,
+            }
+        })
+        .collect()
+}
+
+/// The microinstructions, from address 0.
+pub fn microprogram(design: &Design) -> Vec<Microinstruction<'_>> {
+    let control = &design.control;
+    let names = || control.fields.iter().map(|field| field.name.as_str());
+    control
+        .microprogram
+        .iter()
+        .enumerate()
+        .map(|(address, it)| Microinstruction {
+            address,
+            name: &it.name,
+            fields: names().zip(it.values.iter().copied()).collect(),
+            sequence: match &it.sequence {
+                netlist::Sequence::Next => Sequence::Plain("next"),
+                netlist::Sequence::WaitStart => Sequence::Plain("wait for start"),
+                netlist::Sequence::End => Sequence::Plain("end"),
+                netlist::Sequence::LoopWhile { condition, to } => {
+                    let condition = name(design, *condition);
+                    if *to > address {
+                        Sequence::Jump { jump_to: *to, condition }
+                    } else {
+                        Sequence::Loop { loop_to: *to, condition }
+                    }
+                }
+            },
+        })
+        .collect()
+}
+
+/// The ROMs, that of the microprogram among them.
+pub fn roms<'a>(design: &'a Design, naming: &'a Naming) -> Vec<Rom<'a>> {
+    let in_file = !naming.style.inline;
+    let entry = |(at, rom): (usize, &'a netlist::Rom)| {
+        let width = design.width(rom.data);
+        let binary = is_control_rom(design, RomId(at as u32));
+        Rom {
+            name: &rom.name,
+            file: in_file.then(|| naming.files[at].as_str()),
+            parameter: in_file.then(|| naming.parameters[at].as_str()),
+            depth: rom.words.len(),
+            width,
+            bits: rom.words.len() as u64 * u64::from(width),
+            format: design.net(rom.data).format.to_string(),
+            synchronous: rom.synchronous,
+            radix: in_file.then_some(if binary { 2 } else { 16 }),
+            words: naming.style.inline.then_some(&rom.words[..]),
+            doc: &rom.doc,
+            block: rom.block,
+        }
+    };
+    let memories = design.roms.iter().enumerate().filter(|(_, rom)| rom.shares.is_none());
+    memories.map(entry).collect()
+}

@@ -1,0 +1,279 @@
+//! Properties of the emitted Verilog itself, proved by k-induction.
+//!
+//! Both units carry the invariants that a proof stands on, in a section for formal tools alone. A wrapper
+//! states what the manifest promises of the handshake, and a Yosys script makes the problem for
+//! `yosys-smtbmc`: products and the datapath's ROMs are cut out, since no property depends on them.
+
+use anyhow::Result;
+use glint_base::fill;
+
+use super::artifact::{Artifacts, Job, Kind};
+use super::{Computation, Timing};
+use glint_rtl::netlist::termination::{self, Left};
+use glint_rtl::netlist::{Design, Driver, NetId, Op, Partition, Port, RegId, Role, Sequence};
+use glint_rtl::verilog::naming::Naming;
+use glint_rtl::verilog::rows::{Row, connections, separated};
+use glint_rtl::verilog::text::{Names, literal, range};
+
+/// Steps of an induction where the clocks depend on the data: more than a result takes through a pipeline.
+const UNROLLED: u32 = 8;
+
+/// The register that counts clocks since start.
+struct Age {
+    name: String,
+    width: u32,
+}
+
+impl Age {
+    fn literal(&self, clocks: u32) -> String {
+        literal(u64::from(clocks), self.width)
+    }
+}
+
+/// The age for the template.
+struct AgeView {
+    name: String,
+    range: String,
+    one: String,
+}
+
+/// When the events come, where that does not depend on the data.
+struct Exact {
+    valid: String,
+    done: String,
+    last: String,
+}
+
+/// The latest end, where the clocks depend on the data.
+struct Bounded {
+    /// The declarations of the proof's view of the inside.
+    inside: Vec<String>,
+    address: String,
+    most: String,
+    latest: Vec<Latest>,
+    /// In the clock of `done` there is a result.
+    ends_with_result: bool,
+    /// The clock of the first result, where one follows another from then on to the end.
+    first: Option<String>,
+}
+
+/// The latest end of a computation, seen from a microinstruction.
+struct Latest {
+    label: String,
+    /// The age at which the computation ends, if it takes as long as it can.
+    end: String,
+}
+
+/// The inputs of the Yosys commands that make the problem, alone or for SymbiYosys.
+pub(super) struct Script<'a> {
+    pub(super) name: &'a str,
+    /// The cells whose memories are cut out, as Yosys selects them.
+    pub(super) within: &'a str,
+    /// Registers have initial values.
+    pub(super) initial: bool,
+}
+
+impl Script<'_> {
+    /// Adds the wrapper, the script, and the task of SymbiYosys.
+    pub(super) fn files(
+        &self,
+        wrapper: String,
+        depth: u32,
+        engine: &str,
+        files: &mut Artifacts,
+    ) -> Result<()> {
+        let Self { name, within, initial } = *self;
+        let (rtl, memories) = (files.names(&[Kind::Rtl]), files.names(&[Kind::Memory]));
+        let script = fill!("formal.ys" {
+            name: &'a str, within: &'a str, rtl: &'a [String] = &rtl, initial: bool,
+        })?;
+        let task = fill!("formal.sby" {
+            name: &'a str, within: &'a str, depth: u32, engine: &'a str, rtl: Vec<String>, memories: Vec<String>,
+        })?;
+        for (ending, text) in [("sv", wrapper), ("ys", script), ("sby", task)] {
+            files.add(Kind::Proof, format!("{name}.{ending}"), text);
+        }
+        Ok(())
+    }
+}
+
+/// The clocks by which `valid` follows what sets it, none in a design without it.
+fn valid_delay(design: &Design) -> u32 {
+    let Some(valid) = design.port(|role| role == Role::Valid) else { return 0 };
+    let mut at = valid.net;
+    let mut clocks = 0;
+    for _ in &design.nets {
+        at = match design.net(at).driver {
+            Driver::Op(Op::Relabel(of)) => of,
+            Driver::Register(id) => {
+                clocks += 1;
+                design.register(id).data.unwrap_or(at)
+            }
+            _ => break,
+        };
+    }
+    clocks
+}
+
+/// Adds the wrapper and its scripts.
+///
+/// # Errors
+/// A template that fails.
+pub fn files(job: &Job, files: &mut Artifacts) -> Result<()> {
+    let Job { design, inputs, naming, .. } = *job;
+    let (timing, module) = (&inputs.timing, job.name());
+    let name = format!("{module}_formal");
+    let mut names = Names::of_ports(design);
+    let instance = names.fresh("dut");
+    let exact = exact(timing);
+    let bounded = match exact {
+        Some(_) => None,
+        None => termination::remaining(design).zip(termination::latest_done(design)),
+    };
+    let depth = match &exact {
+        // An induction that is longer than a computation has seen its start.
+        Some((_, start)) => start + 2,
+        // One longer than the registers before valid knows what comes out of them.
+        None => UNROLLED.max(valid_delay(design) + 3),
+    };
+    let largest_age = match (&exact, &bounded) {
+        (Some((_, start)), _) => Some(*start),
+        // What is left is added to it.
+        (None, Some((_, most))) => Some(2 * most),
+        (None, None) => None,
+    };
+    let age = largest_age.map(|largest| Age {
+        name: names.fresh("age"),
+        width: u32::BITS - largest.leading_zeros(),
+    });
+    let waits = design.control.microprogram.iter().any(|it| it.sequence == Sequence::WaitStart);
+    // A few steps with much state between them z3 solves at once when they are unrolled, and those of a device that
+    // begins a computation as another ends; many it solves faster when they are not.
+    let unroll = exact.is_none() || design.control.overlaps;
+    let exact = exact.zip(age.as_ref()).map(|((clocks, start), age)| Exact {
+        valid: age.literal(clocks[0]),
+        done: age.literal(clocks[1]),
+        last: age.literal(start - 1),
+    });
+    let bounded = bounded.zip(age.as_ref()).map(|((left, most), age)| Bounded {
+        // Results follow one another without a pause, once the first is there.
+        first: match timing.valid_to_valid {
+            Some(1) => timing.start_to_valid.map(|first| age.literal(first)),
+            _ => None,
+        },
+        ends_with_result: !inputs.computations.is_empty()
+            && inputs.computations.iter().all(Computation::ends_with_result),
+        ..bounded_view(design, naming, &instance, &mut names, (&left, most), age)
+    });
+    let within = format!("{instance}.{}.*", naming.instance(Partition::Datapath));
+    let wrapper = fill!("formal.sv" {
+        name: &'a str = &name,
+        module: &'a str,
+        depth: u32,
+        // The solver, as the command line of yosys-smtbmc has it.
+        solver: &'a str = if unroll { "--unroll -s z3" } else { "-s z3" },
+        instance: String,
+        // Ports with their commas.
+        ports: Vec<String> = separated(inputs_of(design)),
+        outputs: Vec<String> = outputs_of(design),
+        connections: Vec<String> = connections(design),
+        // The program never waits for a second `start`: busy from start to done.
+        straight: bool = !waits,
+        // `start` is heard in the clock of `done` too.
+        overlaps: bool = design.control.overlaps,
+        exact: Option<Exact>,
+        bounded: Option<Bounded>,
+        age: Option<AgeView> = age.as_ref().map(|age| AgeView {
+            range: range(age.width),
+            one: age.literal(1),
+            name: age.name.clone(),
+        }),
+    })?;
+    let script = Script { name: &name, within: &within, initial: naming.style.initial };
+    script.files(wrapper, depth, if unroll { "smtbmc --unroll z3" } else { "smtbmc z3" }, files)
+}
+
+/// The ports of a wrapper for the clock and the inputs of a design: what a solver chooses.
+pub(super) fn inputs_of(design: &Design) -> Vec<String> {
+    let input = |port: &Port| {
+        let net = design.net(port.net);
+        let range = range(net.format.width());
+        let space = if range.is_empty() { "" } else { " " };
+        format!("input  wire {range}{space}{}", net.name)
+    };
+    std::iter::once("input  wire clk".to_owned()).chain(design.inputs().map(input)).collect()
+}
+
+/// The wires of a wrapper for the outputs of a design.
+pub(super) fn outputs_of(design: &Design) -> Vec<String> {
+    let output = |port: &Port| {
+        let net = design.net(port.net);
+        Row::port("", "wire", net.format.width(), false, &net.name, "")
+    };
+    Row::declarations(&design.outputs().map(output).collect::<Vec<_>>())
+}
+
+/// How the end of every computation is proved: in each microinstruction the age and what is left at most are no more
+/// than the whole.
+fn bounded_view(
+    design: &Design,
+    naming: &Naming,
+    instance: &str,
+    names: &mut Names,
+    (left, most): (&[Left], u32),
+    age: &Age,
+) -> Bounded {
+    // A net of the inside under a name of the wrapper; Yosys joins the two when it flattens.
+    let mut inside = Vec::new();
+    let mut seen = |partition: Partition, net: NetId, name: String| {
+        let range = range(design.width(net));
+        let path = format!("{instance}.{}.{}", naming.instance(partition), design.net(net).name);
+        inside.push(format!("(* hierconn *) wire {range} \\{path} ;"));
+        inside.push(format!("wire {range} {name} = \\{path} ;"));
+    };
+    let address = design.register(design.control.address).q;
+    let executed = names.fresh("word");
+    seen(Partition::Control, address, executed.clone());
+    let mut counters: Vec<(RegId, String)> = Vec::new();
+    for counter in left.iter().filter_map(|left| left.counter) {
+        if counters.iter().all(|(other, _)| *other != counter) {
+            let q = design.register(counter).q;
+            let name = names.fresh(&design.net(q).name);
+            seen(Partition::Datapath, q, name.clone());
+            counters.push((counter, name));
+        }
+    }
+    let end = |left: &Left| {
+        let mut sum = age.name.clone();
+        for (counter, name) in &counters {
+            if left.counter == Some(*counter) {
+                sum = format!("{sum} + {name}");
+            }
+        }
+        match left.clocks {
+            0 => sum,
+            clocks => format!("{sum} + {}", age.literal(clocks as u32)),
+        }
+    };
+    let address_width = design.width(address);
+    let latest = left
+        .iter()
+        .enumerate()
+        .map(|(at, left)| Latest { label: literal(at as u64, address_width), end: end(left) });
+    Bounded {
+        latest: latest.collect(),
+        address: executed,
+        most: age.literal(most),
+        first: None,
+        ends_with_result: false,
+        inside,
+    }
+}
+
+/// The clocks of `valid` and `done`, and that of the next start, where all are known, and the result is
+/// there in one clock.
+fn exact(timing: &Timing) -> Option<([u32; 2], u32)> {
+    let (valid, done) = (timing.start_to_valid?, timing.start_to_done?);
+    // The clocks of a computation are counted to the last, whether the next one follows at once or not.
+    Some(([valid, done], timing.start_to_start?.max(done + 1)))
+}

@@ -1,0 +1,131 @@
+//! Properties of the emitted Verilog of a pipeline, proved by k-induction.
+//!
+//! A wrapper holds a queue beside the pipeline, and states that its stages have points exactly where the
+//! queue has them. With a side channel it follows any one point, and states that its side value stays
+//! with it. No property depends on a product or a ROM, which are cut out.
+
+use anyhow::Result;
+use glint_base::fill;
+
+use super::artifact::{Artifacts, Job};
+use super::formal::{Script, inputs_of, outputs_of};
+use glint_rtl::netlist::{NetId, Pipeline, Role};
+use glint_rtl::verilog::naming::Naming;
+use glint_rtl::verilog::rows::{connections, separated};
+use glint_rtl::verilog::text::{Names, literal, range};
+
+/// Steps of the induction: every property follows from the clock before.
+const DEPTH: u32 = 2;
+
+/// The side channel.
+struct Side {
+    range: String,
+    tag: String,
+    stages: Vec<SideStage>,
+}
+
+/// The counter of the slots of a pipeline that takes a point every few clocks, and one beside it.
+struct Turn {
+    range: String,
+    name: String,
+    next: String,
+    slot: String,
+}
+
+/// The side value of a stage.
+struct SideStage {
+    number: usize,
+    value: String,
+}
+
+/// Adds the wrapper and its scripts.
+///
+/// # Errors
+/// A template that fails.
+pub fn files(job: &Job, pipeline: &Pipeline, files: &mut Artifacts) -> Result<()> {
+    let (module, design) = (job.name(), job.design);
+    let name = format!("{module}_formal");
+    let port_name = |net: NetId| design.net(net).name.clone();
+    let mut names = Names::of_ports(design);
+    let instance = names.fresh("dut");
+    let chosen = names.fresh("chosen");
+    let mut ports = inputs_of(design);
+    if pipeline.side > 0 {
+        ports.push(format!("input  wire {chosen}"));
+    }
+    // A net of the inside under its path; Yosys joins the two when it flattens.
+    let mut inside = Vec::new();
+    let mut seen = |name: &str, range: &str| {
+        let path = format!("\\{instance}.{name} ");
+        let space = if range.is_empty() { "" } else { " " };
+        inside.push(format!("(* hierconn *) wire {range}{space}{path};"));
+        path
+    };
+    let latency = pipeline.stages.len();
+    let valid = seen(&Naming::new(design).valid, &format!("[{latency}:1]"));
+    let turn = pipeline.slot.map(|net| {
+        let (bits, name) = (range(design.width(net)), names.fresh("turn"));
+        let range = if bits.is_empty() { bits } else { format!("{bits} ") };
+        let slot = seen(&port_name(net), range.trim_end());
+        let next = format!("({name} == {}) ? 0 : {name} + 1", pipeline.interval - 1);
+        Turn { range, next, slot, name }
+    });
+    // A point that is offered in its turn.
+    let offered = match &turn {
+        Some(turn) => format!("(in_valid & ({} == 0))", turn.name),
+        None => "in_valid".to_owned(),
+    };
+    let side = (pipeline.side > 0).then(|| Side {
+        range: range(pipeline.side),
+        tag: names.fresh("tag"),
+        stages: (1..)
+            .zip(&pipeline.side_values)
+            .map(|(number, &net)| {
+                let value = seen(&port_name(net), &range(design.width(net)));
+                SideStage { number, value }
+            })
+            .collect(),
+    });
+    let (queue, followed, begins) =
+        (names.fresh("queue"), names.fresh("followed"), names.fresh("begins"));
+    let shifted = |register: &str, first: &str| match latency {
+        1 => first.to_owned(),
+        _ => format!("{{{register}[{}:1], {first}}}", latency - 1),
+    };
+    let result = |role: Role| matches!(role, Role::Result | Role::Status | Role::SideOut);
+    let results = design.outputs().filter(|port| result(port.role));
+    let within = format!("{instance}.*");
+    let wrapper = fill!("pipeline_formal.sv" {
+        name: &'a str = &name,
+        module: &'a str,
+        depth: u32 = DEPTH,
+        instance: String,
+        // Ports with their commas.
+        ports: Vec<String> = separated(ports),
+        outputs: Vec<String> = outputs_of(design),
+        connections: Vec<String> = connections(design),
+        // What the proof sees of the inside: declarations.
+        inside: Vec<String>,
+        stages: usize = latency,
+        // One bit a stage, under its path.
+        valid: String,
+        stall: bool = pipeline.stall,
+        moves_when: &'a str = if pipeline.stall { "out_ready | ~out_valid" } else { "1'b1" },
+        // No point in any stage.
+        empty: String = literal(0, latency as u32),
+        results: Vec<String> = results.map(|port| port_name(port.net)).collect(),
+        present: String = names.fresh("present"),
+        moves: String = names.fresh("moves"),
+        queue_next: String = shifted(&queue, &offered),
+        offered: String,
+        turn: Option<Turn>,
+        followed_next: String = shifted(&followed, &begins),
+        queue: String,
+        chosen: String,
+        begins: String,
+        followed: String,
+        side: Option<Side>,
+    })?;
+    let script = Script { name: &name, within: &within, initial: false };
+    script.files(wrapper, DEPTH, "smtbmc --unroll z3", files)
+}

@@ -1,0 +1,279 @@
+//! `<name>.json`: the device for programs.
+
+use anyhow::{Context, Result};
+use serde::Serialize;
+use serde_json::value::{RawValue, to_raw_value};
+use serde_json::{Value, json};
+
+use super::artifact::{Artifacts, Job, Kind};
+use super::facts::{self, Port, Rom};
+use super::map::Register;
+use super::{Computation, ContractFacts, EmitInputs, OutputFile, Quantity, Timing, digest};
+use glint_rtl::netlist::{Design, Pipeline, RegId};
+
+/// The version of the manifest's structure, for programs that read it: of what names mean and where they stand. It grows
+/// when something is renamed, moved, or means something else; not when something is added.
+const SCHEMA: u32 = 1;
+
+#[derive(Serialize)]
+struct Manifest<'a> {
+    schema: u32,
+    /// The version of Glint.
+    glint: &'static str,
+    name: &'a str,
+    device: &'a str,
+    title: &'a str,
+    formula: &'a str,
+    source: &'a str,
+    notes: Vec<&'a str>,
+    regenerate: String,
+    scale: &'static str,
+    ports: Vec<Port<'a>>,
+    timing: &'a Timing,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    control: Option<Value>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pipeline: Option<Value>,
+    roms: Vec<Rom<'a>>,
+    files: &'a serde_json::Map<String, Value>,
+    sha256: serde_json::Map<String, Value>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    example: Option<Value>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    accuracy: Option<Value>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    computations: Option<Computations<'a>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    registers: Option<Vec<Value>>,
+}
+
+/// Computations, and what the numbers of each stand for.
+#[derive(Serialize)]
+struct Computations<'a> {
+    /// The operands of each point, in the order of the ports.
+    operands: Vec<&'a str>,
+    /// The results, in the order of the ports.
+    results: Vec<&'a str>,
+    /// A computation a line.
+    points: Vec<Box<RawValue>>,
+}
+
+/// The names of the files that the manifest lists, by what they are for.
+pub struct Names(serde_json::Map<String, Value>);
+
+impl Names {
+    /// All files but the manifest itself.
+    pub fn new(files: &Artifacts) -> Self {
+        use Kind::{Bench, BenchCore, Core, Primitive, Proof, Python, Wrapper, WrapperProof};
+        let lists: [(&str, &[Kind]); 9] = [
+            ("rtl", &[Kind::Rtl]),
+            ("memories", &[Kind::Memory]),
+            ("cores", &[Core, BenchCore]),
+            ("testbench", &[Python, WrapperProof, Proof, Bench]),
+            ("primitives", &[Primitive]),
+            ("wrappers", &[Wrapper]),
+            ("software", &[Kind::Software]),
+            ("constraints", &[Kind::Constraint]),
+            ("scripts", &[Kind::Script]),
+        ];
+        let named = lists.into_iter().map(|(list, kinds)| (list, files.names(kinds))).enumerate();
+        // The first four are there even if they are empty.
+        let shown = named.filter(|(at, (_, names))| *at < 4 || !names.is_empty());
+        Self(shown.map(|(_, (list, names))| (list.to_owned(), json!(names))).collect())
+    }
+}
+
+/// The manifest as text, with the digests of all `others`.
+///
+/// # Errors
+/// A number that JSON cannot carry (a value that is not finite).
+pub fn contents(job: &Job, names: &Names, others: &[OutputFile]) -> Result<String> {
+    let Job { design, inputs, naming, .. } = *job;
+    let about = &design.about;
+    let manifest = Manifest {
+        schema: SCHEMA,
+        glint: env!("CARGO_PKG_VERSION"),
+        name: &design.name,
+        device: &about.device,
+        title: &about.title,
+        formula: &about.formula,
+        source: &about.source,
+        notes: about.paragraphs().collect(),
+        regenerate: inputs.regenerate.clone(),
+        scale: "value = raw * 2^-fraction_bits",
+        ports: facts::ports(design),
+        timing: &inputs.timing,
+        control: design.pipeline.is_none().then(|| control(design)),
+        pipeline: design.pipeline.as_ref().map(pipeline),
+        roms: facts::roms(design, naming),
+        files: &names.0,
+        sha256: others
+            .iter()
+            .map(|file| (file.path.clone(), json!(digest(file.contents.as_bytes()))))
+            .collect(),
+        example: inputs.example.as_ref().map(|example| {
+            let mut entry = json!({
+                "operands": quantities(&example.operands),
+                "outputs": quantities(&example.outputs),
+            });
+            if inputs.timing.valid_to_valid.is_some() {
+                entry["result"] = json!("the first");
+            }
+            entry
+        }),
+        accuracy: inputs.accuracy.as_ref().map(accuracy),
+        computations: computations(design, inputs)?,
+        registers: job
+            .registers
+            .as_ref()
+            .map(|(_, map)| map.registers.iter().map(register).collect()),
+    };
+    Ok(serde_json::to_string_pretty(&manifest)? + "\n")
+}
+
+fn register(register: &Register) -> Value {
+    let bits = register.bits.iter();
+    let bits = bits.map(|it| json!({ "name": it.name, "low": it.low, "width": it.width }));
+    json!({
+        "name": register.name,
+        "offset": register.offset(),
+        "bits": bits.collect::<Vec<Value>>(),
+    })
+}
+
+fn accuracy(accuracy: &ContractFacts) -> Value {
+    let outputs = accuracy.outputs.iter();
+    let outputs: serde_json::Map<_, _> =
+        outputs.map(|(output, operand)| (output.clone(), json!(operand))).collect();
+    let domain = accuracy.domain.iter();
+    let domain: serde_json::Map<_, _> = domain
+        .map(|(operand, (low, high))| (operand.clone(), json!({ "low": low, "high": high })))
+        .collect();
+    let highlight = accuracy.outputs.iter().all(|(_, operand)| operand.is_some());
+    let value = if highlight { "operand * f" } else { "formula" };
+    let mut entry = json!({
+        "statement": format!(
+            "|output - {value}| <= bound in units of the output, for raw operands of the domain"
+        ),
+        "domain": domain,
+        "outputs": outputs,
+        "f": accuracy.f,
+        "bound": accuracy.bound,
+    });
+    if let Some(length) = &accuracy.length {
+        entry["length"] = json!(length);
+    }
+    entry
+}
+
+fn computations<'a>(
+    design: &'a Design,
+    inputs: &'a EmitInputs,
+) -> Result<Option<Computations<'a>>> {
+    let Some(accuracy) = inputs.accuracy.as_ref().filter(|_| !inputs.computations.is_empty())
+    else {
+        return Ok(None);
+    };
+    let operands = in_port_order(design, accuracy.domain.iter().map(|(name, _)| name))?;
+    let results = in_port_order(design, accuracy.outputs.iter().map(|(name, _)| name))?;
+    let (operand_at, result_at) = (positions(&operands), positions(&results));
+    let points = inputs
+        .computations
+        .iter()
+        .map(|computation| line(computation, &operand_at, &result_at))
+        .collect::<Result<_>>()?;
+    let names = |ordered: Vec<(usize, &'a str)>| ordered.into_iter().map(|(_, name)| name);
+    Ok(Some(Computations {
+        operands: names(operands).collect(),
+        results: names(results).collect(),
+        points,
+    }))
+}
+
+/// Names of ports in the order of the ports, each with its place among `names`.
+fn in_port_order<'a>(
+    design: &Design,
+    names: impl Iterator<Item = &'a String>,
+) -> Result<Vec<(usize, &'a str)>> {
+    let mut placed = names
+        .enumerate()
+        .map(|(place, name)| {
+            let mut ports = design.ports.iter();
+            let port = ports.position(|port| design.net(port.net).name == *name);
+            Ok((port.with_context(|| format!("no port `{name}`"))?, (place, name.as_str())))
+        })
+        .collect::<Result<Vec<_>>>()?;
+    placed.sort_unstable();
+    Ok(placed.into_iter().map(|(_, named)| named).collect())
+}
+
+fn positions(ordered: &[(usize, &str)]) -> Vec<usize> {
+    ordered.iter().map(|(place, _)| *place).collect()
+}
+
+/// A computation in a line: raw values in the orders of operands and results that are stated.
+fn line(computation: &Computation, operands: &[usize], results: &[usize]) -> Result<Box<RawValue>> {
+    let pick = |order: &[usize], values: &[i64]| -> Vec<i64> {
+        order.iter().map(|&place| values[place]).collect()
+    };
+    let shown = computation.results.iter();
+    let valid: Vec<u32> = shown.clone().map(|result| result.clock).collect();
+    let results: Vec<_> = shown.map(|result| pick(results, &result.outputs)).collect();
+    Ok(to_raw_value(&json!({
+        "operands": pick(operands, &computation.operands),
+        "valid": valid,
+        "results": results,
+        "done": computation.done,
+    }))?)
+}
+
+fn control(design: &Design) -> Value {
+    let control = &design.control;
+    let name = |register: RegId| &design.net(design.register(register).q).name;
+    let mut entry = json!({
+        "run": name(control.run),
+        "address": name(control.address),
+        "rom": design.rom(control.rom).name,
+        "fields": facts::fields(design),
+        "words": facts::microprogram(design),
+    });
+    if control.overlaps {
+        entry["operands_buffered"] = json!(true);
+    }
+    entry
+}
+
+/// Latency and interval are in clocks; a register bit counts in each stage that it ends, and a bit of a delay line in each that it passes.
+fn pipeline(pipeline: &Pipeline) -> Value {
+    let stages = pipeline.stages.iter().map(|stage| {
+        json!({
+            "microinstructions": stage.microinstructions,
+            "logic_ns": (stage.logic_ns * 100.0).round() / 100.0,
+            "register_bits": stage.register_bits,
+            "delayed_bits": stage.delayed_bits,
+        })
+    });
+    let mut entry = json!({
+        "latency": pipeline.stages.len(),
+        "interval": pipeline.interval,
+        "target": pipeline.target,
+        "clock_mhz": (pipeline.clock_mhz * 10.0).round() / 10.0,
+        "stall": pipeline.stall,
+        "side_bits": pipeline.side,
+        "stages": stages.collect::<Vec<_>>(),
+    });
+    if !pipeline.registered.is_empty() {
+        entry["registered_multipliers"] = json!(pipeline.registered.len());
+    }
+    entry
+}
+
+fn quantities(quantities: &[Quantity]) -> Vec<Value> {
+    // Raw values fit 64 bits, as every net does.
+    let entry = |quantity: &Quantity| {
+        let raw = i64::try_from(quantity.raw)
+            .map_or_else(|_| json!(quantity.raw as u64), |raw| json!(raw));
+        json!({ "name": quantity.name, "raw": raw, "value": quantity.value })
+    };
+    quantities.iter().map(entry).collect()
+}

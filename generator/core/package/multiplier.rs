@@ -1,0 +1,63 @@
+//! `<name>_multiplier.v`: a product with a register at its output, for all tools and for those of a target.
+//!
+//! The portable form stands among the Verilog of the core. A target's own stands in a directory of the target,
+//! under the same name, and takes the place of the portable one in its flow alone.
+
+use anyhow::Result;
+use glint_base::fill;
+
+use super::artifact::{Artifacts, Job, Kind};
+use glint_rtl::verilog::header;
+use glint_rtl::verilog::rows::separated;
+use glint_rtl::verilog::text::comment;
+
+/// Bits of a factor of the block.
+const WIDTH: usize = 18;
+
+const PORTABLE: &str = "The portable form, for simulators and synthesis alike. On ECP5 the file of the same name in \
+                        ecp5/ takes its place: there the register is that of the DSP block.";
+
+const ECP5: &str = "For ECP5: a DSP block with its output register and no other. nextpnr-ecp5 times the ways into the \
+                    block, which end in that register, and those from it. The portable form is in the directory above.";
+
+/// Adds the module of a design's products, if any of its registers is inside a multiplier: the portable form, and that of the
+/// target.
+///
+/// # Errors
+/// A template that fails to print.
+pub fn files(job: &Job, files: &mut Artifacts) -> Result<()> {
+    let Some(pipeline) = job.design.pipeline.as_ref().filter(|it| !it.registered.is_empty()) else {
+        return Ok(());
+    };
+    let name = job.naming.multiplier();
+    let title = format!("{name}: a product, and the register that takes it while `enable` is high");
+    let header = |form: &str| -> Vec<String> {
+        let separate = || ["//".to_owned()];
+        let lines = comment(0, &title).into_iter().chain(separate()).chain(comment(0, form));
+        lines.chain(header::regenerated(&job.inputs.origin())).collect()
+    };
+    let portable =
+        fill!("multiplier.v" { header: Vec<String> = header(PORTABLE), name: &'a str = &name })?;
+    let own = fill!("multiplier_ecp5.v" {
+        header: Vec<String> = header(ECP5), name: &'a str = &name, pins: Vec<String> = pins(),
+    })?;
+    files.add(Kind::Rtl, format!("{name}.v"), portable);
+    files.add(Kind::Primitive, format!("{}/{name}.v", pipeline.target), own);
+    Ok(())
+}
+
+/// Every pin of factors, the unused one between them, and product, five a line.
+fn pins() -> Vec<String> {
+    let bus = |pin: char, width: usize, net: &'static str| {
+        (0..width).map(move |bit| match net {
+            "" => format!(".{pin}{bit}(1'b0)"),
+            net => format!(".{pin}{bit}({net}[{bit}])"),
+        })
+    };
+    let pins = bus('A', WIDTH, "a_wide")
+        .chain(bus('B', WIDTH, "b_wide"))
+        .chain(bus('C', WIDTH, ""))
+        .chain(bus('P', 2 * WIDTH, "whole"));
+    let pins = separated(pins.collect());
+    pins.chunks(5).map(|line| line.join(" ")).collect()
+}

@@ -1,0 +1,112 @@
+//! The bench that computes a list of points: operands from a file, results to a file.
+
+pub(super) mod pipeline;
+
+use anyhow::Result;
+use glint_base::fill;
+
+use glint_rtl::netlist::{Design, NetId, Port, Role};
+use glint_rtl::verilog::rows::{connections, variables};
+use glint_rtl::verilog::text::Names;
+
+/// The file from which the bench reads, by default: a line for each computation, its operands in
+/// hexadecimal in the order of [`PointsBench::operands`], with spaces between.
+pub const POINTS_FILE: &str = "points.hex";
+
+/// The file to which it writes, by default: a line for each result, its outputs likewise in the order of
+/// [`PointsBench::results`], and a line with a dot after the last of each computation.
+pub const RESULTS_FILE: &str = "results.hex";
+
+/// A bench that reads operands from a file and writes results to another.
+pub struct PointsBench {
+    /// The module, which is also the name of its file without `.v`.
+    pub name: String,
+    /// The text.
+    pub text: String,
+    /// The operand ports in the order in which a line has them.
+    pub operands: Vec<String>,
+    /// The result ports in the order in which a line has them.
+    pub results: Vec<String>,
+}
+
+/// The view of a list of points in templates, whatever the architecture.
+struct List {
+    name: String,
+    module: String,
+    points_file: &'static str,
+    results_file: &'static str,
+    limit: u32,
+    declarations: Vec<String>,
+    connections: Vec<String>,
+    reset: String,
+    valid: String,
+    operands: Vec<String>,
+    results: Vec<String>,
+    /// The format strings of a line.
+    scan: String,
+    print: String,
+}
+
+impl List {
+    /// The list by the input ports that are operands; reset and `valid` are nets of the design.
+    fn new(
+        design: &Design,
+        limit: u32,
+        is_operand: impl Fn(Role) -> bool,
+        [reset, valid]: [NetId; 2],
+    ) -> Self {
+        let name_of = |net: NetId| design.net(net).name.clone();
+        let named = |is: &dyn Fn(Role) -> bool| -> Vec<String> {
+            let ports = design.ports.iter().filter(|port| is(port.role));
+            ports.map(|port| name_of(port.net)).collect()
+        };
+        let (operands, results) = (named(&is_operand), named(&|role| role == Role::Result));
+        let line = |count: usize| vec!["%h"; count].join(" ");
+        Self {
+            name: format!("{}_points", design.name),
+            module: design.name.clone(),
+            points_file: POINTS_FILE,
+            results_file: RESULTS_FILE,
+            limit,
+            // Bit patterns, whatever they denote: signed variables would be printed with a sign.
+            declarations: variables(design, false),
+            connections: connections(design),
+            reset: name_of(reset),
+            valid: name_of(valid),
+            scan: line(operands.len()),
+            print: line(results.len()),
+            operands,
+            results,
+        }
+    }
+
+    /// The bench of which this is the text.
+    fn bench(self, text: String) -> PointsBench {
+        PointsBench { name: self.name, text, operands: self.operands, results: self.results }
+    }
+}
+
+fresh_names!(Variables { points, results, read, clocks, total, tick, dut });
+
+/// The bench of a design with a microprogram, whose computations take less than `limit` clocks each.
+///
+/// # Errors
+/// A design without the common handshake, or without operands or results.
+pub fn points_bench(design: &Design, limit: u32) -> Result<PointsBench> {
+    let handshake = design.handshake()?;
+    let name_of = |net: NetId| design.net(net).name.clone();
+    let is_operand = |role| matches!(role, Role::Operand { .. });
+    let list = List::new(design, limit, is_operand, [handshake.reset, handshake.valid]);
+    let strobe = |port: &Port| match port.role {
+        Role::Operand { strobe } => Some(name_of(strobe)),
+        _ => None,
+    };
+    let text = fill!("points.v" {
+        list: &'a List = &list,
+        names: Variables = Variables::new(&mut Names::of_ports(design)),
+        start: String = name_of(handshake.start),
+        busy: String = name_of(handshake.busy),
+        strobes: Vec<String> = design.inputs().filter_map(strobe).collect(),
+    })?;
+    Ok(list.bench(text))
+}

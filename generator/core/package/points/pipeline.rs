@@ -1,0 +1,47 @@
+//! The bench that sends a list of points through a pipeline: operands from a file, results to a file.
+
+use anyhow::{Context, Result};
+use glint_base::fill;
+
+use super::{List, PointsBench};
+use glint_rtl::netlist::{Design, Port, Role};
+use glint_rtl::verilog::text::{Names, literal};
+
+fresh_names!(Variables { points, results, read, clocks, offered, total, tick, dut });
+
+/// The bench of a pipeline, whose last results come in less than `limit` clocks.
+///
+/// # Errors
+/// A design without the handshake of a pipeline.
+pub fn points_bench(design: &Design, limit: u32) -> Result<PointsBench> {
+    let port_name = |port: &Port| design.net(port.net).name.clone();
+    let of_role = |role: Role| {
+        let port = design.port(|it| it == role);
+        port.with_context(|| format!("`{}` is no pipeline", design.name))
+    };
+    let held = design.inputs().filter_map(|port| match port.role {
+        Role::OutReady => Some((port_name(port), "1'b1".to_owned())),
+        Role::SideIn => Some((port_name(port), literal(0, design.width(port.net)))),
+        _ => None,
+    });
+    let ends = [of_role(Role::Reset)?.net, of_role(Role::Valid)?.net];
+    let list = List::new(design, limit, |role| role == Role::Point, ends);
+    let names = Variables::new(&mut Names::of_ports(design));
+    // A pipeline that takes one every few clocks says when.
+    let slots = design.pipeline.as_ref().is_some_and(|it| it.interval > 1);
+    let ready = design.port(|it| it == Role::InReady).filter(|_| slots);
+    let text = fill!("points_pipeline.v" {
+        list: &'a List = &list,
+        every: &'a str = if slots { "whenever it is taken" } else { "every clock" },
+        taken: String = ready.map_or(String::new(), |it| format!(" && {}", port_name(it))),
+        waits: String = match slots {
+            true => format!("if ({} != {}) ", names.read, list.operands.len()),
+            false => String::new(),
+        },
+        names: Variables,
+        in_valid: String = port_name(of_role(Role::InValid)?),
+        // Inputs that never change, with their values.
+        held: Vec<(String, String)> = held.collect(),
+    })?;
+    Ok(list.bench(text))
+}

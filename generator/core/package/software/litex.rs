@@ -1,0 +1,147 @@
+//! `<name>_litex.py`: the core for LiteX, with CSRs, between streams, or with its own registers on a bus.
+
+use anyhow::{Result, bail};
+use glint_base::fill;
+
+use crate::package::Unfit;
+use crate::package::artifact::{Artifacts, Job, Kind};
+use crate::package::bus::Bus;
+use crate::package::tops::{Face, Top, TopPort};
+use glint_rtl::netlist::{Design, Role};
+use glint_rtl::verilog::text::ascii;
+
+/// A core that CSRs can drive: one computation of operands to results.
+struct Core<'a> {
+    top: &'a Top,
+    operands: Vec<Operand>,
+    results: Vec<&'a TopPort>,
+    /// Other inputs, which stay low.
+    idle: Vec<&'a TopPort>,
+}
+
+struct Operand {
+    name: String,
+    strobe: String,
+    width: u32,
+}
+
+/// A core between streams.
+struct Stream<'a> {
+    top: &'a Top,
+    input: u32,
+    output: u32,
+    user: u32,
+    /// `tlast` goes in, too.
+    last: bool,
+}
+
+/// Adds the module.
+///
+/// # Errors
+/// A core that CSRs cannot drive, and that has no stream.
+pub fn file(job: &Job, tops: &[Top], files: &mut Artifacts) -> Result<()> {
+    let (name, design, is_line) = (job.name(), job.design, job.is_line());
+    let find = |face: fn(Face) -> bool| tops.iter().find(|top| face(top.face));
+    let stream = find(|face| face == Face::Stream).map(streamed);
+    let core = if is_line || design.pipeline.is_some() {
+        None
+    } else {
+        find(|face| face == Face::Core).map(|top| driven(design, top))
+    };
+    if core.is_none() && stream.is_none() {
+        let what = if is_line { "walks lines" } else { "is a pipeline" };
+        bail!(Unfit::new(
+            "package.litex",
+            format!(
+                "`{name}` {what}, which registers of LiteX cannot drive: its module needs a stream"
+            ),
+            "set interface.stream = true, or remove it",
+        ));
+    }
+    let registers = tops.iter().find_map(|top| match top.face {
+        Face::Registers(bus) => Some((top, bus)),
+        Face::Core | Face::Stream => None,
+    });
+    let text = fill!("litex.py" {
+        name: &'a str,
+        title: String = ascii(&design.about.title).replace('\\', "/").replace('"', "'"),
+        regenerate: &'a str = job.regenerate(),
+        // The names of the classes begin with it.
+        class: String = camel(name),
+        core: Option<Core<'a>>,
+        stream: Option<Stream<'a>>,
+        registers: Option<(&'a Top, &'a Bus)>,
+    })?;
+    files.add(Kind::Software, format!("{name}_litex.py"), text);
+    Ok(())
+}
+
+fn driven<'a>(design: &Design, top: &'a Top) -> Core<'a> {
+    let name = |port: &glint_rtl::netlist::Port| design.net(port.net).name.clone();
+    let operands: Vec<Operand> = design
+        .inputs()
+        .filter_map(|port| match port.role {
+            Role::Operand { strobe } => Some(Operand {
+                name: name(port),
+                strobe: design.net(strobe).name.clone(),
+                width: design.width(port.net),
+            }),
+            _ => None,
+        })
+        .collect();
+    let of_role = |role: Role| -> Vec<String> {
+        design.ports.iter().filter(|port| port.role == role).map(name).collect()
+    };
+    let (results, start) = (of_role(Role::Result), of_role(Role::Start));
+    let known = |port: &&TopPort| {
+        let driven = operands.iter().any(|it| it.name == port.name || it.strobe == port.name);
+        port.input && !driven && !start.contains(&port.name)
+    };
+    let idle = top.signals().filter(known).collect();
+    let results = top.signals().filter(|port| results.contains(&port.name)).collect();
+    Core { top, operands, results, idle }
+}
+
+fn streamed(top: &Top) -> Stream<'_> {
+    Stream {
+        top,
+        input: top.width("s_axis_tdata"),
+        output: top.width("m_axis_tdata"),
+        user: top.width("m_axis_tuser"),
+        last: top.width("s_axis_tlast") > 0,
+    }
+}
+
+/// `CosinePower` of `cosine_power`; a class of Python, whatever the name.
+fn camel(name: &str) -> String {
+    let part = |part: &str| {
+        let mut letters = part.chars();
+        letters.next().map_or_else(String::new, |first| {
+            first.to_ascii_uppercase().to_string() + letters.as_str()
+        })
+    };
+    let joined: String = name.split('_').map(part).collect();
+    if joined.starts_with(|first: char| first.is_ascii_alphabetic()) {
+        joined
+    } else {
+        format!("Core{joined}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::camel;
+
+    #[test]
+    fn names_become_classes() {
+        for (name, class) in [
+            ("cosine_power", "CosinePower"),
+            ("__x", "X"),
+            ("_1", "Core1"),
+            ("_", "Core"),
+            ("rGB", "RGB"),
+        ] {
+            assert_eq!(camel(name), class);
+        }
+    }
+}

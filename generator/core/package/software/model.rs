@@ -1,0 +1,380 @@
+//! The model in C: header, functions, and an example in Python.
+
+use glint_base::fill;
+use std::collections::BTreeMap;
+
+use anyhow::{Context, Result};
+
+use super::print::{Line, Printer, comment, field, literal, pattern_type, taken};
+use crate::package::artifact::{Artifacts, Job, Kind};
+use crate::package::{Unfit, WorkedExample};
+use glint_base::fixed::{Format, mask};
+use glint_rtl::netlist::{Design, Port, Role, RomId};
+use glint_rtl::pipeline::{
+    Cell, Cycle, Graph, Held, NodeId, Unrolled, any_cycle, unroll_in_powers,
+};
+use glint_rtl::verilog::text::{Names, ascii, constant_name, statement};
+
+/// An operand or a result in C.
+#[derive(Clone)]
+pub struct Field {
+    /// As a structure has it.
+    pub name: String,
+    /// The upper-case name with the module's before it.
+    constant: String,
+    /// The type of the raw integer.
+    pub kind: &'static str,
+    /// The format of the port.
+    pub format: Format,
+    doc: String,
+}
+
+impl Field {
+    /// The field of a port.
+    pub fn new(design: &Design, port: &Port) -> Self {
+        let net = design.net(port.net);
+        Self {
+            name: field(&net.name),
+            constant: format!("{}_{}", constant_name(&design.name), constant_name(&net.name)),
+            kind: match (net.format.signed, net.format.width() <= 32) {
+                (false, true) => "uint32_t",
+                (false, false) => "uint64_t",
+                (true, true) => "int32_t",
+                (true, false) => "int64_t",
+            },
+            format: net.format,
+            doc: ascii(&match net.doc.as_str() {
+                "" => net.format.to_string(),
+                doc => format!("{}: {doc}", net.format),
+            })
+            .replace("*/", "* /"),
+        }
+    }
+
+    /// The smallest raw integer as C writes it.
+    fn least(&self) -> String {
+        let (least, suffix) = (self.format.min_raw(), self.suffix());
+        match (self.format.signed, self.format.width()) {
+            // The literal without its sign would not fit the type.
+            (true, 32 | 64) => format!("(-{}{suffix} - 1)", -(least + 1)),
+            (true, _) => format!("(-{}{suffix})", -least),
+            (false, _) => format!("{least}{suffix}"),
+        }
+    }
+
+    /// The largest.
+    fn most(&self) -> String {
+        format!("{}{}", self.format.max_raw(), self.suffix())
+    }
+
+    fn suffix(&self) -> &'static str {
+        match (self.format.signed, self.format.width() <= 32) {
+            (false, true) => "u",
+            (true, true) => "",
+            (false, false) => "ull",
+            (true, false) => "ll",
+        }
+    }
+
+    /// The weight of the lowest bit's inverse, as a C double: 2^F exactly.
+    pub fn scale(&self) -> String {
+        format!("{:?}", glint_base::fixed::exp2(self.format.frac))
+    }
+
+    /// The lowest bit, as a C double: 2^-F exactly.
+    fn unit(&self) -> String {
+        format!("{:?}", glint_base::fixed::exp2(-self.format.frac))
+    }
+
+    /// The limits as doubles.
+    fn limits(&self) -> (String, String) {
+        let (low, high) = self.format.range();
+        (format!("{:?}", low as f64), format!("{:?}", high as f64))
+    }
+
+    /// The field of a structure in ctypes.
+    fn ctype(&self) -> String {
+        format!("c_{}", self.kind.trim_end_matches("_t"))
+    }
+
+    /// The field of a structure in NumPy.
+    fn dtype(&self) -> &'static str {
+        match self.kind {
+            "uint32_t" => "u4",
+            "int32_t" => "i4",
+            "uint64_t" => "u8",
+            _ => "i8",
+        }
+    }
+}
+
+/// Adds the model. It is made of the design with the microprogram.
+///
+/// # Errors
+/// A core of which no function can be made: one that waits for `start` in the middle, has a loop without a bound, or
+/// whose results depend on what it did before.
+pub fn files(job: &Job, files: &mut Artifacts) -> Result<()> {
+    let (name, inputs, line) = (job.name(), job.inputs, job.is_line());
+    let design = inputs.sequential.as_ref().unwrap_or(job.design);
+    let about = &design.about;
+    let operands = || {
+        design
+            .inputs()
+            .filter(|port| matches!(port.role, Role::Operand { .. }))
+            .map(|port| Field::new(design, port))
+            .collect::<Vec<_>>()
+    };
+    let results = || result_ports(design).map(|port| Field::new(design, port)).collect::<Vec<_>>();
+    let names = table_names(design);
+    let (body, read) = if line { of_line(design, &names) } else { of_point(design, &names) }
+        .map_err(|error| {
+            let message = format!("`{name}` has no model in C: {error:#}");
+            Unfit::new("package.software", message, "remove it")
+        })?;
+    let regenerate = job.regenerate();
+    let outside_comments = |text: &str| ascii(text).replace("*/", "* /");
+    let latency = job.design.pipeline.as_ref().map(|pipeline| pipeline.stages.len());
+    let header = fill!("model.h" {
+        name: &'a str,
+        guard: String = format!("{}_MODEL_H", constant_name(name)),
+        title: String = outside_comments(&about.title),
+        formula: String = outside_comments(&about.formula),
+        regenerate: &'a str,
+        // Of a pipeline, the upper-case name of its latency, and the clocks.
+        latency: Option<(String, usize)> =
+            latency.map(|clocks| (format!("{}_LATENCY", constant_name(name)), clocks)),
+        operands: Vec<Field> = operands(),
+        results: Vec<Field> = results(),
+        line: bool,
+    })?;
+    let source = fill!("model.c" {
+        name: &'a str,
+        title: String = outside_comments(&about.title),
+        regenerate: &'a str,
+        tables: Vec<String> = tables(design, &names, &read),
+        body: Vec<String>,
+        line: bool,
+    })?;
+    files.add(Kind::Software, format!("{name}_model.h"), header);
+    files.add(Kind::Software, format!("{name}_model.c"), source);
+    if let Some(example) = &inputs.example {
+        let python = fill!("model.py" {
+            name: &'a str,
+            regenerate: &'a str,
+            operands: Vec<Field> = operands(),
+            results: Vec<Field> = results(),
+            values: Vec<String> = example_values(design, example),
+            line: bool,
+        })?;
+        files.add(Kind::Software, format!("{name}_model.py"), python);
+    }
+    Ok(())
+}
+
+/// The worked example's raw operands in the order of the ports, which need not be its own.
+fn example_values(design: &Design, example: &WorkedExample) -> Vec<String> {
+    let named = |port: &Port| {
+        let name = &design.net(port.net).name;
+        let quantity = example.operands.iter().find(|quantity| quantity.name == *name);
+        quantity.map_or_else(|| "0".to_owned(), |quantity| quantity.raw.to_string())
+    };
+    let ports = design.inputs().filter(|port| matches!(port.role, Role::Operand { .. }));
+    ports.map(named).collect()
+}
+
+fn result_ports(design: &Design) -> impl Iterator<Item = &Port> {
+    design.outputs().filter(|port| port.role == Role::Result)
+}
+
+/// The body of the function of one point, and the ROMs that it reads.
+fn of_point(design: &Design, tables: &[String]) -> Result<(Vec<String>, Vec<RomId>)> {
+    let unrolled = unroll_in_powers(design)?;
+    let results: Vec<(&Port, NodeId)> = results_of(design, &unrolled).collect();
+    let wanted: Vec<NodeId> = results.iter().map(|(_, value)| *value).collect();
+    let mut printer = Printer::new(design, &unrolled, tables, BTreeMap::new());
+    let mut body = Vec::new();
+    let mut step = None;
+    for Line { step: of, text } in printer.lines(&mut taken(), &wanted) {
+        if step.replace(of) != Some(of) {
+            let step = &unrolled.steps[of];
+            let turn =
+                if step.visit == 0 { String::new() } else { format!(", turn {}", step.visit + 1) };
+            let name = &design.control.microprogram[step.address].name;
+            body.push(format!("    {}", comment(&format!("{}: {name}{turn}", step.address))));
+        }
+        body.extend(statement(4, &text));
+    }
+    body.push(String::new());
+    for (port, value) in results {
+        let text = assigned(design, port, &printer.text(value));
+        body.extend(statement(4, &format!("results.{text}")));
+    }
+    Ok((body, roms(&unrolled.graph, &wanted)))
+}
+
+fn results_of<'a>(
+    design: &'a Design,
+    of: &'a Unrolled,
+) -> impl Iterator<Item = (&'a Port, NodeId)> {
+    let value = |port: &Port| of.results.iter().find(|(net, _)| *net == port.net).map(|it| it.1);
+    result_ports(design).filter_map(move |port| Some((port, value(port)?)))
+}
+
+/// The body of the function of a line, and the ROMs that it reads.
+fn of_line(design: &Design, tables: &[String]) -> Result<(Vec<String>, Vec<RomId>)> {
+    let Cycle { unrolled, held } = any_cycle(design);
+    let graph = &unrolled.graph;
+    let port = |role: Role| {
+        let port =
+            design.port(|of| of == role).with_context(|| format!("it has no output {role:?}"))?;
+        let value = unrolled.results.iter().find(|(net, _)| *net == port.net);
+        value.map(|it| it.1).context("an output has no value")
+    };
+    let (valid, done) = (port(Role::Valid)?, port(Role::Done)?);
+    let results: Vec<(&Port, NodeId)> = results_of(design, &unrolled).collect();
+
+    // Registers and memories that the results of some clock depend on.
+    let outputs = results.iter().map(|(_, value)| *value).chain([valid, done]);
+    let mut wanted: Vec<NodeId> = outputs.collect();
+    let mut kept: Vec<Held> = Vec::new();
+    loop {
+        let needed = graph.cone(wanted.iter().copied());
+        let more = held.iter().filter(|it| needed.binary_search(&it.before).is_ok());
+        let is_state = |it: &Held| matches!(graph.node(it.before).cell, Cell::Unknown(_));
+        let now: Vec<Held> = more.copied().filter(is_state).collect();
+        if now.len() == kept.len() {
+            break;
+        }
+        wanted.extend(now.iter().map(|it| it.after));
+        kept = now;
+    }
+
+    let mut names = taken();
+    let named = kept.iter().map(|it| (it.before, names.fresh(&design.net(it.net).name)));
+    let states: BTreeMap<NodeId, String> = named.collect();
+    let starts: Vec<NodeId> = kept.iter().map(|it| it.first).collect();
+    let mut printer = Printer::new(design, &unrolled, tables, BTreeMap::new());
+    let mut body = vec![format!("    {}", comment("the clock that takes start"))];
+    let lines = printer.lines(&mut names, &starts);
+    body.extend(lines.iter().flat_map(|line| statement(4, &line.text)));
+    for it in &kept {
+        let kind = pattern_type(graph.width(it.before));
+        let text = format!("{kind} {} = {};", states[&it.before], printer.text(it.first));
+        body.extend(statement(4, &text));
+    }
+    body.push("    size_t count = 0;".to_owned());
+    body.push("    for (;;) {".to_owned());
+    let mut printer = Printer::new(design, &unrolled, tables, states.clone());
+    let lines = printer.lines(&mut names, &wanted);
+    body.extend(lines.iter().flat_map(|line| statement(8, &line.text)));
+    body.push(format!("        if ({} != 0u) {{", printer.text(valid)));
+    body.push("            if (count < capacity) {".to_owned());
+    for (port, value) in &results {
+        let text = assigned(design, port, &printer.text(*value));
+        body.extend(statement(16, &format!("points[count].{text}")));
+    }
+    body.push("            }".to_owned());
+    body.push("            ++count;".to_owned());
+    body.push("        }".to_owned());
+    body.push(format!("        if ({} != 0u) {{", printer.text(done)));
+    body.push("            return count;".to_owned());
+    body.push("        }".to_owned());
+    body.extend(clocked(graph, &printer, &kept, &states, &mut names));
+    body.push("    }".to_owned());
+    let mut read = roms(graph, &wanted);
+    read.extend(roms(graph, &starts));
+    Ok((body, read))
+}
+
+/// All registers take their new values at once.
+fn clocked(
+    graph: &Graph,
+    printer: &Printer,
+    kept: &[Held],
+    states: &BTreeMap<NodeId, String>,
+    names: &mut Names,
+) -> Vec<String> {
+    let mut lines = vec![format!("        {}", comment("the rising edge"))];
+    let mut moves = Vec::new();
+    for it in kept {
+        let name = &states[&it.before];
+        let mut text = printer.text(it.after);
+        if text == *name {
+            continue;
+        }
+        // What is computed from the state has to be computed before any of it changes.
+        if !printer.is_settled(it.after) {
+            let next = names.fresh(&format!("next_{name}"));
+            let kind = pattern_type(graph.width(it.before));
+            lines.extend(statement(8, &format!("const {kind} {next} = {text};")));
+            text = next;
+        }
+        moves.push(format!("        {name} = {text};"));
+    }
+    lines.extend(moves);
+    lines
+}
+
+/// `red_out = …;` from a bit pattern.
+fn assigned(design: &Design, port: &Port, pattern: &str) -> String {
+    let net = design.net(port.net);
+    let kind = Field::new(design, port).kind;
+    let width = net.format.width();
+    let value = match net.format.signed {
+        false => pattern.to_owned(),
+        true if width == 32 || width == 64 => format!("({kind})({pattern})"),
+        true => {
+            let sign = literal(1 << (width - 1), width);
+            format!("({kind})(({pattern}) ^ {sign}) - ({kind}){sign}")
+        }
+    };
+    format!("{} = {value};", field(&net.name))
+}
+
+fn roms(graph: &Graph, wanted: &[NodeId]) -> Vec<RomId> {
+    let needed = graph.cone(wanted.iter().copied()).into_iter();
+    let rom = |id| match graph.node(id).cell {
+        Cell::Read { rom, .. } => Some(rom),
+        _ => None,
+    };
+    needed.filter_map(rom).collect()
+}
+
+/// The array of each ROM.
+fn table_names(design: &Design) -> Vec<String> {
+    let mut names = Names::new(design.nets.iter().map(|net| net.name.as_str()));
+    design.roms.iter().map(|rom| names.fresh(&format!("{}_table", rom.name))).collect()
+}
+
+/// The arrays of the ROMs that are read.
+fn tables(design: &Design, names: &[String], read: &[RomId]) -> Vec<String> {
+    let mut lines = Vec::new();
+    for (at, rom) in design.roms.iter().enumerate() {
+        if !read.contains(&RomId(at as u32)) {
+            continue;
+        }
+        let width = design.width(rom.data);
+        let kind = match width {
+            ..=8 => "uint8_t",
+            9..=16 => "uint16_t",
+            17..=32 => "uint32_t",
+            _ => "uint64_t",
+        };
+        let what = rom.doc.join(" ");
+        lines.push(comment(&format!("ROM {}: {what}", rom.name)));
+        lines.push(format!("static const {kind} {}[{}] = {{", names[at], rom.words.len()));
+        let words: Vec<String> = rom
+            .words
+            .iter()
+            .map(|word| format!("{},", literal(word & mask(width), width)))
+            .collect();
+        lines.extend(
+            statement(4, &words.join(" "))
+                .into_iter()
+                .map(|line| format!("    {}", line.trim_start())),
+        );
+        lines.push("};".to_owned());
+        lines.push(String::new());
+    }
+    lines
+}

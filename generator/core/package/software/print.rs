@@ -1,0 +1,311 @@
+//! Values as expressions and statements of C99.
+//!
+//! Every value is a bit pattern in an unsigned type of 32 or 64 bits, with zeros above its width: the only
+//! arithmetic that C defines on every machine. Signs are made by `(x ^ s) - s`, with s the sign bit's weight.
+
+use std::collections::BTreeMap;
+
+use glint_base::fixed::mask;
+use glint_rtl::netlist::{Design, NetId};
+use glint_rtl::pipeline::{Cell, Graph, NodeId, Op, Unrolled};
+use glint_rtl::verilog::text::{Names, ascii};
+
+/// The words of C99 and the names that the model's own text uses.
+const TAKEN: &str = "
+    auto break case char const continue default do double else enum extern float for goto if inline
+    int long register restrict return short signed sizeof static struct switch typedef union
+    unsigned void volatile while _Bool _Complex _Imaginary
+    asm bool false true NULL main
+    int8_t int16_t int32_t int64_t uint8_t uint16_t uint32_t uint64_t size_t
+    INT32_C INT64_C UINT32_C UINT64_C
+    operands results points count capacity at point";
+
+/// The names that a function or a structure may not use for its own.
+pub fn taken() -> Names {
+    Names::new(TAKEN.split_ascii_whitespace())
+}
+
+/// A field of a structure: the port's name, unless that is a word of C.
+pub fn field(port: &str) -> String {
+    taken().fresh(port)
+}
+
+/// The type of a bit pattern.
+pub fn pattern_type(width: u32) -> &'static str {
+    if width <= 32 { "uint32_t" } else { "uint64_t" }
+}
+
+/// A literal of the type of a bit pattern.
+pub fn literal(bits: u64, width: u32) -> String {
+    match (width <= 32, bits < 1024) {
+        (true, true) => format!("{bits}u"),
+        (true, false) => format!("0x{bits:x}u"),
+        (false, true) => format!("UINT64_C({bits})"),
+        (false, false) => format!("UINT64_C(0x{bits:x})"),
+    }
+}
+
+/// An expression, and whether it stands without brackets beside any operator.
+struct Text(String, bool);
+
+impl Text {
+    fn inner(self) -> String {
+        if self.1 { self.0 } else { format!("({})", self.0) }
+    }
+}
+
+/// Prints the values of a function.
+pub struct Printer<'a> {
+    graph: &'a Graph,
+    design: &'a Design,
+    /// The ports with the operands, in their order.
+    operands: &'a [NetId],
+    /// The tables, by ROM.
+    tables: &'a [String],
+    /// Names of values that have a statement of their own.
+    locals: BTreeMap<NodeId, String>,
+    /// Names of values that registers and memories hold before a clock.
+    states: BTreeMap<NodeId, String>,
+}
+
+/// A statement, and the microinstruction that it belongs to.
+pub struct Line {
+    /// The number of the step.
+    pub step: usize,
+    /// The text, without indentation.
+    pub text: String,
+}
+
+impl<'a> Printer<'a> {
+    /// A printer of the values of a computation; `states` names those that registers and memories hold.
+    pub fn new(
+        design: &'a Design,
+        of: &'a Unrolled,
+        tables: &'a [String],
+        states: BTreeMap<NodeId, String>,
+    ) -> Self {
+        let (graph, operands) = (&of.graph, &of.operands);
+        Self { graph, design, operands, tables, locals: BTreeMap::new(), states }
+    }
+
+    /// The statements that compute `wanted`.
+    pub fn lines(&mut self, names: &mut Names, wanted: &[NodeId]) -> Vec<Line> {
+        let graph = self.graph;
+        let needed = graph.cone(wanted.iter().copied());
+        let mut uses = vec![0_u32; graph.nodes.len()];
+        let operands = needed.iter().flat_map(|id| graph.node(*id).cell.operands());
+        for id in operands.chain(wanted.iter().copied()) {
+            uses[id.index()] += 1;
+        }
+        let mut lines = Vec::new();
+        for id in needed {
+            let node = graph.node(id);
+            let local = match &node.cell {
+                // Another name for the same bits.
+                Cell::Op(Op::Relabel(_)) => false,
+                Cell::Op(Op::Extend(of)) if !graph.node(*of).format.signed => false,
+                Cell::Op(_) | Cell::Read { .. } => uses[id.index()] > 1 || node.label.named,
+                Cell::Operand(_) => true,
+                Cell::Constant(_) | Cell::Unknown(_) => false,
+            };
+            if !local {
+                continue;
+            }
+            let text = self.expression(id).0;
+            let name = names.fresh(&node.label.name);
+            let kind = pattern_type(graph.width(id));
+            let text = format!("const {kind} {name} = {text};");
+            lines.push(Line { step: node.step, text });
+            self.locals.insert(id, name);
+        }
+        lines
+    }
+
+    /// Whether a value stands for itself, whatever becomes of the state.
+    pub fn is_settled(&self, id: NodeId) -> bool {
+        self.locals.contains_key(&id) || self.graph.constant_of(id).is_some()
+    }
+
+    /// A value that the statements have computed.
+    pub fn text(&self, id: NodeId) -> String {
+        self.value(id).0
+    }
+
+    fn value(&self, id: NodeId) -> Text {
+        match self.locals.get(&id) {
+            Some(name) => Text(name.clone(), true),
+            None => self.expression(id),
+        }
+    }
+
+    /// In the type of `width` bits.
+    fn in_type(&self, id: NodeId, width: u32) -> Text {
+        let (from, to) = (pattern_type(self.graph.width(id)), pattern_type(width));
+        let text = self.value(id);
+        if let Some(bits) = self.graph.constant_of(id) {
+            return Text(literal(bits, width), true);
+        }
+        if from == to { text } else { Text(format!("({to}){}", text.inner()), true) }
+    }
+
+    fn masked(&self, text: String, width: u32) -> Text {
+        match width {
+            32 | 64 => Text(text, false),
+            _ => Text(format!("({text}) & {}", literal(mask(width), width)), false),
+        }
+    }
+
+    /// With copies of the sign bit above it, in the type of `width` bits.
+    fn with_sign(&self, id: NodeId, width: u32) -> String {
+        let own = self.graph.width(id);
+        let text = self.in_type(id, width).inner();
+        if (own == 32 && width == 32) || own == 64 {
+            text
+        } else {
+            let sign = literal(1 << (own - 1), width);
+            format!("(({text} ^ {sign}) - {sign})")
+        }
+    }
+
+    /// As a condition.
+    fn condition(&self, id: NodeId) -> String {
+        match (&self.graph.node(id).cell, self.locals.get(&id)) {
+            (Cell::Op(op @ (Op::Equal(..) | Op::Less(..) | Op::Any(_) | Op::All(_))), None) => {
+                self.comparison(op)
+            }
+            _ => format!("{} != 0u", self.value(id).inner()),
+        }
+    }
+
+    fn comparison(&self, op: &Op) -> String {
+        let text = |id: NodeId| self.value(id).inner();
+        match op {
+            Op::Equal(a, b) => format!("{} == {}", text(*a), text(*b)),
+            Op::Less(a, b) if self.graph.node(*a).format.signed => {
+                let width = self.graph.width(*a);
+                let sign = literal(1 << (width - 1), width);
+                format!("({} ^ {sign}) < ({} ^ {sign})", text(*a), text(*b))
+            }
+            Op::Less(a, b) => format!("{} < {}", text(*a), text(*b)),
+            Op::All(of) => {
+                let width = self.graph.width(*of);
+                format!("{} == {}", text(*of), literal(mask(width), width))
+            }
+            _ => {
+                let of = op.operands()[0];
+                format!("{} != {}", text(of), literal(0, self.graph.width(of)))
+            }
+        }
+    }
+
+    fn expression(&self, id: NodeId) -> Text {
+        let node = self.graph.node(id);
+        let width = node.format.width();
+        match &node.cell {
+            Cell::Constant(bits) => Text(literal(*bits, width), true),
+            Cell::Operand(at) => {
+                let net = self.design.net(self.operands[*at]);
+                let field = field(&net.name);
+                let text = if net.format.signed {
+                    format!("({})operands.{field}", pattern_type(width))
+                } else {
+                    format!("operands.{field}")
+                };
+                match width {
+                    32 | 64 => Text(text, true),
+                    _ => Text(format!("{text} & {}", literal(mask(width), width)), false),
+                }
+            }
+            Cell::Unknown(_) => {
+                let name = self.states.get(&id).cloned();
+                Text(name.unwrap_or_else(|| literal(0, width)), true)
+            }
+            Cell::Read { rom, address } => {
+                let kind = pattern_type(width);
+                let table = &self.tables[rom.index()];
+                Text(format!("({kind}){table}[{}]", self.value(*address).0), true)
+            }
+            Cell::Op(op) => self.operation(op, width),
+        }
+    }
+
+    fn operation(&self, op: &Op, width: u32) -> Text {
+        let graph = self.graph;
+        let text = |id: NodeId| self.value(id).inner();
+        let wide = |id: NodeId| self.in_type(id, width).inner();
+        match op {
+            Op::Relabel(of) => self.value(*of),
+            Op::Extend(of) if graph.node(*of).format.signed => {
+                self.masked(self.with_sign(*of, width), width)
+            }
+            Op::Extend(of) => self.in_type(*of, width),
+            Op::Slice { of, low } => {
+                let whole = graph.width(*of);
+                let shifted = match low {
+                    0 => text(*of),
+                    _ => format!("{} >> {low}", text(*of)),
+                };
+                let cut = match low + width < whole {
+                    true if *low == 0 => format!("{shifted} & {}", literal(mask(width), whole)),
+                    true => format!("({shifted}) & {}", literal(mask(width), whole)),
+                    false => shifted,
+                };
+                let (from, to) = (pattern_type(whole), pattern_type(width));
+                if from == to { Text(cut, false) } else { Text(format!("({to})({cut})"), true) }
+            }
+            Op::Concat(parts) => {
+                let mut low = width;
+                let mut pieces = Vec::new();
+                for part in parts {
+                    low -= graph.width(*part);
+                    if graph.constant_of(*part) != Some(0) {
+                        pieces.push(match low {
+                            0 => wide(*part),
+                            _ => format!("({} << {low})", wide(*part)),
+                        });
+                    }
+                }
+                Text(pieces.join(" | "), pieces.len() == 1)
+            }
+            Op::Not(of) => Text(format!("{} ^ {}", text(*of), literal(mask(width), width)), false),
+            Op::And(a, b) => Text(format!("{} & {}", text(*a), text(*b)), false),
+            Op::Or(a, b) => Text(format!("{} | {}", text(*a), text(*b)), false),
+            Op::Xor(a, b) => Text(format!("{} ^ {}", text(*a), text(*b)), false),
+            Op::Add { a, b, carry } => {
+                let mut sum = format!("{} + {}", text(*a), text(*b));
+                if let Some(carry) = carry {
+                    sum += &format!(" + {}", wide(*carry));
+                }
+                self.masked(sum, width)
+            }
+            Op::Sub(a, b) => self.masked(format!("{} - {}", text(*a), text(*b)), width),
+            Op::Mul(a, b) if graph.node(*a).format.signed => {
+                let (a, b) = (self.with_sign(*a, width), self.with_sign(*b, width));
+                self.masked(format!("{a} * {b}"), width)
+            }
+            Op::Mul(a, b) => Text(format!("{} * {}", wide(*a), wide(*b)), false),
+            Op::Equal(..) | Op::Less(..) | Op::Any(_) | Op::All(_) => {
+                Text(format!("(uint32_t)({})", self.comparison(op)), true)
+            }
+            Op::Mux { select, inputs } => {
+                let (last, others) = inputs.split_last().expect("a multiplexer has inputs");
+                if let [at_0] = others {
+                    let condition = self.condition(*select);
+                    return Text(format!("{condition} ? {} : {}", text(*last), text(*at_0)), false);
+                }
+                let mut chain = String::new();
+                for (at, input) in others.iter().enumerate() {
+                    let number = literal(at as u64, graph.width(*select));
+                    chain += &format!("{} == {number} ? {} : ", text(*select), text(*input));
+                }
+                Text(chain + &text(*last), false)
+            }
+        }
+    }
+}
+
+/// A comment of one line.
+pub fn comment(text: &str) -> String {
+    // Nothing in a heading may end the comment.
+    format!("/* {} */", ascii(text).replace("*/", "* /").replace("/*", "/ *"))
+}

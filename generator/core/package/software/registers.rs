@@ -1,0 +1,121 @@
+//! The registers for software: a C header, a Rust module without `std`, and SystemRDL.
+
+use anyhow::Result;
+use glint_base::fill;
+
+use crate::package::artifact::{Artifacts, Job, Kind};
+use crate::package::bus::Bus;
+use crate::package::map::{Access, Bits, Map, Register};
+use glint_base::fixed::Format;
+use glint_rtl::verilog::text::{ascii, constant_name};
+
+/// A register as the templates print it.
+struct Printed<'a> {
+    register: &'a Register,
+    /// In upper case.
+    constant: String,
+    fields: Vec<Field<'a>>,
+}
+
+/// Bits of a register.
+struct Field<'a> {
+    bits: &'a Bits,
+    /// In upper case.
+    constant: String,
+}
+
+impl Field<'_> {
+    fn mask(&self) -> String {
+        format!("0x{:08x}", ((1u64 << self.bits.width) - 1) << self.bits.low)
+    }
+
+    fn high(&self) -> u32 {
+        self.bits.low + self.bits.width - 1
+    }
+
+    /// Returns the access of software and hardware, in SystemRDL.
+    fn rdl(&self) -> &'static str {
+        match (self.bits.access, self.bits.name.as_str()) {
+            (Access::Read, _) if self.bits.reset != 0 => "sw = r; hw = na;",
+            (Access::Read, _) => "sw = r; hw = w;",
+            (Access::Write, _) => "sw = rw; hw = r;",
+            (Access::Trigger, _) => "sw = w; hw = r; singlepulse;",
+            (Access::Clear, _) => "sw = rw; hw = r; onwrite = woclr; hwset;",
+        }
+    }
+}
+
+/// An operand and its conversion.
+struct Operand {
+    name: String,
+    constant: String,
+    format: Format,
+}
+
+impl Operand {
+    /// Returns the bits of the raw integer as the registers hold it.
+    fn bits(&self) -> u32 {
+        if self.format.width() <= 32 { 32 } else { 64 }
+    }
+
+    /// The smallest and the largest raw integer, as C writes 64 bits.
+    fn limits(&self) -> (String, String) {
+        let least = match self.format.min_raw() {
+            least if least == i64::MIN.into() => "(-9223372036854775807 - 1)".to_owned(),
+            least => least.to_string(),
+        };
+        (least, self.format.max_raw().min(i64::MAX.into()).to_string())
+    }
+
+    fn rust_limits(&self) -> (String, String) {
+        let most = self.format.max_raw().min(i64::MAX.into());
+        (self.format.min_raw().to_string(), most.to_string())
+    }
+}
+
+/// Adds the files.
+///
+/// # Errors
+/// A template that fails.
+pub fn files(job: &Job, bus: &Bus, map: &Map, files: &mut Artifacts) -> Result<()> {
+    let (name, regenerate, bus) = (job.name(), job.regenerate(), bus.title);
+    let title = ascii(&job.design.about.title).replace("*/", "* /").replace('"', "'");
+    let title = title.as_str();
+    let registers: Vec<Printed> = map.registers.iter().map(view).collect();
+    let operands: Vec<Operand> = map
+        .operands
+        .iter()
+        .map(|operand| Operand {
+            name: operand.name.clone(),
+            constant: constant_name(&operand.name),
+            format: operand.format,
+        })
+        .collect();
+    let prefix = constant_name(name);
+    let header = fill!("registers.h" {
+        name: &'a str, title: &'a str, regenerate: &'a str,
+        guard: String = format!("{prefix}_REGISTERS_H"),
+        prefix: &'a str = &prefix,
+        bus: &'a str, registers: &'a [Printed<'a>] = &registers, operands: &'a [Operand] = &operands,
+    })?;
+    let module = fill!("registers.rs" {
+        name: &'a str, title: &'a str, regenerate: &'a str, bus: &'a str,
+        registers: &'a [Printed<'a>] = &registers, operands: &'a [Operand] = &operands,
+    })?;
+    let rdl = fill!("registers.rdl" {
+        name: &'a str, title: &'a str, regenerate: &'a str, registers: &'a [Printed<'a>] = &registers,
+    })?;
+    files.add(Kind::Software, format!("{name}_registers.h"), header);
+    files.add(Kind::Software, format!("{name}_registers.rs"), module);
+    files.add(Kind::Software, format!("{name}.rdl"), rdl);
+    Ok(())
+}
+
+fn view(register: &Register) -> Printed<'_> {
+    let field = |bits| Field { bits, constant: constant_name(&bits.name) };
+    Printed {
+        register,
+        constant: constant_name(&register.name),
+        fields: register.bits.iter().map(field).collect(),
+    }
+}

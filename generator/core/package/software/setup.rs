@@ -1,0 +1,87 @@
+//! The host's part of a device that walks lines, in C and Python: its operands from vectors or angles at the ends of a
+//! line. The formulas are those of `render::setup`, against which tests hold these.
+
+use anyhow::Result;
+use glint_base::fill;
+
+use super::model::Field;
+use crate::package::artifact::{Artifacts, Job, Kind};
+use glint_base::fixed::exp2;
+use glint_rtl::netlist::Role;
+use glint_rtl::verilog::text::constant_name;
+
+/// The operands of a line, as far as a set-up knows them; `exponent` may be missing.
+const KNOWN: [&str; 5] = ["delta_zeta", "zeta_start", "exponent", "length", "amplitude"];
+
+/// The contents of the three files of a configuration.
+struct Line<'a> {
+    name: &'a str,
+    prefix: String,
+    regenerate: &'a str,
+    /// `zeta_start` and `delta_zeta`.
+    angles: Vec<Field>,
+    /// The domain of the exponent; without it angles are taken times √(n/2).
+    exponent: Option<(i64, i64)>,
+    /// The most intervals.
+    longest: i64,
+    /// The amplitude of full light, and 2^F of its format.
+    full: f64,
+    amplitude_scale: String,
+    /// The largest stretched angle, in right angles.
+    room: f64,
+    order: Vec<String>,
+}
+
+impl Line<'_> {
+    /// Raw angles of a turn.
+    fn turn(&self, angle: &Field) -> String {
+        exp2(angle.format.width() as i32).to_string()
+    }
+}
+
+/// Adds the files: none of a device that walks no line, or takes other operands.
+///
+/// # Errors
+/// A template that fails.
+pub fn files(job: &Job, files: &mut Artifacts) -> Result<()> {
+    let (name, inputs) = (job.name(), job.inputs);
+    let design = inputs.sequential.as_ref().unwrap_or(job.design);
+    let ports = design.inputs().filter(|port| matches!(port.role, Role::Operand { .. }));
+    let fields: Vec<Field> = ports.map(|port| Field::new(design, port)).collect();
+    let accuracy = inputs.accuracy.as_ref().filter(|accuracy| accuracy.length.is_some());
+    let Some(accuracy) = accuracy else {
+        return Ok(());
+    };
+    let field = |name: &str| fields.iter().find(|field| field.name == name);
+    let domain = |name: &str| {
+        let mut domains = accuracy.domain.iter();
+        domains.find(|(operand, _)| operand == name).map(|(_, domain)| *domain)
+    };
+    let known = fields.iter().all(|field| KNOWN.contains(&field.name.as_str()));
+    let all = [field("zeta_start"), field("delta_zeta"), field("amplitude")];
+    let ([Some(start), Some(delta), Some(amplitude)], Some((_, longest)), Some((_, full)), true) =
+        (all, domain("length"), domain("amplitude"), known)
+    else {
+        return Ok(());
+    };
+    let line = &Line {
+        name,
+        prefix: constant_name(name),
+        regenerate: job.regenerate(),
+        angles: vec![start.clone(), delta.clone()],
+        exponent: domain("exponent"),
+        longest,
+        full: amplitude.format.to_f64(i128::from(full)),
+        amplitude_scale: amplitude.scale(),
+        room: exp2(start.format.int) - 1.0,
+        order: fields.iter().map(|field| field.name.clone()).collect(),
+    };
+    for (ending, text) in [
+        ("h", fill!("setup.h" { line: &'a Line<'a> })?),
+        ("c", fill!("setup.c" { line: &'a Line<'a> })?),
+        ("py", fill!("setup.py" { line: &'a Line<'a> })?),
+    ] {
+        files.add(Kind::Software, format!("{name}_setup.{ending}"), text);
+    }
+    Ok(())
+}

@@ -1,0 +1,134 @@
+//! The surroundings of a core that a configuration asks for.
+
+use super::Unfit;
+use super::bus::{BUSES, Bus};
+use glint_config::{Config, Schema, Shared};
+use glint_rtl::netlist::{Design, Pipeline};
+use glint_rtl::verilog::naming::Style;
+
+/// The clock of constraints for a sequential core, unless a key says another.
+const CLOCK_MHZ: f64 = 100.0;
+
+/// The key that says another.
+const CLOCK: &str = "package.clock_mhz";
+
+/// The key that says where ROMs are to be.
+const ROM_STYLE: &str = "package.rom_style";
+
+/// That constraints do not ask more of a pipeline than it is made for.
+///
+/// # Errors
+/// A clock of constraints above that of the stages.
+pub fn check_clock(config: &Config, pipeline: &Pipeline) -> Result<(), Unfit> {
+    let (asked, made_for) = (config.number(CLOCK), pipeline.clock_mhz);
+    if asked <= made_for {
+        return Ok(());
+    }
+    let (made, faster) = match config.integer("pipeline.stages") {
+        0 => ("the pipeline is made for".to_owned(), format!("set pipeline.clock_mhz to {asked}")),
+        stages => {
+            let (plural, verb) = if stages == 1 { ("", "allows") } else { ("s", "allow") };
+            let made = format!("{stages} stage{plural} {verb} on {}", pipeline.target);
+            (made, "raise pipeline.stages".to_owned())
+        }
+    };
+    let faster = if asked <= pipeline.most_mhz { format!("{faster}, or ") } else { String::new() };
+    Err(Unfit::new(
+        CLOCK,
+        format!("`{CLOCK}` = {asked:?} is above the {made_for} MHz that {made}"),
+        format!("{faster}set {CLOCK} to {made_for} or less"),
+    ))
+}
+
+/// That a style is asked for of ROMs that there are.
+///
+/// # Errors
+/// A style, and no ROM that is read on the clock.
+pub fn check_rom_style(config: &Config, design: &Design) -> Result<(), Unfit> {
+    let style = config.choice(ROM_STYLE);
+    if style == "auto" || design.roms.iter().any(|rom| rom.synchronous) {
+        return Ok(());
+    }
+    Err(Unfit::new(
+        ROM_STYLE,
+        format!(
+            "`{ROM_STYLE}` = \"{style}\": `{}` has no ROM that is read on the clock",
+            design.name
+        ),
+        "remove it",
+    ))
+}
+
+/// The surroundings of a core.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Surroundings {
+    /// The core between two AXI4-Streams.
+    pub stream: bool,
+    /// The width of their `tuser`.
+    pub user_bits: u32,
+    /// The core behind registers.
+    pub registers: Option<&'static Bus>,
+    /// A model in C, in `software/<name>/`.
+    pub software: bool,
+    /// How memories and registers are written.
+    pub style: Style,
+    /// A module for LiteX.
+    pub litex: bool,
+    /// The clock of constraints, if there are any.
+    pub clock_mhz: Option<f64>,
+    /// Tcl for Vivado.
+    pub vivado: bool,
+    /// Tcl for Quartus.
+    pub quartus: bool,
+    /// Components of IP-XACT.
+    pub ip_xact: bool,
+    /// Who is said to make the core.
+    pub vendor: String,
+    /// Three numbers with dots between them.
+    pub version: String,
+    /// An SPDX expression.
+    pub licence: String,
+}
+
+/// The defaults of the keys.
+impl Default for Surroundings {
+    fn default() -> Self {
+        let schema = Schema { device: "", keys: Vec::new(), check: |_, _| () };
+        Self::new(&Config::defaults(&schema, ""), None)
+    }
+}
+
+impl Surroundings {
+    /// Reads the keys that every device shares; of a pipeline, with the clock that it is made for.
+    pub fn new(config: &Config, pipeline: Option<&Pipeline>) -> Self {
+        let keys = Shared::of(config);
+        Self {
+            stream: keys.stream,
+            user_bits: keys.user_bits,
+            registers: BUSES.iter().find(|bus| bus.key == keys.registers),
+            software: keys.software,
+            style: Style {
+                inline: keys.memories != "files",
+                case: keys.memories == "case",
+                rom_style: match keys.rom_style.as_str() {
+                    "block" => Some("rom_style = \"block\""),
+                    // To Yosys, which reads the first, memory in look-up tables is one that can be written.
+                    "distributed" => Some("ram_style = \"logic\", rom_style = \"distributed\""),
+                    _ => None,
+                },
+                initial: keys.initial_values,
+            },
+            litex: keys.litex,
+            clock_mhz: keys.constraints.then(|| {
+                let made_for = pipeline.map_or(CLOCK_MHZ, |pipeline| pipeline.clock_mhz);
+                Some(keys.clock_mhz).filter(|&given| given > 0.0).unwrap_or(made_for)
+            }),
+            vivado: keys.vivado,
+            quartus: keys.quartus,
+            ip_xact: keys.ip_xact,
+            vendor: keys.vendor,
+            version: keys.version,
+            licence: keys.licence,
+        }
+    }
+}

@@ -1,0 +1,177 @@
+//! The modules that a system can instantiate: the core, and what stands around it.
+
+use anyhow::Result;
+
+use super::artifact::{Artifacts, Job, Kind};
+use super::bus::{Bus, Protocol, STREAMS};
+use super::wrap::fields::{bits, operands, results};
+use glint_rtl::netlist::{Design, Role};
+use glint_rtl::verilog::text::ascii;
+
+/// The interface of a module to a system.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Face {
+    /// The core itself.
+    Core,
+    /// Two AXI4-Streams.
+    Stream,
+    /// Registers on a bus.
+    Registers(&'static Bus),
+}
+
+/// A port of such a module.
+#[derive(Clone, Debug)]
+pub struct TopPort {
+    /// Its name.
+    pub name: String,
+    /// Or an output.
+    pub input: bool,
+    /// In bits.
+    pub width: u32,
+    /// Declared with a range.
+    pub vector: bool,
+    /// The signal of a bus in LiteX, or nothing.
+    pub signal: String,
+    /// One line, or nothing.
+    pub doc: String,
+}
+
+/// A module that a system can instantiate.
+#[derive(Clone, Debug)]
+pub struct Top {
+    /// Its name.
+    pub module: String,
+    /// The interface.
+    pub face: Face,
+    /// The purpose, in a few words.
+    pub what: String,
+    /// The clock, the first port.
+    pub clock: String,
+    /// The reset, synchronous.
+    pub reset: String,
+    /// The level of the reset that resets.
+    pub reset_level: u8,
+    /// All ports, as the Verilog has them.
+    pub ports: Vec<TopPort>,
+    /// The interfaces that its ports make.
+    pub protocols: &'static [Protocol],
+    /// The Verilog that it is made of, its own file first.
+    pub verilog: Vec<String>,
+}
+
+impl Top {
+    /// The bits of a port; 0 of none.
+    pub fn width(&self, name: &str) -> u32 {
+        self.ports.iter().find(|port| port.name == name).map_or(0, |port| port.width)
+    }
+
+    /// The ports that carry data or a handshake: neither clock nor reset.
+    pub fn signals(&self) -> impl Iterator<Item = &TopPort> {
+        self.ports.iter().filter(|port| port.name != self.clock && port.name != self.reset)
+    }
+
+    /// The ports of an interface, each with its name there.
+    pub fn ports_of(&self, protocol: &Protocol) -> Vec<(&TopPort, String)> {
+        let named = |port: &TopPort| {
+            Some(port.name.strip_prefix(protocol.name)?.strip_prefix('_')?.to_owned())
+        };
+        self.signals().filter_map(|port| Some((port, named(port)?))).collect()
+    }
+
+    /// Returns whether it has an interrupt, a level.
+    pub fn interrupts(&self) -> bool {
+        matches!(self.face, Face::Registers(_))
+    }
+}
+
+/// The modules of a configuration, the core first.
+///
+/// # Errors
+/// A stream around a core without operands or results.
+pub fn tops(job: &Job, files: &Artifacts) -> Result<Vec<Top>> {
+    let (name, design) = (job.name(), job.design);
+    let reset = design.port(|role| role == Role::Reset);
+    let mut tops = vec![Top {
+        module: name.to_owned(),
+        face: Face::Core,
+        what: "the core".to_owned(),
+        clock: "clk".to_owned(),
+        reset: reset.map(|port| design.net(port.net).name.clone()).unwrap_or_default(),
+        reset_level: 0,
+        ports: core_ports(design),
+        protocols: &[],
+        verilog: files.names(&[Kind::Rtl]),
+    }];
+    let mut add = |suffix: &str, face: Face, what: String, level: u8, ports: Vec<TopPort>| {
+        // The files of the stream, with that of its buffer, or those of the registers and their bus.
+        let streamed = format!("{name}_axis");
+        let of_core = |file: &String| file.starts_with(&streamed) == (face == Face::Stream);
+        let own = files.names(&[Kind::Wrapper]).into_iter().filter(of_core);
+        tops.push(Top {
+            module: format!("{name}_{suffix}"),
+            face,
+            what: format!("the core {what}"),
+            clock: ports[0].name.clone(),
+            reset: ports[1].name.clone(),
+            reset_level: level,
+            ports,
+            protocols: match face {
+                Face::Core => &[],
+                Face::Stream => &STREAMS,
+                Face::Registers(bus) => bus.protocol,
+            },
+            verilog: own.chain(files.names(&[Kind::Rtl])).collect(),
+        });
+    };
+    if job.inputs.around.stream {
+        add("axis", Face::Stream, "between two AXI4-Streams".to_owned(), 0, stream_ports(job)?);
+    }
+    if let Some((bus, map)) = &job.registers {
+        let ports = listed(&bus.ports.replace('#', &map.address_bits().to_string()));
+        let what = format!("behind registers on {}", bus.title);
+        add(bus.suffix, Face::Registers(bus), what, bus.reset_level, ports);
+    }
+    Ok(tops)
+}
+
+fn core_ports(design: &Design) -> Vec<TopPort> {
+    let port = |port: &glint_rtl::netlist::Port| {
+        let net = design.net(port.net);
+        let width = net.format.width();
+        TopPort {
+            name: net.name.clone(),
+            input: port.role.is_input(),
+            width,
+            vector: width > 1,
+            signal: String::new(),
+            doc: ascii(&net.doc),
+        }
+    };
+    listed("in clk").into_iter().chain(design.ports.iter().map(port)).collect()
+}
+
+fn stream_ports(job: &Job) -> Result<Vec<TopPort>> {
+    let (input, output) = (bits(&operands(job.design))?, bits(&results(job.design))?);
+    let user = job.inputs.around.user_bits;
+    // A line has its end in its length.
+    let last = if job.is_line() { "" } else { "in s_axis_tlast, " };
+    Ok(listed(&format!(
+        "in aclk, in aresetn, in s_axis_tdata {input}, in s_axis_tuser {user}, {last}\
+         in s_axis_tvalid, out s_axis_tready, out m_axis_tdata {output}, out m_axis_tuser {user}, \
+         out m_axis_tlast, out m_axis_tvalid, in m_axis_tready"
+    )))
+}
+
+/// Ports as text: directions and names, the widths of vectors, and signals of LiteX.
+fn listed(ports: &str) -> Vec<TopPort> {
+    let port = |port: &str| {
+        let mut words = port.split(' ');
+        let input = words.next() == Some("in");
+        let name = words.next().unwrap_or_default().to_owned();
+        let width = words.next().and_then(|width| width.parse().ok());
+        let signal = words.next().unwrap_or_default().to_owned();
+        let (vector, width) = (width.is_some(), width.unwrap_or(1));
+        TopPort { name, input, width, vector, signal, doc: String::new() }
+    };
+    ports.split(", ").map(port).collect()
+}

@@ -1,0 +1,54 @@
+//! `<top>.sdc` and `<top>.xdc`: the clock, and nothing that is not known of the system around.
+
+use anyhow::Result;
+use glint_base::fill;
+
+use crate::package::artifact::{Artifacts, Job, Kind};
+use crate::package::tops::Top;
+
+/// Adds both files of each module.
+///
+/// # Errors
+/// A template that fails.
+pub fn files(job: &Job, tops: &[Top], clock_mhz: f64, files: &mut Artifacts) -> Result<()> {
+    for top in tops {
+        for (ending, reader) in [
+            ("sdc", "For Quartus, nextpnr, OpenSTA and all that read SDC."),
+            ("xdc", "For Vivado: read_xdc -mode out_of_context."),
+        ] {
+            let text = fill!("constraints.sdc" {
+                top: &'a Top, regenerate: &'a str = job.regenerate(), clock_mhz: f64,
+                // In nanoseconds.
+                period: String = period(clock_mhz),
+                // Who reads the file, and how.
+                reader: &'a str,
+            })?;
+            files.add(Kind::Constraint, format!("{}.{ending}", top.module), text);
+        }
+    }
+    Ok(())
+}
+
+/// In nanoseconds, with picoseconds. What is rounded off makes the clock faster, never slower.
+fn period(clock_mhz: f64) -> String {
+    let picoseconds = libm::floor(1e6 / clock_mhz);
+    format!("{:.3}", picoseconds / 1e3)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::period;
+
+    #[test]
+    fn periods_are_never_longer_than_the_clock_allows() {
+        for (clock_mhz, expected) in [
+            (100.0, "10.000"),
+            (130.0, "7.692"),
+            (2000.0, "0.500"),
+            (1.0, "1000.000"),
+            (12.0, "83.333"),
+        ] {
+            assert_eq!(period(clock_mhz), expected, "{clock_mhz} MHz");
+        }
+    }
+}

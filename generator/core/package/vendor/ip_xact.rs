@@ -1,0 +1,150 @@
+//! `<top>.xml`: each module as a component of IP-XACT, IEEE 1685-2014.
+
+use anyhow::Result;
+
+use crate::package::artifact::{Artifacts, Job, Kind};
+use crate::package::map::{Access, Bits, Register};
+use crate::package::tops::{Face, Top};
+use glint_base::template::render;
+use glint_rtl::verilog::text::ascii;
+
+#[glint_base::template::template("component.xml")]
+struct Component<'a> {
+    top: &'a Top,
+    title: String,
+    regenerate: String,
+    vendor: &'a str,
+    version: &'a str,
+    buses: Vec<BusInterface>,
+    registers: &'a [Register],
+    /// Bytes that the registers take.
+    range: usize,
+    memories: Vec<String>,
+}
+
+/// A bus interface, of a bus definition that ARM has published, or of an interrupt AMD.
+struct BusInterface {
+    name: &'static str,
+    /// Vendor and library of the definition, as attributes.
+    definition: &'static str,
+    /// The name of the definition.
+    bus: &'static str,
+    version: &'static str,
+    is_slave: bool,
+    /// It leads to the registers.
+    mapped: bool,
+    /// Name in the definition, and port.
+    ports: Vec<(String, String)>,
+}
+
+const AMBA: &str = "vendor=\"amba.com\" library=\"AMBA4\"";
+const INTERRUPT: &str = "vendor=\"xilinx.com\" library=\"signal\"";
+
+impl BusInterface {
+    fn is_interrupt(&self) -> bool {
+        self.definition == INTERRUPT
+    }
+}
+
+impl Component<'_> {
+    /// A number as IP-XACT writes it, after the `'h`.
+    fn hex(&self, number: impl std::fmt::LowerHex) -> String {
+        format!("{number:x}")
+    }
+
+    /// Text of XML.
+    fn escaped(&self, text: &str) -> String {
+        escaped(text)
+    }
+}
+
+impl Bits {
+    /// Returns the access of a program.
+    fn ip_xact_access(&self) -> &'static str {
+        match self.access {
+            Access::Read => "read-only",
+            Access::Write | Access::Clear => "read-write",
+            Access::Trigger => "write-only",
+        }
+    }
+
+    /// The hardware changes them.
+    fn is_volatile(&self) -> bool {
+        match self.access {
+            Access::Read => self.reset == 0,
+            Access::Clear => true,
+            Access::Write | Access::Trigger => false,
+        }
+    }
+}
+
+/// Adds a component of each module.
+///
+/// # Errors
+/// A template that fails.
+pub fn files(job: &Job, tops: &[Top], files: &mut Artifacts) -> Result<()> {
+    for top in tops {
+        let registers: &[Register] = match (top.face, &job.registers) {
+            (Face::Registers(_), Some((_, map))) => &map.registers,
+            _ => &[],
+        };
+        let component = Component {
+            top,
+            title: escaped(&job.design.about.title),
+            regenerate: comment(job.regenerate()),
+            vendor: &job.inputs.around.vendor,
+            version: &job.inputs.around.version,
+            buses: buses(top),
+            registers,
+            range: 4 * registers.len(),
+            memories: files.names(&[Kind::Memory]),
+        };
+        let text = render(&component)?;
+        files.add(Kind::Script, format!("{}.xml", top.module), text);
+    }
+    Ok(())
+}
+
+/// The buses of a module, and its interrupt. IEEE 1685-2014 has none of its own, and Vivado's is known to other tools too.
+fn buses(top: &Top) -> Vec<BusInterface> {
+    let mut buses = Vec::new();
+    for protocol in top.protocols {
+        let common = [("ACLK", &top.clock), ("ARESETN", &top.reset)];
+        let common = common.map(|(logical, port)| (logical.to_owned(), port.clone()));
+        let own = top.ports_of(protocol).into_iter();
+        let own = own.map(|(port, name)| (name.to_ascii_uppercase(), port.name.clone()));
+        buses.push(BusInterface {
+            name: protocol.name,
+            definition: AMBA,
+            bus: protocol.amba,
+            version: protocol.version,
+            is_slave: protocol.is_slave,
+            mapped: top.interrupts(),
+            ports: common.into_iter().chain(own).collect(),
+        });
+    }
+    buses.extend(top.interrupts().then(|| BusInterface {
+        name: "irq",
+        definition: INTERRUPT,
+        bus: "interrupt",
+        version: "1.0",
+        is_slave: false,
+        mapped: false,
+        ports: vec![("INTERRUPT".to_owned(), "irq".to_owned())],
+    }));
+    buses
+}
+
+/// Text of XML.
+fn escaped(text: &str) -> String {
+    ascii(text).replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}
+
+/// A part of a comment of XML, in which two hyphens may not stand side by side.
+fn comment(text: &str) -> String {
+    let mut text = text.to_owned();
+    while text.contains("--") {
+        text = text.replace("--", "- -");
+    }
+    text
+}

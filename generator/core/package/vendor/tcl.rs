@@ -1,0 +1,118 @@
+//! Tcl for Vivado and Quartus: builds of a module alone, and descriptions of it as IP.
+
+use anyhow::Result;
+use glint_base::fill;
+
+use crate::package::artifact::{Artifacts, Job, Kind};
+use crate::package::bus::Protocol;
+use crate::package::tops::{Top, TopPort};
+use glint_rtl::verilog::text::ascii;
+
+/// The device that a build is for, unless its user names one: small and common.
+const VIVADO_PART: &str = "xc7a35tcsg324-1";
+const QUARTUS_FAMILY: &str = "Cyclone V";
+const QUARTUS_DEVICE: &str = "5CEBA4F23C7";
+
+/// An interface of Platform Designer.
+struct Interface<'a> {
+    name: &'static str,
+    kind: &'static str,
+    /// `end` takes, `start` offers.
+    side: &'static str,
+    /// The port and its role.
+    ports: Vec<(&'a TopPort, String)>,
+}
+
+impl TopPort {
+    fn direction(&self) -> &'static str {
+        if self.input { "Input" } else { "Output" }
+    }
+}
+
+/// Adds `<name>_vivado.tcl` and `<name>_vivado_ip.tcl`.
+///
+/// # Errors
+/// A template that fails.
+pub fn vivado(job: &Job, tops: &[Top], files: &mut Artifacts) -> Result<()> {
+    let (name, around) = (job.name(), &job.inputs.around);
+    let version = around.version.as_str();
+    let memories = files.names(&[Kind::Memory]);
+    let build = fill!("vivado.tcl" {
+        name: &'a str,
+        part: &'a str = VIVADO_PART,
+        regenerate: &'a str = job.regenerate(),
+        tops: &'a [Top],
+        memories: &'a [String] = &memories,
+    })?;
+    let ip = fill!("vivado_ip.tcl" {
+        name: &'a str,
+        part: &'a str = VIVADO_PART,
+        title: String = quoted(&job.design.about.title),
+        regenerate: &'a str = job.regenerate(),
+        vendor: &'a str = &around.vendor,
+        // Major and minor, all that Vivado takes.
+        version: &'a str = version.rsplit_once('.').map_or(version, |(two, _)| two),
+        tops: &'a [Top],
+        memories: &'a [String] = &memories,
+    })?;
+    files.add(Kind::Script, format!("{name}_vivado.tcl"), build);
+    files.add(Kind::Script, format!("{name}_vivado_ip.tcl"), ip);
+    Ok(())
+}
+
+/// Adds `<name>_quartus.tcl`, and `<top>_hw.tcl` of each module.
+///
+/// # Errors
+/// A template that fails.
+pub fn quartus(job: &Job, tops: &[Top], files: &mut Artifacts) -> Result<()> {
+    let (name, around) = (job.name(), &job.inputs.around);
+    let build = fill!("quartus.tcl" {
+        name: &'a str,
+        family: &'a str = QUARTUS_FAMILY,
+        device: &'a str = QUARTUS_DEVICE,
+        regenerate: &'a str = job.regenerate(),
+        tops: &'a [Top],
+    })?;
+    files.add(Kind::Script, format!("{name}_quartus.tcl"), build);
+    for top in tops {
+        let text = fill!("hw.tcl" {
+            top: &'a Top,
+            title: String = quoted(&job.design.about.title),
+            regenerate: &'a str = job.regenerate(),
+            vendor: &'a str = &around.vendor,
+            version: &'a str = &around.version,
+            memories: Vec<String> = files.names(&[Kind::Memory]),
+            interfaces: Vec<Interface<'a>> = interfaces(top),
+        })?;
+        files.add(Kind::Script, format!("{}_hw.tcl", top.module), text);
+    }
+    Ok(())
+}
+
+/// The interfaces of a module but for clock, reset and interrupt.
+fn interfaces(top: &Top) -> Vec<Interface<'_>> {
+    if top.protocols.is_empty() {
+        // The type of interface for all that has none.
+        let ports = top.signals().map(|port| (port, port.name.clone())).collect();
+        return vec![Interface { name: "signals", kind: "conduit", side: "end", ports }];
+    }
+    let interface = |protocol: &'static Protocol| Interface {
+        name: protocol.name,
+        kind: protocol.platform,
+        side: if protocol.is_slave { "end" } else { "start" },
+        ports: top.ports_of(protocol),
+    };
+    top.protocols.iter().map(interface).collect()
+}
+
+/// As it stands between the quotation marks of a Tcl word.
+fn quoted(text: &str) -> String {
+    let mut quoted = String::new();
+    for c in ascii(text).chars() {
+        if "\\\"$[]{}".contains(c) {
+            quoted.push('\\');
+        }
+        quoted.push(c);
+    }
+    quoted
+}

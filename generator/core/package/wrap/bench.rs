@@ -1,0 +1,168 @@
+//! `<name>_axis_tb.v`, and `<name>_axil_tb.v` or `<name>_wb_tb.v`: benches of the wrappers, with the points of the core's.
+
+use anyhow::Result;
+use glint_base::fill;
+
+use super::fields::{Field, bits, operands, results};
+use super::points::{points, received, sent};
+use crate::package::Vectors;
+use crate::package::artifact::{Artifacts, Job, Kind};
+use crate::package::map::{INTERRUPT_PENDING, Map, Part, Placed, Register};
+use glint_base::fixed::mask;
+
+/// Points that a bench writes to registers, at most: those between are left out.
+const ON_A_BUS: usize = 256;
+
+/// A register of an operand or of results, as a bench accesses it.
+struct Access {
+    at: String,
+    word: String,
+    mask: String,
+}
+
+/// Adds the benches of a core's wrappers and their files; none without a computation in the vectors.
+///
+/// # Errors
+/// A core without its handshake.
+pub fn files(job: &Job, vectors: &Vectors, files: &mut Artifacts) -> Result<()> {
+    let (design, name) = (job.design, job.name());
+    let points = points(design, vectors)?;
+    if points.is_empty() {
+        return Ok(());
+    }
+    let (operands, results) = (operands(design), results(design));
+    let (in_high, out_high) = (bits(&operands)? - 1, bits(&results)? - 1);
+    let clocks = vectors.inputs.len();
+    if job.inputs.around.stream {
+        let user_bits = job.inputs.around.user_bits;
+        // As long as three points, so that places behind the core fill up.
+        let pause = 3 * clocks / points.len() + 16;
+        let text = fill!("stream_tb.v" {
+            name: &'a str,
+            is_line: bool = job.is_line(),
+            sent: usize = points.len(),
+            received: usize = points.iter().map(|point| point.results.len()).sum(),
+            // Each of the four turns is there twice, of six pauses each.
+            passes: usize = (8 * 6 * pause).div_ceil(clocks),
+            pause: usize,
+            limit: usize = clocks + 64,
+            in_high: u32,
+            out_high: u32,
+            // Of a line's results, which say whether they are the last.
+            word_high: u32 = out_high + u32::from(job.is_line()),
+            user_bits: u32,
+            // Words of 32 bits that tuser needs.
+            user_words: u32 = user_bits.div_ceil(32),
+            offer_high: u32 = out_high + 1 + user_bits,
+        })?;
+        files.add(Kind::Bench, format!("{name}_axis_tb.v"), text);
+        add_python(job, "axis", &["streams_carry_every_point"], files)?;
+    }
+    if let Some((bus, map)) = &job.registers {
+        let top = format!("{name}_{}", bus.suffix);
+        // Addresses of registers that are neither operands nor results with what is read there after a reset.
+        let (constants, read_only) = fixed(map);
+        let text = fill!("registers_tb.v" {
+            name: &'a str,
+            top: &'a str = &top,
+            wishbone: bool = bus.key == "wishbone",
+            points: usize = points.len(),
+            every: usize = points.len().div_ceil(ON_A_BUS),
+            words: u32 = map.last() + 1,
+            // Registers that addresses have room for.
+            places: u32 = 1 << (map.address_bits() - 2),
+            limit: usize = clocks + 64,
+            in_high: u32,
+            out_high: u32,
+            address_high: u32 = map.address_bits() - 1,
+            parts: Vec<Access> = accesses(&map.operands, &operands, "point"),
+            results: Vec<Access> = of_results(map, &results),
+            constants: Vec<(String, String)>,
+            read_only: Vec<String>,
+        })?;
+        files.add(Kind::Bench, format!("{top}_tb.v"), text);
+        let tests = &["registers_compute_every_point", "registers_keep_what_is_written"];
+        add_python(job, bus.suffix, tests, files)?;
+    }
+    files.add(Kind::Bench, format!("{name}_sent.mem"), sent(&points, &operands));
+    let received = received(&points, &results, job.is_line());
+    files.add(Kind::Bench, format!("{name}_received.mem"), received);
+    Ok(())
+}
+
+/// Adds the bench of a wrapper in Python, where the core has one.
+fn add_python(job: &Job, wrapper: &str, tests: &[&str], files: &mut Artifacts) -> Result<()> {
+    if job.inputs.example.is_some() && job.inputs.accuracy.is_some() {
+        let name = job.name();
+        let text = fill!("test_wrapper.py" {
+            name: &'a str, wrapper: &'a str, tests: &'a [&'a str],
+        })?;
+        files.add(Kind::Python, format!("test_{name}_{wrapper}.py"), text);
+    }
+    Ok(())
+}
+
+fn address(place: u32) -> String {
+    format!("32'h{:02x}", 4 * place)
+}
+
+/// The registers before the operands with their values after a reset, and those that cannot be written.
+fn fixed(map: &Map) -> (Vec<(String, String)>, Vec<String>) {
+    let value = |register: &Register| {
+        let value = register.bits.iter().map(|bits| bits.reset << bits.low).sum::<u64>();
+        (address(register.place), format!("32'h{value:08x}"))
+    };
+    let own = |register: &&Register| register.place <= INTERRUPT_PENDING;
+    let read_only = |register: &&Register| {
+        use crate::package::map::Access::Read;
+        register.bits.iter().all(|bits| bits.access == Read)
+    };
+    (
+        map.registers.iter().filter(own).map(value).collect(),
+        map.registers.iter().filter(read_only).map(|it| address(it.place)).collect(),
+    )
+}
+
+/// The registers of ports, each in the words of a point.
+fn accesses(ports: &[Placed], fields: &[Field], net: &str) -> Vec<Access> {
+    let of_port = |(port, field)| {
+        let Placed { parts, .. }: &Placed = port;
+        parts.iter().map(move |part| access(part, field, net))
+    };
+    ports.iter().zip(fields).flat_map(of_port).collect()
+}
+
+fn access(part: &Part, field: &Field, net: &str) -> Access {
+    let bits = (field.padded() - part.low).min(32);
+    let low = field.low + part.low;
+    let all = format!("{net}[{}:{low}]", low + bits - 1);
+    let top = format!("{net}[{}]", low + bits - 1);
+    // Bits above an operand are anything; those above a result copies of its sign.
+    let above = match net {
+        "point" => format!("{net}[0]"),
+        _ if field.signed => top,
+        _ => "1'b0".to_owned(),
+    };
+    let word = match 32 - bits {
+        0 => all,
+        more => format!("{{{{{more}{{{above}}}}}, {all}}}"),
+    };
+    Access { at: address(part.place), word, mask: format!("32'h{:08x}", mask(part.width)) }
+}
+
+/// All results in one register are side by side as in a stream.
+fn of_results(map: &Map, fields: &[Field]) -> Vec<Access> {
+    if map.last() > map.last_operand() + 1 || fields.len() == 1 {
+        return accesses(&map.results, fields, "result");
+    }
+    let all = Field {
+        name: String::new(),
+        label: String::new(),
+        signed: false,
+        width: fields.iter().map(Field::padded).sum(),
+        low: 0,
+        strobe: String::new(),
+    };
+    let part = Part { place: map.last(), at: 0, low: 0, width: all.width };
+    vec![access(&part, &all, "result")]
+}

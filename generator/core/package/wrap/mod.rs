@@ -1,0 +1,102 @@
+//! Wrappers in Verilog between a core and a system, and the properties that are proved of them.
+
+mod bench;
+pub(super) mod fields;
+mod pipeline;
+mod points;
+mod registers;
+mod stream;
+mod words;
+
+use anyhow::Result;
+use glint_base::fill;
+
+use super::artifact::{Artifacts, Job, Kind};
+use glint_rtl::netlist::{Design, Port, Role};
+use glint_rtl::verilog::rows::separated;
+use glint_rtl::verilog::text::range;
+
+/// Adds the wrappers that the configuration asks for, and where there is a bench, theirs and what is proved of them.
+///
+/// # Errors
+/// A core that they do not fit.
+pub fn files(job: &Job, files: &mut Artifacts) -> Result<()> {
+    let streams = job.inputs.around.stream;
+    if streams {
+        match &job.design.pipeline {
+            Some(pipeline) => pipeline::modules(job, pipeline, files)?,
+            None => stream::modules(job, files)?,
+        }
+    }
+    if let Some((bus, map)) = &job.registers {
+        registers::modules(job, bus, map, files)?;
+    }
+    let Some(vectors) = job.inputs.vectors.as_ref().filter(|_| streams || job.registers.is_some())
+    else {
+        return Ok(());
+    };
+    bench::files(job, vectors, files)
+}
+
+/// Adds what is proved of a wrapper, and the commands of Yosys that make the problem, where there is a bench.
+fn add_proof(job: &Job, wrapper: &str, text: String, files: &mut Artifacts) -> Result<()> {
+    if job.inputs.vectors.is_some() {
+        let script = fill!("wrapper_formal.ys" { name: &'a str = wrapper })?;
+        files.add(Kind::WrapperProof, format!("{wrapper}_formal.sv"), text);
+        files.add(Kind::WrapperProof, format!("{wrapper}_formal.ys"), script);
+    }
+    Ok(())
+}
+
+/// Returns the connections of the core, the clock first: where `to` says nothing, inputs to 0, and outputs to the wire of
+/// [`core_wire`].
+fn connected(
+    design: &Design,
+    clock: &str,
+    to: impl Fn(Role, &str) -> Option<String>,
+) -> Vec<String> {
+    let ports = design.ports.iter().map(|port| {
+        let name = design.net(port.net).name.as_str();
+        let to = to(port.role, name).unwrap_or_else(|| match port.role.is_input() {
+            true => "1'b0".to_owned(),
+            false => format!("core_{name}"),
+        });
+        format!(".{name}({to})")
+    });
+    separated(std::iter::once(format!(".clk({clock})")).chain(ports).collect())
+}
+
+/// The declaration of the wire that an output of the core drives.
+fn core_wire(design: &Design, port: &Port) -> String {
+    let net = design.net(port.net);
+    format!("wire {} core_{};", range(net.format.width()), net.name).replace("  ", " ")
+}
+
+/// Results of the module that stands in for the core: anything.
+fn stub_free(design: &Design) -> Vec<String> {
+    let is_free = |port: &&Port| matches!(port.role, Role::Result | Role::Status);
+    let free = design.ports.iter().filter(is_free).flat_map(|port| {
+        let net = design.net(port.net);
+        let any = format!("(* anyseq *) reg {} any_{};", range(net.format.width()), net.name);
+        [any.replace("  ", " "), format!("assign {0} = any_{0};", net.name)]
+    });
+    free.collect()
+}
+
+/// The ports of a module that stands in for the core, in the order of the core's.
+fn stub_ports(design: &Design) -> Vec<String> {
+    let port = |port: &Port| {
+        let net = design.net(port.net);
+        let range = range(net.format.width());
+        let sign = if net.format.signed { "signed " } else { "" };
+        let direction = if port.role.is_input() { "input" } else { "output" };
+        format!("{direction} wire {sign}{range} {}", net.name).replace("  ", " ")
+    };
+    let clock = "input wire clk".to_owned();
+    separated(std::iter::once(clock).chain(design.ports.iter().map(port)).collect())
+}
+
+/// The declaration of a net inside the module that is proved, with its width.
+fn seen_inside((net, width): (String, u32)) -> String {
+    format!("(* hierconn *) wire {} \\dut.{net} ;", range(width)).replace("  ", " ")
+}

@@ -1,0 +1,112 @@
+//! `<name>_axis.v` of a pipeline: the core between two AXI4-Streams, and what is proved of it.
+
+use anyhow::{Result, ensure};
+use glint_base::fill;
+
+use super::fields::{Field, bits, operands, packed, padding, results, sink};
+use super::{add_proof, connected, seen_inside, stub_ports};
+use crate::package::artifact::{Artifacts, Job, Kind};
+use glint_rtl::netlist::{Pipeline, Role};
+use glint_rtl::verilog::rows::separated;
+use glint_rtl::verilog::text::literal;
+
+/// The lowest and the highest bit of tlast and tuser of a stage's point among those of all stages.
+struct Side {
+    low: u32,
+    high: u32,
+}
+
+/// A result among the bits of all, without those that fill bytes.
+struct Raw<'a> {
+    name: &'a str,
+    low: u32,
+    width: u32,
+}
+
+/// Adds the wrapper, and what is proved of it.
+///
+/// # Errors
+/// A pipeline that cannot be held back; one without operands or results.
+pub fn modules(job: &Job, pipeline: &Pipeline, files: &mut Artifacts) -> Result<()> {
+    let (name, design) = (job.name(), job.design);
+    ensure!(
+        pipeline.stall,
+        "`{name}` cannot be held back, which interface.stream needs; set pipeline.stall = \"ready\""
+    );
+    let (operands, results) = (operands(design), results(design));
+    let connections = connected(design, "aclk", |role, name| match role {
+        Role::Reset => Some("aresetn".to_owned()),
+        Role::InValid => Some("s_axis_tvalid".to_owned()),
+        Role::InReady => Some("s_axis_tready".to_owned()),
+        Role::OutReady => Some("ready".to_owned()),
+        Role::Valid => Some("valid".to_owned()),
+        Role::Point => {
+            let field = operands.iter().find(|field| field.name == name);
+            Some(format!("s_axis_tdata{}", field.map(Field::bits).unwrap_or_default()))
+        }
+        Role::SideIn => Some(literal(0, pipeline.side)),
+        _ => None,
+    });
+    let mut unused = padding(&operands, "s_axis_tdata");
+    if pipeline.side > 0 {
+        unused.push("core_side_out".to_owned());
+    }
+    let (stages, user_bits) = (pipeline.stages.len(), job.inputs.around.user_bits);
+    let (in_high, out_high) = (bits(&operands)? - 1, bits(&results)? - 1);
+    let text = fill!("axis_pipeline.v" {
+        name: &'a str,
+        regenerate: &'a str = job.regenerate(),
+        user_bits: u32,
+        operands: &'a [Field] = &operands,
+        results: &'a [Field] = &results,
+        signed: bool = results.iter().any(|field| field.signed && field.padded() > field.width),
+        in_high: u32,
+        out_high: u32,
+        stages: usize,
+        // Bits of the own side channel of the core, which is not used.
+        side: u32 = pipeline.side,
+        packed: Vec<String> = separated(packed(&results, "core_")),
+        connections: Vec<String>,
+        unused: Vec<String> = sink(&unused),
+    })?;
+    files.add(Kind::Wrapper, format!("{name}_axis.v"), text);
+
+    let side = user_bits + 1;
+    let mut raw_bits = 0;
+    let mut raw = Vec::new();
+    for field in &results {
+        raw.push(Raw { name: &field.name, low: raw_bits, width: field.width });
+        raw_bits += field.width;
+    }
+    let mut nets = vec![
+        ("held".to_owned(), 1),
+        ("held_results".to_owned(), out_high + 1),
+        ("held_side".to_owned(), side),
+        ("side".to_owned(), stages as u32 * side),
+        ("results_side".to_owned(), side),
+        ("core.points".to_owned(), stages as u32),
+    ];
+    let handshake = ["rst_n", "in_valid", "in_ready", "out_valid", "out_ready"];
+    nets.extend(handshake.map(|port| (format!("core.{port}"), 1)));
+    let ports = operands.iter().chain(&results);
+    nets.extend(ports.map(|field| (format!("core.{}", field.name), field.width)));
+    let check = |field: &Field| format!("dut.core.{} == s_axis_tdata{}", field.name, field.bits());
+    let text = fill!("axis_pipeline_formal.sv" {
+        name: &'a str,
+        in_high: u32,
+        out_high: u32,
+        user_bits: u32,
+        stub_ports: Vec<String> = stub_ports(design),
+        raw: Vec<Raw<'a>>,
+        raw_high: u32 = raw_bits - 1,
+        packed: Vec<String> = separated(packed(&results, "dut.core.")),
+        checks: Vec<String> = operands.iter().map(check).collect(),
+        // Declarations of what the proof sees of the inside.
+        inside: Vec<String> = nets.into_iter().map(seen_inside).collect(),
+        stages: usize,
+        sides: Vec<Side> = (0..stages as u32)
+            .map(|stage| Side { low: stage * side, high: stage * side + user_bits })
+            .collect(),
+    })?;
+    add_proof(job, &format!("{name}_axis"), text, files)
+}

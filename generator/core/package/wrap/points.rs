@@ -1,0 +1,190 @@
+//! The computations that the stimulus of a core's bench holds, for the benches of its wrappers.
+
+use std::collections::VecDeque;
+
+use anyhow::{Context, Result};
+
+use super::fields::Field;
+use crate::package::Vectors;
+use crate::package::bench::packed;
+use glint_base::fixed::mask;
+use glint_rtl::netlist::{Design, Port, Role};
+
+/// Results in a list, at most: a line more would be beyond it.
+const RESULTS: usize = 4096;
+
+/// A computation: bit patterns in the order of the ports.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Point {
+    pub operands: Vec<u64>,
+    pub results: Vec<Vec<u64>>,
+}
+
+/// The computations that run to their end, in the order in which they do.
+///
+/// # Errors
+/// A design without its handshake.
+pub fn points(design: &Design, vectors: &Vectors) -> Result<Vec<Point>> {
+    let clocks = vectors.inputs.iter().zip(&vectors.expected);
+    let rows = clocks.map(|(inputs, outputs)| Row { design, inputs, outputs });
+    let all = match &design.pipeline {
+        Some(_) => streamed(rows),
+        None => computed(design, rows),
+    }
+    .context("a list of points needs the handshake of a core")?;
+    let mut results = 0;
+    let fits = |point: &Point| {
+        let fits = results + point.results.len() <= RESULTS;
+        results += if fits { point.results.len() } else { 0 };
+        fits
+    };
+    Ok(all.into_iter().filter(fits).collect())
+}
+
+/// The ports in a clock.
+struct Row<'a> {
+    design: &'a Design,
+    inputs: &'a [u64],
+    outputs: &'a [u64],
+}
+
+impl Row<'_> {
+    /// The ports of some roles with their values.
+    fn all(&self, is: impl Fn(Role) -> bool) -> Vec<(&Port, u64)> {
+        let inputs = self.design.inputs().zip(self.inputs);
+        let ports = inputs.chain(self.design.outputs().zip(self.outputs));
+        ports.filter(|(port, _)| is(port.role)).map(|(port, value)| (port, *value)).collect()
+    }
+
+    fn values(&self, is: impl Fn(Role) -> bool) -> Vec<u64> {
+        self.all(is).into_iter().map(|(_, value)| value).collect()
+    }
+
+    /// Whether the one port of a role is high.
+    fn high(&self, role: Role) -> Option<bool> {
+        self.values(|it| it == role).first().map(|value| *value == 1)
+    }
+
+    fn results(&self) -> Vec<u64> {
+        self.values(|role| role == Role::Result)
+    }
+}
+
+/// A microprogram's: operands are written one by one, and start takes what they are then.
+fn computed<'a>(design: &Design, rows: impl Iterator<Item = Row<'a>>) -> Option<Vec<Point>> {
+    let overlaps = design.control.overlaps;
+    let mut done = Vec::new();
+    let mut written: Vec<Option<u64>> = Vec::new();
+    let mut current: Option<Point> = None;
+    let mut known = false;
+    for row in rows {
+        let operands = row.all(|role| matches!(role, Role::Operand { .. }));
+        written.resize(operands.len(), None);
+        if !row.high(Role::Reset)? {
+            (known, current, written) = (true, None, vec![None; operands.len()]);
+            continue;
+        }
+        if !known {
+            continue;
+        }
+        let busy = row.high(Role::Busy)?;
+        let ends = busy && row.high(Role::Done)?;
+        if let Some(point) =
+            current.as_mut().filter(|_| busy && row.high(Role::Valid) == Some(true))
+        {
+            point.results.push(row.results());
+        }
+        if ends {
+            done.extend(current.take());
+        }
+        if overlaps || !busy {
+            for ((port, value), written) in operands.iter().zip(&mut written) {
+                let Role::Operand { strobe } = port.role else { continue };
+                let mut inputs = design.inputs().zip(row.inputs);
+                if inputs.any(|(it, high)| it.net == strobe && *high == 1) {
+                    *written = Some(*value);
+                }
+            }
+        }
+        if row.high(Role::Start)? && (!busy || overlaps && ends) {
+            let operands = written.iter().copied().collect::<Option<Vec<u64>>>();
+            current = operands.map(|operands| Point { operands, results: Vec::new() });
+        }
+    }
+    Some(done)
+}
+
+/// A pipeline's: points leave it in their order.
+fn streamed<'a>(rows: impl Iterator<Item = Row<'a>>) -> Option<Vec<Point>> {
+    let mut done = Vec::new();
+    let mut inside: VecDeque<Vec<u64>> = VecDeque::new();
+    let mut known = false;
+    for row in rows {
+        if !row.high(Role::Reset)? {
+            (known, inside) = (true, VecDeque::new());
+            continue;
+        }
+        if !known {
+            continue;
+        }
+        if row.high(Role::Valid)? && row.high(Role::OutReady).unwrap_or(true) {
+            let operands = inside.pop_front()?;
+            done.push(Point { operands, results: vec![row.results()] });
+        }
+        if row.high(Role::InValid)? && row.high(Role::InReady).unwrap_or(true) {
+            inside.push_back(row.values(|role| role == Role::Point));
+        }
+    }
+    Some(done)
+}
+
+/// Returns the stream's input: the operands side by side in whole bytes, the bits above them of every other point set.
+pub fn sent(points: &[Point], operands: &[Field]) -> String {
+    let word = |(number, point): (usize, &Point)| {
+        let above = |field: &Field| if number % 2 == 1 { !mask(field.width) } else { 0 };
+        word(&point.operands, operands, above, None)
+    };
+    points.iter().enumerate().map(word).collect()
+}
+
+/// Returns the stream's output, a line a result: likewise, with copies of the sign, and above them whether it is the last of a line.
+pub fn received(points: &[Point], results: &[Field], is_line: bool) -> String {
+    let mut text = String::new();
+    for point in points {
+        let last = point.results.len() - 1;
+        for (number, result) in point.results.iter().enumerate() {
+            let signs: Vec<bool> = result
+                .iter()
+                .zip(results)
+                .map(|(value, field)| field.signed && value >> (field.width - 1) & 1 == 1)
+                .collect();
+            let mut signs = signs.into_iter();
+            let above = |field: &Field| match signs.next() {
+                Some(true) => !mask(field.width),
+                _ => 0,
+            };
+            let last = is_line.then_some(u64::from(number == last));
+            text += &word(result, results, above, last);
+        }
+    }
+    text
+}
+
+/// A line of a file for `$readmemh`.
+fn word(
+    values: &[u64],
+    fields: &[Field],
+    mut above: impl FnMut(&Field) -> u64,
+    top: Option<u64>,
+) -> String {
+    let whole = |(value, field): (&u64, &Field)| (value | above(field)) & mask(field.padded());
+    let mut row: Vec<u64> = values.iter().zip(fields).map(whole).collect();
+    let mut widths: Vec<u32> = fields.iter().map(Field::padded).collect();
+    if let Some(top) = top {
+        row.push(top);
+        widths.push(4);
+    }
+    row.reverse();
+    widths.reverse();
+    packed(&row, &widths) + "\n"
+}

@@ -1,0 +1,247 @@
+//! `<name>_registers.v` and its bus, `<name>_axil.v` or `<name>_wb.v`: the core behind registers, and what is
+//! proved of them.
+
+use anyhow::Result;
+use glint_base::fill;
+
+use super::fields::sink;
+use super::words::{Word, constants, select, within, words};
+use super::{add_proof, connected, core_wire, seen_inside, stub_free, stub_ports};
+use crate::package::artifact::{Artifacts, Job, Kind};
+use crate::package::bus::Bus;
+use crate::package::map::{self, Bits, Map, Part, Placed, Register};
+use glint_rtl::netlist::Role;
+use glint_rtl::verilog::text::{comment, literal, range, statement};
+
+/// An operand where it is kept.
+struct Operand {
+    name: String,
+    strobe: String,
+    range: String,
+    zero: String,
+    lanes: Vec<Lane>,
+}
+
+/// Bits that a byte of a register writes.
+struct Lane {
+    word: String,
+    number: u32,
+    byte: u32,
+    /// The bits of the operand, and of the data.
+    bits: String,
+    data: String,
+}
+
+/// Adds the registers and their bus, and what is proved of them.
+///
+/// # Errors
+/// A template that fails.
+pub fn modules(job: &Job, bus: &Bus, map: &Map, files: &mut Artifacts) -> Result<()> {
+    let [module, module_proof] =
+        (bus.module)(job.name(), job.regenerate(), map.address_bits() - 1)?;
+    let registers = format!("{}_registers", job.name());
+    let bus = format!("{}_{}", job.name(), bus.suffix);
+    files.add(Kind::Wrapper, format!("{bus}.v"), module);
+    files.add(Kind::Wrapper, format!("{registers}.v"), block(job, map)?);
+    add_proof(job, &bus, module_proof, files)?;
+    add_proof(job, &registers, proof(job, map)?, files)
+}
+
+fn block(job: &Job, map: &Map) -> Result<String> {
+    let design = job.design;
+    let word_bits = map.address_bits() - 2;
+    let place = |place: u32| literal(place.into(), word_bits);
+    let connections = connected(design, "clk", |role, name| match role {
+        Role::Reset => Some("rst_n".to_owned()),
+        Role::Start | Role::Busy | Role::Done => Some(name.to_owned()),
+        Role::Operand { .. } => Some(format!("operand_{name}")),
+        Role::Strobe if map.operands.iter().any(|it| it.strobe == name) => Some("start".to_owned()),
+        _ => None,
+    });
+    let mut unused = vec!["write_data".to_owned(), "write_bytes".to_owned()];
+    let mut result_wires = Vec::new();
+    for port in design.outputs() {
+        if matches!(port.role, Role::Busy | Role::Done) {
+            continue;
+        }
+        result_wires.push(core_wire(design, port));
+        if port.role != Role::Result {
+            unused.push(format!("core_{}", design.net(port.net).name));
+        }
+    }
+    let among = |wire, at, places| within(wire, at, places, word_bits);
+    fill!("registers.v" {
+        name: &'a str = job.name(),
+        regenerate: &'a str = job.regenerate(),
+        // The map, as comments.
+        map: Vec<String> = described(map),
+        address_high: u32 = map.address_bits() - 1,
+        word_high: u32 = word_bits - 1,
+        operands: Vec<Operand> = operands(map),
+        // What is read of the first registers, and of all others.
+        constants: Vec<String> = constants(map),
+        words: Vec<Word> = words(design, map),
+        last_number: u32 = map.last(),
+        no_constant: String = literal(0, word_bits - 2),
+        result_wires: Vec<String>,
+        connections: Vec<String>,
+        control: String = place(map::CONTROL),
+        enable: String = place(map::INTERRUPT_ENABLE),
+        pending: String = place(map::INTERRUPT_PENDING),
+        last_operand: String = place(map.last_operand()),
+        writable: Vec<String> = among("writable", "write_at", (map::CONTROL, map.last_operand())),
+        readable: Vec<String> = among("readable", "read_at", (0, map.last())),
+        read_result: Vec<String> =
+            among("read_result", "read_at", (map.last_operand() + 1, map.last())),
+        unused: Vec<String> = sink(&unused),
+    })
+}
+
+/// A line a register, and one for each of its bits that have a name of their own.
+fn described(map: &Map) -> Vec<String> {
+    let mut lines = Vec::new();
+    for register in &map.registers {
+        lines.push(format!("//  0x{:02x}  {}", register.offset(), register.name));
+        lines.extend(indented(&register.doc));
+        for bits in register.bits.iter().filter(|bits| bits.name != "value") {
+            let place = match bits.width {
+                1 => format!("[{}]", bits.low),
+                _ => format!("[{}:{}]", bits.low + bits.width - 1, bits.low),
+            };
+            lines.extend(indented(&format!("{place} {}: {}", bits.name, bits.doc)));
+        }
+    }
+    lines
+}
+
+/// As lines of a comment, below the name of a register.
+fn indented(text: &str) -> Vec<String> {
+    let line = |line: String| line.replacen("//", "//          ", 1);
+    comment(12, text).into_iter().map(|text| line(text.trim_start().to_owned())).collect()
+}
+
+fn operands(map: &Map) -> Vec<Operand> {
+    let word_bits = map.address_bits() - 2;
+    let operand = |operand: &Placed| {
+        let width = operand.format.width();
+        let lanes = operand.parts.iter().flat_map(|part| {
+            (0..part.width.div_ceil(8)).map(move |byte| {
+                let (low, high) = (8 * byte, (8 * byte + 8).min(part.width) - 1);
+                Lane {
+                    word: literal(part.place.into(), word_bits),
+                    number: part.place,
+                    byte,
+                    bits: select(width, part.low + low, part.low + high),
+                    data: select(32, low, high),
+                }
+            })
+        });
+        Operand {
+            name: operand.name.clone(),
+            strobe: operand.strobe.clone(),
+            range: range(width),
+            zero: literal(0, width),
+            lanes: lanes.collect(),
+        }
+    };
+    map.operands.iter().map(operand).collect()
+}
+
+/// Returns the word that a read of a register gives, by the map alone: its bits where they stand, and 0 between them.
+fn read(map: &Map, register: &Register) -> Vec<String> {
+    let mut parts = Vec::new();
+    let mut above = 32;
+    for bits in register.bits.iter().rev() {
+        let end = bits.low + bits.width;
+        if end < above {
+            parts.push(literal(0, above - end));
+        }
+        parts.push(source(map, register, bits));
+        above = bits.low;
+    }
+    if above > 0 {
+        parts.push(literal(0, above));
+    }
+    let value = format!("{{{}}}", parts.join(", "));
+    let value = if register.place > map.last_operand() {
+        format!("($past(dut.finished) ? {value} : 0)")
+    } else {
+        value
+    };
+    statement(12, &format!("assert (read_data == {value});"))
+}
+
+/// The nets behind some bits, as wide as these.
+fn source(map: &Map, register: &Register, bits: &Bits) -> String {
+    if register.place < map::CONSTANTS {
+        return literal(bits.reset, bits.width);
+    }
+    match (register.name.as_str(), bits.name.as_str()) {
+        ("status", "busy") => "dut.start | dut.core.run".to_owned(),
+        ("status", _) => "dut.finished".to_owned(),
+        ("control", "start") => literal(0, bits.width),
+        ("control", name) => format!("dut.{name}"),
+        ("interrupt_enable" | "interrupt_pending", _) => format!("dut.{}", register.name),
+        _ => {
+            let is_operand = register.place <= map.last_operand();
+            let ports = if is_operand { &map.operands } else { &map.results };
+            let here = |part: &&Part| (part.place, part.at) == (register.place, bits.low);
+            let part = |port: &'_ Placed| port.parts.iter().find(here).copied();
+            let found = ports.iter().find_map(|port| Some((port, part(port)?)));
+            let Some((port, part)) = found else { return literal(0, bits.width) };
+            let (width, high) = (port.format.width(), part.low + part.width - 1);
+            let net = if is_operand { "dut.operand_" } else { "dut.core." };
+            let net = format!("{net}{}", port.name);
+            let all = format!("{net}{}", select(width, part.low, high));
+            match bits.width - part.width {
+                0 => all,
+                copies => {
+                    format!("{{{copies}{{{net}{}}}}}, {all}", select(width, width - 1, width - 1))
+                }
+            }
+        }
+    }
+}
+
+fn proof(job: &Job, map: &Map) -> Result<String> {
+    let word_bits = map.address_bits() - 2;
+    let own = [
+        ("start", 1),
+        ("start_on_write", 1),
+        ("start_word", word_bits),
+        ("interrupt_enable", 1),
+        ("interrupt_pending", 1),
+        ("finished", 1),
+        ("core.run", 1),
+        ("core.ends", 1),
+        ("core.rst_n", 1),
+    ];
+    let mut inside: Vec<(String, u32)> =
+        own.into_iter().map(|(net, width)| (net.to_owned(), width)).collect();
+    for operand in &map.operands {
+        let width = operand.format.width();
+        inside.push((format!("operand_{}", operand.name), width));
+        inside.push((format!("core.{}", operand.name), width));
+    }
+    inside.extend(
+        map.results.iter().map(|result| (format!("core.{}", result.name), result.format.width())),
+    );
+    let reads = map.registers.iter().map(|register| (register.place, read(map, register)));
+    fill!("registers_formal.sv" {
+        name: &'a str = job.name(),
+        address_high: u32 = map.address_bits() - 1,
+        word_high: u32 = word_bits - 1,
+        word_count: u32 = map.last() + 1,
+        control_number: u32 = map::CONTROL,
+        last_operand_number: u32 = map.last_operand(),
+        first_result_number: u32 = map.last_operand() + 1,
+        last_result_number: u32 = map.last(),
+        operands: Vec<Operand> = operands(map),
+        // The place of each register, and what is read there.
+        reads: Vec<(u32, Vec<String>)> = reads.collect(),
+        stub_ports: Vec<String> = stub_ports(job.design),
+        stub_free: Vec<String> = stub_free(job.design),
+        // Declarations of what the proof sees of the inside.
+        inside: Vec<String> = inside.into_iter().map(seen_inside).collect(),
+    })
+}

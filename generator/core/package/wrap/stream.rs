@@ -1,0 +1,189 @@
+//! `<name>_axis.v`: the core between two AXI4-Streams, and what is proved of it.
+
+use anyhow::{Context, Result};
+use glint_base::fill;
+
+use super::fields::{Field, bits, operands, packed, padding, results, sink};
+use super::{add_proof, connected, core_wire, seen_inside, stub_free, stub_ports};
+use crate::package::artifact::{Artifacts, Job, Kind};
+use glint_rtl::netlist::Role;
+use glint_rtl::verilog::rows::separated;
+use glint_rtl::verilog::text::literal;
+
+/// The line of a core that walks lines: the operand that says how long one is, and the buffer.
+struct Line {
+    length: String,
+    length_low: u32,
+    length_high: u32,
+    /// Bits of the length.
+    width: u32,
+}
+
+impl Line {
+    /// The highest bit of a place in the buffer.
+    fn high(&self) -> u32 {
+        self.width - 1
+    }
+
+    /// 0 as a count, which has a bit more than an address of the buffer.
+    fn zero(&self) -> String {
+        literal(0, self.width + 1)
+    }
+
+    fn one(&self) -> String {
+        literal(1, self.width + 1)
+    }
+
+    /// As many points as a line can have, and as the buffer has places.
+    fn places(&self) -> String {
+        literal(1 << self.width, self.width + 1)
+    }
+
+    fn deepest(&self) -> u64 {
+        (1 << self.width) - 1
+    }
+}
+
+/// Adds the wrapper, of a core that walks lines its buffer too, and what is proved of them.
+///
+/// # Errors
+/// A core without the handshake of a microprogram, or without operands or results.
+pub fn modules(job: &Job, files: &mut Artifacts) -> Result<()> {
+    let (name, design, regenerate) = (job.name(), job.design, job.regenerate());
+    design.handshake()?;
+    let (operands, results) = (operands(design), results(design));
+    let (in_high, out_high) = (bits(&operands)? - 1, bits(&results)? - 1);
+    let user_bits = job.inputs.around.user_bits;
+    let overlaps = design.control.overlaps;
+    let is_unused = |role: Role| role == Role::Status || role == Role::Done && !overlaps;
+    let connections = connected(design, "aclk", |role, name| match role {
+        Role::Reset => Some("aresetn".to_owned()),
+        Role::Start | Role::Valid | Role::Busy => Some(name.to_owned()),
+        Role::Done if overlaps => Some("done".to_owned()),
+        Role::Operand { .. } => {
+            let field = operands.iter().find(|field| field.name == name);
+            Some(format!("operands{}", field.map(Field::bits).unwrap_or_default()))
+        }
+        Role::Strobe if operands.iter().any(|field| field.strobe == name) => {
+            Some("start".to_owned())
+        }
+        _ => None,
+    });
+    let mut unused = Vec::new();
+    let mut result_wires = Vec::new();
+    for port in design.outputs() {
+        if port.role == Role::Result || is_unused(port.role) {
+            result_wires.push(core_wire(design, port));
+        }
+        if is_unused(port.role) {
+            unused.push(format!("core_{}", design.net(port.net).name));
+        }
+    }
+    unused.extend(padding(&operands, "operands"));
+    let line = line(job, &operands)?;
+    let text = fill!("axis.v" {
+        name: &'a str,
+        regenerate: &'a str,
+        user_bits: u32,
+        operands: &'a [Field] = &operands,
+        results: &'a [Field] = &results,
+        signed: bool = results.iter().any(|field| field.signed && field.padded() > field.width),
+        in_high: u32,
+        out_high: u32,
+        result_wires: Vec<String>,
+        packed: Vec<String> = separated(packed(&results, "core_")),
+        connections: Vec<String>,
+        // What drives the outputs: a register, or the buffer.
+        output: &'a str = if line.is_some() { "wire" } else { "reg " },
+        line: Option<&'a Line> = line.as_ref(),
+        unused: Vec<String> = sink(&unused),
+        // The core hears `start` in the clock of `done` too.
+        overlaps: bool,
+    })?;
+    files.add(Kind::Wrapper, format!("{name}_axis.v"), text);
+    if let Some(line) = &line {
+        let buffer = fill!("axis_buffer.v" {
+            name: &'a str, regenerate: &'a str, out_high: u32, user_bits: u32, line: &'a Line,
+        })?;
+        files.add(Kind::Wrapper, format!("{name}_axis_buffer.v"), buffer);
+    }
+    let check = |field: &Field| format!("dut.core.{} == its_operands{}", field.name, field.bits());
+    let text = fill!("axis_formal.sv" {
+        name: &'a str,
+        in_high: u32,
+        out_high: u32,
+        user_high: u32 = user_bits - 1,
+        // The highest bit of results, tlast and tuser together.
+        packed_high: u32 = out_high + 1 + user_bits,
+        stub_ports: Vec<String> = stub_ports(design),
+        stub_free: Vec<String> = stub_free(design),
+        stub_packed: Vec<String> = separated(packed(&results, "dut.core.")),
+        stub_checks: Vec<String> = operands.iter().map(check).collect(),
+        // Declarations of what the proof sees of the inside.
+        inside: Vec<String> = inside(&operands, &results, line.as_ref(), user_bits)?,
+        strobes: Vec<&'a String> = operands.iter().map(|field| &field.strobe).collect(),
+        line: Option<&'a Line> = line.as_ref(),
+        overlaps: bool,
+    })?;
+    add_proof(job, &format!("{name}_axis"), text, files)
+}
+
+/// Yosys finds nets below the top by their path, if a declaration says how wide they are.
+fn inside(
+    operands: &[Field],
+    results: &[Field],
+    line: Option<&Line>,
+    user: u32,
+) -> Result<Vec<String>> {
+    let (in_bits, out_bits) = (bits(operands)?, bits(results)?);
+    let mut nets: Vec<(String, u32)> = [
+        ("start", 1),
+        ("valid", 1),
+        ("waiting", 1),
+        ("operands", in_bits),
+        ("operands_user", user),
+        ("user", user),
+        ("core.computing", 1),
+        ("core.run", 1),
+    ]
+    .map(|(net, width)| (net.to_owned(), width))
+    .into();
+    let own = match line {
+        Some(Line { width, .. }) => vec![
+            ("core.to_come", width + 1),
+            ("read", 1),
+            ("read_at", width + 1),
+            ("write_at", width + 1),
+            ("next_line", width + 1),
+            ("buffer.watched", *width),
+            ("buffer.watched_word", out_bits + 1 + user),
+        ],
+        None => vec![
+            ("operands_last", 1),
+            ("last", 1),
+            ("held", 1),
+            ("held_last", 1),
+            ("held_user", user),
+            ("held_results", out_bits),
+        ],
+    };
+    nets.extend(own.into_iter().map(|(net, width)| (net.to_owned(), width)));
+    let ports = operands.iter().chain(results);
+    nets.extend(ports.map(|field| (format!("core.{}", field.name), field.width)));
+    Ok(nets.into_iter().map(seen_inside).collect())
+}
+
+fn line(job: &Job, operands: &[Field]) -> Result<Option<Line>> {
+    let length = job.inputs.accuracy.as_ref().and_then(|accuracy| accuracy.length.as_ref());
+    let Some(length) = length else {
+        return Ok(None);
+    };
+    let field = operands.iter().find(|field| field.name == *length);
+    let field = field.with_context(|| format!("`{length}` is no operand"))?;
+    Ok(Some(Line {
+        length: field.name.clone(),
+        length_low: field.low,
+        length_high: field.high(),
+        width: field.width,
+    }))
+}

@@ -1,0 +1,117 @@
+//! Registers in Verilog: whether an address is one of some, and what is read of each.
+
+use super::fields::{self, packed, results};
+use crate::package::map::{self, Map, Part, Placed, Register};
+use glint_rtl::netlist::Design;
+use glint_rtl::verilog::text::{literal, statement};
+
+/// A register as it is read.
+pub struct Word {
+    /// Its place, in words.
+    pub number: u64,
+    /// The index, as a literal.
+    pub index: String,
+    /// An expression of 32 bits.
+    pub read: String,
+    /// It is there after a computation; until then 0 is read.
+    pub is_result: bool,
+}
+
+/// Whether an address is one of these places: comparisons of its upper bits, which take no adder as
+/// comparisons of size do.
+pub fn within(wire: &str, at: &str, (first, last): (u32, u32), word_bits: u32) -> Vec<String> {
+    let mut terms = Vec::new();
+    let mut place = first;
+    while place <= last {
+        let fits = |bits: &u32| place % (1 << bits) == 0 && place + (1 << bits) - 1 <= last;
+        let bits = (0..=word_bits).rev().find(fits).unwrap_or(0);
+        terms.push(match word_bits - bits {
+            0 => "1'b1".to_owned(),
+            1 if place == 0 => format!("~{at}[{}]", word_bits + 1),
+            1 => format!("{at}[{}]", word_bits + 1),
+            upper if bits == 0 => format!("({at} == {})", literal(place.into(), upper)),
+            upper => {
+                let value = literal((place >> bits).into(), upper);
+                format!("({at}[{}:{}] == {value})", word_bits + 1, bits + 2)
+            }
+        });
+        place += 1 << bits;
+    }
+    statement(4, &format!("wire {wire} = {};", terms.join(" | ")))
+}
+
+/// Bits of a net of that width; nothing where that is all of it.
+pub fn select(width: u32, low: u32, high: u32) -> String {
+    match (low, high) {
+        (0, high) if high + 1 == width => String::new(),
+        (low, high) if low == high => format!("[{low}]"),
+        (low, high) => format!("[{high}:{low}]"),
+    }
+}
+
+/// Returns the words of the registers that never change.
+pub fn constants(map: &Map) -> Vec<String> {
+    let value = |register: &Register| {
+        let value = register.bits.iter().map(|bits| bits.reset << bits.low).sum::<u64>();
+        format!("32'h{value:08x}")
+    };
+    map.registers[..map::CONSTANTS as usize].iter().map(value).collect()
+}
+
+/// Returns the word of each other register.
+pub fn words(design: &Design, map: &Map) -> Vec<Word> {
+    let word_bits = map.address_bits() - 2;
+    let start_pad = literal(0, 24 - word_bits);
+    let mut reads = vec![
+        "{30'd0, finished, under_way}".to_owned(),
+        format!("{{{start_pad}, start_word, 6'd0, start_on_write, 1'b0}}"),
+        "{31'd0, interrupt_enable}".to_owned(),
+        "{31'd0, interrupt_pending}".to_owned(),
+    ];
+    for operand in &map.operands {
+        let parts = operand.parts.iter();
+        reads.extend(
+            parts.map(|part| extended(operand, part, &format!("operand_{}", operand.name), false)),
+        );
+    }
+    if map.last() > map.last_operand() + 1 || map.results.len() == 1 {
+        for result in &map.results {
+            let parts = result.parts.iter();
+            reads.extend(
+                parts.map(|part| extended(result, part, &format!("core_{}", result.name), true)),
+            );
+        }
+    } else {
+        let fields = results(design);
+        let all: u32 = fields.iter().map(fields::Field::padded).sum();
+        let mut parts = packed(&fields, "core_");
+        if all < 32 {
+            parts.insert(0, literal(0, 32 - all));
+        }
+        reads.push(format!("{{{}}}", parts.join(", ")));
+    }
+    let word = |(number, read): (u64, String)| Word {
+        number,
+        index: literal(number, word_bits),
+        read,
+        is_result: number > u64::from(map.last_operand()),
+    };
+    (u64::from(map::CONSTANTS)..).zip(reads).map(word).collect()
+}
+
+/// A part of a port in 32 bits, of a result with copies of the sign.
+fn extended(port: &Placed, part: &Part, net: &str, is_result: bool) -> String {
+    let width = port.format.width();
+    let bits = format!("{net}{}", select(width, part.low, part.low + part.width - 1));
+    let signed = is_result && port.format.signed;
+    let top = match width {
+        1 => net.to_owned(),
+        _ => format!("{net}[{}]", width - 1),
+    };
+    match 32 - part.width {
+        0 => bits,
+        1 if signed => format!("{{{top}, {bits}}}"),
+        pad if signed => format!("{{{{{pad}{{{top}}}}}, {bits}}}"),
+        pad => format!("{{{}, {bits}}}", literal(0, pad)),
+    }
+}

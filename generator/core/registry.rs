@@ -1,0 +1,250 @@
+//! The registry of devices: keys, description, golden model, contract of each.
+
+use anyhow::{Result, ensure};
+
+use glint_base::diagnostic::Diagnostics;
+use glint_base::target;
+use glint_catalogue as devices;
+use glint_config::{Config, Schema, Shared};
+use glint_golden::{self as golden, Contract, Model};
+use glint_keys as keys;
+use glint_rtl::dsl::Designer;
+use glint_rtl::netlist::Design;
+use glint_rtl::pipeline;
+
+/// The key that asks for registers behind the results.
+const OUTPUT_REGISTERED: &str = "output.registered";
+
+/// The key that asks for buffers in front of the operand registers.
+const OPERANDS_BUFFERED: &str = "operands.buffered";
+
+/// A device that Glint can generate, simulate and check.
+///
+/// All functions are called with configurations that the schema accepts. The file
+/// `examples/fresnel` is a device of one's own, in full.
+#[derive(Clone, Copy)]
+pub struct Device {
+    /// As the key `device` names it: the same as [`Schema::device`].
+    pub name: &'static str,
+    /// One line for `glint list`.
+    pub summary: &'static str,
+    /// Its configuration keys.
+    pub schema: fn() -> Schema,
+    /// Its description: builds on a designer that has the module's name, and does not finish it.
+    pub describe: fn(&Designer, &Config),
+    /// Its golden model.
+    pub model: fn(&Config) -> Box<dyn Model>,
+    /// Its accuracy contract.
+    pub contract: fn(&Config) -> Box<dyn Contract>,
+    /// Whether the bound of the contract is proved, beside the golden model, for every configuration; otherwise it is what the
+    /// author states.
+    pub proved: bool,
+}
+
+impl Device {
+    /// Returns its default configuration, under [`Schema::module`].
+    pub fn defaults(&self) -> Config {
+        let schema = (self.schema)();
+        Config::defaults(&schema, &schema.module())
+    }
+
+    /// The design that a configuration asks for.
+    ///
+    /// # Errors
+    /// The mistakes of the description; a pipeline that cannot be made.
+    pub fn design(&self, config: &Config) -> Result<Design, Diagnostics> {
+        let sequential = self.sequential(config)?;
+        match pipelining(config) {
+            None => Ok(sequential),
+            Some(options) => {
+                let design = pipeline::pipeline(&sequential, &options)?;
+                Ok(Design { warnings: sequential.warnings, ..design })
+            }
+        }
+    }
+
+    /// The design with the microprogram, of which a pipeline is made too.
+    ///
+    /// # Errors
+    /// The mistakes of the description.
+    pub fn sequential(&self, config: &Config) -> Result<Design, Diagnostics> {
+        let designer = Designer::new(&config.name);
+        let keys = Shared::of(config);
+        if keys.operands_buffered {
+            designer.buffer_operands();
+        }
+        (self.describe)(&designer, config);
+        if keys.output_registered {
+            designer.register_outputs();
+        }
+        if keys.operands_logic == "combinational" {
+            designer.keep_operand_logic();
+        }
+        designer.finish()
+    }
+
+    /// The golden model of the design with the microprogram.
+    pub fn golden(&self, config: &Config) -> Box<dyn Model> {
+        let mut model = (self.model)(config);
+        // What does not know how differs from the design, and that is reported.
+        if config.flag(OUTPUT_REGISTERED) {
+            model = model.with_output_registers().unwrap_or(model);
+        }
+        if config.flag(OPERANDS_BUFFERED) {
+            model = model.with_operand_buffers().unwrap_or(model);
+        }
+        model
+    }
+
+    /// Whether the golden model can do what the configuration asks for.
+    ///
+    /// # Errors
+    /// It cannot.
+    pub fn check_golden(&self, config: &Config) -> Result<()> {
+        let model = (self.model)(config);
+        ensure!(
+            !config.flag(OUTPUT_REGISTERED) || model.with_output_registers().is_some(),
+            "the golden model of `{}` does not say what registers behind the results do \
+             (`Model::with_output_registers`): leave {OUTPUT_REGISTERED} out",
+            self.name
+        );
+        ensure!(
+            !config.flag(OPERANDS_BUFFERED) || model.with_operand_buffers().is_some(),
+            "the golden model of `{}` does not say what buffers of operands do (`Model::with_operand_buffers`): \
+             leave {OPERANDS_BUFFERED} out",
+            self.name
+        );
+        Ok(())
+    }
+
+    /// Refuses a device of whose results the contract cannot speak.
+    ///
+    /// # Errors
+    /// They depend on what an earlier computation left, or are never shown.
+    pub fn check_contract(
+        &self,
+        config: &Config,
+        design: &Design,
+        contract: &dyn Contract,
+    ) -> Result<()> {
+        contract.check().map_err(anyhow::Error::msg)?;
+        let carried = if design.pipeline.is_some() {
+            // It could not have been made.
+            None
+        } else if config.flag(OPERANDS_BUFFERED) {
+            // What a buffer holds is an operand, and nothing that an earlier computation left.
+            let designer = Designer::new(&config.name);
+            (self.describe)(&designer, config);
+            pipeline::carried(&designer.finish()?)
+        } else {
+            pipeline::carried(design)
+        };
+        match carried {
+            None => Ok(()),
+            Some(carried) => Err(anyhow::Error::new(Diagnostics(vec![carried])).context(format!(
+                "the contract of `{}` is of one point at a time: accuracy, proofs and pipelines",
+                self.name
+            ))),
+        }
+    }
+}
+
+/// Devices by the modules that describe and predict them, each with its name and summary.
+macro_rules! of_catalogue {
+    ($($module:ident: $name:literal, $summary:literal;)*) => {
+        vec![$(Device {
+            name: $name,
+            summary: $summary,
+            schema: keys::$module::schema,
+            describe: devices::$module::describe,
+            model: golden::$module::model,
+            contract: golden::$module::contract,
+            proved: true,
+        }),*]
+    };
+}
+
+/// The devices that a command line knows.
+#[derive(Clone)]
+pub struct Registry(Vec<Device>);
+
+impl Registry {
+    /// No device at all: for a command line of your own devices.
+    pub fn empty() -> Self {
+        Self(Vec::new())
+    }
+
+    /// The devices of the seeds, and the one that computes any formula.
+    pub fn catalogue() -> Self {
+        Self(of_catalogue![
+            quad_cosine: "quad-cosine", "cos^k(sqrt(n/k)*delta) along a scan line, k = 1, 2, 4, 16 by n (seed 000)";
+            cosine_squared: "cosine-squared", "cos^2(a*delta) along a scan line, a = sqrt(n/2) outside (seed 000's prototype)";
+            lyon: "lyon", "max(0, 1 - beta*D^2)^m, D = N - H, m = 2, 4, 8, 16 (US 5 739 820)";
+            rough: "rough", "rough surface, (n/2*(cos(gamma +- dgamma) - 1) + 1)^2 (UA 60139)";
+            threshold: "threshold", "(n/2*(cos gamma - 1) + 1)^2 where it reaches ROM(n) (UA 30041)";
+            quadratic: "quadratic", "c + a(n)*(c^2 - c), c = cos gamma, a(n) from ROM (UA 20998)";
+            cosine_power: "cosine-power", "W(n, gamma) = (n/m*(cos gamma - 1) + 1)^m, m = 2, 4, 8, 16 (seed 002)";
+            schlick: "schlick", "Schlick's function, c / (n - n*c + c), by a divider (seed 002)";
+            blinn: "blinn", "cos(gamma)^n itself, by tables of -log2 and 2^-x (seeds 000 to 002)";
+            gauss: "gauss", "exp(-n*gamma^2/2), by tables of gamma^2 and 2^-x (seed 002)";
+            function: "function", "any formula of one operand, by piecewise polynomials with a proved error";
+        ])
+    }
+
+    /// The catalogue, and the devices that make colours of normals, which have no records beside the code.
+    pub fn shipped() -> Self {
+        let mut all = Self::catalogue();
+        all.0.extend(of_catalogue![
+            normaliser: "normaliser", "(x, y, z)/sqrt(x^2 + y^2 + z^2), by a table of inverse roots";
+            dot_product: "dot-product", "max(0, N.H) of a normal of any length, the cosine that highlights start from";
+            shading: "shading", "ambient + diffuse*N.L + specular*highlight, from normals of any length";
+        ]);
+        all
+    }
+
+    /// The registry with one device more.
+    #[must_use]
+    pub fn with(mut self, device: Device) -> Self {
+        self.0.push(device);
+        self
+    }
+
+    /// All devices, in order.
+    pub fn devices(&self) -> &[Device] {
+        &self.0
+    }
+
+    /// The device of a configuration, which was read with the schemas of this registry.
+    pub fn device(&self, name: &str) -> Option<&Device> {
+        self.0.iter().find(|device| device.name == name)
+    }
+
+    /// The keys of all devices.
+    pub fn schemas(&self) -> Vec<Schema> {
+        self.0.iter().map(|device| (device.schema)()).collect()
+    }
+}
+
+/// Returns the options of a configuration; none if its architecture is sequential.
+fn pipelining(config: &Config) -> Option<pipeline::Options> {
+    let keys = Shared::of(config);
+    (keys.architecture == "pipelined").then(|| pipeline::Options {
+        target: target::Timing::named(&keys.target).unwrap_or(&target::TIMINGS[0]),
+        goal: match keys.stages {
+            0 => pipeline::Goal::ClockMhz(keys.pipeline_clock_mhz),
+            stages => pipeline::Goal::Stages(stages as usize),
+        },
+        interval: match keys.interval.parse() {
+            Ok(clocks) => pipeline::Interval::Clocks(clocks),
+            Err(_) if keys.rate != 0.0 => pipeline::Interval::Rate(keys.rate),
+            Err(_) => pipeline::Interval::Multipliers(keys.max_multipliers as usize),
+        },
+        registered: keys.multipliers == "registered",
+        stall: keys.stall == "ready",
+        side: keys.side,
+        delays: match keys.delays.as_str() {
+            "registers" => pipeline::Delays::Registers,
+            _ => pipeline::Delays::Memory,
+        },
+    })
+}

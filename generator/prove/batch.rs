@@ -1,0 +1,113 @@
+//! Many computations at once through the emitted Verilog.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::time::Duration;
+
+use anyhow::{Context, Result, ensure};
+
+use glint_base::fixed::Format;
+use glint_core::cosim::batch::{Engine, Points};
+use glint_core::package::{POINTS_FILE, RESULTS_FILE, points_bench};
+use glint_golden::Contract;
+use glint_rtl::netlist::Design;
+use glint_tools::{BuiltBench, Simulator, Waveform};
+
+/// More clocks than any computation takes.
+const LIMIT: u32 = 1 << 16;
+
+/// An outside simulator that runs the emitted Verilog under a bench that reads points from a file.
+pub struct Verilog {
+    bench: BuiltBench,
+    limit: Duration,
+    /// For each operand of a line its place in the contract and its format.
+    operands: Vec<(usize, Format)>,
+    /// For each output of the contract its place in a line and its format.
+    results: Vec<(usize, Format)>,
+}
+
+impl Verilog {
+    /// Builds the bench from the emitted `files`, pairs of a plain name and contents; `limit` is on the
+    /// build, and on each list of points.
+    ///
+    /// # Errors
+    /// As of [`BuiltBench::build`], and a contract that speaks of other ports than the design's.
+    pub fn new(
+        simulator: Simulator,
+        design: &Design,
+        contract: &dyn Contract,
+        mut files: Vec<(String, String)>,
+        limit: Duration,
+    ) -> Result<Self> {
+        let bench = points_bench(design, LIMIT)?;
+        let format = |name: &str| design.find(name).map(|net| design.net(net).format);
+        let operands = bench
+            .operands
+            .iter()
+            .map(|name| {
+                let mut known = contract.operands().iter();
+                let at = known.position(|operand| operand.name == *name);
+                let at = at.with_context(|| format!("the contract has no operand `{name}`"))?;
+                Ok((at, contract.operands()[at].format))
+            })
+            .collect::<Result<_>>()?;
+        let results = contract
+            .outputs()
+            .iter()
+            .map(|output| {
+                let name = &output.name;
+                let at = bench.results.iter().position(|result| result == name);
+                at.zip(format(name))
+                    .with_context(|| format!("`{}` has no result `{name}`", design.name))
+            })
+            .collect::<Result<_>>()?;
+        files.push((format!("{}.v", bench.name), bench.text));
+        Ok(Self {
+            bench: BuiltBench::build(simulator, &files, &bench.name, Waveform::None, limit)?,
+            limit,
+            operands,
+            results,
+        })
+    }
+}
+
+impl Engine for Verilog {
+    fn compute(&mut self, points: &Points) -> Result<Vec<i64>> {
+        let mut list = String::new();
+        for at in 0..points.len() {
+            let values = points.operands(at);
+            for (column, &(operand, format)) in self.operands.iter().enumerate() {
+                let gap = if column == 0 { "" } else { " " };
+                let bits = format.bits(i128::from(values[operand]));
+                let _ = write!(list, "{gap}{bits:x}");
+            }
+            list.push('\n');
+        }
+        let dir = self.bench.directory();
+        fs::write(dir.join(POINTS_FILE), list).context("cannot write the list of points")?;
+        let run = self.bench.run(self.limit)?;
+        ensure!(run.passed, "the bench fails:\n{}", run.transcript.trim());
+        let text = fs::read_to_string(dir.join(RESULTS_FILE)).context("the bench wrote nothing")?;
+        let mut out = Vec::with_capacity(points.result_count() * self.results.len());
+        let (mut at, mut shown) = (0, 0);
+        for line in text.lines() {
+            ensure!(at < points.len(), "there are too many results");
+            if line == "." {
+                let wanted = points.results(at);
+                ensure!(shown == wanted, "there are {shown} results, not {wanted}");
+                (at, shown) = (at + 1, 0);
+                continue;
+            }
+            shown += 1;
+            let words: Vec<&str> = line.split(' ').collect();
+            for &(column, format) in &self.results {
+                let word = words.get(column).copied().unwrap_or_default();
+                let bits = u64::from_str_radix(word, 16)
+                    .with_context(|| format!("`{line}` is not a line of results"))?;
+                out.push(format.raw(bits) as i64);
+            }
+        }
+        ensure!(at == points.len(), "results of {at} points, not {}", points.len());
+        Ok(out)
+    }
+}

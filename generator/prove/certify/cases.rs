@@ -1,0 +1,340 @@
+//! The ways that a computation can go, and the raw values that everything has on each.
+
+use std::collections::BTreeMap;
+
+use super::polynomial::Polynomial;
+use super::quotient::Quotient;
+use glint_base::cone;
+use glint_base::interval::{self, Interval, common, wrap};
+use glint_rtl::netlist::{RomId, interval::of_cell};
+use glint_rtl::pipeline::{Cell, Graph, NodeId, Op};
+
+/// More ways than this are not looked at, those that turn out to be none too.
+const MOST: usize = 4096;
+
+/// Intervals of raw values by node, beyond those that follow from the operands.
+pub type Known = BTreeMap<NodeId, Interval>;
+
+/// One way.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// The hypotheses of this way, implied by the operands' values that lead here.
+    pub known: Known,
+    /// The raw values of every node.
+    pub ranges: Vec<Interval>,
+    /// The nodes whose values are those of a parabola, which are fewer than intervals tell.
+    pub parabolas: BTreeMap<NodeId, Polynomial>,
+}
+
+/// The raw value of a word of a ROM.
+pub type Words<'a> = &'a dyn Fn(RomId, u64) -> i128;
+
+/// An unrolled computation and what is known of it.
+#[derive(Clone, Copy)]
+pub struct View<'a> {
+    /// The computation.
+    pub graph: &'a Graph,
+    /// The words of its tables.
+    pub words: Words<'a>,
+    /// Its quotients, by the node that joins the bits.
+    pub quotients: &'a BTreeMap<NodeId, Quotient>,
+}
+
+impl View<'_> {
+    /// Every node that these need, themselves too, in order. Of a quotient that are its operands, and no bits.
+    fn cone(&self, roots: &[NodeId]) -> Vec<NodeId> {
+        let operands = |at| self.operands(NodeId(at as u32)).into_iter().map(NodeId::index);
+        let roots = roots.iter().map(|root| root.index());
+        let live = cone::needed(self.graph.nodes.len(), roots, operands);
+        (0..live.len()).filter(|&at| live[at]).map(|at| NodeId(at as u32)).collect()
+    }
+
+    fn operands(&self, id: NodeId) -> Vec<NodeId> {
+        match self.quotients.get(&id) {
+            Some(quotient) => vec![quotient.dividend, quotient.divisor],
+            None => self.graph.node(id).cell.operands(),
+        }
+    }
+}
+
+/// All ways to compute `results`, given `known` of the operands: together they cover every combination of operands.
+///
+/// # Errors
+/// There are too many.
+pub fn cases(view: View, results: &[NodeId], known: &Known) -> Result<Vec<Case>, String> {
+    let cone = view.cone(results);
+    let graph = view.graph;
+    let mut found = Vec::new();
+    let mut pending = vec![known.clone()];
+    let mut looked_at = 0;
+    while let Some(known) = pending.pop() {
+        looked_at += 1;
+        let mut way = Case {
+            known,
+            ranges: graph.nodes.iter().map(|node| node.range).collect(),
+            parabolas: BTreeMap::new(),
+        };
+        match way.follow(view, &cone) {
+            Decision::Whole => found.push(way),
+            Decision::Never => {}
+            Decision::Splits(node, (low, high)) => {
+                if high - low > 63 {
+                    let name = &graph.node(node).label.name;
+                    return Err(format!("`{name}` selects among too many values"));
+                }
+                for value in (low..=high).rev() {
+                    let mut known = way.known.clone();
+                    if learn(graph, &mut known, &way.ranges, node, (value, value)) {
+                        pending.push(known);
+                    }
+                }
+            }
+        }
+        if looked_at + pending.len() > MOST {
+            return Err(format!("there are more than {MOST} ways to go through it"));
+        }
+    }
+    Ok(found)
+}
+
+/// The raw values of a node, given `known` of the operands; none where a selection on the way to it is open.
+pub fn range(view: View, node: NodeId, known: &Known) -> Option<Interval> {
+    let ranges = view.graph.nodes.iter().map(|node| node.range).collect();
+    let mut case = Case { known: known.clone(), ranges, parabolas: BTreeMap::new() };
+    match case.follow(view, &view.cone(&[node])) {
+        Decision::Whole => Some(case.ranges[node.index()]),
+        Decision::Never | Decision::Splits(..) => None,
+    }
+}
+
+/// The extent to which the selections of a case are decided.
+enum Decision {
+    /// Every selection is decided.
+    Whole,
+    /// No operands lead here.
+    Never,
+    /// This node decides, and has several values.
+    Splits(NodeId, Interval),
+}
+
+impl Case {
+    /// The raw values of the nodes of `cone`, as far as they are decided.
+    fn follow(&mut self, view: View, cone: &[NodeId]) -> Decision {
+        let graph = view.graph;
+        let mut polynomials: BTreeMap<NodeId, Polynomial> = BTreeMap::new();
+        for &id in cone {
+            let node = graph.node(id);
+            let of = |id: &NodeId| self.ranges[id.index()];
+            let open = |id: &NodeId| of(id).0 != of(id).1;
+            let range = match &node.cell {
+                _ if view.quotients.contains_key(&id) => {
+                    let Quotient { dividend, divisor, bits } = view.quotients[&id];
+                    let (over, under) = (of(&dividend), of(&divisor));
+                    let part = |over: i128, under: i128| (over << bits) / under.max(1);
+                    let most = (1 << bits) - 1;
+                    (part(over.0, under.1).min(most), part(over.1, under.0).min(most))
+                }
+                Cell::Op(Op::Mux { select, inputs }) => {
+                    if open(select) {
+                        let decider = decider(graph, *select, &of);
+                        return Decision::Splits(decider, of(&decider));
+                    }
+                    of(&inputs[(of(select).0 as usize).min(inputs.len() - 1)])
+                }
+                // A condition that is counted with.
+                Cell::Op(Op::Add { carry: Some(carry), .. }) if open(carry) => {
+                    let decider = decider(graph, *carry, &of);
+                    return Decision::Splits(decider, of(&decider));
+                }
+                Cell::Op(Op::All(a)) => {
+                    let format = graph.node(*a).format;
+                    let ones = if format.signed { -1 } else { format.max_raw() };
+                    let possible = common(of(a), (ones, ones)).is_some();
+                    (i128::from(of(a) == (ones, ones)), i128::from(possible))
+                }
+                Cell::Op(op) => {
+                    of_cell(op, node.format, &|id| graph.node(id).format, &|id| of(&id))
+                }
+                Cell::Read { rom, address } => {
+                    let (low, high) = of(address);
+                    let words = (low..=high).map(|at| (view.words)(*rom, at as u64));
+                    interval::of_values(words).unwrap_or(node.range)
+                }
+                _ => node.range,
+            };
+            let other = self.known.get(&id).copied().unwrap_or(node.range);
+            let possible = common(range, node.range).and_then(|range| common(range, other));
+            let Some(mut range) = possible else { return Decision::Never };
+            if let Some(polynomial) = polynomial(graph, id, &polynomials, &of) {
+                polynomials.insert(id, polynomial);
+                let values = polynomial.of.and_then(|x| polynomial.range(of(&x)));
+                if let Some(values) = values.filter(|it| it.0 > range.0 || it.1 < range.1) {
+                    let Some(both) = common(range, values) else { return Decision::Never };
+                    range = both;
+                    if polynomial.factors[2] != 0 {
+                        self.parabolas.insert(id, polynomial);
+                    }
+                }
+            }
+            self.ranges[id.index()] = range;
+        }
+        Decision::Whole
+    }
+}
+
+/// Returns a node as a polynomial in an operand, if no bits are dropped on the way.
+fn polynomial(
+    graph: &Graph,
+    id: NodeId,
+    known: &BTreeMap<NodeId, Polynomial>,
+    of: &dyn Fn(&NodeId) -> Interval,
+) -> Option<Polynomial> {
+    let node = graph.node(id);
+    let known = |id: &NodeId| match of(id) {
+        (low, high) if low == high => Some(Polynomial::constant(low)),
+        _ => known.get(id).copied(),
+    };
+    // All that comes to the node, with one multiple of the modulus added.
+    let wrapped = |whole: Interval, polynomial: Polynomial| {
+        polynomial.plus(Polynomial::constant(wrap(whole, node.format)?), 1)
+    };
+    match &node.cell {
+        Cell::Operand(_) => Some(Polynomial::operand(id)),
+        Cell::Op(Op::Relabel(a) | Op::Extend(a)) => wrapped(of(a), known(a)?),
+        Cell::Op(Op::Slice { of: a, low: 0 }) => wrapped(of(a), known(a)?),
+        Cell::Op(Op::Not(a)) => {
+            let most = if node.format.signed { -1 } else { node.format.range().1 };
+            Polynomial::constant(most).plus(known(a)?, -1)
+        }
+        Cell::Op(Op::Concat(parts)) => {
+            let [a, zeros] = parts[..] else { return None };
+            let raised =
+                graph.constant_of(zeros) == Some(0) && of(&a).0 >= 0 && !node.format.signed;
+            let factor = Polynomial::constant(1 << graph.width(zeros));
+            known(&a).filter(|_| raised)?.times(factor)
+        }
+        Cell::Op(Op::Mux { select, inputs }) => {
+            known(&inputs[(of(select).0 as usize).min(inputs.len() - 1)])
+        }
+        Cell::Op(Op::Add { a, b, carry }) => {
+            let one = carry.as_ref().map_or((0, 0), of);
+            let whole = (of(a).0 + of(b).0 + one.0, of(a).1 + of(b).1 + one.1);
+            let carry = Polynomial::constant(one.0);
+            wrapped(whole, known(a)?.plus(known(b)?, 1)?.plus(carry, 1)?)
+        }
+        Cell::Op(Op::Sub(a, b)) => {
+            wrapped((of(a).0 - of(b).1, of(a).1 - of(b).0), known(a)?.plus(known(b)?, -1)?)
+        }
+        Cell::Op(Op::Mul(a, b)) => known(a)?.times(known(b)?),
+        _ => None,
+    }
+}
+
+/// Returns the node to split first, so that this undecided selection becomes known: a condition of which it is made.
+fn decider(graph: &Graph, id: NodeId, of: &dyn Fn(&NodeId) -> Interval) -> NodeId {
+    let operands = match &graph.node(id).cell {
+        Cell::Op(op @ (Op::And(..) | Op::Or(..) | Op::Not(_) | Op::Relabel(_)))
+            if graph.width(id) == 1 =>
+        {
+            op.operands()
+        }
+        _ => return id,
+    };
+    let open = operands.into_iter().find(|operand| of(operand).0 != of(operand).1);
+    open.map_or(id, |operand| decider(graph, operand, of))
+}
+
+/// Notes that a node has the values of `range` alone, and what follows for those that it comes from; false if
+/// that cannot be. `ranges` are the values that nodes have without it.
+pub fn learn(
+    graph: &Graph,
+    known: &mut Known,
+    ranges: &[Interval],
+    id: NodeId,
+    range: Interval,
+) -> bool {
+    let node = graph.node(id);
+    let before = known.get(&id).copied().unwrap_or(node.range);
+    let value = |known: &Known, id: NodeId| {
+        let ((low, high), own) = (ranges[id.index()], known.get(&id));
+        own.map_or((low, high), |own| (low.max(own.0), high.min(own.1)))
+    };
+    let Some(range) = common(range, before) else { return false };
+    known.insert(id, range);
+    let unsigned = |id: NodeId| !graph.node(id).format.signed;
+    let all = |id: NodeId| graph.node(id).format.range();
+    let Cell::Op(op) = &node.cell else { return true };
+    let is = (range.0 == range.1).then_some(range.0);
+    match (op, is) {
+        (Op::Relabel(a) | Op::Extend(a), _) if unsigned(*a) == unsigned(id) => {
+            learn(graph, known, ranges, *a, range)
+        }
+        (Op::Not(a), _) if unsigned(*a) && unsigned(id) => {
+            let most = all(id).1;
+            learn(graph, known, ranges, *a, (most - range.1, most - range.0))
+        }
+        // The bits above all others.
+        (Op::Slice { of, low }, _) if reaches_top(graph, *of, low + graph.width(id)) => {
+            if unsigned(*of) && unsigned(id) {
+                learn(graph, known, ranges, *of, (range.0 << low, ((range.1 + 1) << low) - 1))
+            } else if let (Some(bit), 1, false) = (is, graph.width(id), unsigned(*of)) {
+                // The sign.
+                let (least, most) = all(*of);
+                let half = if bit == 0 { (0, most) } else { (least, -1) };
+                learn(graph, known, ranges, *of, half)
+            } else {
+                true
+            }
+        }
+        // The bits below a sign that is known.
+        (Op::Slice { of, low }, _)
+            if !unsigned(*of) && unsigned(id) && low + graph.width(id) + 1 == graph.width(*of) =>
+        {
+            let (least, _) = all(*of);
+            let base = match value(known, *of) {
+                (from, _) if from >= 0 => 0,
+                (_, to) if to < 0 => least,
+                _ => return true,
+            };
+            let range = (base + (range.0 << low), base + ((range.1 + 1) << low) - 1);
+            learn(graph, known, ranges, *of, range)
+        }
+        // Of a mux that is decided, the input that it passes on.
+        (Op::Mux { select, inputs }, _) => match value(known, *select) {
+            (low, high) if low == high => {
+                let input = inputs[(low as usize).min(inputs.len() - 1)];
+                unsigned(input) != unsigned(id) || learn(graph, known, ranges, input, range)
+            }
+            _ => true,
+        },
+        (Op::Any(a), Some(0)) => learn(graph, known, ranges, *a, (0, 0)),
+        (Op::Any(a), Some(_)) if unsigned(*a) => learn(graph, known, ranges, *a, (1, all(*a).1)),
+        (Op::All(a), Some(0)) if unsigned(*a) => {
+            learn(graph, known, ranges, *a, (0, all(*a).1 - 1))
+        }
+        (Op::All(a), Some(_)) if unsigned(*a) => {
+            learn(graph, known, ranges, *a, (all(*a).1, all(*a).1))
+        }
+        (Op::And(a, b), Some(1)) if graph.width(id) == 1 => {
+            learn(graph, known, ranges, *a, (1, 1)) && learn(graph, known, ranges, *b, (1, 1))
+        }
+        (Op::Or(a, b), Some(0)) if graph.width(id) == 1 => {
+            learn(graph, known, ranges, *a, (0, 0)) && learn(graph, known, ranges, *b, (0, 0))
+        }
+        (Op::Less(a, b), Some(less)) => {
+            let ((a_low, a_high), (b_low, b_high)) = (value(known, *a), value(known, *b));
+            let (for_a, for_b) = match less {
+                1 => ((a_low, b_high - 1), (a_low + 1, b_high)),
+                _ => ((b_low, a_high), (b_low, a_high)),
+            };
+            learn(graph, known, ranges, *a, for_a) && learn(graph, known, ranges, *b, for_b)
+        }
+        _ => true,
+    }
+}
+
+/// Whether a value has no bits that count from this one up.
+fn reaches_top(graph: &Graph, id: NodeId, from: u32) -> bool {
+    let node = graph.node(id);
+    from == graph.width(id) || !node.format.signed && node.range.1 < 1 << from
+}

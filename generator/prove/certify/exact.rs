@@ -1,0 +1,350 @@
+//! The formula on one way through the hardware, as terms.
+
+use std::collections::{BTreeMap, HashMap};
+
+use super::terms::{Id, Term, Terms};
+use glint_base::fixed::exp2;
+use glint_formula::{Comparison, Formula, Function, Kind, Operator};
+use glint_golden::Operand;
+
+/// A formula's term under what it presupposes: these terms are not negative, those not positive.
+#[derive(Clone, Debug, Default)]
+pub struct Branch {
+    /// Terms that are at least 0.
+    pub at_least: Vec<Id>,
+    /// Terms that are at most 0.
+    pub at_most: Vec<Id>,
+    /// The formula.
+    pub term: Id,
+    /// The side of every choice, by the number that is compared with 0 and the comparison.
+    chosen: BTreeMap<(Id, Choice), bool>,
+}
+
+/// A comparison that decides between two sides. Choices of one kind about one number go to the same side everywhere.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Choice {
+    Larger,
+    Positive,
+    NotNegative,
+}
+
+impl Branch {
+    /// Whether it presupposes of a number what is not so.
+    pub fn is_never(&self, terms: &Terms) -> bool {
+        let is = |id: &Id, wrong: fn(f64) -> bool| match terms.get(*id) {
+            Term::Number(value) => wrong(*value),
+            _ => false,
+        };
+        self.at_least.iter().any(|id| is(id, |value| value < 0.0))
+            || self.at_most.iter().any(|id| is(id, |value| value > 0.0))
+    }
+
+    /// The way that goes both ways, with the term of the second; none where they choose differently.
+    pub fn and(&self, other: &Self) -> Option<Self> {
+        let mut both = self.clone();
+        both.term = other.term;
+        for (&choice, &taken) in &other.chosen {
+            if *both.chosen.entry(choice).or_insert(taken) != taken {
+                return None;
+            }
+        }
+        let (least, most) = (&mut both.at_least, &mut both.at_most);
+        for (all, more) in [(least, &other.at_least), (most, &other.at_most)] {
+            let new: Vec<Id> = more.iter().copied().filter(|id| !all.contains(id)).collect();
+            all.extend(new);
+        }
+        Some(both)
+    }
+
+    /// The way with a choice made about the sign of a term.
+    fn choosing(&self, difference: Id, choice: Choice, taken: bool) -> Option<Self> {
+        let mut own = Self { term: self.term, ..Self::default() };
+        own.chosen.insert((difference, choice), taken);
+        if taken {
+            own.at_least.push(difference)
+        } else {
+            own.at_most.push(difference)
+        };
+        self.and(&own)
+    }
+}
+
+/// The context in which formulas are written.
+pub struct Setting<'a> {
+    /// Variable, and the power of two by which an operand is divided in it.
+    pub variables: &'a HashMap<String, (String, i32)>,
+    /// The values, lowest and highest, that an operand has in this case.
+    pub ranges: &'a HashMap<String, (f64, f64)>,
+    /// The words of ROMs as values, by the name of the ROM.
+    pub words: &'a HashMap<String, Vec<f64>>,
+    /// The operands.
+    pub operands: &'a [Operand],
+}
+
+/// The variable that stands for the word of a table, by the variable of the operand that numbers it.
+pub fn word_variable(rom: &str, variable: &str) -> String {
+    format!("{rom}_at_{variable}")
+}
+
+/// How often each operand is divided by a power of two where it occurs: that power, if it is so everywhere.
+pub fn divisors(formula: &Formula, found: &mut HashMap<String, Option<i32>>) {
+    let mut note = |name: &str, power: i32| {
+        let all = found.entry(name.to_owned()).or_insert(Some(power));
+        if *all != Some(power) {
+            *all = Some(0);
+        }
+    };
+    if let Some((name, power)) = quotient(formula) {
+        return note(name, power);
+    }
+    match &formula.kind {
+        Kind::Operand(name) => note(name, 0),
+        // The number of a word is no number of the formula.
+        Kind::Word(..) => {}
+        _ => formula.parts().into_iter().for_each(|part| divisors(part, found)),
+    }
+}
+
+/// The operand that is divided by a power of two, and that power.
+fn quotient(formula: &Formula) -> Option<(&str, i32)> {
+    let Kind::Binary(Operator::Div, a, b) = &formula.kind else { return None };
+    let (Kind::Operand(name), Kind::Number(by, _)) = (&a.kind, &b.kind) else { return None };
+    Some((name, power_of_two(*by)?))
+}
+
+fn power_of_two(value: f64) -> Option<i32> {
+    (0..=30).find(|&power| exp2(power) == value)
+}
+
+/// The message about a function that Gappa lacks.
+pub fn untranslated(function: Function) -> String {
+    format!("the function `{}` has no translation", function.name())
+}
+
+/// Every way that a formula can go.
+///
+/// # Errors
+/// The formula has a part without a translation.
+pub fn branches(
+    formula: &Formula,
+    setting: &Setting,
+    terms: &mut Terms,
+) -> Result<Vec<Branch>, String> {
+    // Of two expressions every way that both can go together, each with its term.
+    let pairs =
+        |terms: &mut Terms, a: &Formula, b: &Formula| -> Result<Vec<(Branch, Id, Id)>, String> {
+            let (first, second) = (branches(a, setting, terms)?, branches(b, setting, terms)?);
+            let all = first.iter().flat_map(|one| second.iter().map(move |other| (one, other)));
+            let pairs =
+                all.filter_map(|(one, other)| Some((one.and(other)?, one.term, other.term)));
+            Ok(pairs.collect())
+        };
+    let operation = |terms: &mut Terms, a: &Formula, b: &Formula, make: fn(Id, Id) -> Term| {
+        let made = pairs(terms, a, b)?.into_iter().map(|(branch, left, right)| {
+            let term = folded(terms, make(left, right));
+            Branch { term, ..branch }
+        });
+        Ok(made.collect())
+    };
+    let plain = |term: Id| vec![Branch { term, ..Branch::default() }];
+    if let Some((name, power @ 1..)) = quotient(formula)
+        && let Some((variable, divisor)) = setting.variables.get(name)
+        && *divisor == power
+    {
+        return Ok(plain(variable_of(name, variable, power, setting, terms)));
+    }
+    match &formula.kind {
+        Kind::Number(value, _) => Ok(plain(terms.number(*value))),
+        Kind::Operand(name) => Ok(plain(operand(name, setting, terms)?)),
+        Kind::Word(rom, place) => Ok(plain(word(rom, place, setting, terms)?)),
+        Kind::Constant(name, _) => Err(format!("the constant `{name}` has no translation")),
+        Kind::Unary(Function::Negate, a) => {
+            let zero = Formula { kind: Kind::Number(0.0, true), span: formula.span.clone() };
+            operation(terms, &zero, a, Term::Sub)
+        }
+        Kind::Unary(function, _) => Err(untranslated(*function)),
+        Kind::Binary(Operator::Add, a, b) => operation(terms, a, b, Term::Add),
+        Kind::Binary(Operator::Sub, a, b) => operation(terms, a, b, Term::Sub),
+        Kind::Binary(Operator::Mul, a, b) => operation(terms, a, b, Term::Mul),
+        Kind::Binary(Operator::Div, a, b) => operation(terms, a, b, Term::Div),
+        Kind::Binary(Operator::Power, base, exponent) => {
+            let exponent =
+                constant(exponent, setting).ok_or("a power with an exponent that varies")?;
+            if let Some(base) = constant(base, setting) {
+                return Ok(plain(terms.number(libm::pow(base, exponent))));
+            }
+            let mut found = branches(base, setting, terms)?;
+            for branch in &mut found {
+                branch.term = power(terms, branch.term, exponent as u32);
+            }
+            Ok(found)
+        }
+        Kind::Binary(Operator::Mod, ..) => Err("the operator `%` has no translation".to_owned()),
+        Kind::Binary(operator @ (Operator::Max | Operator::Min), a, b) => {
+            let mut found = Vec::new();
+            for (branch, left, right) in pairs(terms, a, b)? {
+                let difference = folded(terms, Term::Sub(left, right));
+                let is_max = *operator == Operator::Max;
+                for (taken, term) in [(is_max, left), (!is_max, right)] {
+                    let side = Branch { term, ..branch.clone() };
+                    found.extend(side.choosing(difference, Choice::Larger, taken));
+                }
+            }
+            Ok(found)
+        }
+        Kind::If(comparison, yes, no) => {
+            let decided = decided(comparison, setting);
+            let choice = if comparison.or_equal { Choice::NotNegative } else { Choice::Positive };
+            let mut found = Vec::new();
+            for (taken, side) in [(true, yes), (false, no)] {
+                if decided == Some(!taken) {
+                    continue;
+                }
+                let sides = branches(side, setting, terms)?;
+                if decided.is_some() {
+                    found.extend(sides);
+                    continue;
+                }
+                for (condition, left, right) in pairs(terms, &comparison.left, &comparison.right)? {
+                    let difference = folded(terms, Term::Sub(left, right));
+                    let condition = condition.choosing(difference, choice, taken);
+                    let both = |side: &Branch| condition.as_ref()?.and(side);
+                    found.extend(sides.iter().filter_map(both));
+                }
+            }
+            Ok(found)
+        }
+    }
+}
+
+/// The word of a table: the number that it is wherever this case reads, or a variable.
+fn word(rom: &str, place: &Formula, setting: &Setting, terms: &mut Terms) -> Result<Id, String> {
+    let words = setting.words.get(rom).ok_or_else(|| format!("there is no table `{rom}`"))?;
+    let (name, range) = match &place.kind {
+        Kind::Operand(name) => (name.as_str(), setting.ranges.get(name).copied()),
+        Kind::Number(value, _) => ("", Some((*value, *value))),
+        _ => return Err(format!("`{rom}` is read at an address that is computed")),
+    };
+    let (low, high) = range.ok_or_else(|| format!("there is no operand `{name}`"))?;
+    if setting.operands.iter().any(|operand| operand.name == name && operand.format.frac != 0) {
+        return Err(format!("`{rom}` is read at an operand with a fraction, `{name}`"));
+    }
+    let read = words.get(low as usize..=high as usize);
+    let read = read.ok_or_else(|| format!("there is no word {high} in `{rom}`"))?;
+    if read.iter().all(|word| *word == read[0]) {
+        return Ok(terms.number(read[0]));
+    }
+    let operand = setting.variables.get(name).map_or("", |(variable, _)| variable.as_str());
+    let variable = word_variable(rom, operand);
+    Ok(terms.insert(Term::Variable(variable.clone()), &variable))
+}
+
+fn operand(name: &str, setting: &Setting, terms: &mut Terms) -> Result<Id, String> {
+    let (variable, divisor) =
+        setting.variables.get(name).ok_or_else(|| format!("there is no operand `{name}`"))?;
+    let own = variable_of(name, variable, *divisor, setting, terms);
+    if *divisor == 0 {
+        return Ok(own);
+    }
+    let factor = terms.number(exp2(*divisor));
+    Ok(folded(terms, Term::Mul(own, factor)))
+}
+
+fn variable_of(
+    name: &str,
+    variable: &str,
+    divisor: i32,
+    setting: &Setting,
+    terms: &mut Terms,
+) -> Id {
+    match setting.ranges.get(name) {
+        Some((low, high)) if low == high => terms.number(low * exp2(-divisor)),
+        _ => terms.insert(Term::Variable(variable.to_owned()), variable),
+    }
+}
+
+/// The value of what does not vary in this case.
+fn constant(formula: &Formula, setting: &Setting) -> Option<f64> {
+    match &formula.kind {
+        Kind::Number(value, _) => Some(*value),
+        Kind::Operand(name) => {
+            setting.ranges.get(name).filter(|(low, high)| low == high).map(|range| range.0)
+        }
+        _ => None,
+    }
+}
+
+/// Whether a comparison of an operand with a number holds for all values of this case, or for none.
+fn decided(comparison: &Comparison, setting: &Setting) -> Option<bool> {
+    let range = |formula: &Formula| match &formula.kind {
+        Kind::Number(value, _) => Some((*value, *value)),
+        Kind::Operand(name) => setting.ranges.get(name).copied(),
+        _ => None,
+    };
+    let (left, right) = (range(&comparison.left)?, range(&comparison.right)?);
+    if left.0 > right.1 || comparison.or_equal && left.0 >= right.1 {
+        return Some(true);
+    }
+    if left.1 < right.0 || !comparison.or_equal && left.1 <= right.0 {
+        return Some(false);
+    }
+    None
+}
+
+/// By squaring, as the hardware has it.
+fn power(terms: &mut Terms, base: Id, exponent: u32) -> Id {
+    let mut result = None;
+    let (mut square, mut rest) = (base, exponent);
+    while rest > 0 {
+        if rest % 2 == 1 {
+            result = Some(match result {
+                None => square,
+                Some(result) => folded(terms, Term::Mul(result, square)),
+            });
+        }
+        rest /= 2;
+        if rest > 0 {
+            square = folded(terms, Term::Mul(square, square));
+        }
+    }
+    result.unwrap_or_else(|| terms.number(1.0))
+}
+
+/// The term, or what it is by the rules of 0 and 1, or the number that it is if that is exact.
+pub fn folded(terms: &mut Terms, term: Term) -> Id {
+    let value = |id: Id| match terms.get(id) {
+        Term::Number(value) => Some(*value),
+        _ => None,
+    };
+    let is = |id: Id, number: f64| value(id) == Some(number);
+    match term {
+        Term::Add(a, b) | Term::Sub(a, b) if is(b, 0.0) => return a,
+        Term::Add(a, b) if is(a, 0.0) => return b,
+        Term::Mul(a, b) if is(a, 0.0) || is(b, 0.0) => return terms.number(0.0),
+        Term::Mul(a, b) if is(a, 1.0) => return b,
+        Term::Mul(a, b) | Term::Div(a, b) if is(b, 1.0) => return a,
+        _ => {}
+    }
+    let exact = match term {
+        Term::Add(a, b) => value(a).zip(value(b)).and_then(|(a, b)| exact_sum(a, b)),
+        Term::Sub(a, b) => value(a).zip(value(b)).and_then(|(a, b)| exact_sum(a, -b)),
+        Term::Mul(a, b) => value(a).zip(value(b)).and_then(|(a, b)| {
+            let product = a * b;
+            (a.mul_add(b, -product) == 0.0).then_some(product)
+        }),
+        Term::Div(a, b) => value(a).zip(value(b)).and_then(|(a, b)| {
+            let quotient = a / b;
+            (quotient.mul_add(b, -a) == 0.0).then_some(quotient)
+        }),
+        _ => None,
+    };
+    match exact {
+        Some(value) => terms.number(value),
+        None => terms.insert(term, "exact"),
+    }
+}
+
+fn exact_sum(a: f64, b: f64) -> Option<f64> {
+    let sum = a + b;
+    (sum - a == b && sum - b == a).then_some(sum)
+}

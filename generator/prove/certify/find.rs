@@ -1,0 +1,148 @@
+//! A bound where a contract states none: the least that Gappa finds for each statement, and of these the largest.
+
+use std::fs;
+use std::time::Duration;
+
+use anyhow::{Context, Result};
+use rayon::prelude::*;
+
+use super::{Outcome, Statement, prove};
+use glint_tools::transient::Directory;
+use glint_tools::{LimitReached, Tool};
+
+/// The goal of a script that asks for a bound.
+const ASKED: &str = "| in ? }";
+
+/// An answer has six digits behind the point.
+const MILLIONTHS: f64 = 1e6;
+
+/// Bounds are searched in these steps, by proofs that take no longer.
+const STEP: f64 = 1.0 / 2048.0;
+const TRY: Duration = Duration::from_secs(2);
+
+/// Returns the goal of a script: a bound is asked for where none is stated, or the difference is within this one.
+pub fn goal(difference: &str, bound: Option<f64>) -> String {
+    match bound {
+        Some(bound) => format!("|{difference}| <= {}", super::terms::number(bound)),
+        None => format!("|{difference}| in ?"),
+    }
+}
+
+impl Statement {
+    /// The statement with a bound in place of the question for one.
+    #[must_use]
+    pub fn within(&self, bound: f64) -> Self {
+        let stated = format!("| <= {} }}", super::terms::number(bound));
+        let scripts = self.scripts.iter().map(|script| script.replace(ASKED, &stated));
+        Self { scripts: scripts.collect(), ..self.clone() }
+    }
+}
+
+/// A bound of all that the statements ask for. What Gappa answers is an upper limit; where a smaller one can be proved the
+/// largest is brought down by halves.
+///
+/// # Errors
+/// Gappa does not do its work; or in words why it finds no bound.
+pub fn bound(gappa: &Tool, asked: &[Statement], limit: Duration) -> Result<Result<f64, String>> {
+    let answers = asked.par_iter().map(|one| answer(gappa, one, limit));
+    let answers: Result<Vec<_>, String> =
+        answers.collect::<Result<Vec<_>>>()?.into_iter().collect();
+    let answers = match answers {
+        Ok(answers) => answers,
+        Err(why) => return Ok(Err(why)),
+    };
+    let mut largest: Vec<(f64, &Statement)> =
+        answers.into_iter().zip(asked).filter_map(|(answer, one)| Some((answer?, one))).collect();
+    largest.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut bound = 0.0;
+    for (answer, one) in largest {
+        let holds = |bound: f64| -> Result<bool> {
+            let outcome = prove(gappa, None, &one.within(bound), limit.min(TRY))?;
+            Ok(matches!(outcome, Outcome::Proved(..)))
+        };
+        if answer <= bound || holds(bound)? {
+            continue;
+        }
+        let mut above = answer;
+        while above - bound > STEP {
+            let middle = libm::ceil((above + bound) / 2.0 / STEP) * STEP;
+            if middle >= above {
+                break;
+            }
+            if holds(middle)? { above = middle } else { bound = middle }
+        }
+        bound = above;
+    }
+    Ok(Ok(bound))
+}
+
+/// Returns Gappa's answer to a statement, the least of those to its scripts; nothing where it asks for nothing.
+fn answer(
+    gappa: &Tool,
+    statement: &Statement,
+    limit: Duration,
+) -> Result<Result<Option<f64>, String>> {
+    let place = Directory::new().context("cannot make a temporary directory")?;
+    let Statement { output, number, .. } = statement;
+    let mut why = format!("Gappa finds no limit for statement {number} of {output}");
+    let (mut least, mut asks) = (None, false);
+    for script in statement.scripts.iter().filter(|script| script.contains(ASKED)) {
+        asks = true;
+        fs::write(place.path().join("statement.g"), script)
+            .context("cannot write a script for Gappa")?;
+        match gappa.run(["statement.g"], place.path(), limit) {
+            Ok(run) if run.status.success() => {
+                let found = largest(&run.output);
+                least = least.into_iter().chain(found).reduce(f64::min);
+            }
+            Ok(_) => {}
+            Err(error) if error.is::<LimitReached>() => why = error.to_string(),
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(match least {
+        None if asks => Err(why),
+        least => Ok(least),
+    })
+}
+
+/// The upper end of the interval that Gappa gives, rounded up to six digits behind the point; 0 where it says that what is
+/// presupposed cannot be.
+fn largest(output: &str) -> Option<f64> {
+    if output.contains("anything can be proved") {
+        return Some(0.0);
+    }
+    let line = output.lines().find(|line| line.trim_start().starts_with('|'))?;
+    let (_, end) = line.split_once("| in [")?.1.split_once(", ")?;
+    let end = end.split([' ', ']']).next()?;
+    let value = match end.split_once('b') {
+        Some((factor, power)) => {
+            factor.parse::<f64>().ok()? * libm::exp2(power.parse::<f64>().ok()?)
+        }
+        None => end.parse().ok()?,
+    };
+    // A factor may have more bits than f64.
+    let value = if value * MILLIONTHS == libm::floor(value * MILLIONTHS) {
+        value
+    } else {
+        value * (1.0 + f64::EPSILON)
+    };
+    let rounded = libm::ceil(value * MILLIONTHS) / MILLIONTHS;
+    Some(if rounded < value { rounded + 1.0 / MILLIONTHS } else { rounded })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_upper_end_is_read_and_rounded_up() {
+        let text = |end: &str| format!("Warning: w\nResults:\n  |d_1| in [0, {end}]\n");
+        assert_eq!(largest(&text("43998467b-26 {0.655628, 2^(-0.60905)}")), Some(0.655629));
+        assert_eq!(largest(&text("1b-1 {0.5, 2^(-1)}")), Some(0.5));
+        assert_eq!(largest(&text("255")), Some(255.0));
+        let never = "Results:\n  remaining results are pointless, anything can be proved.\n";
+        assert_eq!(largest(never), Some(0.0));
+        assert_eq!(largest("Error: some properties were not satisfied:\n  BND(|d|)\n"), None);
+    }
+}

@@ -1,0 +1,376 @@
+//! Writes the hardware's computation on one way through it as terms.
+
+use std::collections::{BTreeMap, HashMap};
+
+use super::cases::{Case, View};
+use super::exact::word_variable;
+use super::quotient::{Quotient, widened};
+use super::terms::{Direction, Id, Term, Terms};
+use glint_base::fixed::exp2;
+use glint_base::interval::{Interval, wrap};
+use glint_rtl::netlist::RomId;
+use glint_rtl::pipeline::{Cell, Graph, NodeId, Op};
+
+/// A node's raw value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Value {
+    /// It is this, on this way.
+    Constant(i128),
+    /// The term times two to the power of `scale`.
+    Term {
+        /// The value with its point.
+        id: Id,
+        /// Fraction bits.
+        scale: i32,
+    },
+}
+
+/// The operands as terms: by their number in the graph, the variable and its fraction bits.
+pub type Variables = Vec<(String, i32)>;
+
+/// Translates nodes of one case.
+#[derive(Clone)]
+pub struct Hardware<'a> {
+    graph: &'a Graph,
+    quotients: &'a BTreeMap<NodeId, Quotient>,
+    case: &'a Case,
+    /// Operands, and behind them what else has become a variable.
+    pub variables: Variables,
+    /// The names of the tables.
+    tables: &'a [String],
+    /// The intervals of terms that are no nodes.
+    pub facts: BTreeMap<Id, (f64, f64)>,
+    known: HashMap<NodeId, Value>,
+}
+
+impl<'a> Hardware<'a> {
+    /// Nothing translated yet. `variables` are the operands.
+    pub fn new(view: View<'a>, case: &'a Case, variables: Variables, tables: &'a [String]) -> Self {
+        let View { graph, quotients, .. } = view;
+        let (facts, known) = (BTreeMap::new(), HashMap::new());
+        Self { graph, quotients, case, variables, tables, facts, known }
+    }
+
+    fn range(&self, id: NodeId) -> Interval {
+        self.case.ranges[id.index()]
+    }
+
+    /// A new variable with the values that the node has.
+    fn variable(&mut self, terms: &mut Terms, node: NodeId, variable: String, scale: i32) -> Value {
+        let id = terms.insert(Term::Variable(variable.clone()), &variable);
+        let (low, high) = self.range(node);
+        let value = |raw: i128| raw as f64 * exp2(-scale);
+        self.facts.insert(id, (value(low), value(high)));
+        if !self.variables.iter().any(|(name, _)| *name == variable) {
+            self.variables.push((variable, scale));
+        }
+        Value::Term { id, scale }
+    }
+
+    /// The word of a table: the variable that a formula has for it too, where an operand numbers it.
+    fn read(&mut self, terms: &mut Terms, node: NodeId, rom: RomId, address: NodeId) -> Value {
+        let table = &self.tables[rom.index()];
+        let variable = match self.graph.node(address).cell {
+            Cell::Operand(at) => word_variable(table, &self.variables[at].0),
+            _ => format!("{table}_{}", node.0),
+        };
+        let scale = self.graph.node(node).format.frac;
+        self.variable(terms, node, variable, scale)
+    }
+
+    /// A quotient: a variable that the real quotient exceeds by its last place at most.
+    fn quotient(
+        &mut self,
+        terms: &mut Terms,
+        node: NodeId,
+        quotient: Quotient,
+    ) -> Result<Value, String> {
+        let (dividend, divisor) = self.fraction(terms, quotient)?;
+        let name = &self.graph.node(node).label.name;
+        let real = terms.insert(Term::Div(dividend, divisor), &format!("{name}_exact"));
+        let scale = quotient.bits as i32;
+        let value = self.variable(terms, node, format!("{name}_{}", node.0), scale);
+        if let Value::Term { id, .. } = value {
+            let rest = terms.insert(Term::Sub(real, id), &format!("{name}_rest"));
+            self.facts.insert(rest, (0.0, exp2(-scale)));
+        }
+        Ok(value)
+    }
+
+    /// The difference of two values of which the first is known to be less, or not to be; nothing where one does not
+    /// vary, or has no translation.
+    pub fn compared(
+        &mut self,
+        terms: &mut Terms,
+        (a, b): (NodeId, NodeId),
+        less: bool,
+    ) -> Option<(Id, (f64, f64))> {
+        let ((a_low, a_high), (b_low, b_high)) = (self.range(a), self.range(b));
+        let (a, b) = (self.value(terms, a).ok()?, self.value(terms, b).ok()?);
+        // Both at one point: they are compared as raw values.
+        let (Value::Term { scale, .. }, Value::Term { scale: other, .. }) = (a, b) else {
+            return None;
+        };
+        let difference = add(terms, a, b, Term::Sub, "compared");
+        let Value::Term { id, .. } = difference else { return None };
+        let value = |raw: i128| raw as f64 * exp2(-scale);
+        let range =
+            if less { (value(a_low - b_high), value(-1)) } else { (0.0, value(a_high - b_low)) };
+        (scale == other).then_some((id, range))
+    }
+
+    /// Dividend and divisor, with the points at one place.
+    pub fn fraction(&mut self, terms: &mut Terms, of: Quotient) -> Result<(Id, Id), String> {
+        let (dividend, divisor) = (self.value(terms, of.dividend)?, self.value(terms, of.divisor)?);
+        let scale = [dividend, divisor].into_iter().filter_map(|value| match value {
+            Value::Term { scale, .. } => Some(scale),
+            Value::Constant(_) => None,
+        });
+        let scale = scale.max().unwrap_or(0);
+        Ok((pointed(terms, dividend, scale, "dividend"), pointed(terms, divisor, scale, "divisor")))
+    }
+
+    /// The node as a value.
+    ///
+    /// # Errors
+    /// The operation that has no translation, with the name of its result.
+    pub fn value(&mut self, terms: &mut Terms, id: NodeId) -> Result<Value, String> {
+        if let Some(&value) = self.known.get(&id) {
+            return Ok(value);
+        }
+        let (low, high) = self.range(id);
+        let value = if low == high { Value::Constant(low) } else { self.translated(terms, id)? };
+        self.known.insert(id, value);
+        Ok(value)
+    }
+
+    /// The node as a term even where it is one number in this case: that it is this number says something of its operands.
+    /// None where it is made of constants, or is bits that are cut out.
+    pub fn expression(&mut self, terms: &mut Terms, id: NodeId) -> Option<Value> {
+        let is_cut =
+            matches!(self.graph.node(id).cell, Cell::Op(Op::Slice { .. }) | Cell::Operand(_));
+        let (low, high) = self.range(id);
+        if low != high {
+            return self.value(terms, id).ok();
+        }
+        (!is_cut).then(|| self.translated(terms, id).ok())?
+    }
+
+    fn translated(&mut self, terms: &mut Terms, id: NodeId) -> Result<Value, String> {
+        let graph = self.graph;
+        let node = graph.node(id);
+        let name = node.label.name.clone();
+        if let Some(&quotient) = self.quotients.get(&id) {
+            return self.quotient(terms, id, quotient);
+        }
+        let op = match &node.cell {
+            Cell::Op(op) => op,
+            Cell::Operand(at) => {
+                let (variable, scale) = self.variables[*at].clone();
+                let id = terms.insert(Term::Variable(variable.clone()), &variable);
+                return Ok(Value::Term { id, scale });
+            }
+            Cell::Read { rom, address } => return Ok(self.read(terms, id, *rom, *address)),
+            _ => return Err(format!("`{name}` is nothing that the operands determine")),
+        };
+        // What is to be added where bits above the format are dropped.
+        let wrap_of = |range: Interval| {
+            wrap(range, node.format).ok_or_else(|| {
+                let ((low, high), format) = (range, node.format);
+                format!("`{name}` is {format}, and {low} to {high} ulp come to it as far as intervals tell")
+            })
+        };
+        let case = self.case;
+        let range = |id: &NodeId| case.ranges[id.index()];
+        match op {
+            Op::Relabel(a) | Op::Extend(a) => {
+                let wrap = wrap_of(range(a))?;
+                let a = self.value(terms, *a)?;
+                Ok(add(terms, a, Value::Constant(wrap), Term::Add, &name))
+            }
+            Op::Mux { select, inputs } => {
+                let chosen = range(select).0 as usize;
+                self.value(terms, inputs[chosen.min(inputs.len() - 1)])
+            }
+            Op::Slice { of, low } => {
+                let wrap = wrap_of((range(of).0 >> low, range(of).1 >> low))?;
+                let (from, to) = range(of);
+                let of = self.value(terms, *of)?;
+                if graph.width(id) == 1 && *low > 0 && from >= 0 && to < 2 << low {
+                    // The top bit of a fraction is the fraction to the nearest.
+                    return Ok(cut(terms, of, low + 1, Direction::Nearest, &name));
+                }
+                let cut = cut(terms, of, *low, Direction::Down, &name);
+                Ok(add(terms, cut, Value::Constant(wrap), Term::Add, &name))
+            }
+            Op::Concat(parts) => {
+                let mut sum = Value::Constant(0);
+                let mut position = 0;
+                for part in parts.iter().rev() {
+                    let is_sign = node.format.signed && Some(part) == parts.first();
+                    if range(part).0 < 0 && !is_sign {
+                        return Err(format!("`{name}` joins bits of a negative number"));
+                    }
+                    let raised = raised(self.value(terms, *part)?, position);
+                    sum = add(terms, sum, raised, Term::Add, &name);
+                    position += graph.width(*part) as i32;
+                }
+                Ok(sum)
+            }
+            Op::Not(a) => {
+                let most = if node.format.signed { -1 } else { node.format.range().1 };
+                let a = self.value(terms, *a)?;
+                // The inverse of an unsigned number stands for 1.0 less it, with the point at its top.
+                let a = match (a, node.format.signed) {
+                    (Value::Term { id, scale }, false) => {
+                        let wanted = node.format.width() as i32;
+                        Value::Term { id: scaled(terms, id, scale - wanted, &name), scale: wanted }
+                    }
+                    _ => a,
+                };
+                Ok(add(terms, Value::Constant(most), a, Term::Sub, &name))
+            }
+            Op::Add { a, b, carry } => {
+                if let Some((of, low)) = self.rounded(*a, *b) {
+                    let half = 1 << (low - 1);
+                    let wrap =
+                        wrap_of(((range(&of).0 + half) >> low, (range(&of).1 + half) >> low))?;
+                    let of = self.value(terms, of)?;
+                    let cut = cut(terms, of, low, Direction::Nearest, &name);
+                    return Ok(add(terms, cut, Value::Constant(wrap), Term::Add, &name));
+                }
+                let one = carry.as_ref().map_or((0, 0), range);
+                let wrap =
+                    wrap_of((range(a).0 + range(b).0 + one.0, range(a).1 + range(b).1 + one.1))?;
+                let (a, b) = (self.value(terms, *a)?, self.value(terms, *b)?);
+                let (a, b) = match (a, b) {
+                    (Value::Constant(a), b) => (Value::Constant(a + wrap), b),
+                    (a, Value::Constant(b)) => (a, Value::Constant(b + wrap)),
+                    (a, b) => (add(terms, a, Value::Constant(wrap), Term::Add, &name), b),
+                };
+                let sum = add(terms, a, b, Term::Add, &name);
+                match carry {
+                    None => Ok(sum),
+                    Some(carry) => {
+                        let carry = self.value(terms, *carry)?;
+                        Ok(add(terms, sum, carry, Term::Add, &name))
+                    }
+                }
+            }
+            Op::Sub(a, b) => {
+                let wrap = wrap_of((range(a).0 - range(b).1, range(a).1 - range(b).0))?;
+                let (a, b) = (self.value(terms, *a)?, self.value(terms, *b)?);
+                let difference = add(terms, a, b, Term::Sub, &name);
+                Ok(add(terms, difference, Value::Constant(wrap), Term::Add, &name))
+            }
+            Op::Mul(a, b) => {
+                let frac = |id: &NodeId| graph.node(*id).format.frac;
+                let (of_a, of_b) = (self.value(terms, *a)?, self.value(terms, *b)?);
+                let (a, a_scale) = placed(terms, of_a, frac(a));
+                let (b, b_scale) = placed(terms, of_b, frac(b));
+                let id = terms.insert(Term::Mul(a, b), &name);
+                Ok(Value::Term { id, scale: a_scale + b_scale })
+            }
+            Op::And(..)
+            | Op::Or(..)
+            | Op::Xor(..)
+            | Op::Equal(..)
+            | Op::Less(..)
+            | Op::Any(_)
+            | Op::All(_) => Err(format!("`{name}` is logic whose result is taken for a number")),
+        }
+    }
+
+    /// The number of which `a` holds the bits from `low` up and `b` the one below: their sum is that number
+    /// rounded to the nearest, halves up, for ⌊y⌋ + (⌊2y⌋ − 2⌊y⌋) = ⌊y + 1/2⌋. None where it may be negative.
+    fn rounded(&self, a: NodeId, b: NodeId) -> Option<(NodeId, u32)> {
+        let inner = |id: NodeId| match &self.graph.node(id).cell {
+            Cell::Op(Op::Extend(of) | Op::Relabel(of)) => *of,
+            _ => id,
+        };
+        let slice = |id: NodeId| match &self.graph.node(inner(id)).cell {
+            Cell::Op(Op::Slice { of, low }) => Some((widened(self.graph, *of), *low)),
+            _ => None,
+        };
+        let one = |a: NodeId, b: NodeId| {
+            let ((of, low), (below, bit)) = (slice(a)?, slice(b)?);
+            let is = of == below
+                && bit + 1 == low
+                && self.graph.width(inner(b)) == 1
+                && self.range(of).0 >= 0
+                && self.range(of).1 >> (low + self.graph.width(inner(a))) == 0;
+            is.then_some((of, low))
+        };
+        one(a, b).or_else(|| one(b, a))
+    }
+}
+
+/// Drops `low` bits.
+fn cut(terms: &mut Terms, value: Value, low: u32, direction: Direction, name: &str) -> Value {
+    match value {
+        Value::Constant(raw) => Value::Constant(match direction {
+            Direction::Down => raw >> low,
+            Direction::Nearest => (raw + (1 << low >> 1)) >> low,
+        }),
+        Value::Term { .. } if low == 0 => value,
+        Value::Term { id, scale } => {
+            let fraction = scale - low as i32;
+            let id = terms.insert(Term::Round { of: id, fraction, direction }, name);
+            Value::Term { id, scale: fraction }
+        }
+    }
+}
+
+/// The value with zeros below.
+fn raised(value: Value, position: i32) -> Value {
+    match value {
+        Value::Constant(raw) => Value::Constant(raw << position),
+        Value::Term { id, scale } => Value::Term { id, scale: scale + position },
+    }
+}
+
+/// The sum or the difference.
+fn add(terms: &mut Terms, a: Value, b: Value, operation: fn(Id, Id) -> Term, name: &str) -> Value {
+    let scale = match (a, b) {
+        (Value::Constant(a), Value::Constant(b)) => {
+            return Value::Constant(match operation(0, 0) {
+                Term::Sub(..) => a - b,
+                _ => a + b,
+            });
+        }
+        (Value::Constant(0), Value::Term { .. }) if matches!(operation(0, 0), Term::Add(..)) => {
+            return b;
+        }
+        (Value::Term { .. }, Value::Constant(0)) => return a,
+        (Value::Term { scale, .. }, Value::Constant(_))
+        | (Value::Constant(_), Value::Term { scale, .. }) => scale,
+        (Value::Term { scale: a, .. }, Value::Term { scale: b, .. }) => a.max(b),
+    };
+    let (a, b) = (pointed(terms, a, scale, name), pointed(terms, b, scale, name));
+    Value::Term { id: terms.insert(operation(a, b), name), scale }
+}
+
+/// The value as a term whose raw values are its values times 2^`scale`.
+fn pointed(terms: &mut Terms, value: Value, scale: i32, name: &str) -> Id {
+    match value {
+        Value::Constant(raw) => terms.number(raw as f64 * exp2(-scale)),
+        Value::Term { id, scale: own } => scaled(terms, id, own - scale, name),
+    }
+}
+
+/// The term times two to the power of `power`.
+pub fn scaled(terms: &mut Terms, id: Id, power: i32, name: &str) -> Id {
+    if power == 0 {
+        return id;
+    }
+    let factor = terms.number(exp2(power));
+    terms.insert(Term::Mul(id, factor), name)
+}
+
+/// The value as a term and its fraction bits, which are `frac` for a constant.
+pub fn placed(terms: &mut Terms, value: Value, frac: i32) -> (Id, i32) {
+    match value {
+        Value::Constant(raw) => (terms.number(raw as f64 * exp2(-frac)), frac),
+        Value::Term { id, scale } => (id, scale),
+    }
+}

@@ -1,0 +1,130 @@
+//! Writes the premises of statements about outputs as statements of their own: that a parabola has no values beyond those that
+//! are taken for it, and what a divider presupposes and keeps.
+
+use super::cases::{Case, View};
+use super::hardware::{Hardware, Value};
+use super::polynomial::Polynomial;
+use super::quotient::Quotient;
+use super::script::Script;
+use super::terms::{Id, Term, Terms, number};
+use glint_base::fixed::exp2;
+use glint_rtl::pipeline::NodeId;
+
+/// A statement about a value on the way.
+pub struct Premise {
+    /// The name of the value.
+    pub about: String,
+    /// The statement.
+    pub script: String,
+}
+
+/// The premises of a case.
+///
+/// # Errors
+/// A value has no translation.
+pub fn of(
+    view: View,
+    case: &Case,
+    hardware: &Hardware,
+    operands: &[(String, (f64, f64))],
+) -> Result<Vec<Premise>, String> {
+    let mut premises = Vec::new();
+    let name = |node: NodeId| view.graph.node(node).label.name.clone();
+    for (&node, polynomial) in &case.parabolas {
+        let mut task = Task { hardware: hardware.clone(), terms: Terms::default(), operands };
+        let script = task.parabola(node, *polynomial, case.ranges[node.index()])?;
+        premises.extend(script.map(|script| Premise { about: name(node), script }));
+    }
+    for (&node, &quotient) in view.quotients {
+        let [dividend, divisor] =
+            [quotient.dividend, quotient.divisor].map(|id| case.ranges[id.index()]);
+        if dividend.0 >= 0 && divisor.0 > 0 && dividend.1 <= divisor.0 {
+            continue;
+        }
+        let mut task = Task { hardware: hardware.clone(), terms: Terms::default(), operands };
+        let mut scripts = vec![task.dividend(quotient)?];
+        scripts.extend([true, false].map(step));
+        premises.extend(scripts.into_iter().map(|script| Premise { about: name(node), script }));
+    }
+    Ok(premises)
+}
+
+struct Task<'a> {
+    hardware: Hardware<'a>,
+    terms: Terms,
+    operands: &'a [(String, (f64, f64))],
+}
+
+impl Task<'_> {
+    /// That a node has these values alone, by completing the square. Nothing where it is no square.
+    fn parabola(
+        &mut self,
+        node: NodeId,
+        polynomial: Polynomial,
+        (low, high): (i128, i128),
+    ) -> Result<Option<String>, String> {
+        let Some(x) = polynomial.of else { return Ok(None) };
+        let (x, y) =
+            (self.hardware.value(&mut self.terms, x)?, self.hardware.value(&mut self.terms, node)?);
+        let (Value::Term { id: x, scale: of_x }, Value::Term { id, scale }) = (x, y) else {
+            return Ok(None);
+        };
+        let [a, b, c] = polynomial.factors.map(|factor| factor as f64 * exp2(-scale));
+        let (b, c) = (b * exp2(of_x), c * exp2(2 * of_x));
+        let vertex = -b / (2.0 * c);
+        let rest = a - c * vertex * vertex;
+        let x = self.terms.name(x);
+        let from_vertex = format!("({x} - ({}))", number(vertex));
+        let square = format!("({}) * ({from_vertex} * {from_vertex})", number(c));
+        let hint = format!("{} -> {square} + ({});", self.terms.name(id), number(rest));
+        let value = |raw: i128| number(raw as f64 * exp2(-scale));
+        let goal = format!("{} in [{},{}]", self.terms.name(id), value(low), value(high));
+        Ok(Some(self.script(id, &goal, &[hint])))
+    }
+
+    /// That the divisor is positive, and the dividend neither negative nor above it.
+    fn dividend(&mut self, quotient: Quotient) -> Result<String, String> {
+        let (dividend, divisor) = self.hardware.fraction(&mut self.terms, quotient)?;
+        let rest = self.terms.insert(Term::Sub(divisor, dividend), "rest");
+        let [dividend_name, divisor_name, rest_name] =
+            [dividend, divisor, rest].map(|id| self.terms.name(id));
+        // What a sum has beside the dividend.
+        let beside = match *self.terms.get(divisor) {
+            Term::Add(a, b) if a == dividend => Some(b),
+            Term::Add(a, b) if b == dividend => Some(a),
+            _ => None,
+        };
+        let hint = beside.map(|id| format!("{rest_name} -> {};", self.terms.name(id)));
+        let goal = format!(
+            "{rest_name} >= 0 /\\ {dividend_name} >= 0 /\\ {divisor_name} >= {}",
+            number(exp2(-64))
+        );
+        Ok(self.script(rest, &goal, hint.as_slice()))
+    }
+
+    fn script(&self, about: Id, goal: &str, hints: &[String]) -> String {
+        let mut terms = self.terms.clone();
+        let mut presupposed = self.hardware.facts.clone();
+        for (name, range) in self.operands {
+            presupposed.insert(terms.insert(Term::Variable(name.clone()), name), *range);
+        }
+        let script = Script {
+            terms: &terms,
+            hardware_terms: terms.count(),
+            placed: &self.hardware.variables,
+            presupposed: &presupposed,
+            ways: &[],
+        };
+        script.statement(terms.clone(), about, goal, hints)
+    }
+}
+
+/// That a step of a divider leaves a remainder between 0 and the divisor, whether the divisor fits into twice the remainder or
+/// not. The numbers are the shares of the divisor, which is 1.
+fn step(fits: bool) -> String {
+    let (condition, left) =
+        if fits { ("doubled - 1 >= 0", "doubled - 1") } else { ("doubled - 1 <= 0", "doubled") };
+    format!(
+        "doubled = 2 * remainder;\nleft = {left};\n\n{{ remainder in [0,1]\n  /\\ {condition}\n  -> left in [0,1] }}\n\n"
+    )
+}

@@ -1,0 +1,101 @@
+//! Gappa proves a statement, and Coq's kernel checks its proof.
+
+use std::fs;
+use std::time::Duration;
+
+use anyhow::{Context, Result, bail};
+
+use super::{Statement, witness};
+use glint_tools::transient::Directory;
+use glint_tools::{LimitReached, Tool};
+
+/// The subject of a proved statement.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Subject {
+    /// A point at which its hypotheses hold, and others.
+    Point(String),
+    /// Nothing, as Gappa proves: its hypotheses contradict each other.
+    Nothing,
+    /// Neither was found.
+    Unknown,
+}
+
+/// The outcome of a statement's proof.
+pub enum Outcome {
+    /// The script that was accepted, and what it speaks of.
+    Proved(usize, Subject),
+    /// No proof: Gappa's answer to the last script.
+    Open(String),
+}
+
+/// Has one of the statement's scripts accepted by Gappa, and with `coq` its proof by Coq's kernel.
+///
+/// # Errors
+/// A tool does not do its work. That a statement is not proved, or not within the limit, is no error.
+pub fn prove(
+    gappa: &Tool,
+    coq: Option<&Tool>,
+    statement: &Statement,
+    limit: Duration,
+) -> Result<Outcome> {
+    let dir = Directory::new().context("cannot make a temporary directory")?;
+    let mut why = String::new();
+    for (number, script) in statement.scripts.iter().enumerate() {
+        fs::write(dir.path().join("statement.g"), script)
+            .context("cannot write a script for Gappa")?;
+        let run = match gappa.run(["statement.g"], dir.path(), limit) {
+            Ok(run) => run,
+            Err(error) if error.is::<LimitReached>() => {
+                why = format!("Gappa did not end within {} s", limit.as_secs());
+                continue;
+            }
+            Err(error) => return Err(error),
+        };
+        if run.status.code().is_none() {
+            bail!("`{gappa}` failed ({}): {}", run.status, run.output.trim());
+        }
+        // Of a rewriting that it cannot prove Gappa says so, and goes on.
+        let assumed = run.output.contains("trivially equal");
+        if !run.status.success() || assumed {
+            let mut lines =
+                run.output.lines().filter(|line| line.contains("rror") || line.contains("best"));
+            why = lines.next_back().unwrap_or("Gappa assumes a step").trim().to_owned();
+            continue;
+        }
+        if let Some(coq) = coq {
+            let proof = gappa.run(["-Bcoq", "statement.g"], dir.path(), limit)?;
+            if !proof.status.success() {
+                bail!("Gappa proves a statement, and cannot write it for Coq: {}", proof.output);
+            }
+            // Warnings come in between.
+            let lines = proof.output.lines().filter(|line| !line.starts_with("Warning:"));
+            let proof: String = lines.flat_map(|line| [line, "\n"]).collect();
+            fs::write(dir.path().join("statement.v"), proof)
+                .context("cannot write a proof for Coq")?;
+            let check = coq.run(["statement.v"], dir.path(), limit * 10)?;
+            if !check.status.success() {
+                why = format!("Coq refuses: {}", check.output.lines().next().unwrap_or_default());
+                continue;
+            }
+        }
+        let subject = subject(gappa, script, limit)?;
+        return Ok(Outcome::Proved(number, subject));
+    }
+    Ok(Outcome::Open(why))
+}
+
+/// Returns the subject of an accepted script. Gappa is asked for a contradiction where no point is found.
+fn subject(gappa: &Tool, script: &str, limit: Duration) -> Result<Subject> {
+    if let Some(point) = witness::witness(script) {
+        return Ok(Subject::Point(point));
+    }
+    let Some(asked) = witness::contradiction(script) else { return Ok(Subject::Unknown) };
+    let dir = Directory::new().context("cannot make a temporary directory")?;
+    fs::write(dir.path().join("statement.g"), asked).context("cannot write a script for Gappa")?;
+    match gappa.run(["statement.g"], dir.path(), limit) {
+        Ok(run) if run.status.success() => Ok(Subject::Nothing),
+        Ok(_) => Ok(Subject::Unknown),
+        Err(error) if error.is::<LimitReached>() => Ok(Subject::Unknown),
+        Err(error) => Err(error),
+    }
+}

@@ -1,0 +1,113 @@
+//! Dividers that take a bit of the quotient a clock, found in the unrolled computation.
+//!
+//! A step doubles the remainder r and takes the divisor d away where it fits: r' = 2·r − b·d with b = (2·r ≥ d). If
+//! 0 ≤ r ≤ d and d > 0, the same holds of r'. After k steps from r₀ the bits are the number q = Σ bᵢ·2^(k−i), and the last
+//! remainder is 2^k·r₀ − q·d, between 0 and d: q·2^−k is below r₀/d by 2^−k at most, and never above. What this rests on
+//! (0 ≤ r₀ ≤ d, d > 0, and what a step keeps) are statements for Gappa too.
+
+use std::collections::BTreeMap;
+
+use glint_rtl::pipeline::{Cell, Graph, NodeId, Op};
+
+/// A quotient that is found bit by bit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Quotient {
+    /// The first remainder.
+    pub dividend: NodeId,
+    /// The divisor, which is subtracted where it fits.
+    pub divisor: NodeId,
+    /// How many bits.
+    pub bits: u32,
+}
+
+/// The quotients that results depend on, each by the node that joins its bits.
+pub fn quotients(graph: &Graph, results: &[NodeId]) -> BTreeMap<NodeId, Quotient> {
+    let mut found = BTreeMap::new();
+    let mut pending = results.to_vec();
+    let mut seen = vec![false; graph.nodes.len()];
+    while let Some(id) = pending.pop() {
+        if std::mem::replace(&mut seen[id.index()], true) {
+            continue;
+        }
+        match quotient(graph, id) {
+            Some(quotient) => {
+                found.insert(id, quotient);
+                pending.extend([quotient.dividend, quotient.divisor]);
+            }
+            None => pending.extend(graph.node(id).cell.operands()),
+        }
+    }
+    found
+}
+
+/// The quotient whose bits a node joins, the first on top.
+fn quotient(graph: &Graph, id: NodeId) -> Option<Quotient> {
+    let Cell::Op(Op::Concat(_)) = graph.node(id).cell else { return None };
+    let mut bits = Vec::new();
+    joined(graph, id, &mut bits);
+    let steps: Option<Vec<Step>> = bits.iter().map(|&bit| step(graph, bit)).collect();
+    let steps = steps.filter(|steps| steps.len() > 1)?;
+    let Step { remainder: dividend, divisor, .. } = steps[0];
+    let follows = steps
+        .windows(2)
+        .all(|pair| pair[1].divisor == divisor && is_left(graph, pair[1].remainder, &pair[0]));
+    follows.then_some(Quotient { dividend, divisor, bits: steps.len() as u32 })
+}
+
+/// The nodes of which a node is joined, the top one first.
+fn joined(graph: &Graph, id: NodeId, parts: &mut Vec<NodeId>) {
+    match &graph.node(id).cell {
+        Cell::Op(Op::Concat(inner)) => inner.iter().for_each(|&part| joined(graph, part, parts)),
+        _ => parts.push(id),
+    }
+}
+
+/// A step: `doubled` is twice the remainder, `trial` what it exceeds the divisor by, `bit` whether it does.
+struct Step {
+    remainder: NodeId,
+    divisor: NodeId,
+    doubled: NodeId,
+    trial: NodeId,
+    bit: NodeId,
+}
+
+fn step(graph: &Graph, bit: NodeId) -> Option<Step> {
+    let op = |id: NodeId| match &graph.node(id).cell {
+        Cell::Op(op) => Some(op),
+        _ => None,
+    };
+    let Op::Not(negative) = op(bit)? else { return None };
+    let Op::Slice { of: trial, low } = op(*negative)? else { return None };
+    let Op::Sub(doubled, divisor) = op(*trial)? else { return None };
+    // The sign of a difference that has room for all its values.
+    let ((least, most), (from, to)) = (graph.node(*trial).format.range(), {
+        let (a, b) = (graph.node(*doubled).range, graph.node(*divisor).range);
+        (a.0 - b.1, a.1 - b.0)
+    });
+    let is_sign = graph.node(*trial).format.signed
+        && graph.width(*negative) == 1
+        && low + 1 == graph.width(*trial)
+        && least <= from
+        && to <= most;
+    let Op::Concat(parts) = op(widened(graph, *doubled))? else { return None };
+    let [remainder, zero] = parts[..] else { return None };
+    let is_doubled = graph.constant_of(zero) == Some(0) && graph.width(zero) == 1;
+    let (doubled, trial, divisor) = (*doubled, *trial, widened(graph, *divisor));
+    let natural = [remainder, divisor].iter().all(|&id| !graph.node(id).format.signed);
+    (is_sign && is_doubled && natural).then_some(Step { remainder, divisor, doubled, trial, bit })
+}
+
+/// Whether a node is what a step leaves, with all bits that numbers up to the divisor have.
+fn is_left(graph: &Graph, id: NodeId, step: &Step) -> bool {
+    let Cell::Op(Op::Slice { of, low: 0 }) = graph.node(id).cell else { return false };
+    let left = Op::Mux { select: step.bit, inputs: vec![step.doubled, step.trial] };
+    graph.node(of).cell == Cell::Op(left) && graph.width(id) >= graph.width(step.divisor)
+}
+
+/// The node that is extended by zeros in this one.
+pub fn widened(graph: &Graph, id: NodeId) -> NodeId {
+    match &graph.node(id).cell {
+        Cell::Op(Op::Extend(of)) if !graph.node(*of).format.signed => *of,
+        _ => id,
+    }
+}

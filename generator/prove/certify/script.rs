@@ -1,0 +1,260 @@
+//! The text of a statement: definitions, what is presupposed, the goal, and hints.
+
+use std::collections::{BTreeMap, HashMap};
+use std::fmt::Write as _;
+
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{RngCore, SeedableRng};
+
+use super::exact::{self, Branch};
+use super::find;
+use super::hardware::Variables;
+use super::terms::{Id, Term, Terms, number};
+use glint_base::fixed::exp2;
+
+/// Points by which terms are compared, and how often one is looked for.
+const SAMPLES: usize = 24;
+const TRIES: usize = 2_000;
+
+/// The common part of a case's statements.
+pub struct Script<'a> {
+    /// Hardware and formula.
+    pub terms: &'a Terms,
+    /// Terms below this number are the hardware's.
+    pub hardware_terms: usize,
+    /// Variables with their fraction bits.
+    pub placed: &'a Variables,
+    /// The values that terms have.
+    pub presupposed: &'a BTreeMap<Id, (f64, f64)>,
+    /// How each expression of the formula goes.
+    pub ways: &'a [Branch],
+}
+
+impl Script<'_> {
+    /// That the output `out` is within the bound of the formula `f` times a factor, or how far from it.
+    pub fn text(&self, out: Id, factor: Id, f: Id, bound: Option<f64>) -> String {
+        let mut terms = self.terms.clone();
+        let exact = exact::folded(&mut terms, Term::Mul(f, factor));
+        let difference = terms.insert(Term::Sub(out, exact), "difference");
+        let goal = find::goal(&terms.name(difference), bound);
+        self.statement(terms, difference, &goal, &[])
+    }
+
+    /// A goal about a term, with hints beside those that hardware and formula give.
+    pub fn statement(&self, mut terms: Terms, about: Id, goal: &str, hints: &[String]) -> String {
+        let mut roots = vec![about];
+        for way in self.ways {
+            roots.extend(way.at_least.iter().chain(&way.at_most));
+        }
+        let values = self.presupposed.keys().copied();
+        roots.extend(values.filter(|&id| !matches!(self.terms.get(id), Term::Variable(_))));
+        let (equal, near) = self.hints(&mut terms, about, &mut roots);
+        let needed = terms.needed(&roots);
+        let is_variable = |id: Id| matches!(terms.get(id), Term::Variable(_));
+        let mut hypotheses = Vec::new();
+        for (name, scale) in self.placed {
+            if (0..terms.count()).any(|id| needed[id] && is_variable(id) && terms.name(id) == *name)
+            {
+                hypotheses.push(format!("@FIX({name},{})", -scale));
+            }
+        }
+        for (&id, &(low, high)) in self.presupposed {
+            // A variable of one value, which the program puts in its place, is a premise all the same.
+            let is_given = is_variable(id) && low == high;
+            if !matches!(terms.get(id), Term::Number(_)) && (needed[id] || is_given) {
+                let name = terms.name(id);
+                hypotheses.push(format!("{name} in [{},{}]", number(low), number(high)));
+            }
+        }
+        for way in self.ways {
+            let sides = way.at_least.iter().map(|&id| (id, ">="));
+            for (id, sign) in sides.chain(way.at_most.iter().map(|&id| (id, "<="))) {
+                let hypothesis = format!("{} {sign} 0", terms.name(id));
+                let is_new = !hypotheses.contains(&hypothesis);
+                if is_new && !matches!(terms.get(id), Term::Number(_)) {
+                    hypotheses.push(hypothesis);
+                }
+            }
+        }
+        let mut text = terms.definitions(&needed);
+        let statement = match hypotheses.join("\n  /\\ ").as_str() {
+            "" => goal.to_owned(),
+            hypotheses => format!("{hypotheses}\n  -> {goal}"),
+        };
+        let _ = write!(text, "\n{{ {statement} }}\n\n");
+        for line in hints.iter().chain(&equal).chain(&near) {
+            let _ = writeln!(text, "{line}");
+        }
+        text
+    }
+
+    /// Writes hints: which terms of the formula are sums of terms of the hardware, those with roundings taken without them, and
+    /// which terms of the hardware stand for which of the formula. Gappa proves each that it uses.
+    fn hints(
+        &self,
+        terms: &mut Terms,
+        about: Id,
+        roots: &mut Vec<Id>,
+    ) -> (Vec<String>, Vec<String>) {
+        let needed = terms.needed(roots);
+        let formula = self.hardware_terms..about.max(self.hardware_terms);
+        let mut unrounded = HashMap::new();
+        for id in (0..self.hardware_terms).filter(|&id| needed[id]) {
+            terms.unrounded(id, &mut unrounded);
+        }
+        let samples = self.samples(terms);
+        let blends = (0..about).filter(|&id| needed[id]).filter_map(|id| blend(terms, id));
+        let (mut equal, mut near): (Vec<String>, Vec<String>) = (blends.collect(), Vec::new());
+        let column = |id: Id| samples.iter().map(|values| values[id]).collect::<Vec<f64>>();
+        let varies = |values: &[f64]| values.iter().any(|value| *value != values[0]);
+        let compound = |id: Id| !matches!(terms.get(id), Term::Number(_) | Term::Variable(_));
+        let own: Vec<(Id, Vec<f64>)> = (0..self.hardware_terms)
+            .filter(|&id| needed[id] && compound(id))
+            .map(|id| (id, column(id)))
+            .filter(|(_, values)| varies(values))
+            .collect();
+        for other in formula.filter(|&id| needed[id]) {
+            let values = column(other);
+            if !compound(other) || !varies(&values) {
+                continue;
+            }
+            let before = equal.len();
+            for (id, column) in own.iter().filter(|(id, _)| terms.is_exact(*id)) {
+                if let Some(line) = line_through(column, &values) {
+                    equal.push(rewriting(terms, other, *id, line));
+                }
+            }
+            if before == equal.len() {
+                let same = own.iter().find_map(|(id, _)| {
+                    let twin = *unrounded.get(id).filter(|twin| **twin != other)?;
+                    is_same(&column(twin), &values).then_some(twin)
+                });
+                if let Some(twin) = same {
+                    equal.push(rewriting(terms, other, twin, (1.0, 0.0)));
+                    roots.push(twin);
+                }
+            }
+            for (id, column) in own.iter().filter(|(id, _)| !terms.is_exact(*id)) {
+                let largest = column.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+                let apart = column.iter().zip(&values).map(|(a, b)| (a - b).abs());
+                if apart.fold(0.0, f64::max) <= largest / 64.0 {
+                    near.push(format!("{} ~ {};", terms.name(*id), terms.name(other)));
+                }
+            }
+        }
+        (equal, near)
+    }
+
+    /// The values of all terms at operands of this case, and at others of the domain, of which there are more.
+    fn samples(&self, terms: &Terms) -> Vec<Vec<f64>> {
+        let mut random = ChaCha8Rng::seed_from_u64(1);
+        let (mut samples, mut others) = (Vec::new(), Vec::new());
+        for _ in 0..TRIES {
+            let mut variables = HashMap::new();
+            for (&id, &(low, high)) in self.presupposed {
+                if let Term::Variable(name) = self.terms.get(id) {
+                    let scale = self.placed.iter().find(|(other, _)| other == name);
+                    let unit = exp2(scale.map_or(0, |(_, scale)| *scale));
+                    let unit_share = (random.next_u32() as f64) / f64::from(u32::MAX);
+                    // More near the lower end, and near the upper, than between.
+                    let share = match random.next_u32() % 3 {
+                        0 => unit_share,
+                        1 => unit_share.powi(8),
+                        _ => 1.0 - unit_share.powi(8),
+                    };
+                    let step = libm::floor(((high - low) * unit + 1.0) * share);
+                    variables.insert(name.clone(), (low + step / unit).min(high));
+                }
+            }
+            let values = terms.evaluate(&variables);
+            let within =
+                |(&id, &(low, high)): (&Id, &(f64, f64))| (low..=high).contains(&values[id]);
+            let ways = self.ways.iter().all(|way| {
+                way.at_least.iter().all(|&id| values[id] >= 0.0)
+                    && way.at_most.iter().all(|&id| values[id] <= 0.0)
+            });
+            if ways && self.presupposed.iter().all(within) {
+                samples.push(values);
+                if samples.len() == SAMPLES {
+                    break;
+                }
+            } else if others.len() < SAMPLES {
+                others.push(values);
+            }
+        }
+        samples.extend(others);
+        samples
+    }
+}
+
+/// Writes a value between a and 1, a + (1 − a)·x, as 1 − (1 − a)·(1 − x), which shows its range.
+fn blend(terms: &Terms, id: Id) -> Option<String> {
+    let Term::Add(first, second) = *terms.get(id) else { return None };
+    let (product, a) = match terms.get(first) {
+        Term::Number(_) => (second, first),
+        _ => (first, second),
+    };
+    let Term::Mul(b, c) = *terms.get(product) else { return None };
+    let is_rest = |id: Id| match *terms.get(id) {
+        Term::Sub(one, other) => *terms.get(one) == Term::Number(1.0) && other == a,
+        _ => false,
+    };
+    let (rest, x) = if is_rest(b) { (b, c) } else { (c, b) };
+    let [name, rest_name, x] = [id, rest, x].map(|id| terms.name(id));
+    is_rest(rest).then(|| format!("{name} -> 1 - {rest_name} * (1 - {x});"))
+}
+
+/// That one term is factor times another and an offset.
+fn rewriting(terms: &Terms, left: Id, right: Id, (factor, offset): (f64, f64)) -> String {
+    let right = terms.name(right);
+    // Gappa sees through a plain difference, and not through a product by -1.
+    let right = match (offset, factor) {
+        (0.0, 1.0) => right,
+        (_, 1.0) => format!("{} + {right}", number(offset)),
+        (_, -1.0) => format!("{} - {right}", number(offset)),
+        (0.0, _) => format!("({}) * {right}", number(factor)),
+        _ => format!("{} + ({}) * {right}", number(offset), number(factor)),
+    };
+    format!("{} -> {right};", terms.name(left))
+}
+
+/// Whether two columns are equal but for the rounding of f64.
+fn is_same(x: &[f64], y: &[f64]) -> bool {
+    let largest = y.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+    x.iter().zip(y).all(|(x, y)| (x - y).abs() <= largest * exp2(-44))
+}
+
+/// Factor and offset, both short numbers, with which the second is the first's line.
+fn line_through(x: &[f64], y: &[f64]) -> Option<(f64, f64)> {
+    let other = x.iter().position(|value| *value != x[0])?;
+    let factor = (y[other] - y[0]) / (x[other] - x[0]);
+    let short = |value: f64, bits: i32| libm::round(value * exp2(bits)) / exp2(bits);
+    let factor = short(factor, 16);
+    let offset = short(y[0] - factor * x[0], 44);
+    let fits = |(x, y): (&f64, &f64)| {
+        let size = (factor * x).abs() + offset.abs() + y.abs();
+        (factor * x + offset - y).abs() <= size * exp2(-46)
+    };
+    (factor != 0.0 && x.iter().zip(y).all(fits)).then_some((factor, offset))
+}
+
+/// The script with its names numbered as they come: equal ones say the same.
+pub fn nameless(script: &str) -> String {
+    let mut numbers: HashMap<&str, usize> = HashMap::new();
+    let is_part = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '.';
+    let mut text = String::new();
+    let mut rest = script;
+    while let Some(first) = rest.chars().next() {
+        let end = rest.find(|c| is_part(c) != is_part(first)).unwrap_or(rest.len());
+        let (part, others) = rest.split_at(end);
+        rest = others;
+        let is_name = is_part(first) && !first.is_ascii_digit();
+        if is_name && !["fixed", "dn", "na", "in", "FIX"].contains(&part) {
+            let next = numbers.len();
+            let _ = write!(text, "n{}", numbers.entry(part).or_insert(next));
+        } else {
+            text.push_str(part);
+        }
+    }
+    text
+}

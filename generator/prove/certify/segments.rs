@@ -1,0 +1,387 @@
+//! A table of powers of a cosine, word by word: devices that show its words times a colour, point by point along a line.
+//!
+//! A word stands for all angles of a segment. Two kinds of statements are the contract:
+//!
+//! - Of each word w, for a segment from angle a to angle b (in right angles, 0 ≤ a ≤ b ≤ 1): f(a) ≤ w + E and f(b) ≥ w − E with the bound E
+//!   of f. As cos falls from 0 to π, every angle of the segment has f between f(b) and f(a).
+//! - Of each output: where a word w and a real f differ by that bound at most, it differs from f times the colour by the contract's.
+//!
+//! Gappa has no cosine. By Taylor cos y = 1 − y²/2! + y⁴/4! − … ± y²ᵐ/(2m)! + ρ·y²ᵐ⁺²/(2m+2)! with |ρ| ≤ 1, for every real y: the statement
+//! is proved for every ρ from −1 to 1, and for every number within 10⁻²⁰ of π/2 in its place.
+//!
+//! The angles of each word are found by cutting the angle's range into halves until the values in the netlist are decided, as
+//! [`super::cases`] has them. All points of a line are the first one at another angle: [`glint_rtl::pipeline::unroll_line`] has the induction,
+//! and what the formula says of the angle of a point is what the walk's register holds ([`Walk::angle`]).
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+use super::cases::{self, Case};
+use super::hardware::{self, Hardware, Value, Variables};
+use super::script::Script;
+use super::terms::{Id, Term, Terms, number};
+use super::{Statement, Statements, Task};
+use glint_base::fixed::exp2;
+use glint_formula::{Enclosure, Formula, Function, Kind, Operator, parse};
+use glint_rtl::netlist::NetId;
+use glint_rtl::pipeline::{Cell, NodeId, Op, WalkRegister};
+
+/// Words in a script: what Gappa takes grows with the square.
+const WORDS: usize = 8;
+
+/// The last term of the polynomial for the cosine is y to the power of twice this; what is left of it is below 10⁻¹⁶ in a right angle.
+const TERMS: u32 = 10;
+
+/// π/2 lies between these.
+const RIGHT: (&str, &str) = ("1.57079632679489661923", "1.57079632679489661924");
+
+/// The bound of f, rounded down to this number of fraction bits, is what the statements say of it: a short number, of which the sum with a
+/// word is exact in f64.
+const PLACES: i32 = 42;
+
+/// The angle of a point, in a formula: a name that no operand has, for the first point's angle is not that of the others.
+const POINT: &str = "angle of the point";
+
+/// The segment of a word's angles, in right angles.
+struct Word {
+    value: f64,
+    from: f64,
+    to: f64,
+}
+
+/// The statements of a line.
+///
+/// # Errors
+/// A formula or netlist that is no table of a power of a cosine, at an angle that is walked along.
+pub fn statements(task: &Task, walk: &[WalkRegister]) -> Result<Vec<Statement>, String> {
+    let bound = task.bound.ok_or("a table is stated by segment with a stated bound alone")?;
+    if task.contract.highlight().is_none() {
+        return Err("a line is stated of highlights alone".to_owned());
+    }
+    let scale = exp2(PLACES);
+    let of_f = libm::floor(task.contract.bound().f * scale) / scale;
+    let [formula] = task.formulas else {
+        return Err("its formula has several values".to_owned());
+    };
+    let (angle, power) = lobe(formula).ok_or("its formula is no power of a cosine")?;
+    let walk = Walk::new(task, walk)?;
+    let angle = walk.angle(angle);
+    let (colours, table, outputs) = table(task)?;
+    let words = words(task, table, &walk, &angle)?;
+    let name = task.graph().node(table).label.name.clone();
+    let mut statements = Statements::default();
+    for (at, words) in words.chunks(WORDS).enumerate() {
+        statements.push(&name, vec![about_words(words, at * WORDS, power, of_f)]);
+    }
+    for ((output, node), colour) in outputs.iter().zip(&colours) {
+        let script = about_output(task, (*node, table), colour, (of_f, bound))?;
+        statements.push(output, vec![script]);
+    }
+    Ok(statements.list)
+}
+
+/// Returns x and k of cos(pi / 2 · x)ᵏ.
+fn lobe(formula: &Formula) -> Option<(&Formula, u32)> {
+    let Kind::Binary(Operator::Power, base, exponent) = &formula.kind else { return None };
+    let Kind::Unary(Function::Cos, angle) = &base.kind else { return None };
+    let Kind::Number(power, true) = &exponent.kind else { return None };
+    let Kind::Binary(Operator::Mul, right, angle) = &angle.kind else { return None };
+    let is_whole = *power >= 1.0 && *power <= 64.0 && libm::floor(*power) == *power;
+    (is_whole && **right == parse("pi / 2").ok()?).then_some((&**angle, *power as u32))
+}
+
+/// An angle that is walked along, by names of operands.
+struct Walk {
+    /// The angle of the first point.
+    start: String,
+    /// The angle as a point has it, as the formula of a point that is no first one says it: wrapped around.
+    wrapped: Formula,
+}
+
+impl Walk {
+    /// The walk whose only register begins with an operand, to which another is added modulo its format.
+    fn new(task: &Task, walk: &[WalkRegister]) -> Result<Self, String> {
+        let graph = task.graph();
+        let other = || "its points walk on by more than a sum".to_owned();
+        let operand = |id: NodeId| match graph.node(id).cell {
+            Cell::Operand(at) => Some(task.design.net(task.unrolled.operands[at]).name.clone()),
+            _ => None,
+        };
+        let [WalkRegister { first, before, next }] = *walk else { return Err(other()) };
+        let Cell::Op(Op::Add { a, b, carry: None }) = graph.node(next).cell else {
+            return Err(other());
+        };
+        let step = if a == before { b } else { a };
+        let (start, added) = operand(first).zip(operand(step)).ok_or_else(other)?;
+        let format = graph.node(first).format;
+        let same = [before, next, step].iter().all(|&id| graph.node(id).format == format);
+        if !(same && format.signed && [a, b].contains(&before)) {
+            return Err(other());
+        }
+        let turn = exp2(format.width() as i32 - format.frac);
+        let half = turn / 2.0;
+        let wrapped = format!("({start} + index * {added} + {half}) % {turn} - {half}");
+        let wrapped = parse(&wrapped).map_err(|fault| fault.under(&wrapped))?;
+        Ok(Self { start, wrapped })
+    }
+
+    /// The expression with [`POINT`] for the angle of a point, which is what the walk's register holds: by induction that is
+    /// start + index·step, wrapped around.
+    fn angle(&self, formula: &Formula) -> Formula {
+        formula.substitute(&self.wrapped, &Formula::operand(POINT), &formula.span)
+    }
+}
+
+/// The colour operand of each output, the one word that all are made of, and the outputs.
+type Products = (Vec<String>, NodeId, Vec<(String, NodeId)>);
+
+fn table(task: &Task) -> Result<Products, String> {
+    let graph = task.graph();
+    let outputs = task.outputs()?;
+    let operands = task.contract.operands().iter();
+    let colours: Vec<String> =
+        operands.filter(|operand| operand.colour).map(|operand| operand.name.clone()).collect();
+    let cone = graph.cone(outputs.iter().map(|(_, node)| *node));
+    let reads = cone.iter().filter(|&&id| matches!(graph.node(id).cell, Cell::Read { .. }));
+    let [table] = reads.copied().collect::<Vec<_>>()[..] else {
+        return Err("its outputs are made of several words of tables".to_owned());
+    };
+    // Behind the word nothing is selected, and there is nothing but colours.
+    let before = graph.cone([table]);
+    let mut pending: Vec<NodeId> = outputs.iter().map(|(_, node)| *node).collect();
+    while let Some(id) = pending.pop() {
+        if id == table {
+            continue;
+        }
+        let node = graph.node(id);
+        let is_open = |id: &NodeId| graph.node(*id).range.0 != graph.node(*id).range.1;
+        let selects = match &node.cell {
+            Cell::Op(Op::Mux { select, .. }) => is_open(select),
+            Cell::Op(Op::Add { carry: Some(carry), .. }) => is_open(carry),
+            Cell::Operand(at) => {
+                let name = &task.design.net(task.unrolled.operands[*at]).name;
+                before.binary_search(&id).is_ok() || !colours.contains(name)
+            }
+            _ => false,
+        };
+        if selects {
+            return Err(format!("`{}` decides behind the table", node.label.name));
+        }
+        pending.extend(node.cell.operands());
+    }
+    if colours.len() != outputs.len() {
+        return Err("its outputs are no products by a colour".to_owned());
+    }
+    Ok((colours, table, outputs))
+}
+
+/// The words of the table with the angles that read them, by address.
+fn words(task: &Task, table: NodeId, walk: &Walk, angle: &Formula) -> Result<Vec<Word>, String> {
+    let graph = task.graph();
+    let Cell::Read { rom, address } = graph.node(table).cell else {
+        return Err("there is no table".to_owned());
+    };
+    let operand = task.operand(&walk.start).ok_or("its words do not depend on the walk")?;
+    let leaves = graph.cone([address]).into_iter();
+    if leaves.filter(|&id| id != operand).any(|id| matches!(graph.node(id).cell, Cell::Operand(_)))
+    {
+        return Err(format!("its words are read at more than `{}`", walk.start));
+    }
+    let start = task.contract.operands().iter().find(|operand| operand.name == walk.start);
+    let (low, high) = start.ok_or("its contract has no angle")?.domain;
+    // Every angle of the register comes up in lines, whatever the domain says of the first.
+    let format = graph.node(operand).format;
+    if (i128::from(low), i128::from(high)) != format.range() {
+        return Err(format!("`{}` can leave its domain along a line", walk.start));
+    }
+    let data = graph.node(table).format;
+    let mut found: BTreeMap<i128, Word> = BTreeMap::new();
+    let mut pending = vec![format.range()];
+    while let Some((low, high)) = pending.pop() {
+        let mut known = cases::Known::new();
+        let value = |raw: i128| raw as f64 * exp2(-format.frac);
+        let at = if task.learn(&mut known, operand, (low, high)) {
+            cases::range(task.view, address, &known).filter(|at| at.0 == at.1)
+        } else {
+            None
+        };
+        let Some((at, _)) = at else {
+            if low == high {
+                return Err(format!("at {} it is not decided which word is read", value(low)));
+            }
+            let middle = (low + high).div_euclid(2);
+            pending.extend([(middle + 1, high), (low, middle)]);
+            continue;
+        };
+        let Enclosure { low: from, high: to } = enclosed(angle, (value(low), value(high)))
+            .filter(|angle| angle.low >= 0.0 && angle.high <= 1.0)
+            .ok_or("its angle does not lie between 0 and a right angle")?;
+        let word = data.to_f64((task.view.words)(rom, at as u64));
+        let known = found.entry(at).or_insert(Word { value: word, from, to });
+        (known.from, known.to) = (known.from.min(from), known.to.max(to));
+    }
+    Ok(found.into_values().collect())
+}
+
+/// The enclosure of an angle where that of the point is in this range; none where it is made of anything else.
+fn enclosed(angle: &Formula, (low, high): (f64, f64)) -> Option<Enclosure> {
+    angle.enclose(&[(POINT, Enclosure::between(low, high))]).ok()
+}
+
+/// That words are within `bound` of the formula at both ends of their segments.
+fn about_words(words: &[Word], first: usize, power: u32, bound: f64) -> String {
+    let degree = 2 * TERMS + 2;
+    let mut text = format!(
+        "# By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^{degree}/{degree}! with |rest| <= 1.\n"
+    );
+    let (mut ends, mut goals): (Vec<f64>, Vec<String>) = (Vec::new(), Vec::new());
+    for (at, word) in words.iter().enumerate() {
+        let at = first + at;
+        let mut end = |angle: f64, text: &mut String| {
+            let known = ends.iter().position(|other| *other == angle);
+            let place = known.unwrap_or(ends.len());
+            let name = format!("{}", first + place);
+            if known.is_none() {
+                ends.push(angle);
+                text.push_str(&cosine(&name, angle, power));
+            }
+            format!("f_{name}")
+        };
+        let (high, low) = (end(word.from, &mut text), end(word.to, &mut text));
+        let _ = writeln!(
+            text,
+            "# Word {at} is {}, for angles from {} to {} right angles.",
+            number(word.value),
+            number(word.from),
+            number(word.to)
+        );
+        goals.push(format!("{high} <= {}", number(word.value + bound)));
+        goals.push(format!("{low} >= {}", number(word.value - bound)));
+    }
+    let goals = goals.join("\n  /\\ ");
+    let (low, high) = RIGHT;
+    let _ = write!(text, "\n{{ right in [{low},{high}]\n  /\\ rest in [-1,1]\n  -> {goals} }}\n\n");
+    text
+}
+
+/// Definitions of a power of the cosine of an angle, in right angles.
+fn cosine(name: &str, angle: f64, power: u32) -> String {
+    let angle = number(angle);
+    let mut text = format!("y_{name} = right * {angle};\nsquare_{name} = y_{name} * y_{name};\n");
+    let mut inner = "rest".to_owned();
+    for term in (0..=TERMS).rev() {
+        let divisor = (2 * term + 2) * (2 * term + 1);
+        let _ = writeln!(text, "c_{name}_{term} = 1 - {inner} * square_{name} / {divisor};");
+        inner = format!("c_{name}_{term}");
+    }
+    let factors = vec![inner; power as usize].join(" * ");
+    let _ = writeln!(text, "f_{name} = {factors};");
+    text
+}
+
+/// That an output is within the bound of a colour times whatever the word is near to.
+fn about_output(
+    task: &Task,
+    (out, table): (NodeId, NodeId),
+    colour: &str,
+    (of_f, bound): (f64, f64),
+) -> Result<String, String> {
+    let graph = task.graph();
+    let ranges = graph.nodes.iter().map(|node| node.range).collect();
+    let case = Case { known: cases::Known::new(), ranges, parabolas: BTreeMap::new() };
+    let format =
+        |port: NetId| (task.design.net(port).name.clone(), task.design.net(port).format.frac);
+    let placed: Variables = task.unrolled.operands.iter().map(|&port| format(port)).collect();
+    let mut hardware = Hardware::new(task.view, &case, placed, task.tables);
+    let mut terms = Terms::default();
+    let mut real = |terms: &mut Terms, node: NodeId| -> Result<Id, String> {
+        let value = hardware.value(terms, node)?;
+        let (id, scale) = hardware::placed(terms, value, 0);
+        Ok(hardware::scaled(terms, id, scale, "out"))
+    };
+    let out = real(&mut terms, out)?;
+    let Value::Term { id: word, scale } = hardware.value(&mut terms, table)? else {
+        return Err("its table has a single word".to_owned());
+    };
+    if scale != graph.node(table).format.frac {
+        return Err("the point of its words has moved".to_owned());
+    }
+    let mut presupposed = hardware.facts.clone();
+    let operand = task.contract.operands().iter().find(|operand| operand.name == *colour);
+    let operand = operand.ok_or("its contract lacks a colour")?;
+    let of_colour = |raw: i64| raw as f64 * exp2(-operand.format.frac);
+    let factor = terms.insert(Term::Variable(colour.to_owned()), colour);
+    presupposed.insert(factor, (of_colour(operand.domain.0), of_colour(operand.domain.1)));
+    let f = terms.insert(Term::Variable("f".to_owned()), "f");
+    let apart = terms.insert(Term::Sub(word, f), "apart");
+    presupposed.insert(apart, (-of_f, of_f));
+    let unrounded = terms.unrounded(out, &mut std::collections::HashMap::new());
+    let hardware_terms = terms.count();
+    let exact = terms.insert(Term::Mul(f, factor), "exact");
+    let difference = terms.insert(Term::Sub(out, exact), "difference");
+    let [product, exact, colour, word, f] =
+        [unrounded, exact, factor, word, f].map(|id| terms.name(id));
+    let hint = format!("{product} - {exact} -> {colour} * ({word} - {f});");
+    let script = Script {
+        terms: &terms,
+        hardware_terms,
+        placed: &hardware.variables,
+        presupposed: &presupposed,
+        ways: &[],
+    };
+    let goal = super::find::goal(&terms.name(difference), Some(bound));
+    Ok(script.statement(terms.clone(), difference, &goal, &[hint]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_angle_of_a_point_is_that_of_the_walk_alone() {
+        let real = |text: &str| parse(text).expect("a formula");
+        let walk = Walk { start: "a".to_owned(), wrapped: real("(a + index * d + 2) % 4 - 2") };
+        let range = |text: &str, range| {
+            enclosed(&walk.angle(&real(text)), range).map(|it| (it.low, it.high))
+        };
+        let folded = "min(abs(((a + index * d + 2) % 4 - 2)), 1)";
+        assert_eq!(range(folded, (0.25, 0.5)), Some((0.25, 0.5)));
+        assert_eq!(range(folded, (-0.5, -0.25)), Some((0.25, 0.5)));
+        assert_eq!(range(folded, (-0.5, 0.25)), Some((0.0, 0.5)));
+        assert_eq!(range(folded, (-3.0, -0.75)), Some((0.75, 1.0)));
+        // The first point's angle, another turn, no wrapping, another step.
+        for other in [
+            "min(abs(a), 1)",
+            "min(abs(((a + index * d + 4) % 8 - 4)), 1)",
+            "min(abs(a + index * d), 1)",
+            "min(abs(((a + index * a + 2) % 4 - 2)), 1)",
+        ] {
+            assert_eq!(range(other, (0.25, 0.5)), None, "{other}");
+        }
+    }
+
+    #[test]
+    fn a_power_of_a_cosine_is_recognised() {
+        let power = |text: &str| lobe(&parse(text).expect("a formula")).map(|(_, power)| power);
+        assert_eq!(power("cos(pi / 2 * x) ** 2"), Some(2));
+        assert_eq!(power("cos(pi / 2 * x) ** 16"), Some(16));
+        for other in ["cos(pi / 3 * x) ** 2", "cos(pi / 2 * x) ** 2.5", "cos(x) ** 2", "x ** 2"] {
+            assert_eq!(power(other), None, "{other}");
+        }
+    }
+
+    /// cos 60 degrees is 1/2 and its square 1/4: by the definitions, at the digits of f64.
+    #[test]
+    fn the_definitions_are_those_of_a_cosine() {
+        let square = (std::f64::consts::FRAC_PI_2 * 2.0 / 3.0).powi(2);
+        let text = cosine("x", 0.5, 2);
+        let lines = text.lines().filter(|line| line.starts_with("c_"));
+        // Each line is `c = 1 - inner * square / divisor;`, the first with what is left, which is taken for 0.
+        let value = lines.fold(0.0, |inner, line| {
+            let divisor = line.rsplit(' ').next().expect("a divisor").trim_end_matches(';');
+            1.0 - inner * square / divisor.parse::<f64>().expect("a number")
+        });
+        assert!((value - 0.5).abs() < 1e-15, "{value}");
+        assert!(text.ends_with("f_x = c_x_0 * c_x_0;\n"), "{text}");
+    }
+}

@@ -1,0 +1,275 @@
+//! Real expressions, of a formula and of what the hardware computes, as Gappa takes them.
+
+use std::collections::HashMap;
+use std::fmt::Write as _;
+
+use glint_base::cone;
+
+/// A number of a [`Terms`].
+pub type Id = usize;
+
+/// How a value is rounded to a multiple of a power of two.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Direction {
+    /// Down: bits are dropped.
+    Down,
+    /// To the nearest, halves away from 0.
+    Nearest,
+}
+
+/// An expression over other terms.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Term {
+    /// An operand.
+    Variable(String),
+    /// A constant.
+    Number(f64),
+    /// The sum.
+    Add(Id, Id),
+    /// The difference.
+    Sub(Id, Id),
+    /// The product.
+    Mul(Id, Id),
+    /// The quotient.
+    Div(Id, Id),
+    /// The multiple of 2^-`fraction` next to the operand in a direction.
+    Round {
+        /// The term that is rounded.
+        of: Id,
+        /// Fraction bits that are kept; negative where integer bits are dropped.
+        fraction: i32,
+        /// The direction.
+        direction: Direction,
+    },
+}
+
+/// Terms, each once, with the names of definitions.
+#[derive(Clone, Debug, Default)]
+pub struct Terms {
+    terms: Vec<(Term, String)>,
+    /// The variables of each term, and its degree in them.
+    shapes: Vec<(Vec<Id>, u32)>,
+    known: HashMap<String, Id>,
+}
+
+impl Terms {
+    /// The term; `name` is what its definition is called, if it gets one.
+    ///
+    /// Operands of a sum and a product are put in one order, so that hardware and formula have them in the
+    /// same: Gappa compares a product with another factor by factor.
+    pub fn insert(&mut self, term: Term, name: &str) -> Id {
+        let term = match term {
+            Term::Add(a, b) if self.is_after(a, b) => Term::Add(b, a),
+            Term::Mul(a, b) if self.is_after(a, b) => Term::Mul(b, a),
+            term => term,
+        };
+        let key = format!("{term:?}");
+        if let Some(&id) = self.known.get(&key) {
+            return id;
+        }
+        let id = self.terms.len();
+        let name = match term {
+            Term::Variable(_) => name.to_owned(),
+            _ => format!("{name}_{id}"),
+        };
+        self.terms.push((term, name));
+        self.shapes.push(self.shape(id));
+        self.known.insert(key, id);
+        id
+    }
+
+    /// Whether `a` stands behind `b`: numbers stand first, variables last, and other terms by the variables and the degree
+    /// that they have.
+    fn is_after(&self, a: Id, b: Id) -> bool {
+        let kind = |id: Id| match self.get(id) {
+            Term::Number(_) => 0,
+            Term::Variable(_) => 2,
+            _ => 1,
+        };
+        let order = |id: Id| (kind(id), &self.shapes[id], id);
+        order(a) > order(b)
+    }
+
+    /// The variables of a term that is new, and its degree in them.
+    fn shape(&self, id: Id) -> (Vec<Id>, u32) {
+        let operands = self.operands(id);
+        let mut variables: Vec<Id> =
+            operands.iter().flat_map(|&id| self.shapes[id].0.iter().copied()).collect();
+        let degrees = operands.iter().map(|&id| self.shapes[id].1);
+        let degree = match self.get(id) {
+            Term::Variable(_) => {
+                variables.push(id);
+                1
+            }
+            Term::Mul(..) => degrees.sum(),
+            _ => degrees.max().unwrap_or(0),
+        };
+        variables.sort_unstable();
+        variables.dedup();
+        (variables, degree)
+    }
+
+    /// The constant.
+    pub fn number(&mut self, value: f64) -> Id {
+        self.insert(Term::Number(value), "number")
+    }
+
+    /// The term of a number.
+    pub fn get(&self, id: Id) -> &Term {
+        &self.terms[id].0
+    }
+
+    /// Returns the name in the script.
+    pub fn name(&self, id: Id) -> String {
+        match self.get(id) {
+            Term::Number(value) if *value < 0.0 => format!("({})", number(*value)),
+            Term::Number(value) => number(*value),
+            _ => self.terms[id].1.clone(),
+        }
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.terms.len()
+    }
+
+    /// Whether a term is free of roundings and no constant.
+    pub fn is_exact(&self, id: Id) -> bool {
+        let of = |id: &Id| self.is_exact(*id) || matches!(self.get(*id), Term::Number(_));
+        match self.get(id) {
+            Term::Variable(_) => true,
+            Term::Number(_) | Term::Round { .. } => false,
+            Term::Add(a, b) | Term::Sub(a, b) | Term::Mul(a, b) | Term::Div(a, b) => of(a) && of(b),
+        }
+    }
+
+    /// The values of all terms where the variables have these; NaN where a variable has none.
+    pub fn evaluate(&self, variables: &HashMap<String, f64>) -> Vec<f64> {
+        let mut values: Vec<f64> = Vec::with_capacity(self.terms.len());
+        for (term, _) in &self.terms {
+            let value = match term {
+                Term::Variable(name) => variables.get(name).copied().unwrap_or(f64::NAN),
+                Term::Number(value) => *value,
+                Term::Add(a, b) => values[*a] + values[*b],
+                Term::Sub(a, b) => values[*a] - values[*b],
+                Term::Mul(a, b) => values[*a] * values[*b],
+                Term::Div(a, b) => values[*a] / values[*b],
+                Term::Round { of, fraction, direction } => {
+                    let unit = libm::exp2(f64::from(*fraction));
+                    let scaled = values[*of] * unit;
+                    match direction {
+                        Direction::Down => libm::floor(scaled) / unit,
+                        Direction::Nearest => libm::floor(scaled + 0.5) / unit,
+                    }
+                }
+            };
+            values.push(value);
+        }
+        values
+    }
+
+    /// Marks the terms that a root depends on, roots included.
+    pub fn needed(&self, roots: &[Id]) -> Vec<bool> {
+        cone::needed(self.terms.len(), roots.iter().copied(), |id| self.operands(id))
+    }
+
+    /// The term without its roundings. `known` are those that are known.
+    pub fn unrounded(&mut self, id: Id, known: &mut HashMap<Id, Id>) -> Id {
+        if let Some(&twin) = known.get(&id) {
+            return twin;
+        }
+        let twin = match self.get(id).clone() {
+            Term::Round { of, .. } => self.unrounded(of, known),
+            Term::Variable(_) | Term::Number(_) => id,
+            Term::Add(a, b) => self.without(Term::Add, (a, b), known),
+            Term::Sub(a, b) => self.without(Term::Sub, (a, b), known),
+            Term::Mul(a, b) => self.without(Term::Mul, (a, b), known),
+            Term::Div(a, b) => self.without(Term::Div, (a, b), known),
+        };
+        known.insert(id, twin);
+        twin
+    }
+
+    fn without(
+        &mut self,
+        make: fn(Id, Id) -> Term,
+        (a, b): (Id, Id),
+        known: &mut HashMap<Id, Id>,
+    ) -> Id {
+        let (a, b) = (self.unrounded(a, known), self.unrounded(b, known));
+        self.insert(make(a, b), "unrounded")
+    }
+
+    /// Definitions of the terms that are needed, in order.
+    pub fn definitions(&self, needed: &[bool]) -> String {
+        let mut text = String::new();
+        for (id, (term, name)) in self.terms.iter().enumerate() {
+            let of = |id: &Id| self.name(*id);
+            let right = match term {
+                _ if !needed[id] => continue,
+                Term::Variable(_) | Term::Number(_) => continue,
+                Term::Add(a, b) => format!("{} + {}", of(a), of(b)),
+                Term::Sub(a, b) => format!("{} - {}", of(a), of(b)),
+                Term::Mul(a, b) => format!("{} * {}", of(a), of(b)),
+                Term::Div(a, b) => format!("{} / {}", of(a), of(b)),
+                Term::Round { of: a, fraction, direction } => {
+                    let direction = match direction {
+                        Direction::Down => "dn",
+                        Direction::Nearest => "na",
+                    };
+                    format!("fixed<{},{direction}>({})", -fraction, of(a))
+                }
+            };
+            let _ = writeln!(text, "{name} = {right};");
+        }
+        text
+    }
+
+    fn operands(&self, id: Id) -> Vec<Id> {
+        match self.get(id) {
+            Term::Variable(_) | Term::Number(_) => Vec::new(),
+            Term::Add(a, b) | Term::Sub(a, b) | Term::Mul(a, b) | Term::Div(a, b) => vec![*a, *b],
+            Term::Round { of, .. } => vec![*of],
+        }
+    }
+}
+
+/// A number in decimal, to its last bit.
+pub fn number(value: f64) -> String {
+    let text = format!("{value:.1100}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    match text {
+        "" | "-0" => "0".to_owned(),
+        text => text.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_written_whole() {
+        assert_eq!([0.5, -3.0, 0.0, 1e3].map(number), ["0.5", "-3", "0", "1000"]);
+        assert_eq!(number(libm::exp2(-20.0)), "0.00000095367431640625");
+    }
+
+    #[test]
+    fn only_what_is_needed_is_defined() {
+        let mut terms = Terms::default();
+        let x = terms.insert(Term::Variable("x".to_owned()), "x");
+        let half = terms.number(0.5);
+        let sum = terms.insert(Term::Add(x, half), "sum");
+        let cut =
+            terms.insert(Term::Round { of: sum, fraction: 4, direction: Direction::Down }, "cut");
+        let _unneeded = terms.insert(Term::Mul(x, x), "square");
+        assert_eq!(terms.insert(Term::Add(x, half), "again"), sum);
+        assert_eq!(
+            terms.definitions(&terms.needed(&[cut])),
+            "sum_2 = 0.5 + x;\ncut_3 = fixed<-4,dn>(sum_2);\n"
+        );
+        let values = terms.evaluate(&HashMap::from([("x".to_owned(), 0.3)]));
+        assert_eq!((values[cut], values[sum]), (0.75, 0.8));
+        assert!(terms.is_exact(sum) && !terms.is_exact(cut));
+    }
+}

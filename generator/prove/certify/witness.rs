@@ -1,0 +1,235 @@
+//! A point that satisfies the hypotheses of a script, which shows that its statement speaks of something.
+//!
+//! The script's own text is read: definitions, places of the point (`@FIX`), intervals and signs. A point is found by descent on how far
+//! the hypotheses are from holding, and counts when all of them hold in f64.
+
+use std::collections::HashMap;
+
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{RngCore, SeedableRng};
+
+use super::terms::{Direction, Id, Term, Terms, number};
+use glint_base::fixed::exp2;
+use glint_formula::{Formula, Function, Kind, Operator, parse};
+
+/// Points from which a descent begins.
+const STARTS: usize = 64;
+
+/// Fraction bits of a variable that has no place of the point.
+const CONTINUOUS: i32 = 20;
+
+/// Where a variable without an interval is looked for, on both sides of 0.
+const FREE: f64 = 1024.0;
+
+/// A goal that nothing satisfies, by which Gappa is asked for a contradiction.
+const NEVER: &str = "1 in [2,3] }";
+
+/// The text between hypotheses and goal.
+const IMPLIES: &str = "\n  -> ";
+
+/// The script with a goal that follows from a contradiction alone; nothing without hypotheses.
+pub fn contradiction(script: &str) -> Option<String> {
+    let (hypotheses, rest) = script.split_once(IMPLIES)?;
+    let (_, hints) = rest.split_once('}')?;
+    Some(format!("{hypotheses}{IMPLIES}{NEVER}{hints}"))
+}
+
+/// A variable of a script, with the values that it may have in units of its last place.
+struct Variable {
+    name: String,
+    unit: f64,
+    low: i64,
+    high: i64,
+}
+
+/// The hypotheses of a script.
+struct Hypotheses {
+    terms: Terms,
+    variables: Vec<Variable>,
+    /// The numbers between which terms lie.
+    intervals: Vec<(Id, f64, f64)>,
+}
+
+impl Hypotheses {
+    /// Parses a script; `None` where its text has a part that is not understood.
+    fn of(script: &str) -> Option<Self> {
+        let (definitions, statement) = script.split_once("\n{ ")?;
+        let mut terms = Terms::default();
+        let mut names: HashMap<String, Id> = HashMap::new();
+        for line in definitions.lines().filter(|line| !line.starts_with('#')) {
+            let Some((name, right)) = line.trim_end_matches(';').split_once(" = ") else {
+                continue;
+            };
+            let id = expression(right, &mut terms, &names)?;
+            names.insert(name.to_owned(), id);
+        }
+        let (mut places, mut intervals) = (HashMap::new(), Vec::new());
+        let (hypotheses, _) = statement.split_once(IMPLIES)?;
+        for hypothesis in hypotheses.split("\n  /\\ ") {
+            if let Some(fixed) = hypothesis.strip_prefix("@FIX(") {
+                let (name, place) = fixed.trim_end_matches(')').split_once(',')?;
+                places.insert(name.to_owned(), -place.parse::<i32>().ok()?);
+            } else if let Some((left, ends)) = hypothesis.split_once(" in [") {
+                let (low, high) = ends.trim_end_matches(']').split_once(',')?;
+                let id = expression(left, &mut terms, &names)?;
+                intervals.push((id, low.parse().ok()?, high.parse().ok()?));
+            } else if let Some((left, right)) = hypothesis.split_once(" >= ") {
+                let id = expression(left, &mut terms, &names)?;
+                intervals.push((id, right.parse().ok()?, f64::INFINITY));
+            } else {
+                let (left, right) = hypothesis.split_once(" <= ")?;
+                let id = expression(left, &mut terms, &names)?;
+                intervals.push((id, f64::NEG_INFINITY, right.parse().ok()?));
+            }
+        }
+        let variables = (0..terms.count()).filter_map(|id| {
+            let Term::Variable(name) = terms.get(id) else { return None };
+            let unit = exp2(-places.get(name).copied().unwrap_or(CONTINUOUS));
+            let is_whole = |(of, low, high): &&(Id, f64, f64)| {
+                *of == id && low.is_finite() && high.is_finite()
+            };
+            let (_, low, high) = *intervals.iter().find(is_whole).unwrap_or(&(id, -FREE, FREE));
+            // A number that is no multiple of the unit is the only one.
+            let (unit, low, high) = match low == high && low != 0.0 {
+                true => (low, 1, 1),
+                false => (unit, (low / unit).ceil() as i64, (high / unit).floor() as i64),
+            };
+            Some(Variable { name: name.clone(), unit, low, high: high.max(low) })
+        });
+        Some(Self { variables: variables.collect(), terms, intervals })
+    }
+
+    /// How far the hypotheses are from holding: 0 where they hold.
+    fn violation(&self, point: &[i64]) -> f64 {
+        let variables = self.variables.iter().zip(point);
+        let variables = variables.map(|(it, &raw)| (it.name.clone(), raw as f64 * it.unit));
+        let values = self.terms.evaluate(&variables.collect());
+        let away = |&(id, low, high): &(Id, f64, f64)| {
+            let ends = [low, high].into_iter().filter(|end| end.is_finite());
+            let size = ends.fold(1.0, |most: f64, end| most.max(end.abs()));
+            match values[id].is_nan() {
+                true => f64::INFINITY,
+                false => (low - values[id]).max(values[id] - high).max(0.0) / size,
+            }
+        };
+        self.intervals.iter().map(away).sum()
+    }
+
+    /// Goes on as long as the hypotheses come nearer to holding.
+    fn descend(&self, point: &mut [i64]) -> bool {
+        let mut away = self.violation(point);
+        while away > 0.0 {
+            let before = away;
+            for bit in (0..40).rev() {
+                for (at, sign) in (0..point.len()).flat_map(|at| [(at, 1), (at, -1)]) {
+                    let (variable, kept) = (&self.variables[at], point[at]);
+                    point[at] = kept.saturating_add(sign << bit).clamp(variable.low, variable.high);
+                    let there = self.violation(point);
+                    if there < away {
+                        away = there;
+                    } else {
+                        point[at] = kept;
+                    }
+                }
+            }
+            if away >= before {
+                return false;
+            }
+        }
+        true
+    }
+}
+
+/// A point at which the hypotheses of a script hold, in words; `None` where none is found.
+pub fn witness(script: &str) -> Option<String> {
+    if !script.contains(IMPLIES) {
+        return Some("every point".to_owned());
+    }
+    let hypotheses = Hypotheses::of(script)?;
+    let mut random = ChaCha8Rng::seed_from_u64(1);
+    for _ in 0..STARTS {
+        let mut point: Vec<i64> = Vec::new();
+        for variable in &hypotheses.variables {
+            let share = f64::from(random.next_u32()) / f64::from(u32::MAX);
+            // More near the ends than between.
+            let share = match random.next_u32() % 3 {
+                0 => share,
+                1 => share.powi(8),
+                _ => 1.0 - share.powi(8),
+            };
+            let span = (variable.high - variable.low) as f64;
+            point.push((variable.low + (span * share) as i64).clamp(variable.low, variable.high));
+        }
+        if hypotheses.descend(&mut point) {
+            let values = hypotheses.variables.iter().zip(point);
+            let values =
+                values.map(|(it, raw)| format!("{} = {}", it.name, number(raw as f64 * it.unit)));
+            return Some(values.collect::<Vec<_>>().join(", "));
+        }
+    }
+    None
+}
+
+/// The term of a text.
+fn expression(text: &str, terms: &mut Terms, names: &HashMap<String, Id>) -> Option<Id> {
+    if let Some(rounded) = text.strip_prefix("fixed<") {
+        let (how, of) = rounded.split_once(">(")?;
+        let (place, direction) = how.split_once(',')?;
+        let direction = match direction {
+            "dn" => Direction::Down,
+            "na" => Direction::Nearest,
+            _ => return None,
+        };
+        let of = expression(of.strip_suffix(')')?, terms, names)?;
+        let fraction = -place.parse::<i32>().ok()?;
+        return Some(terms.insert(Term::Round { of, fraction, direction }, ""));
+    }
+    term(&parse(text).ok()?, terms, names)
+}
+
+fn term(formula: &Formula, terms: &mut Terms, names: &HashMap<String, Id>) -> Option<Id> {
+    let (make, a, b): (fn(Id, Id) -> Term, _, _) = match &formula.kind {
+        Kind::Number(value, _) => return Some(terms.number(*value)),
+        // A script has names of its own alone.
+        Kind::Operand(_) | Kind::Constant(..) => {
+            let name = formula.python();
+            let known = names.get(&name).copied();
+            return Some(
+                known.unwrap_or_else(|| terms.insert(Term::Variable(name.clone()), &name)),
+            );
+        }
+        Kind::Unary(Function::Negate, a) => {
+            let (zero, a) = (terms.number(0.0), term(a, terms, names)?);
+            return Some(terms.insert(Term::Sub(zero, a), ""));
+        }
+        Kind::Binary(Operator::Add, a, b) => (Term::Add, a, b),
+        Kind::Binary(Operator::Sub, a, b) => (Term::Sub, a, b),
+        Kind::Binary(Operator::Mul, a, b) => (Term::Mul, a, b),
+        Kind::Binary(Operator::Div, a, b) => (Term::Div, a, b),
+        _ => return None,
+    };
+    let (a, b) = (term(a, terms, names)?, term(b, terms, names)?);
+    Some(terms.insert(make(a, b), ""))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// x² ≥ 1/4 and x ≤ 0 in quarters, and down to integers −1: x is −1/2, −3/4 or −1. With x ≥ 1/4 besides there is none.
+    #[test]
+    fn a_witness_satisfies_the_hypotheses() {
+        let script = |more: &str| {
+            format!(
+                "# A line.\nsquare = x * x;\ncut = fixed<0,dn>(x);\n\n{{ @FIX(x,-2)\n  /\\ x in [-1,1]\n  /\\ square - 0.25 >= 0\n  \
+                 /\\ cut <= -1{more}\n  -> |square| <= 1 }}\n\nsquare ~ x;\n"
+            )
+        };
+        let found = witness(&script("")).expect("a point");
+        assert!(["x = -0.5", "x = -0.75", "x = -1"].contains(&found.as_str()), "{found}");
+        assert_eq!(witness(&script("\n  /\\ x >= 0.25")), None);
+        let asked = contradiction(&script("")).expect("hypotheses");
+        assert!(asked.contains("-> 1 in [2,3] }\n\nsquare ~ x;"), "{asked}");
+        assert_eq!(contradiction("{ |x| <= 1 }"), None);
+    }
+}

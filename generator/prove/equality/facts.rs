@@ -1,0 +1,273 @@
+//! Instances of laws about products and words of memories, which the solver takes for unknown functions.
+//!
+//! The laws are those of integers, of products modulo 2^64: bits of a factor can be multiplied on their own; a product by 0, 1
+//! and -1 is known; of factors within bounds the product is within bounds. No instance depends on where it is taken from:
+//! a useless one does not help, and none is wrong.
+
+use std::collections::{HashMap, HashSet};
+
+use super::carry_out::Product;
+use super::term::{Id, Term, Terms};
+use glint_base::fixed::{MAX_WIDTH, mask};
+use glint_base::interval::{self, Interval};
+
+/// A factor of so few bits is written out as rows of the product.
+const ROWS: u32 = 8;
+
+/// A memory of so few words is written out.
+const WORDS: usize = 16;
+
+/// Facts about the terms of a cone, one bit each, which is 1. With `parts`, they say of products what they are in parts, and
+/// add products.
+pub fn about(terms: &mut Terms, roots: &[Id], products: &[Product], parts: bool) -> Vec<Id> {
+    let mut facts = Vec::new();
+    let mut seen = HashSet::new();
+    loop {
+        let cone = terms.cone(roots.iter().chain(&facts).copied());
+        let new: Vec<Id> = cone.into_iter().filter(|&id| seen.insert(id)).collect();
+        if new.is_empty() {
+            break;
+        }
+        for id in new {
+            match *terms.term(id) {
+                Term::Product(a, b) => {
+                    if parts {
+                        let parts = [(a, b), (b, a)].map(|(a, b)| in_parts(terms, a, b));
+                        let equal = |it: &Parts| terms.equal(it.product, it.sum);
+                        facts.extend(parts.iter().flatten().map(equal));
+                    }
+                    for (factor, other) in [(a, b), (b, a)] {
+                        facts.extend(by_one_or_none(terms, id, factor, other));
+                    }
+                    for product in products {
+                        if product.factors == [a, b] || product.factors == [b, a] {
+                            facts.extend(within(terms, product));
+                        }
+                    }
+                }
+                Term::Word { memory, address } => {
+                    facts.extend(contents(terms, id, memory, address));
+                }
+                _ => {}
+            }
+        }
+    }
+    facts.retain(|&fact| terms.constant_of(fact).is_none());
+    facts
+}
+
+/// A product by 0, 1 and -1.
+fn by_one_or_none(terms: &mut Terms, product: Id, factor: Id, other: Id) -> [Id; 3] {
+    let zero = terms.constant(0, MAX_WIDTH);
+    let negative = terms.make(Term::Sub(zero, other), MAX_WIDTH);
+    [(0, zero), (1, other), (u64::MAX, negative)].map(|(value, result)| {
+        let value = terms.constant(value, MAX_WIDTH);
+        let (is, equal) = (terms.equal(factor, value), terms.equal(product, result));
+        let not = terms.not(is);
+        terms.make(Term::Or(not, equal), 1)
+    })
+}
+
+/// Products that a cone has in parts, each with the sum that it is.
+pub fn divided(terms: &mut Terms, roots: impl IntoIterator<Item = Id>) -> HashMap<Id, Id> {
+    let is_product = |terms: &Terms, id: Id| matches!(terms.term(id), Term::Product(..));
+    let mut pending = terms.cone(roots);
+    pending.retain(|&id| is_product(terms, id));
+    let mut divided = HashMap::new();
+    while let Some(part) = pending.pop() {
+        let Term::Product(a, b) = *terms.term(part) else { continue };
+        for (factor, other) in [(a, b), (b, a)] {
+            let parts = in_parts(terms, factor, other);
+            let Some(parts) = parts.filter(|parts| parts.there) else { continue };
+            if divided.insert(parts.product, parts.sum).is_none() {
+                pending.push(parts.product);
+            }
+        }
+    }
+    divided
+}
+
+/// The bits of an extended number, and whether the extension has its sign.
+pub fn extended(terms: &Terms, factor: Id) -> Option<(Id, bool)> {
+    match *terms.term(factor) {
+        Term::SignExtend(bits) => Some((bits, true)),
+        Term::Join(top, bits) if terms.constant_of(top) == Some(0) => Some((bits, false)),
+        _ => None,
+    }
+}
+
+/// A product and the sum that it is.
+struct Parts {
+    product: Id,
+    sum: Id,
+    /// The lower part was there before.
+    there: bool,
+}
+
+/// When a factor is the upper bits of something: the whole times the other is this product, shifted, and that of the
+/// lower bits.
+fn in_parts(terms: &mut Terms, factor: Id, other: Id) -> Option<Parts> {
+    let (bits, signed) = extended(terms, factor)?;
+    let (whole, low) = whole(terms, bits)?;
+    let rest = terms.slice(whole, 0, low);
+    if factor == other
+        && let Some(parts) = square_in_parts(terms, factor, whole, rest)
+    {
+        return Some(parts);
+    }
+    let whole = if signed {
+        terms.sign_extended(whole, MAX_WIDTH)
+    } else {
+        terms.resized(whole, MAX_WIDTH)
+    };
+    let product = terms.make(Term::Product(whole, other), MAX_WIDTH);
+    let upper = terms.make(Term::Product(factor, other), MAX_WIDTH);
+    let upper = shifted(terms, upper, low);
+    let lower = terms.resized(rest, MAX_WIDTH);
+    let lower = Term::Product(lower, other);
+    let is_product = terms.has(&lower, MAX_WIDTH);
+    let there = is_product || has_row(terms, rest, other);
+    let lower = if is_product || low > ROWS {
+        terms.make(lower, MAX_WIDTH)
+    } else {
+        rows(terms, rest, other)
+    };
+    let sum = terms.make(Term::Add(upper, lower), MAX_WIDTH);
+    Some(Parts { product, sum, there })
+}
+
+/// The square of `u·2^r + l`, when `l` is multiplied by `u·2^(r+1) + l` somewhere: that product, and the square of u, shifted.
+fn square_in_parts(terms: &mut Terms, factor: Id, whole: Id, rest: Id) -> Option<Parts> {
+    let (bits, signed) = extended(terms, factor)?;
+    let low = terms.width(rest);
+    if terms.width(whole) >= MAX_WIDTH || 2 * low >= MAX_WIDTH {
+        return None;
+    }
+    let zero = terms.constant(0, 1);
+    let below = terms.make(Term::Join(zero, rest), low + 1);
+    let between = terms.make(Term::Join(bits, below), terms.width(bits) + low + 1);
+    let [whole, between] = [whole, between].map(|it| {
+        if signed { terms.sign_extended(it, MAX_WIDTH) } else { terms.resized(it, MAX_WIDTH) }
+    });
+    let lower = terms.resized(rest, MAX_WIDTH);
+    let lower = Term::Product(lower, between);
+    let lower = if terms.has(&lower, MAX_WIDTH) {
+        terms.make(lower, MAX_WIDTH)
+    } else if has_row(terms, rest, between) {
+        rows(terms, rest, between)
+    } else {
+        return None;
+    };
+    let product = terms.make(Term::Product(whole, whole), MAX_WIDTH);
+    let upper = terms.make(Term::Product(factor, factor), MAX_WIDTH);
+    let upper = shifted(terms, upper, 2 * low);
+    let sum = terms.make(Term::Add(upper, lower), MAX_WIDTH);
+    Some(Parts { product, sum, there: true })
+}
+
+/// Bits with those of the same term below their lowest, and how many these are.
+fn whole(terms: &mut Terms, bits: Id) -> Option<(Id, u32)> {
+    match *terms.term(bits) {
+        Term::Slice { of, low } if low > 0 => {
+            Some((terms.slice(of, 0, low + terms.width(bits)), low))
+        }
+        Term::Join(upper, lower) => {
+            let (below, low) = whole(terms, lower)?;
+            let width = terms.width(bits) + low;
+            Some((terms.make(Term::Join(upper, below), width), low))
+        }
+        _ => None,
+    }
+}
+
+/// Whether there is the first row of the product of a few bits with 64.
+fn has_row(terms: &mut Terms, bits: Id, other: Id) -> bool {
+    let narrow = match *terms.term(other) {
+        Term::SignExtend(narrow) => narrow,
+        Term::Join(top, narrow) if terms.constant_of(top) == Some(0) => narrow,
+        _ => other,
+    };
+    let (bit, width) = (terms.slice(bits, 0, 1), terms.width(narrow));
+    let (zero, all) = (terms.constant(0, width), terms.sign_extended(bit, width));
+    terms.has(&Term::Choice(bit, narrow, zero), width) || terms.has(&Term::And(narrow, all), width)
+}
+
+/// The product of a few bits with 64.
+fn rows(terms: &mut Terms, bits: Id, other: Id) -> Id {
+    let zero = terms.constant(0, MAX_WIDTH);
+    (0..terms.width(bits)).fold(zero, |sum, row| {
+        let bit = terms.slice(bits, row, 1);
+        let taken = shifted(terms, other, row);
+        let taken = terms.choice(bit, taken, zero);
+        terms.make(Term::Add(sum, taken), MAX_WIDTH)
+    })
+}
+
+/// With zeros below, of 64 bits.
+pub fn shifted(terms: &mut Terms, id: Id, by: u32) -> Id {
+    if by == 0 {
+        return id;
+    }
+    let (kept, zeros) = (terms.slice(id, 0, MAX_WIDTH - by), terms.constant(0, by));
+    terms.make(Term::Join(kept, zeros), MAX_WIDTH)
+}
+
+/// If the factors are within their ranges, the product is between those of the ends.
+fn within(terms: &mut Terms, product: &Product) -> Option<Id> {
+    let [a, b] = product.factors;
+    let [x, y] = product.ranges;
+    let (least, most) = interval::product(x, y);
+    let range = (if a == b { least.max(0) } else { least }, most);
+    let premises = [between(terms, a, x)?, between(terms, b, y)?];
+    let value = terms.make(Term::Product(a, b), MAX_WIDTH);
+    let conclusion = between(terms, value, range)?;
+    let both = terms.make(Term::And(premises[0], premises[1]), 1);
+    let not = terms.not(both);
+    Some(terms.make(Term::Or(not, conclusion), 1))
+}
+
+/// Whether 64 bits are a number of an interval, two's complement; none if that is no question of 64 bits.
+fn between(terms: &mut Terms, value: Id, range: Interval) -> Option<Id> {
+    let low = i64::try_from(range.0).ok()?;
+    let high = i64::try_from(range.1).ok()?;
+    let (low, high) =
+        (terms.constant(low as u64, MAX_WIDTH), terms.constant(high as u64, MAX_WIDTH));
+    let below = terms.make(Term::SignedLess(value, low), 1);
+    let above = terms.make(Term::SignedLess(high, value), 1);
+    let outside = terms.make(Term::Or(below, above), 1);
+    Some(terms.not(outside))
+}
+
+/// Returns the possible values of a memory's word: the words one by one, or the bits that any of them has, and the interval of all.
+fn contents(terms: &mut Terms, word: Id, memory: usize, address: Id) -> Vec<Id> {
+    let words = terms.memories[memory].clone();
+    let width = terms.width(word);
+    if words.len() <= WORDS {
+        let exact = words.iter().enumerate().map(|(at, &bits)| {
+            let at = terms.constant(at as u64, terms.width(address));
+            let (here, bits) = (terms.equal(address, at), terms.constant(bits, width));
+            let (elsewhere, right) = (terms.not(here), terms.equal(word, bits));
+            terms.make(Term::Or(elsewhere, right), 1)
+        });
+        return exact.collect();
+    }
+    let used = words.iter().fold(0, |used, word| used | word);
+    let unused = terms.constant(!used & mask(width), width);
+    let masked = terms.make(Term::And(word, unused), width);
+    let zero = terms.constant(0, width);
+    let bits = terms.equal(masked, zero);
+    // Beyond the contents there is 0.
+    let all = || words.iter().copied().chain([0]);
+    let most = terms.constant(all().max().unwrap_or(0), width);
+    let above = terms.make(Term::Less(most, word), 1);
+    let sign = |word: u64| (word << (MAX_WIDTH - width)) as i64;
+    let least = all().min_by_key(|&word| sign(word)).unwrap_or(0);
+    let greatest = all().max_by_key(|&word| sign(word)).unwrap_or(0);
+    let (least, greatest) = (terms.constant(least, width), terms.constant(greatest, width));
+    let outside = [
+        above,
+        terms.make(Term::SignedLess(word, least), 1),
+        terms.make(Term::SignedLess(greatest, word), 1),
+    ];
+    outside.map(|outside| terms.not(outside)).into_iter().chain([bits]).collect()
+}

@@ -1,0 +1,527 @@
+//! A pipeline computes what its sequential core computes, for every point: by an SMT solver.
+//!
+//! Both netlists are carried out clock by clock on terms of bit-vectors, by the same few rules and without
+//! what made the pipeline of the core (`hdl/pipeline`): the core from the clock that takes `start`, its microprogram running
+//! because the control ROM's words are constants; the pipeline with one point on its way, and anything before and behind it.
+//! Products and words of memories are functions that the solver knows nothing of, the same in both, but for
+//! instances of laws of integers (`facts`). Each checkpoint is a lemma on the way: a value of a stage is the register
+//! of the core, and stands in its place once that is proved.
+
+mod carry_out;
+mod cells;
+mod facts;
+mod lowest;
+mod module;
+mod solver;
+mod term;
+#[cfg(test)]
+mod tests;
+mod text;
+mod trial;
+mod wholes;
+
+use std::collections::HashMap;
+use std::fmt;
+use std::time::Duration;
+
+use anyhow::{Context, Result, bail, ensure};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{RngCore, SeedableRng};
+
+use carry_out::{Execution, Product, State};
+use glint_base::fixed::mask;
+use glint_rtl::netlist::{Checkpoint, Design, NetId, Role};
+use glint_tools::Tool;
+use solver::{Outcome, Solver};
+use term::{Id, Term, Terms};
+use trial::Pair;
+use wholes::Candidates;
+
+pub use text::{TextProof, TextVerdict, compare_text};
+
+/// Points that go through both cores before anything is proved.
+const TRIALS: usize = 400;
+
+/// More clocks than a computation takes.
+const MOST_CLOCKS: usize = 8192;
+
+/// The verdict on a pipeline and its sequential core.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// Every output is the same for every point.
+    Equal(Proof),
+    /// An output differs.
+    Different(Difference),
+    /// The solver does not decide it, and no point was found that differs.
+    Open(Open),
+}
+
+/// Why the solver does not decide a question.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Open {
+    /// It answers that it does not know, or with values of products and words that are not those of any point.
+    Unknown,
+    /// It was stopped at its time limit.
+    Limit,
+}
+
+/// The parts of a proof.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Proof {
+    /// Outputs that are equal.
+    pub outputs: usize,
+    /// Registers on the way that are equal, in all ways.
+    pub registers: usize,
+    /// Ways through the microprogram, where operands decide.
+    pub ways: usize,
+    /// Products that the solver knows nothing of.
+    pub products: usize,
+    /// Questions to the solver; the rest are the same terms.
+    pub questions: usize,
+}
+
+/// A point of which the cores make different things.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Difference {
+    /// Bit patterns, by name.
+    pub operands: Vec<(String, u64)>,
+    /// The output.
+    pub output: String,
+    /// The value of the sequential core.
+    pub sequential: u64,
+    /// The value of the pipeline.
+    pub pipeline: u64,
+}
+
+impl fmt::Display for Difference {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { output, sequential, pipeline, .. } = self;
+        write!(
+            f,
+            "`{output}` is {pipeline:#x} in the pipeline and {sequential:#x} in the sequential core for"
+        )?;
+        self.operands.iter().try_for_each(|(name, bits)| write!(f, " {name}={bits:#x}"))
+    }
+}
+
+/// Compares a pipeline with its sequential core, within a time limit on the solver.
+///
+/// # Errors
+/// The designs have different ports, do not come to an end, or the solver does not do its work.
+pub fn compare(
+    sequential: &Design,
+    pipeline: &Design,
+    solver: &Tool,
+    limit: Duration,
+) -> Result<Verdict> {
+    let pair = Pair::new(sequential, pipeline)?;
+    if let Some(difference) = tried(&pair, None)? {
+        return Ok(Verdict::Different(difference));
+    }
+    Comparison::new(&pair, solver, limit)?.run()
+}
+
+/// A point that differs among some at random; near one, some of whose operands each of them has.
+fn tried(pair: &Pair<'_>, near: Option<&[u64]>) -> Result<Option<Difference>> {
+    let mut random = ChaCha8Rng::seed_from_u64(1);
+    for _ in 0..TRIALS {
+        let operands: Vec<u64> = (0..pair.operands.len())
+            .map(|at| match near {
+                Some(near) if random.next_u32().is_multiple_of(2) => near[at],
+                _ => drawn(&mut random),
+            })
+            .collect();
+        if let Some(difference) = differs(pair, &operands)? {
+            return Ok(Some(difference));
+        }
+    }
+    Ok(None)
+}
+
+/// A bit pattern, drawn evenly or around a power of two, which 1.0 is too.
+fn drawn(random: &mut ChaCha8Rng) -> u64 {
+    let bits = random.next_u64();
+    let power = 1u64 << (random.next_u32() % 24);
+    let off = bits.checked_shr(random.next_u32() % 65).unwrap_or(0);
+    match random.next_u32() % 4 {
+        0 => bits,
+        1 => power.wrapping_add(off),
+        _ => power.wrapping_sub(off),
+    }
+}
+
+/// How the cores differ at a point, if they do.
+fn differs(pair: &Pair<'_>, operands: &[u64]) -> Result<Option<Difference>> {
+    let widths = pair.operands.iter().map(|name| {
+        let net = pair.pipeline.find(name);
+        net.map_or(1, |net| pair.pipeline.width(net))
+    });
+    let operands: Vec<u64> =
+        operands.iter().zip(widths).map(|(bits, width)| bits & mask(width)).collect();
+    let [sequential, pipeline] = pair.outputs(&operands)?;
+    let at = sequential.iter().zip(&pipeline).position(|(one, other)| one != other);
+    Ok(at.map(|at| Difference {
+        operands: pair.operands.iter().cloned().zip(operands).collect(),
+        output: pair.outputs[at].0.clone(),
+        sequential: sequential[at],
+        pipeline: pipeline[at],
+    }))
+}
+
+/// A way through the microprogram.
+struct Branch {
+    /// The bits that operands decided, and their values.
+    conditions: Vec<(Id, bool)>,
+    state: State,
+    /// How often each microinstruction was executed.
+    visits: Vec<usize>,
+    clocks: usize,
+}
+
+struct Comparison<'p> {
+    pair: &'p Pair<'p>,
+    terms: Terms,
+    solver: Solver<'p>,
+    products: Vec<Product>,
+    /// The sums that products are which the pipeline has in parts.
+    divided: HashMap<Id, Id>,
+    /// Products that the pipeline has, at once or in parts.
+    parts: Vec<Id>,
+    /// The operands of the point.
+    operands: Vec<Id>,
+    proof: Proof,
+}
+
+/// The answer to a question.
+enum Answer {
+    Equal,
+    Different(Difference),
+    Open(Open),
+}
+
+impl<'p> Comparison<'p> {
+    fn new(pair: &'p Pair<'p>, solver: &'p Tool, limit: Duration) -> Result<Self> {
+        let mut terms = Terms::default();
+        let operands = pair.operands.iter().map(|name| {
+            let net = pair.pipeline.find(name).context("an operand is a port")?;
+            Ok(terms.unknown(pair.pipeline.width(net)))
+        });
+        let operands = operands.collect::<Result<_>>()?;
+        Ok(Self {
+            pair,
+            terms,
+            solver: Solver::new(solver, limit)?,
+            products: Vec::new(),
+            divided: HashMap::new(),
+            parts: Vec::new(),
+            operands,
+            proof: Proof::default(),
+        })
+    }
+
+    fn run(mut self) -> Result<Verdict> {
+        let stages = self.pipeline()?;
+        self.divide(&stages)?;
+        let core = Execution::new(&mut self.terms, self.pair.sequential);
+        let mut ways = vec![self.start(&core)];
+        while let Some(way) = ways.pop() {
+            match self.follow(&core, way, &stages, &mut ways)? {
+                Answer::Equal => {}
+                Answer::Different(difference) => return Ok(Verdict::Different(difference)),
+                Answer::Open(open) => return Ok(Verdict::Open(open)),
+            }
+        }
+        let cone = self.terms.cone(self.results_of(&stages));
+        let is_product = |id: &&Id| matches!(self.terms.term(**id), Term::Product(..));
+        self.proof.products = cone.iter().filter(is_product).count();
+        self.proof.outputs = self.pair.outputs.len();
+        self.proof.questions = self.solver.asked;
+        Ok(Verdict::Equal(self.proof))
+    }
+
+    /// Returns the term of every net of the pipeline in each clock from the one that takes the point on.
+    fn pipeline(&mut self) -> Result<Vec<Vec<Id>>> {
+        let pair = self.pair;
+        let execution = Execution::new(&mut self.terms, pair.pipeline);
+        let mut state = execution.power_up(&mut self.terms);
+        let mut stages = Vec::new();
+        for clock in 0..=pair.latency + 1 {
+            // Before the point there is a reset.
+            let point = clock == 1;
+            let values = self.settle(
+                &execution,
+                &state,
+                |role| match role {
+                    Role::Reset => Some(u64::from(clock > 0)),
+                    Role::InValid if point => Some(1),
+                    Role::OutReady => Some(1),
+                    _ => None,
+                },
+                point,
+            );
+            state = execution.edge(&mut self.terms, &state, &values);
+            stages.push(values);
+        }
+        stages.remove(0);
+        let valid =
+            pair.pipeline.port(|role| role == Role::Valid).context("no output `out_valid`")?;
+        let shown = stages[pair.latency][valid.net.index()];
+        ensure!(
+            self.terms.constant_of(shown) == Some(1),
+            "no result is shown {} clocks after a point",
+            pair.latency
+        );
+        Ok(stages)
+    }
+
+    /// Returns the term of every net, with inputs that are known, the operands of the point in the clock that takes it, and
+    /// anything else.
+    fn settle(
+        &mut self,
+        execution: &Execution<'_>,
+        state: &State,
+        known: impl Fn(Role) -> Option<u64>,
+        point: bool,
+    ) -> Vec<Id> {
+        let (pair, operands) = (self.pair, &self.operands);
+        let input = |terms: &mut Terms, net: NetId, role: Role| {
+            let width = execution.design.width(net);
+            if let Some(bits) = known(role) {
+                return terms.constant(bits, width);
+            }
+            let name = &execution.design.net(net).name;
+            let at = pair.operands.iter().position(|operand| operand == name);
+            match at.filter(|_| point) {
+                Some(at) => operands[at],
+                None => terms.unknown(width),
+            }
+        };
+        execution.settle(&mut self.terms, state, input, &mut self.products)
+    }
+
+    /// After the clock that takes `start`, with all operands.
+    fn start(&mut self, core: &Execution<'_>) -> Branch {
+        let mut state = core.power_up(&mut self.terms);
+        for point in [false, true] {
+            let now = u64::from(point);
+            let values = self.settle(
+                core,
+                &state,
+                |role| match role {
+                    Role::Reset => Some(now),
+                    Role::Start | Role::Strobe => Some(now),
+                    _ => None,
+                },
+                point,
+            );
+            state = core.edge(&mut self.terms, &state, &values);
+        }
+        let visits = vec![0; core.design.control.microprogram.len()];
+        Branch { conditions: Vec::new(), state, visits, clocks: 0 }
+    }
+
+    /// Executes the microprogram to the results, or to where operands decide: the ways from there are added to `ways`.
+    fn follow(
+        &mut self,
+        core: &Execution<'_>,
+        mut way: Branch,
+        stages: &[Vec<Id>],
+        ways: &mut Vec<Branch>,
+    ) -> Result<Answer> {
+        let control = &core.design.control;
+        let sequencer = [control.address.index(), control.run.index()];
+        let valid = core.design.handshake()?.valid;
+        while way.clocks < MOST_CLOCKS {
+            let undecided = sequencer
+                .iter()
+                .map(|&register| way.state.registers[register])
+                .find(|&it| self.terms.constant_of(it).is_none());
+            if let Some(undecided) = undecided {
+                return self.fork(way, undecided, ways);
+            }
+            let address = self.terms.constant_of(way.state.registers[sequencer[0]]);
+            let address = address.unwrap_or_default() as usize;
+            if let Answer::Different(difference) = self.lemmas(core, &mut way, address, stages)? {
+                return Ok(Answer::Different(difference));
+            }
+            if let Some(visits) = way.visits.get_mut(address) {
+                *visits += 1;
+            }
+            // Whatever the inputs do while the core is busy.
+            let values =
+                self.settle(core, &way.state, |role| (role == Role::Reset).then_some(1), false);
+            match self.terms.constant_of(values[valid.index()]) {
+                Some(1) => return self.results(&way, &values, stages),
+                Some(_) => {}
+                None => bail!("`valid` depends on operands within a microinstruction"),
+            }
+            way.state = core.edge(&mut self.terms, &way.state, &values);
+            way.clocks += 1;
+        }
+        bail!("the sequential core shows no result")
+    }
+
+    /// Both ways from where a register of the sequencer depends on operands, as far as they can be gone.
+    fn fork(&mut self, way: Branch, undecided: Id, ways: &mut Vec<Branch>) -> Result<Answer> {
+        let condition = match *self.terms.term(undecided) {
+            Term::Choice(condition, ..) => condition,
+            _ if self.terms.width(undecided) == 1 => undecided,
+            _ => bail!("the sequencer depends on operands otherwise than by a choice"),
+        };
+        for value in [false, true] {
+            let mut conditions = way.conditions.clone();
+            conditions.push((condition, value));
+            let wanted = self.holding(&conditions);
+            if let Outcome::Unsatisfiable = self.ask(wanted)? {
+                continue;
+            }
+            let mut state = way.state.clone();
+            state.assume(&mut self.terms, condition, value);
+            let visits = way.visits.clone();
+            ways.push(Branch { conditions, state, visits, clocks: way.clocks });
+        }
+        Ok(Answer::Equal)
+    }
+
+    /// Terms that are 1 where the conditions hold.
+    fn holding(&mut self, conditions: &[(Id, bool)]) -> Vec<Id> {
+        let terms = &mut self.terms;
+        conditions.iter().map(|&(it, value)| if value { it } else { terms.not(it) }).collect()
+    }
+
+    /// Puts values of the pipeline in the place of registers that are equal to them, at the beginning of a
+    /// microinstruction.
+    fn lemmas(
+        &mut self,
+        core: &Execution<'_>,
+        way: &mut Branch,
+        address: usize,
+        stages: &[Vec<Id>],
+    ) -> Result<Answer> {
+        let Some(pipeline) = &self.pair.pipeline.pipeline else { return Ok(Answer::Equal) };
+        let visit = way.visits.get(address).copied().unwrap_or(0);
+        let due = |it: &&Checkpoint| it.address == address && it.visit == visit;
+        for checkpoint in pipeline.checkpoints.iter().filter(due) {
+            let registers = &core.design.registers;
+            let register =
+                registers.iter().position(|it| core.design.net(it.q).name == checkpoint.register);
+            let Some(register) = register else { continue };
+            let held = way.state.registers[register];
+            let staged = stages[pipeline.clock_of(checkpoint.net)][checkpoint.net.index()];
+            let staged = self.terms.resized(staged, self.terms.width(held));
+            match self.equal(&way.conditions, held, staged)? {
+                Answer::Equal => {
+                    way.state.registers[register] = staged;
+                    self.proof.registers += 1;
+                }
+                Answer::Different(difference) => return Ok(Answer::Different(difference)),
+                // The results may be equal all the same.
+                Answer::Open(_) => {}
+            }
+        }
+        Ok(Answer::Equal)
+    }
+
+    fn results(&mut self, way: &Branch, values: &[Id], stages: &[Vec<Id>]) -> Result<Answer> {
+        self.proof.ways += 1;
+        for (_, staged, own) in &self.pair.outputs {
+            let staged = stages[self.pair.latency][staged.index()];
+            let own = values[own.index()];
+            match self.equal(&way.conditions, own, staged)? {
+                Answer::Equal => {}
+                other => return Ok(other),
+            }
+        }
+        Ok(Answer::Equal)
+    }
+
+    /// Returns the outputs of the pipeline for the point.
+    fn results_of(&self, stages: &[Vec<Id>]) -> Vec<Id> {
+        let last = &stages[self.pair.latency];
+        self.pair.outputs.iter().map(|&(_, net, _)| last[net.index()]).collect()
+    }
+
+    /// Notes how the pipeline divides products: as sums of their parts, or where it has the whole in turn, as that.
+    fn divide(&mut self, stages: &[Vec<Id>]) -> Result<()> {
+        let checkpoints = self.pair.pipeline.pipeline.iter().flat_map(|it| {
+            it.checkpoints.iter().map(|at| stages[it.clock_of(at.net)][at.net.index()])
+        });
+        let results = self.results_of(stages);
+        let nets = self.terms.cone(checkpoints.chain(results));
+        let divided = facts::divided(&mut self.terms, nets.iter().copied());
+        self.parts = nets.iter().chain(divided.keys()).copied().collect();
+        self.parts.retain(|&it| matches!(self.terms.term(it), Term::Product(..)));
+        self.parts.sort();
+        self.parts.dedup();
+        let wholes = Candidates::new(&self.terms, &nets, divided.values());
+        let mut pending: Vec<Id> = divided.keys().copied().collect();
+        pending.sort();
+        while let Some(&product) = pending.last() {
+            let sum = divided[&product];
+            let cone = self.terms.cone([sum]);
+            let is_open = |it: &&Id| divided.contains_key(it) && !self.divided.contains_key(it);
+            let part = cone.iter().find(is_open);
+            if let Some(&part) = part.filter(|_| !self.divided.contains_key(&product)) {
+                pending.push(part);
+                continue;
+            }
+            pending.pop();
+            if self.divided.contains_key(&product) {
+                continue;
+            }
+            let mut whole = [sum];
+            self.terms.replace(&self.divided, &mut whole);
+            let [mut whole] = whole;
+            if let Some(net) = wholes.of(sum) {
+                // Of the bits above, which bounds on the factors decide, nothing is said.
+                let width = self.terms.width(net);
+                let low = self.terms.slice(whole, 0, width);
+                let equal = self.terms.equal(low, net);
+                let differ = self.terms.not(equal);
+                let said = self.solver.ask(&mut self.terms, &[differ], &self.products, false)?;
+                if let Outcome::Unsatisfiable = said {
+                    whole = self.terms.with_low(whole, net);
+                }
+            }
+            self.divided.insert(product, whole);
+        }
+        Ok(())
+    }
+
+    /// Whether terms can all be 1: with the products divided as the pipeline has them, and else with all that is known of parts.
+    fn ask(&mut self, wanted: Vec<Id>) -> Result<Outcome> {
+        self.divide_by_lowest(&wanted)?;
+        let mut divided = wanted.clone();
+        self.terms.replace(&self.divided, &mut divided);
+        match self.solver.ask(&mut self.terms, &divided, &self.products, false)? {
+            Outcome::Unsatisfiable => Ok(Outcome::Unsatisfiable),
+            _ => self.solver.ask(&mut self.terms, &wanted, &self.products, true),
+        }
+    }
+
+    fn equal(&mut self, conditions: &[(Id, bool)], one: Id, other: Id) -> Result<Answer> {
+        let equal = self.terms.equal(one, other);
+        let differ = self.terms.not(equal);
+        if self.terms.constant_of(differ) == Some(0) {
+            return Ok(Answer::Equal);
+        }
+        let mut wanted = self.holding(conditions);
+        wanted.push(differ);
+        match self.ask(wanted)? {
+            Outcome::Unsatisfiable => Ok(Answer::Equal),
+            Outcome::Undecided(open) => Ok(Answer::Open(open)),
+            Outcome::Satisfiable(values) => {
+                let of = |operand: &Id| {
+                    values.iter().find(|(id, _)| id == operand).map_or(0, |&(_, bits)| bits)
+                };
+                let operands: Vec<u64> = self.operands.iter().map(of).collect();
+                // What the solver made up of products need not be so; what it chose of operands may show all the same.
+                let difference = match differs(self.pair, &operands)? {
+                    None => tried(self.pair, Some(&operands))?,
+                    found => found,
+                };
+                Ok(difference.map_or(Answer::Open(Open::Unknown), Answer::Different))
+            }
+        }
+    }
+}

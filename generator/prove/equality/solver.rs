@@ -1,0 +1,174 @@
+//! Questions about terms for an SMT solver.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, Result, bail};
+
+use super::Open;
+use super::carry_out::Product;
+use super::facts;
+use super::term::{ADDRESS, Id, Term, Terms};
+use glint_tools::transient::Directory;
+use glint_tools::{LimitReached, Tool};
+
+/// The solver's answer on terms that are asked to be 1 together.
+pub enum Outcome {
+    /// They never are.
+    Unsatisfiable,
+    /// They are for these values of unknowns, as far as products and memories are not known.
+    Satisfiable(Vec<(Id, u64)>),
+    /// Neither.
+    Undecided(Open),
+}
+
+/// An SMT solver, and how long it may take.
+pub struct Solver<'a> {
+    tool: &'a Tool,
+    end: Instant,
+    pub dir: Directory,
+    /// Questions that it was asked.
+    pub asked: usize,
+}
+
+impl<'a> Solver<'a> {
+    /// # Errors
+    /// No temporary directory can be made.
+    pub fn new(tool: &'a Tool, limit: Duration) -> Result<Self> {
+        let dir = Directory::new().context("cannot make a temporary directory")?;
+        Ok(Self { tool, end: Instant::now() + limit, dir, asked: 0 })
+    }
+
+    /// Whether terms of one bit can all be 1, given facts about the products.
+    ///
+    /// # Errors
+    /// The solver does not do its work.
+    pub fn ask(
+        &mut self,
+        terms: &mut Terms,
+        wanted: &[Id],
+        products: &[Product],
+        parts: bool,
+    ) -> Result<Outcome> {
+        self.asked += 1;
+        let facts = facts::about(terms, wanted, products, parts);
+        let script = script(terms, wanted, &facts);
+        fs::write(self.dir.path().join("question.smt2"), script)
+            .context("cannot write a question for the solver")?;
+        let left = self.end.saturating_duration_since(Instant::now());
+        let run = match self.tool.run(["question.smt2"], self.dir.path(), left) {
+            Ok(run) => run,
+            Err(error) if error.is::<LimitReached>() => return Ok(Outcome::Undecided(Open::Limit)),
+            Err(error) => return Err(error),
+        };
+        match run.output.lines().next().map(str::trim) {
+            Some("unsat") => Ok(Outcome::Unsatisfiable),
+            Some("sat") => Ok(Outcome::Satisfiable(values(terms, &run.output))),
+            Some("unknown") => Ok(Outcome::Undecided(Open::Unknown)),
+            _ => bail!("`{}` does not answer: {}", self.tool, run.output.trim()),
+        }
+    }
+}
+
+fn name(id: Id) -> String {
+    format!("t{}", id.number())
+}
+
+/// The question as SMT-LIB 2.
+fn script(terms: &Terms, wanted: &[Id], facts: &[Id]) -> String {
+    let cone = terms.cone(wanted.iter().chain(facts).copied());
+    let mut text = String::from(
+        "(set-logic QF_UFBV)\n(declare-fun product ((_ BitVec 64) (_ BitVec 64)) (_ BitVec 64))\n",
+    );
+    let mut declared = vec![false; terms.memories.len()];
+    let mut unknowns = String::new();
+    for id in cone {
+        let width = terms.width(id);
+        if let Term::Word { memory, .. } = *terms.term(id)
+            && !declared[memory]
+        {
+            declared[memory] = true;
+            let _ = writeln!(
+                text,
+                "(declare-fun word{memory} ((_ BitVec {ADDRESS})) (_ BitVec {width}))"
+            );
+        }
+        if let Term::Unknown(_) = terms.term(id) {
+            let _ = writeln!(text, "(declare-const {} (_ BitVec {width}))", name(id));
+            let _ = write!(unknowns, " {}", name(id));
+            continue;
+        }
+        let said = expression(terms, id);
+        let _ = writeln!(text, "(define-fun {} () (_ BitVec {width}) {said})", name(id));
+        if let Term::Product(a, b) = *terms.term(id) {
+            let _ = writeln!(
+                text,
+                "(assert (= (product {0} {1}) (product {1} {0})))",
+                name(a),
+                name(b)
+            );
+        }
+    }
+    for &id in facts.iter().chain(wanted) {
+        let _ = writeln!(text, "(assert (= {} #b1))", name(id));
+    }
+    let _ = writeln!(text, "(check-sat)");
+    if !unknowns.is_empty() {
+        let _ = writeln!(text, "(get-value ({unknowns}))");
+    }
+    text
+}
+
+fn expression(terms: &Terms, id: Id) -> String {
+    let width = terms.width(id);
+    let call = |function: &str| {
+        let operands = terms.term(id).operands();
+        let names: Vec<String> = operands.into_iter().map(name).collect();
+        format!("({function} {})", names.join(" "))
+    };
+    let truth = |function: &str| format!("(ite {} #b1 #b0)", call(function));
+    match *terms.term(id) {
+        Term::Unknown(_) => name(id),
+        Term::Constant(bits) => format!("(_ bv{bits} {width})"),
+        Term::Not(_) => call("bvnot"),
+        Term::And(..) => call("bvand"),
+        Term::Or(..) => call("bvor"),
+        Term::Xor(..) => call("bvxor"),
+        Term::Add(..) => call("bvadd"),
+        Term::Sub(..) => call("bvsub"),
+        Term::Product(..) => call("product"),
+        Term::Equal(..) => truth("="),
+        Term::Less(..) => truth("bvult"),
+        Term::SignedLess(..) => truth("bvslt"),
+        Term::Choice(condition, a, b) => {
+            format!("(ite (= {} #b1) {} {})", name(condition), name(a), name(b))
+        }
+        Term::Slice { of, low } => {
+            format!("((_ extract {} {low}) {})", low + width - 1, name(of))
+        }
+        Term::Join(..) => call("concat"),
+        Term::SignExtend(a) => {
+            format!("((_ sign_extend {}) {})", width - terms.width(a), name(a))
+        }
+        Term::Word { memory, .. } => call(&format!("word{memory}")),
+    }
+}
+
+/// The values that the solver gives to unknowns: `((t1 #x0f) (t2 #b1))`.
+fn values(terms: &Terms, output: &str) -> Vec<(Id, u64)> {
+    let mut words = output.split(|c: char| c.is_whitespace() || c == '(' || c == ')');
+    let mut values = Vec::new();
+    while let Some(word) = words.next() {
+        let number = word.strip_prefix('t').and_then(|number| number.parse().ok());
+        let Some(id) = number.and_then(|number| terms.numbered(number)) else { continue };
+        let value = words.find(|word| !word.is_empty()).unwrap_or_default();
+        let bits = match (value.strip_prefix("#x"), value.strip_prefix("#b")) {
+            (Some(hex), _) => u64::from_str_radix(hex, 16),
+            (_, Some(binary)) => u64::from_str_radix(binary, 2),
+            _ => continue,
+        };
+        values.extend(bits.ok().map(|bits| (id, bits)));
+    }
+    values
+}

@@ -1,0 +1,523 @@
+//! Bit-vectors as terms: what nets carry when operands are not known.
+//!
+//! A term is made once: equal ones are the same. Constants fold, which is what makes a microprogram run, and wiring is
+//! brought into one form, so that many values that are equal are the same term.
+
+use std::collections::HashMap;
+
+use glint_base::cone;
+use glint_base::fixed::{MAX_WIDTH, mask};
+
+/// A term of some [`Terms`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Id(u32);
+
+impl Id {
+    /// Its number among all terms.
+    pub fn number(self) -> u32 {
+        self.0
+    }
+}
+
+/// A term. Operands have the width of the result where nothing else is said.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub enum Term {
+    /// Any value, the same wherever the number is.
+    Unknown(u32),
+    Constant(u64),
+    Not(Id),
+    And(Id, Id),
+    Or(Id, Id),
+    Xor(Id, Id),
+    /// Sum modulo 2^width.
+    Add(Id, Id),
+    /// Difference modulo 2^width.
+    Sub(Id, Id),
+    /// Product modulo 2^64 of 64 bits.
+    Product(Id, Id),
+    /// One bit: two terms of one width are equal.
+    Equal(Id, Id),
+    /// One bit: of two terms of one width the first is less, unsigned.
+    Less(Id, Id),
+    /// One bit: the same, two's complement.
+    SignedLess(Id, Id),
+    /// The second if the first, one bit, is 1; else the third.
+    Choice(Id, Id, Id),
+    /// Bits of a term from `low` up, as many as the result has.
+    Slice {
+        of: Id,
+        low: u32,
+    },
+    /// The first above the second.
+    Join(Id, Id),
+    /// A narrower term with copies of its top bit above it.
+    SignExtend(Id),
+    /// A word of a memory; 0 beyond its contents. The address has [`ADDRESS`] bits.
+    Word {
+        memory: usize,
+        address: Id,
+    },
+}
+
+/// Bits of an address.
+pub const ADDRESS: u32 = 32;
+
+/// Terms, each made once, after its operands.
+#[derive(Default)]
+pub struct Terms {
+    nodes: Vec<(Term, u32)>,
+    known: HashMap<(Term, u32), Id>,
+    unknowns: u32,
+    /// The contents of memories, each once.
+    pub memories: Vec<Vec<u64>>,
+    /// The word beyond the contents, by memory and address.
+    beyond: HashMap<(usize, Id), Id>,
+}
+
+impl Term {
+    /// Its operands, in order of writing.
+    fn operands_mut(&mut self) -> Vec<&mut Id> {
+        match self {
+            Self::Unknown(_) | Self::Constant(_) => Vec::new(),
+            Self::Not(a) | Self::Slice { of: a, .. } | Self::SignExtend(a) => vec![a],
+            Self::Word { address, .. } => vec![address],
+            Self::And(a, b)
+            | Self::Or(a, b)
+            | Self::Xor(a, b)
+            | Self::Add(a, b)
+            | Self::Sub(a, b)
+            | Self::Product(a, b)
+            | Self::Equal(a, b)
+            | Self::Less(a, b)
+            | Self::SignedLess(a, b)
+            | Self::Join(a, b) => vec![a, b],
+            Self::Choice(a, b, c) => vec![a, b, c],
+        }
+    }
+
+    /// Its operands, in order of writing.
+    pub fn operands(&self) -> Vec<Id> {
+        self.clone().operands_mut().into_iter().map(|id| *id).collect()
+    }
+}
+
+/// A pattern of so many bits, two's complement.
+fn signed(bits: u64, width: u32) -> i64 {
+    let drop = MAX_WIDTH - width;
+    (bits << drop) as i64 >> drop
+}
+
+impl Terms {
+    pub fn term(&self, id: Id) -> &Term {
+        &self.nodes[id.0 as usize].0
+    }
+
+    pub fn width(&self, id: Id) -> u32 {
+        self.nodes[id.0 as usize].1
+    }
+
+    /// The term of a number.
+    pub fn numbered(&self, number: u32) -> Option<Id> {
+        ((number as usize) < self.nodes.len()).then_some(Id(number))
+    }
+
+    pub fn constant_of(&self, id: Id) -> Option<u64> {
+        match *self.term(id) {
+            Term::Constant(bits) => Some(bits),
+            _ => None,
+        }
+    }
+
+    /// All terms that these need, themselves too, each after its operands.
+    pub fn cone(&self, roots: impl IntoIterator<Item = Id>) -> Vec<Id> {
+        let index = |id: Id| id.0 as usize;
+        let operands = |at: usize| self.nodes[at].0.operands().into_iter().map(index);
+        let live = cone::needed(self.nodes.len(), roots.into_iter().map(index), operands);
+        (0..live.len()).filter(|&at| live[at]).map(|at| Id(at as u32)).collect()
+    }
+
+    /// The value of each term of a cone, for values of the unknowns by their numbers.
+    pub fn values(&self, cone: &[Id], unknown: impl Fn(u32) -> u64) -> HashMap<Id, u64> {
+        let mut values = HashMap::new();
+        for &id in cone {
+            let (term, width) = &self.nodes[id.0 as usize];
+            let value = match term {
+                Term::Unknown(number) => unknown(*number) & mask(*width),
+                term => self.evaluate(term, *width, |operand| values[&operand]),
+            };
+            values.insert(id, value);
+        }
+        values
+    }
+
+    /// A new unknown.
+    pub fn unknown(&mut self, width: u32) -> Id {
+        self.unknowns += 1;
+        self.insert(Term::Unknown(self.unknowns - 1), width)
+    }
+
+    pub fn constant(&mut self, bits: u64, width: u32) -> Id {
+        self.insert(Term::Constant(bits & mask(width)), width)
+    }
+
+    /// The number of a memory with these contents.
+    pub fn memory(&mut self, words: &[u64]) -> usize {
+        if let Some(at) = self.memories.iter().position(|other| other == words) {
+            return at;
+        }
+        self.memories.push(words.to_vec());
+        self.memories.len() - 1
+    }
+
+    /// A word that a memory does not have: any, the same for the same address.
+    pub fn beyond(&mut self, memory: usize, address: Id, width: u32) -> Id {
+        if let Some(&word) = self.beyond.get(&(memory, address)) {
+            return word;
+        }
+        let word = self.unknown(width);
+        self.beyond.insert((memory, address), word);
+        word
+    }
+
+    /// With zeros above it, or cut: of this width.
+    pub fn resized(&mut self, id: Id, width: u32) -> Id {
+        let own = self.width(id);
+        if width <= own {
+            return self.slice(id, 0, width);
+        }
+        let zeros = self.constant(0, width - own);
+        self.make(Term::Join(zeros, id), width)
+    }
+
+    /// With copies of its sign bit above it.
+    pub fn sign_extended(&mut self, id: Id, width: u32) -> Id {
+        if self.width(id) == width { id } else { self.make(Term::SignExtend(id), width) }
+    }
+
+    pub fn slice(&mut self, of: Id, low: u32, width: u32) -> Id {
+        self.make(Term::Slice { of, low }, width)
+    }
+
+    /// With other low bits.
+    pub fn with_low(&mut self, id: Id, low: Id) -> Id {
+        let (width, at) = (self.width(id), self.width(low));
+        if at == width {
+            return low;
+        }
+        let upper = self.slice(id, at, width - at);
+        self.make(Term::Join(upper, low), width)
+    }
+
+    pub fn equal(&mut self, a: Id, b: Id) -> Id {
+        self.make(Term::Equal(a, b), 1)
+    }
+
+    pub fn not(&mut self, a: Id) -> Id {
+        self.make(Term::Not(a), self.width(a))
+    }
+
+    pub fn choice(&mut self, condition: Id, then: Id, otherwise: Id) -> Id {
+        self.make(Term::Choice(condition, then, otherwise), self.width(then))
+    }
+
+    /// Whether there is such a term.
+    pub fn has(&self, term: &Term, width: u32) -> bool {
+        self.known.contains_key(&(ordered(term.clone()), width))
+    }
+
+    /// The terms with one of them, one bit, at a value.
+    pub fn assuming(&mut self, condition: Id, value: bool, terms: &mut [Id]) {
+        let constant = self.constant(value.into(), 1);
+        self.replace(&HashMap::from([(condition, constant)]), terms);
+    }
+
+    /// The terms with others in the place of some that they contain. What comes in their place is not looked through.
+    pub fn replace(&mut self, by: &HashMap<Id, Id>, terms: &mut [Id]) {
+        let mut new: HashMap<Id, Id> = HashMap::new();
+        for id in self.cone(terms.iter().copied()) {
+            let (term, width) = self.nodes[id.0 as usize].clone();
+            let rebuilt = if let Some(&other) = by.get(&id) {
+                other
+            } else if term.operands().iter().all(|operand| new[operand] == *operand) {
+                id
+            } else {
+                self.make(renamed(&term, |operand| new[&operand]), width)
+            };
+            new.insert(id, rebuilt);
+        }
+        terms.iter_mut().for_each(|term| *term = new[term]);
+    }
+
+    /// A term, in the form that all that are the same by simple rules have.
+    pub fn make(&mut self, term: Term, width: u32) -> Id {
+        let constants: Option<HashMap<Id, u64>> =
+            term.operands().into_iter().map(|id| Some((id, self.constant_of(id)?))).collect();
+        if let Some(values) = constants
+            && !matches!(term, Term::Unknown(_))
+        {
+            let bits = self.evaluate(&term, width, |id| values[&id]);
+            return self.constant(bits, width);
+        }
+        match self.simpler(&term, width) {
+            Some(id) => id,
+            None => self.insert(ordered(term), width),
+        }
+    }
+
+    fn insert(&mut self, term: Term, width: u32) -> Id {
+        debug_assert!((1..=MAX_WIDTH).contains(&width));
+        let nodes = &mut self.nodes;
+        *self.known.entry((term.clone(), width)).or_insert_with(|| {
+            nodes.push((term, width));
+            Id(nodes.len() as u32 - 1)
+        })
+    }
+
+    fn evaluate(&self, term: &Term, width: u32, of: impl Fn(Id) -> u64) -> u64 {
+        let wide = |id: Id| self.width(id);
+        let bits = match *term {
+            Term::Unknown(_) => unreachable!("an unknown has no operands"),
+            Term::Constant(bits) => bits,
+            Term::Not(a) => !of(a),
+            Term::And(a, b) => of(a) & of(b),
+            Term::Or(a, b) => of(a) | of(b),
+            Term::Xor(a, b) => of(a) ^ of(b),
+            Term::Add(a, b) => of(a).wrapping_add(of(b)),
+            Term::Sub(a, b) => of(a).wrapping_sub(of(b)),
+            Term::Product(a, b) => of(a).wrapping_mul(of(b)),
+            Term::Equal(a, b) => u64::from(of(a) == of(b)),
+            Term::Less(a, b) => u64::from(of(a) < of(b)),
+            Term::SignedLess(a, b) => u64::from(signed(of(a), wide(a)) < signed(of(b), wide(b))),
+            Term::Choice(condition, a, b) => of(if of(condition) == 1 { a } else { b }),
+            Term::Slice { of: a, low } => of(a) >> low,
+            Term::Join(a, b) => of(a) << wide(b) | of(b),
+            Term::SignExtend(a) => signed(of(a), wide(a)) as u64,
+            Term::Word { memory, address } => {
+                let word = usize::try_from(of(address)).ok();
+                word.and_then(|at| self.memories[memory].get(at)).copied().unwrap_or(0)
+            }
+        };
+        bits & mask(width)
+    }
+
+    /// Returns a simpler term of the same value, if there is one.
+    fn simpler(&mut self, term: &Term, width: u32) -> Option<Id> {
+        let ones = mask(width);
+        match *term {
+            Term::Not(a) => match *self.term(a) {
+                Term::Not(inner) => Some(inner),
+                _ => None,
+            },
+            Term::And(a, b) | Term::Or(a, b) | Term::Xor(a, b) => {
+                if a == b {
+                    return match term {
+                        Term::Xor(..) => Some(self.constant(0, width)),
+                        _ => Some(a),
+                    };
+                }
+                let (value, other) = match (self.constant_of(a), self.constant_of(b)) {
+                    (Some(value), _) => (value, b),
+                    (_, Some(value)) => (value, a),
+                    _ => return None,
+                };
+                match term {
+                    Term::And(..) if value == 0 => Some(self.constant(0, width)),
+                    Term::And(..) if value == ones => Some(other),
+                    Term::Or(..) if value == ones => Some(self.constant(ones, width)),
+                    Term::Or(..) | Term::Xor(..) if value == 0 => Some(other),
+                    Term::Xor(..) if value == ones => Some(self.not(other)),
+                    _ => None,
+                }
+            }
+            Term::Add(a, b) => match (self.constant_of(a), self.constant_of(b)) {
+                (Some(0), _) => Some(b),
+                (_, Some(0)) => Some(a),
+                (Some(1), _) if width == 1 => Some(self.not(b)),
+                (_, Some(1)) if width == 1 => Some(self.not(a)),
+                _ if self.zeros(a) > self.zeros(b) => self.passed_by(b, a, width, Term::Add),
+                _ => self.passed_by(a, b, width, Term::Add),
+            },
+            Term::Sub(a, b) if a == b => Some(self.constant(0, width)),
+            Term::Sub(a, b) => match self.constant_of(b) {
+                Some(0) => Some(a),
+                Some(1) if width == 1 => Some(self.not(a)),
+                _ => self.passed_by(a, b, width, Term::Sub),
+            },
+            Term::Equal(a, b) if a == b => Some(self.constant(1, 1)),
+            Term::Equal(a, b) if self.width(a) == 1 => {
+                match (self.constant_of(a), self.constant_of(b)) {
+                    (Some(1), _) => Some(b),
+                    (_, Some(1)) => Some(a),
+                    (Some(_), _) => Some(self.not(b)),
+                    (_, Some(_)) => Some(self.not(a)),
+                    _ => None,
+                }
+            }
+            Term::Less(a, b) | Term::SignedLess(a, b) if a == b => Some(self.constant(0, 1)),
+            Term::Product(a, b) => {
+                let zero = [a, b].into_iter().find(|&it| self.constant_of(it) == Some(0));
+                let one = self.constant_of(a) == Some(1);
+                zero.or(one.then_some(b)).or((self.constant_of(b) == Some(1)).then_some(a))
+            }
+            Term::Choice(condition, a, b) => {
+                if a == b {
+                    return Some(a);
+                }
+                if let Some(value) = self.constant_of(condition) {
+                    return Some(if value == 1 { a } else { b });
+                }
+                if let Term::Not(inner) = *self.term(condition) {
+                    return Some(self.choice(inner, b, a));
+                }
+                match (width, self.constant_of(a), self.constant_of(b)) {
+                    (1, Some(1), Some(0)) => Some(condition),
+                    (1, Some(0), Some(1)) => Some(self.not(condition)),
+                    _ => None,
+                }
+            }
+            Term::Slice { of, low } => self.simpler_slice(of, low, width),
+            Term::Join(a, b) => self.simpler_join(a, b, width),
+            Term::SignExtend(a) => match *self.term(a) {
+                Term::SignExtend(inner) => Some(self.sign_extended(inner, width)),
+                Term::Join(top, _) if self.constant_of(top) == Some(0) => {
+                    Some(self.resized(a, width))
+                }
+                _ => None,
+            },
+            Term::Word { memory, address } => {
+                let bits = match *self.term(address) {
+                    Term::Join(top, rest) if self.constant_of(top) == Some(0) => self.width(rest),
+                    _ => ADDRESS,
+                };
+                let words = &self.memories[memory];
+                let reached = words.get(..1 << bits.min(ADDRESS))?;
+                let first = reached[0];
+                let same = reached.iter().all(|&word| word == first);
+                same.then(|| self.constant(first, width))
+            }
+            _ => None,
+        }
+    }
+
+    /// A sum or a difference: what stands below the lowest bits of `b`, which are 0, passes it by.
+    fn passed_by(&mut self, a: Id, b: Id, width: u32, op: fn(Id, Id) -> Term) -> Option<Id> {
+        let low = self.zeros(b);
+        if low == 0 || low >= width {
+            return None;
+        }
+        let upper = width - low;
+        let lower = self.slice(a, 0, low);
+        let (a, b) = (self.slice(a, low, upper), self.slice(b, low, upper));
+        let upper = self.make(op(a, b), upper);
+        Some(self.make(Term::Join(upper, lower), width))
+    }
+
+    /// How many of the lowest bits are known to be 0.
+    fn zeros(&self, id: Id) -> u32 {
+        match *self.term(id) {
+            Term::Constant(bits) => bits.trailing_zeros().min(self.width(id)),
+            Term::Join(upper, lower) => match self.zeros(lower) {
+                all if all == self.width(lower) => all + self.zeros(upper),
+                some => some,
+            },
+            _ => 0,
+        }
+    }
+
+    fn simpler_slice(&mut self, of: Id, low: u32, width: u32) -> Option<Id> {
+        let whole = self.width(of);
+        if low == 0 && width == whole {
+            return Some(of);
+        }
+        match *self.term(of) {
+            Term::Slice { of, low: inner } => Some(self.slice(of, low + inner, width)),
+            Term::Join(a, b) => {
+                let at = self.width(b);
+                if low >= at {
+                    return Some(self.slice(a, low - at, width));
+                }
+                if low + width <= at {
+                    return Some(self.slice(b, low, width));
+                }
+                let (upper, lower) =
+                    (self.slice(a, 0, low + width - at), self.slice(b, low, at - low));
+                Some(self.make(Term::Join(upper, lower), width))
+            }
+            Term::SignExtend(a) => {
+                let own = self.width(a);
+                if low + width <= own {
+                    return Some(self.slice(a, low, width));
+                }
+                (low < own).then(|| {
+                    let rest = self.slice(a, low, own - low);
+                    self.sign_extended(rest, width)
+                })
+            }
+            // The low bits of a sum are the sum of the low bits.
+            Term::Add(a, b) if low == 0 => {
+                let (a, b) = (self.slice(a, 0, width), self.slice(b, 0, width));
+                Some(self.make(Term::Add(a, b), width))
+            }
+            Term::Sub(a, b) if low == 0 => {
+                let (a, b) = (self.slice(a, 0, width), self.slice(b, 0, width));
+                Some(self.make(Term::Sub(a, b), width))
+            }
+            Term::Not(a) => {
+                let a = self.slice(a, low, width);
+                Some(self.not(a))
+            }
+            _ => None,
+        }
+    }
+
+    fn simpler_join(&mut self, a: Id, b: Id, width: u32) -> Option<Id> {
+        if let Term::Join(upper, lower) = *self.term(a) {
+            let rest = self.width(lower) + self.width(b);
+            let rest = self.make(Term::Join(lower, b), rest);
+            return Some(self.make(Term::Join(upper, rest), width));
+        }
+        let joined = |terms: &mut Self, a: Id, b: Id| match (terms.term(a), terms.term(b)) {
+            (&Term::Constant(upper), &Term::Constant(lower)) => {
+                let at = terms.width(b);
+                Some(terms.constant(upper << at | lower, terms.width(a) + at))
+            }
+            (&Term::Slice { of, low: upper }, &Term::Slice { of: other, low })
+                if of == other && upper == low + terms.width(b) =>
+            {
+                Some(terms.slice(of, low, terms.width(a) + terms.width(b)))
+            }
+            _ => None,
+        };
+        if let Some(both) = joined(self, a, b) {
+            return Some(both);
+        }
+        if let Term::Join(first, rest) = *self.term(b)
+            && let Some(both) = joined(self, a, first)
+        {
+            return Some(self.make(Term::Join(both, rest), width));
+        }
+        None
+    }
+}
+
+/// Operands of what does not depend on their order in one order.
+fn ordered(mut term: Term) -> Term {
+    if let Term::And(a, b)
+    | Term::Or(a, b)
+    | Term::Xor(a, b)
+    | Term::Add(a, b)
+    | Term::Product(a, b)
+    | Term::Equal(a, b) = &mut term
+        && a > b
+    {
+        std::mem::swap(a, b);
+    }
+    term
+}
+
+/// Returns the term with other operands.
+fn renamed(term: &Term, of: impl Fn(Id) -> Id) -> Term {
+    let mut term = term.clone();
+    term.operands_mut().into_iter().for_each(|id| *id = of(*id));
+    term
+}

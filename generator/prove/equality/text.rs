@@ -1,0 +1,492 @@
+//! The emitted Verilog of a pipeline shows what its netlist shows, for every point and from any state.
+//!
+//! Both are carried out on terms, the text as Yosys reads it, from registers and memories that hold anything. Nothing is asked
+//! of the text but its ports. A memory that is written is a delay: by going through all values of the counter that addresses
+//! it, a read is shown to give what was written so many clocks before. A clock in which points stay changes nothing, and any
+//! other is one in which the results are taken; it is therefore enough to follow a point while none stays. A register of the
+//! text that is equal to a net of the netlist takes its term, so that the solver is asked of one clock at a time.
+
+use std::collections::{HashMap, HashSet};
+use std::time::Duration;
+
+use anyhow::{Context, Result, bail, ensure};
+use serde_json::Value;
+
+use super::Open;
+use super::carry_out::{Execution, Product};
+use super::cells::Values;
+use super::module::{Held, Memory, Module, Read};
+use super::solver::{Outcome, Solver};
+use super::term::{Id, Term, Terms};
+use super::wholes::samples;
+use glint_base::fixed::mask;
+use glint_rtl::netlist::{Design, Role};
+use glint_tools::Tool;
+
+/// The verdict on a text and its netlist.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum TextVerdict {
+    /// Every output is the same for every point.
+    Equal(TextProof),
+    /// An output differs; for which values.
+    Different(String),
+    /// The solver does not decide it.
+    Open(Open),
+    /// Something that is not known here stands in the text, or a memory of it is no delay.
+    Unread(String),
+}
+
+/// The parts of a proof.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct TextProof {
+    /// Outputs that are equal.
+    pub outputs: usize,
+    /// Registers that hold a value of the netlist, counted in every clock of a point.
+    pub registers: usize,
+    /// Clocks from write to read of each memory that is written.
+    pub delays: Vec<usize>,
+    /// Questions to the solver; the rest are the same terms.
+    pub questions: usize,
+}
+
+/// Compares the text of a pipeline, as [`glint_tools::elaborate`] reads it, with its netlist, within a time limit on the
+/// solver.
+///
+/// # Errors
+/// The design is no pipeline; the solver does not do its work.
+pub fn compare_text(
+    design: &Design,
+    text: &Value,
+    solver: &Tool,
+    limit: Duration,
+) -> Result<TextVerdict> {
+    let pipeline = design.pipeline.as_ref().context("the design is no pipeline")?;
+    let latency = pipeline.stages.len();
+    if pipeline.interval > 1 {
+        let why = "the text is followed for pipelines with pipeline.interval = 1 alone".to_owned();
+        return Ok(TextVerdict::Unread(why));
+    }
+    let roles = design.ports.iter().map(|it| (design.net(it.net).name.clone(), it.role)).collect();
+    let read = || -> Result<(Module, Vec<Vec<usize>>)> {
+        let module = Module::new(text)?;
+        let delays = delays(&module, &roles)?;
+        Ok((module, delays))
+    };
+    let (module, delays) = match read() {
+        Ok(read) => read,
+        Err(error) => return Ok(TextVerdict::Unread(format!("{error:#}"))),
+    };
+    let mut comparison = Comparison {
+        design,
+        module: &module,
+        roles: &roles,
+        delays: &delays,
+        latency,
+        terms: Terms::default(),
+        inputs: HashMap::new(),
+        products: Vec::new(),
+        solver: Solver::new(solver, limit)?,
+        proof: TextProof { delays: delays.concat(), ..TextProof::default() },
+    };
+    Ok(match comparison.stays().and_then(|()| comparison.follows_a_point()) {
+        Ok(()) => {
+            comparison.proof.questions = comparison.solver.asked;
+            TextVerdict::Equal(comparison.proof)
+        }
+        Err(error) => match error.downcast::<Ended>() {
+            Ok(Ended(verdict)) => verdict,
+            Err(error) => return Err(error),
+        },
+    })
+}
+
+/// Ends a comparison with its verdict.
+#[derive(Debug)]
+struct Ended(TextVerdict);
+
+impl std::fmt::Display for Ended {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{:?}", self.0)
+    }
+}
+
+impl std::error::Error for Ended {}
+
+fn ended<T>(verdict: TextVerdict) -> Result<T> {
+    Err(Ended(verdict).into())
+}
+
+type Roles = HashMap<String, Role>;
+
+/// Registers with what they hold, and what the ports of each memory are given.
+type Constants = (HashMap<usize, u64>, Vec<Option<Vec<u64>>>);
+
+/// For each memory the clocks from write to read, of each of its read ports, while all points move on.
+fn delays(module: &Module, roles: &Roles) -> Result<Vec<Vec<usize>>> {
+    let reset = constants(module, roles, 0, &HashMap::new())?.0;
+    let mut delays = vec![None; module.memories.len()];
+    for (&counter, &first) in &reset {
+        let mut course: Vec<Vec<Option<Vec<u64>>>> = Vec::new();
+        let mut value = first;
+        let repeats = loop {
+            let (next, control) = constants(module, roles, 1, &HashMap::from([(counter, value)]))?;
+            course.push(control);
+            match next.get(&counter) {
+                Some(&again) if again == first => break true,
+                Some(&next) if course.len() < MOST_SLOTS => value = next,
+                _ => break false,
+            }
+        };
+        if !repeats {
+            continue;
+        }
+        for (memory, delay) in delays.iter_mut().enumerate() {
+            let course: Option<Vec<&[u64]>> =
+                course.iter().map(|control| control[memory].as_deref()).collect();
+            if let Some(course) = course {
+                *delay = lags(&course, module.memories[memory].reads.len());
+            }
+        }
+    }
+    let all: Option<Vec<_>> = delays.into_iter().collect();
+    all.context("a memory of the text is no delay of a fixed number of clocks")
+}
+
+/// More values than a counter of slots has.
+const MOST_SLOTS: usize = 1024;
+
+/// The clocks from write to read of each read port, for what write and read ports are given in the clocks of a period, which
+/// comes again and again.
+fn lags(course: &[&[u64]], reads: usize) -> Option<Vec<usize>> {
+    let period = course.len();
+    let lag = |read: usize, now: usize| {
+        (1..=period).find(|lag| course[(now + period - lag) % period][0] == course[now][1 + read])
+    };
+    let of_read = |read| {
+        let first = lag(read, 0)?;
+        (1..period).all(|now| lag(read, now) == Some(first)).then_some(first)
+    };
+    (0..reads).map(of_read).collect()
+}
+
+/// Finds the registers that hold a constant after a clock, of a reset or in which the results are taken, and the constants, and those that
+/// the ports of each memory are given in it where all bits are written; some registers are known before.
+fn constants(
+    module: &Module,
+    roles: &Roles,
+    rst_n: u64,
+    known: &HashMap<usize, u64>,
+) -> Result<Constants> {
+    let mut terms = Terms::default();
+    let mut held = module.power_up(&mut terms);
+    for (&at, &bits) in known {
+        held[at] = vec![terms.constant(bits, terms.width(held[at][0]))];
+    }
+    let input = |terms: &mut Terms, name: &str, width: u32| match roles.get(name) {
+        Some(Role::Reset) => terms.constant(rst_n, width),
+        Some(Role::OutReady) if rst_n == 1 => terms.constant(1, width),
+        _ => terms.unknown(width),
+    };
+    let any = |terms: &mut Terms, read: Read| module.memories[read.memory].any(terms);
+    let values = module.settle(&mut terms, &held, input, any)?;
+    let next = module.edge(&mut terms, &values);
+    let next = next.iter().enumerate().filter_map(|(at, columns)| match columns[..] {
+        [column] => Some((at, terms.constant_of(column)?)),
+        _ => None,
+    });
+    let next = next.collect();
+    let control = |memory: &Memory| {
+        let ports = memory.control(&mut terms, &values);
+        let addresses = 1 + memory.reads.len();
+        let ones = |&id: &Id| terms.constant_of(id) == Some(mask(terms.width(id)));
+        let written = ports[addresses..].iter().all(ones);
+        let constant = ports[..addresses].iter().map(|&id| terms.constant_of(id));
+        constant.collect::<Option<Vec<u64>>>().filter(|_| written)
+    };
+    let control = module.memories.iter().map(control).collect();
+    Ok((next, control))
+}
+
+struct Comparison<'p> {
+    design: &'p Design,
+    module: &'p Module,
+    roles: &'p Roles,
+    delays: &'p [Vec<usize>],
+    latency: usize,
+    terms: Terms,
+    /// The values of the inputs, by name and clock.
+    inputs: HashMap<(String, usize), Id>,
+    products: Vec<Product>,
+    solver: Solver<'p>,
+    proof: TextProof,
+}
+
+/// The operands come with a point, everything else is the handshake's.
+fn input(
+    terms: &mut Terms,
+    inputs: &mut HashMap<(String, usize), Id>,
+    name: &str,
+    role: Option<Role>,
+    width: u32,
+    clock: usize,
+) -> Id {
+    match role {
+        Some(Role::Reset | Role::OutReady) => terms.constant(1, width),
+        Some(Role::InValid) if clock == 0 => terms.constant(1, width),
+        _ => *inputs.entry((name.to_owned(), clock)).or_insert_with(|| terms.unknown(width)),
+    }
+}
+
+impl Comparison<'_> {
+    /// A clock in which `in_ready` is low changes nothing, and one in which it is high is one in which `out_ready` is.
+    fn stays(&mut self) -> Result<()> {
+        let has = |role| self.roles.values().any(|it| *it == role);
+        if !has(Role::OutReady) {
+            return Ok(());
+        }
+        let module = self.module;
+        let held = module.power_up(&mut self.terms);
+        let mut reads: HashMap<Read, Vec<Id>> = HashMap::new();
+        let mut clock = |it: &mut Self, out_ready: Option<u64>| -> Result<(Values, Held)> {
+            let (roles, inputs) = (it.roles, &mut it.inputs);
+            let input = |terms: &mut Terms, name: &str, width: u32| match roles.get(name) {
+                Some(Role::Reset) => terms.constant(1, width),
+                Some(Role::OutReady) if out_ready.is_some() => terms.constant(1, width),
+                // Of no clock of the point.
+                _ => *inputs
+                    .entry((name.to_owned(), usize::MAX))
+                    .or_insert_with(|| terms.unknown(width)),
+            };
+            let read = |terms: &mut Terms, read: Read| {
+                let any = || module.memories[read.memory].any(terms);
+                reads.entry(read).or_insert_with(any).clone()
+            };
+            let values = module.settle(&mut it.terms, &held, input, read)?;
+            let next = module.edge(&mut it.terms, &values);
+            Ok((values, next))
+        };
+        let (any, after_any) = clock(self, None)?;
+        let (taken, after_taken) = clock(self, Some(1))?;
+        let ready = self.roles.iter().find(|(_, role)| **role == Role::InReady);
+        let ready = ready.context("the pipeline has no output `in_ready`")?.0;
+        let shown = [&any, &taken].map(|it| module.shown(&mut self.terms, it).get(ready).copied());
+        let [Some(moves), Some(moved)] = shown else { bail!("the text has no output `{ready}`") };
+        let one = self.terms.constant(1, 1);
+        self.must_equal(None, moved, one, "a pipeline moves when its results are taken")?;
+        let why = "a clock in which no point moves";
+        for (before, after) in held.iter().flatten().zip(after_any.iter().flatten()) {
+            self.must_equal(Some((moves, false)), *before, *after, why)?;
+        }
+        for memory in &module.memories {
+            let ports = memory.control(&mut self.terms, &any);
+            for &enable in &ports[1 + memory.reads.len()..] {
+                let none = self.terms.constant(0, self.terms.width(enable));
+                self.must_equal(Some((moves, false)), enable, none, why)?;
+            }
+        }
+        let why = "a clock in which all points move";
+        for (one, other) in after_any.iter().flatten().zip(after_taken.iter().flatten()) {
+            self.must_equal(Some((moves, true)), *one, *other, why)?;
+        }
+        for memory in &module.memories {
+            let [one, other] = [&any, &taken].map(|it| {
+                let control = memory.control(&mut self.terms, it);
+                [control, memory.written(&mut self.terms, it)].concat()
+            });
+            for (one, other) in one.into_iter().zip(other) {
+                self.must_equal(Some((moves, true)), one, other, why)?;
+            }
+            // What a read gives is the same in both for the same address alone.
+            let [one, other] = [&any, &taken].map(|it| memory.control(&mut self.terms, it));
+            let reads = 1..=memory.reads.len();
+            if one[reads.clone()] != other[reads] {
+                let why = "a memory of the text is read by what is no register";
+                return ended(TextVerdict::Unread(why.to_owned()));
+            }
+        }
+        Ok(())
+    }
+
+    /// The outputs of netlist and text are the same when the results of a point are shown.
+    fn follows_a_point(&mut self) -> Result<()> {
+        let nets = self.netlist();
+        let module = self.module;
+        let mut held = module.power_up(&mut self.terms);
+        let mut written: Vec<Vec<Vec<Id>>> = Vec::new();
+        for clock in 0..=self.latency {
+            let (roles, inputs, delays) = (self.roles, &mut self.inputs, self.delays);
+            let input = |terms: &mut Terms, name: &str, width: u32| {
+                input(terms, inputs, name, roles.get(name).copied(), width, clock)
+            };
+            let read = |terms: &mut Terms, read: Read| {
+                let before = clock.checked_sub(delays[read.memory][read.port]);
+                match before {
+                    Some(before) => written[before][read.memory].clone(),
+                    None => module.memories[read.memory].any(terms),
+                }
+            };
+            let values = module.settle(&mut self.terms, &held, input, read)?;
+            if clock == self.latency {
+                return self.results(&values, &nets[clock]);
+            }
+            let terms = &mut self.terms;
+            written.push(module.memories.iter().map(|it| it.written(terms, &values)).collect());
+            held = module.edge(terms, &values);
+            self.register(&mut held, &nets[clock + 1])?;
+        }
+        Ok(())
+    }
+
+    /// Returns the term of every net of the netlist in each clock of a point.
+    fn netlist(&mut self) -> Vec<Vec<Id>> {
+        let design = self.design;
+        let execution = Execution::new(&mut self.terms, design);
+        let mut state = execution.power_up(&mut self.terms);
+        let mut nets = Vec::new();
+        for clock in 0..=self.latency {
+            let inputs = &mut self.inputs;
+            let values = execution.settle(
+                &mut self.terms,
+                &state,
+                |terms, net, role| {
+                    let (name, width) = (&design.net(net).name, design.width(net));
+                    input(terms, inputs, name, Some(role), width, clock)
+                },
+                &mut self.products,
+            );
+            state = execution.edge(&mut self.terms, &state, &values);
+            nets.push(values);
+        }
+        nets
+    }
+
+    /// Puts the terms of the netlist in the place of those that registers of the text hold and that are equal.
+    fn register(&mut self, held: &mut Held, nets: &[Id]) -> Result<()> {
+        let known: HashSet<Id> = nets.iter().copied().collect();
+        let cone = self.terms.cone(held.iter().flatten().chain(nets).copied());
+        // What does not depend on the point is of no use.
+        let mut ours: HashSet<Id> =
+            self.inputs.iter().filter(|((_, clock), _)| *clock == 0).map(|(_, id)| *id).collect();
+        for &id in &cone {
+            if self.terms.term(id).operands().iter().any(|it| ours.contains(it)) {
+                ours.insert(id);
+            }
+        }
+        let is_open = |it: &Id| ours.contains(it) && !known.contains(it);
+        let all = held.iter().flatten().filter(|it| ours.contains(it));
+        self.proof.registers += all.filter(|it| known.contains(it)).count();
+        if !held.iter().flatten().any(is_open) {
+            return Ok(());
+        }
+        let values: Vec<HashMap<Id, u64>> = samples(&self.terms, &cone).collect();
+        let key = |terms: &Terms, id: Id| {
+            let values: Vec<u64> = values.iter().map(|values| values[&id]).collect();
+            (terms.width(id), values)
+        };
+        let mut alike = HashMap::new();
+        for &net in nets {
+            if ours.contains(&net) {
+                alike.entry(key(&self.terms, net)).or_insert(net);
+            }
+        }
+        for column in held.iter_mut().flatten().filter(|it| is_open(it)) {
+            let Some(&net) = alike.get(&key(&self.terms, *column)) else { continue };
+            let equal = self.terms.equal(*column, net);
+            let differ = self.terms.not(equal);
+            if let Outcome::Unsatisfiable = self.ask(&[differ])? {
+                *column = net;
+                self.proof.registers += 1;
+            }
+        }
+        Ok(())
+    }
+
+    fn results(&mut self, values: &Values, nets: &[Id]) -> Result<()> {
+        let shown = self.module.shown(&mut self.terms, values);
+        for port in self.design.outputs().filter(|port| port.role != Role::InReady) {
+            let name = &self.design.net(port.net).name;
+            let own =
+                shown.get(name).with_context(|| format!("the text has no output `{name}`"))?;
+            self.must_equal(None, *own, nets[port.net.index()], &format!("`{name}`"))?;
+            self.proof.outputs += 1;
+        }
+        Ok(())
+    }
+
+    /// Ends the comparison unless two terms are equal, where a bit has a value.
+    fn must_equal(
+        &mut self,
+        condition: Option<(Id, bool)>,
+        one: Id,
+        other: Id,
+        what: &str,
+    ) -> Result<()> {
+        ensure!(self.terms.width(one) == self.terms.width(other), "{what} has another width");
+        let mut both = [one, other];
+        if let Some((bit, value)) = condition {
+            self.terms.assuming(bit, value, &mut both);
+        }
+        if both[0] == both[1] {
+            return Ok(());
+        }
+        let equal = self.terms.equal(both[0], both[1]);
+        let mut wanted = vec![self.terms.not(equal)];
+        if let Some((bit, value)) = condition {
+            wanted.push(if value { bit } else { self.terms.not(bit) });
+        }
+        if let Some(difference) = self.difference(&wanted, both, what, &HashMap::new()) {
+            return ended(TextVerdict::Different(difference));
+        }
+        match self.ask(&wanted)? {
+            Outcome::Unsatisfiable => Ok(()),
+            Outcome::Undecided(open) => ended(TextVerdict::Open(open)),
+            Outcome::Satisfiable(found) => {
+                let found = found.into_iter().collect();
+                match self.difference(&wanted, both, what, &found) {
+                    Some(difference) => ended(TextVerdict::Different(difference)),
+                    None => ended(TextVerdict::Open(Open::Unknown)),
+                }
+            }
+        }
+    }
+
+    fn ask(&mut self, wanted: &[Id]) -> Result<Outcome> {
+        match self.solver.ask(&mut self.terms, wanted, &self.products, false)? {
+            Outcome::Unsatisfiable => Ok(Outcome::Unsatisfiable),
+            _ => self.solver.ask(&mut self.terms, wanted, &self.products, true),
+        }
+    }
+
+    /// Values of the unknowns for which terms are 1, in words: those that were found, or some at random.
+    fn difference(
+        &self,
+        wanted: &[Id],
+        [one, other]: [Id; 2],
+        what: &str,
+        found: &HashMap<Id, u64>,
+    ) -> Option<String> {
+        let cone = self.terms.cone(wanted.iter().copied().chain([one, other]));
+        let number = |&id: &Id| match *self.terms.term(id) {
+            Term::Unknown(number) => Some((number, found.get(&id).copied())),
+            _ => None,
+        };
+        let found: HashMap<u32, Option<u64>> = cone.iter().filter_map(number).collect();
+        let chosen = |number: u32| found.get(&number).copied().flatten();
+        let solved = self.terms.values(&cone, |number| chosen(number).unwrap_or(0));
+        let values = samples(&self.terms, &cone).chain([solved]);
+        let values = values.into_iter().find(|values| wanted.iter().all(|it| values[it] == 1))?;
+        let inputs = self
+            .inputs
+            .iter()
+            .filter(|((_, clock), id)| [0, usize::MAX].contains(clock) && values.contains_key(id));
+        let mut inputs: Vec<String> =
+            inputs.map(|((name, _), id)| format!(" {name}={:#x}", values[id])).collect();
+        inputs.sort();
+        Some(format!(
+            "{what}: {:#x} in the text and {:#x} in the netlist for{}",
+            values[&one],
+            values[&other],
+            inputs.concat()
+        ))
+    }
+}

@@ -1,0 +1,119 @@
+//! One point through both cores, as their netlists are evaluated.
+
+use anyhow::{Context, Result, bail};
+
+use glint_rtl::netlist::{Design, Interpreter, NetId, Role};
+
+/// More clocks than a computation takes.
+const MOST_CLOCKS: usize = 8192;
+
+/// A pipeline and its sequential core, and what they have in common.
+pub struct Pair<'a> {
+    pub sequential: &'a Design,
+    pub pipeline: &'a Design,
+    /// The operands by name.
+    pub operands: Vec<String>,
+    /// Each output of both by name, in the pipeline and in the core.
+    pub outputs: Vec<(String, NetId, NetId)>,
+    /// Clocks from a point to its results.
+    pub latency: usize,
+}
+
+impl<'a> Pair<'a> {
+    /// # Errors
+    /// The second is no pipeline, or one has a port that the other lacks.
+    pub fn new(sequential: &'a Design, pipeline: &'a Design) -> Result<Self> {
+        let stages = pipeline.pipeline.as_ref().context("the design is no pipeline")?;
+        let names = |design: &Design, wanted: fn(Role) -> bool| {
+            let ports = design.ports.iter().filter(|port| wanted(port.role));
+            let names = ports.map(|port| (design.net(port.net).name.clone(), port.net));
+            names.collect::<Vec<_>>()
+        };
+        let operands = names(pipeline, |role| role == Role::Point);
+        let known = names(sequential, |role| matches!(role, Role::Operand { .. }));
+        let [mut one, mut other] =
+            [&operands, &known].map(|ports| ports.iter().map(|(name, _)| name).collect::<Vec<_>>());
+        one.sort();
+        other.sort();
+        if one != other {
+            bail!("the cores have different operands");
+        }
+        let is_output = |role| matches!(role, Role::Result | Role::Status);
+        let outputs = names(pipeline, is_output)
+            .into_iter()
+            .map(|(name, net)| {
+                let same = sequential.find(&name);
+                let same =
+                    same.with_context(|| format!("the sequential core has no output `{name}`"))?;
+                Ok((name, net, same))
+            })
+            .collect::<Result<_>>()?;
+        Ok(Self {
+            sequential,
+            pipeline,
+            operands: operands.into_iter().map(|(name, _)| name).collect(),
+            outputs,
+            latency: stages.stages.len(),
+        })
+    }
+
+    /// The bit patterns of the outputs, of the sequential core and of the pipeline, for those of the operands.
+    ///
+    /// # Errors
+    /// No result is shown.
+    pub fn outputs(&self, operands: &[u64]) -> Result<[Vec<u64>; 2]> {
+        Ok([self.of_sequential(operands)?, self.of_pipeline(operands)?])
+    }
+
+    fn of_sequential(&self, operands: &[u64]) -> Result<Vec<u64>> {
+        let design = self.sequential;
+        let valid = design.handshake()?.valid;
+        let mut core = interpreter(design)?;
+        let inputs = |rst_n: u64, start: u64| self.inputs(design, operands, rst_n, start);
+        for (rst_n, start) in [(0, 0), (1, 1)] {
+            core.settle(&inputs(rst_n, start));
+            core.edge();
+        }
+        for _ in 0..MOST_CLOCKS {
+            core.settle(&inputs(1, 0));
+            if core.value(valid) == 1 {
+                return Ok(self.outputs.iter().map(|&(_, _, net)| core.value(net)).collect());
+            }
+            core.edge();
+        }
+        bail!("the sequential core shows no result")
+    }
+
+    fn of_pipeline(&self, operands: &[u64]) -> Result<Vec<u64>> {
+        let design = self.pipeline;
+        let mut core = interpreter(design)?;
+        core.settle(&self.inputs(design, operands, 0, 0));
+        core.edge();
+        for clock in 0..self.latency {
+            core.settle(&self.inputs(design, operands, 1, u64::from(clock == 0)));
+            core.edge();
+        }
+        core.settle(&self.inputs(design, operands, 1, 0));
+        Ok(self.outputs.iter().map(|&(_, net, _)| core.value(net)).collect())
+    }
+
+    /// Returns the values of the inputs; `now` in the clock that takes the point.
+    fn inputs(&self, design: &Design, operands: &[u64], rst_n: u64, now: u64) -> Vec<u64> {
+        let inputs = design.inputs().map(|port| match port.role {
+            Role::Reset => rst_n,
+            Role::Start | Role::Strobe | Role::InValid => now,
+            Role::OutReady => 1,
+            _ => {
+                let name = &design.net(port.net).name;
+                let at = self.operands.iter().position(|operand| operand == name);
+                at.map_or(0, |at| operands[at])
+            }
+        });
+        inputs.collect()
+    }
+}
+
+fn interpreter(design: &Design) -> Result<Interpreter<'_>> {
+    let interpreter = Interpreter::new(design);
+    interpreter.map_err(|_| anyhow::anyhow!("`{}` has a combinational loop", design.name))
+}

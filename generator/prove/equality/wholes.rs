@@ -1,0 +1,62 @@
+//! Finds the nets that may carry a product that was put together from parts.
+
+use std::collections::HashMap;
+
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{RngCore, SeedableRng};
+
+use super::term::{Id, Terms};
+use glint_base::fixed::MAX_WIDTH;
+
+/// Numbers at random by which terms that may be equal are found.
+const SAMPLES: usize = 4;
+
+/// Values of terms for numbers at random in place of the unknowns: terms that may be equal.
+pub struct Candidates {
+    values: Vec<HashMap<Id, u64>>,
+    /// The first net of these values, extended by zeros or by its sign bit.
+    nets: HashMap<Vec<u64>, Id>,
+}
+
+impl Candidates {
+    pub fn new<'i>(terms: &Terms, nets: &'i [Id], others: impl Iterator<Item = &'i Id>) -> Self {
+        let cone = terms.cone(nets.iter().chain(others).copied());
+        let values: Vec<HashMap<Id, u64>> = samples(terms, &cone).collect();
+        let mut known = HashMap::new();
+        for signed in [false, true] {
+            for &net in nets {
+                let drop = MAX_WIDTH - terms.width(net);
+                let number =
+                    |bits: u64| if signed { ((bits << drop) as i64 >> drop) as u64 } else { bits };
+                let key = values.iter().map(|values| number(values[&net])).collect();
+                known.entry(key).or_insert(net);
+            }
+        }
+        Self { values, nets: known }
+    }
+
+    /// A net that has the values of a term of 64 bits, extended to as many.
+    pub fn of(&self, id: Id) -> Option<Id> {
+        let key: Vec<u64> = self.values.iter().map(|values| values[&id]).collect();
+        self.nets.get(&key).copied()
+    }
+}
+
+/// Whether two terms of one width have the same values for numbers at random.
+pub fn agree(terms: &Terms, one: Id, other: Id) -> bool {
+    let cone = terms.cone([one, other]);
+    terms.width(one) == terms.width(other)
+        && samples(terms, &cone).all(|values| values[&one] == values[&other])
+}
+
+/// Values of a cone's terms for numbers at random in place of the unknowns.
+pub fn samples(terms: &Terms, cone: &[Id]) -> impl Iterator<Item = HashMap<Id, u64>> {
+    let mut random = ChaCha8Rng::seed_from_u64(2);
+    (0..SAMPLES).map(move |_| {
+        let key = random.next_u64();
+        terms.values(cone, |number| {
+            let mut one = ChaCha8Rng::seed_from_u64(key ^ u64::from(number));
+            one.next_u64()
+        })
+    })
+}

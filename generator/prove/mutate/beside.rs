@@ -1,0 +1,222 @@
+//! A search for a point that shows a fault of a pipeline.
+//!
+//! What a pipeline has and its core has not, such as the parts of a product, may show in a result only when a carry runs
+//! through all bits that are then dropped, and only with some values of the other operands: too seldom for points at random.
+//! The pipeline is therefore simulated beside the mutant, with a point a clock in every lane. Points that make a register
+//! differ are kept, those most that do it in a late stage, and new ones are made of them by a change of one operand. What the
+//! golden model predicts is seen to differ at last, or nothing is found, which proves nothing.
+
+use std::sync::Arc;
+
+use anyhow::{Context, Result};
+
+use super::coverage::Operands;
+use glint_base::fixed::mask;
+use glint_core::cosim::Random;
+use glint_golden::{Contract, Operand};
+use glint_rtl::netlist::{Design, NetId, Pipeline, Role};
+use glint_rtl::sim::{Machine, Program};
+
+const LANES: usize = 64;
+
+/// Clocks of a search, each with a point in every lane.
+const CLOCKS: usize = 1 << 16;
+
+/// Points that differ where the golden model predicts a value, and are not confirmed: after so many the search ends. A
+/// value is predicted only of points that come to its microinstruction.
+const TRIES: usize = 32;
+
+/// Points that are kept.
+const KEPT: usize = 32;
+
+const SEED: u64 = 4;
+
+/// The pipeline without a fault.
+pub(super) struct PointSearch {
+    sound: Arc<Program>,
+    /// How many inputs there are, and which are high after a clock of reset: a point comes and one goes on every clock.
+    inputs: usize,
+    high: Vec<usize>,
+    /// The operands of the contract with their places among the inputs.
+    operands: Vec<(usize, Operand)>,
+    /// From the operands to the results.
+    stages: Vec<Stage>,
+}
+
+/// The nets of a stage.
+#[derive(Clone, Default)]
+struct Stage {
+    registers: Vec<NetId>,
+    /// The nets that the golden model predicts.
+    predicted: Vec<NetId>,
+}
+
+/// Raw values of the operands.
+type Point = Vec<i64>;
+
+impl PointSearch {
+    /// # Errors
+    /// A pipeline that is not of this contract, or cannot be simulated.
+    pub(super) fn new(
+        sound: &Design,
+        pipeline: &Pipeline,
+        contract: &dyn Contract,
+    ) -> Result<Self> {
+        let place = |role: Role| sound.inputs().position(|port| port.role == role);
+        let operands = contract.operands().iter().map(|operand| {
+            let mut inputs = sound.inputs();
+            let at = inputs.position(|port| sound.net(port.net).name == operand.name);
+            Ok((at.with_context(|| format!("no operand `{}`", operand.name))?, operand.clone()))
+        });
+        let mut stages = vec![Stage::default(); pipeline.stages.len() + 1];
+        for register in sound.registers.iter().filter(|it| !pipeline.handshake.contains(&it.q)) {
+            stages[pipeline.clock_of(register.q)].registers.push(register.q);
+        }
+        for checkpoint in &pipeline.checkpoints {
+            stages[pipeline.clock_of(checkpoint.net)].predicted.push(checkpoint.net);
+        }
+        let results = sound.outputs().filter(|port| port.role == Role::Result);
+        stages[pipeline.stages.len()].predicted.extend(results.map(|port| port.net));
+        Ok(Self {
+            sound: Arc::new(Program::new(sound)?),
+            inputs: sound.inputs().count(),
+            high: [Role::Reset, Role::InValid, Role::OutReady]
+                .into_iter()
+                .filter_map(place)
+                .collect(),
+            operands: operands.collect::<Result<_>>()?,
+            stages,
+        })
+    }
+
+    /// Returns `confirm`'s result for the first point that differs where the golden model predicts a value; none if no such point
+    /// is found, or it confirms none.
+    ///
+    /// # Errors
+    /// As of `confirm`; a mutant that cannot be simulated.
+    pub(super) fn search<T>(
+        &self,
+        mutant: &Design,
+        confirm: impl Fn(Operands) -> Result<Option<T>>,
+    ) -> Result<Option<T>> {
+        let mut sound = Machine::<LANES>::new(self.sound.clone());
+        let mut mutant = Machine::<LANES>::new(Arc::new(Program::new(mutant)?));
+        let mut random = Random::new(SEED);
+        let mut inputs = vec![[0; LANES]; self.inputs];
+        let mut kept = Kept::default();
+        let mut tries = 0;
+        // The points in the stages, by the clock in which they came.
+        let mut points = vec![vec![Point::new(); LANES]; self.stages.len()];
+        for machine in [&mut sound, &mut mutant] {
+            machine.update(false, Some(&inputs));
+            machine.update(true, None);
+        }
+        self.high.iter().for_each(|&at| inputs[at] = [1; LANES]);
+        for clock in 0..CLOCKS {
+            for (lane, point) in points[clock % self.stages.len()].iter_mut().enumerate() {
+                self.draw(&mut random, &kept, point);
+                for ((at, operand), &raw) in self.operands.iter().zip(point.iter()) {
+                    inputs[*at][lane] = raw as u64 & mask(operand.format.width());
+                }
+            }
+            for machine in [&mut sound, &mut mutant] {
+                machine.update(false, Some(&inputs));
+            }
+            for (depth, stage) in self.stages.iter().enumerate().take(clock + 1) {
+                let points = &points[(clock - depth) % self.stages.len()];
+                for lane in differing(&sound, &mutant, &stage.registers) {
+                    kept.keep(depth, &points[lane], &mut random);
+                }
+                for lane in differing(&sound, &mutant, &stage.predicted).take(1) {
+                    let confirmed = confirm(self.named(&points[lane]))?;
+                    tries += 1;
+                    if confirmed.is_some() || tries == TRIES {
+                        return Ok(confirmed);
+                    }
+                }
+            }
+            for machine in [&mut sound, &mut mutant] {
+                machine.update(true, None);
+            }
+        }
+        Ok(None)
+    }
+
+    /// A new point, or one that is kept with another value of one operand.
+    fn draw(&self, random: &mut Random, kept: &Kept, point: &mut Point) {
+        let parent = kept.any(random).filter(|_| !random.once_in(4));
+        point.clear();
+        if let Some(parent) = parent {
+            point.extend(parent);
+            let at = random.below(point.len() as u64) as usize;
+            let (_, operand) = &self.operands[at];
+            point[at] = if random.once_in(2) {
+                value(random, operand)
+            } else {
+                flipped(random, operand, point[at])
+            };
+        } else {
+            point.extend(self.operands.iter().map(|(_, operand)| value(random, operand)));
+        }
+    }
+
+    fn named(&self, point: &Point) -> Operands {
+        let pairs = self.operands.iter().zip(point);
+        pairs.map(|((_, operand), &raw)| (operand.name.clone(), raw)).collect()
+    }
+}
+
+/// A raw value of an operand: of its domain, with a single bit set (a bit that is stuck is then the only one), or any.
+fn value(random: &mut Random, operand: &Operand) -> i64 {
+    let format = operand.format;
+    match random.below(8) {
+        0 => random.within(format.min_raw() as i64, format.max_raw() as i64),
+        1 | 2 => flipped(random, operand, 0),
+        _ => random.of_domain(operand.domain),
+    }
+}
+
+/// A raw value with one bit inverted.
+fn flipped(random: &mut Random, Operand { format, .. }: &Operand, raw: i64) -> i64 {
+    format.raw(raw as u64 ^ 1 << random.below(format.width().into())) as i64
+}
+
+/// The lanes in which any of these nets differs.
+fn differing<'m>(
+    sound: &Machine<LANES>,
+    mutant: &'m Machine<LANES>,
+    nets: &[NetId],
+) -> impl Iterator<Item = usize> + use<'m> {
+    let expected: Vec<[u64; LANES]> = nets.iter().map(|&net| sound.lanes(net)).collect();
+    let differences = mutant.differences(nets, &expected, None);
+    (0..LANES).filter(move |&lane| differences[lane] != 0)
+}
+
+/// The points that make registers differ in the latest stage so far.
+#[derive(Default)]
+struct Kept {
+    depth: usize,
+    points: Vec<Point>,
+}
+
+impl Kept {
+    fn keep(&mut self, depth: usize, point: &Point, random: &mut Random) {
+        if depth < self.depth {
+            return;
+        }
+        if depth > self.depth {
+            (self.depth, self.points) = (depth, Vec::new());
+        }
+        if self.points.len() < KEPT {
+            self.points.push(point.clone());
+        } else if random.once_in(KEPT as u64) {
+            let at = random.below(KEPT as u64) as usize;
+            self.points[at].clone_from(point);
+        }
+    }
+
+    fn any(&self, random: &mut Random) -> Option<&Point> {
+        let at = random.below(self.points.len().max(1) as u64);
+        self.points.get(at as usize)
+    }
+}

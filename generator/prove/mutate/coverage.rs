@@ -1,0 +1,138 @@
+//! Records where a test reads each word of a table, so that a fault in a word need not be looked for all over the
+//! test.
+
+use anyhow::Result;
+
+use glint_base::cone;
+use glint_core::cosim::Lockstep;
+use glint_rtl::netlist::{Design, Driver, NetId, Register, RegisterKind, Role, RomId};
+use glint_rtl::sim::Simulator;
+
+/// Places that are kept of each word.
+const PLACES: usize = 6;
+
+/// Raw values of operands, by name.
+pub(super) type Operands = Vec<(String, i64)>;
+
+/// A place in a test.
+#[derive(Clone)]
+pub(super) struct Place {
+    /// The seed of the stream.
+    pub(super) seed: u64,
+    /// The results in it up to there.
+    pub(super) points: u64,
+    /// The contents of the operand registers.
+    operands: Vec<u64>,
+}
+
+/// For each ROM and word, the first places at which it is read.
+pub(super) struct Coverage {
+    places: Vec<Vec<Vec<Place>>>,
+    /// The operand registers.
+    operands: Vec<NetId>,
+}
+
+/// The places of one stream.
+struct Watch<'a> {
+    seed: u64,
+    /// For each ROM its address, and the word of the latest clock.
+    addresses: Vec<(NetId, u64)>,
+    operands: &'a [NetId],
+    places: Vec<Vec<Vec<Place>>>,
+}
+
+impl<'a> Watch<'a> {
+    fn new(design: &Design, operands: &'a [NetId], seed: u64) -> Self {
+        let roms = design.roms.iter();
+        Self {
+            seed,
+            addresses: roms.clone().map(|rom| (rom.address, u64::MAX)).collect(),
+            operands,
+            places: roms.map(|rom| vec![Vec::new(); rom.words.len()]).collect(),
+        }
+    }
+
+    fn note(&mut self, points: u64, simulator: &Simulator) {
+        for ((address, latest), places) in self.addresses.iter_mut().zip(&mut self.places) {
+            let word = simulator.value(*address);
+            if std::mem::replace(latest, word) == word {
+                continue;
+            }
+            if let Some(places) = places.get_mut(word as usize)
+                && places.len() < PLACES
+                && places.last().is_none_or(|latest| latest.points < points)
+            {
+                let operands = self.operands.iter();
+                places.push(Place {
+                    seed: self.seed,
+                    points,
+                    operands: operands.map(|&net| simulator.value(net)).collect(),
+                });
+            }
+        }
+    }
+}
+
+impl Coverage {
+    /// Records a run of `points` results.
+    ///
+    /// # Errors
+    /// A design that cannot be simulated.
+    pub(super) fn of(design: &Design, lockstep: &Lockstep<'_>, points: u64) -> Result<Self> {
+        let operands: Vec<NetId> = design
+            .registers
+            .iter()
+            .filter(|register| register.kind == RegisterKind::Operand)
+            .map(|register| register.q)
+            .collect();
+        let begin = |seed| Watch::new(design, &operands, seed);
+        let streams = lockstep.watch(points, begin, Watch::note)?;
+        let roms = design.roms.iter();
+        let mut all: Vec<Vec<Vec<Place>>> =
+            roms.map(|rom| vec![Vec::new(); rom.words.len()]).collect();
+        for stream in streams {
+            let words = all.iter_mut().flatten().zip(stream.places.into_iter().flatten());
+            for (all, places) in words {
+                let room = PLACES - all.len();
+                all.extend(places.into_iter().take(room));
+            }
+        }
+        Ok(Self { places: all, operands })
+    }
+
+    /// Where a word is read.
+    pub(super) fn places(&self, rom: RomId, word: usize) -> &[Place] {
+        &self.places[rom.index()][word]
+    }
+
+    /// The operands of a computation that reads a word, at each place.
+    pub(super) fn operands(
+        &self,
+        design: &Design,
+        rom: RomId,
+        word: usize,
+    ) -> impl Iterator<Item = Operands> {
+        self.places(rom, word).iter().map(|place| {
+            let operands = self.operands.iter().zip(&place.operands);
+            let raw = operands.filter_map(|(&net, &bits)| {
+                let Driver::Register(register) = design.net(net).driver else { return None };
+                let name = operand_of(design, design.register(register))?;
+                Some((name.to_owned(), design.net(net).format.raw(bits) as i64))
+            });
+            raw.collect()
+        })
+    }
+}
+
+/// The operand that a register holds, which it takes from a port or from the buffer behind it.
+pub(super) fn operand_of<'d>(design: &'d Design, register: &Register) -> Option<&'d str> {
+    let before = |net: NetId| match &design.net(net).driver {
+        Driver::Op(op) => op.operands(),
+        Driver::Register(buffer) => design.register(*buffer).data.into_iter().collect(),
+        _ => Vec::new(),
+    };
+    let taken = cone::reached(register.data, before);
+    let mut operands = design.ports.iter().filter(|it| matches!(it.role, Role::Operand { .. }));
+    let port = operands.find(|port| taken.contains(&port.net))?;
+    Some(&design.net(port.net).name)
+}

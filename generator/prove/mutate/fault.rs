@@ -1,0 +1,242 @@
+//! The faults of a design, each with a name that stays the same.
+
+use std::collections::BTreeSet;
+
+use super::kind::FaultKind;
+use super::operators;
+use glint_base::fixed::mask;
+use glint_core::cosim::Random;
+use glint_rtl::netlist::{Design, Driver, Net, NetId, Op, RegId, Role, RomId};
+
+/// A ROM of at most so many words has all pairs of its words swapped, and one of at most so many bits
+/// each of them inverted.
+const ALL_WORDS: usize = 32;
+const ALL_BITS: usize = 1024;
+
+/// The number of pairs of words, and of bits, that are drawn of larger ROMs; about as many neighbours are
+/// swapped.
+const SAMPLE: usize = 200;
+const SAMPLED_BITS: usize = 200;
+const NEIGHBOURS: usize = 256;
+
+/// The change of a bit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Bit {
+    /// It is always 0.
+    Stuck0,
+    /// It is always 1.
+    Stuck1,
+    /// It is inverted.
+    Inverted,
+}
+
+impl Bit {
+    /// All that can be done to a bit.
+    pub const ALL: [Self; 3] = [Self::Stuck0, Self::Stuck1, Self::Inverted];
+
+    /// `bits` with bit number `bit` at fault.
+    pub fn applied(self, bits: u64, bit: u32) -> u64 {
+        match self {
+            Self::Stuck0 => bits & !(1 << bit),
+            Self::Stuck1 => bits | 1 << bit,
+            Self::Inverted => bits ^ 1 << bit,
+        }
+    }
+}
+
+/// Where a fault is, and what it does there.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Site {
+    /// A bit of a net.
+    Bit(NetId, u32, Bit),
+    /// Another driver of a net that is no state.
+    Driver(NetId, Driver),
+    /// A register that takes its data always (`true`) or never.
+    Enable(RegId, bool),
+    /// A register without its reset.
+    Reset(RegId),
+    /// Other words of a ROM, by address.
+    Words(RomId, Vec<(usize, u64)>),
+}
+
+/// One fault.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fault {
+    /// Made of the names in the design: `adder15[3]:stuck-at-0`. No two faults of a design have the same.
+    pub id: String,
+    /// The kind of the fault.
+    pub kind: FaultKind,
+    /// Where.
+    pub site: Site,
+}
+
+/// The faults of a design.
+#[derive(Clone, Debug, Default)]
+pub struct Faults(Vec<Fault>);
+
+impl Faults {
+    /// All faults, but of large ROMs a sample that is always the same.
+    pub fn of(design: &Design) -> Self {
+        let mut faults = Self::default();
+        // The environment's part, and what the fields of the control word name bit by bit.
+        let reset = design.port(|role| role == Role::Reset).map(|port| port.net);
+        let control = design.roms.get(design.control.rom.index()).map(|rom| rom.data);
+        let left_out = [reset, control];
+        for (id, net) in design.iter() {
+            if !left_out.contains(&Some(id)) {
+                faults.bits(id, net);
+            }
+            match &net.driver {
+                Driver::Constant(bits) => faults.constant(id, net, *bits),
+                Driver::Op(op) => faults.cell(design, id, op),
+                _ => {}
+            }
+        }
+        for at in 0..design.registers.len() as u32 {
+            faults.register(design, RegId(at));
+        }
+        for at in 0..design.roms.len() as u32 {
+            faults.rom(design, RomId(at));
+        }
+        faults
+    }
+
+    /// In an order that stays the same.
+    pub fn iter(&self) -> impl Iterator<Item = &Fault> {
+        self.0.iter()
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// The fault of that id.
+    pub fn find(&self, id: &str) -> Option<&Fault> {
+        self.0.iter().find(|fault| fault.id == id)
+    }
+
+    fn add(&mut self, id: String, kind: FaultKind, site: Site) {
+        self.0.push(Fault { id, kind, site });
+    }
+
+    /// Bits of everything but a constant, which is at fault as a whole, and another name of a net.
+    fn bits(&mut self, id: NetId, net: &Net) {
+        if matches!(net.driver, Driver::Constant(_) | Driver::Undriven | Driver::Op(Op::Relabel(_)))
+        {
+            return;
+        }
+        for bit in 0..net.format.width() {
+            for how in Bit::ALL {
+                let (name, kind) = match how {
+                    Bit::Stuck0 => ("stuck-at-0", FaultKind::StuckAt0),
+                    Bit::Stuck1 => ("stuck-at-1", FaultKind::StuckAt1),
+                    Bit::Inverted => ("inverted", FaultKind::Inverted),
+                };
+                let id_text = format!("{}[{bit}]:{name}", net.name);
+                self.add(id_text, kind, Site::Bit(id, bit, how));
+            }
+        }
+    }
+
+    fn constant(&mut self, id: NetId, net: &Net, bits: u64) {
+        let width = net.format.width();
+        let mut others = BTreeSet::new();
+        for (name, other) in [("plus-1", bits.wrapping_add(1)), ("minus-1", bits.wrapping_sub(1))] {
+            let other = other & mask(width);
+            if others.insert(other) {
+                let site = Site::Driver(id, Driver::Constant(other));
+                self.add(format!("{}:{name}", net.name), FaultKind::Constant, site);
+            }
+        }
+    }
+
+    fn cell(&mut self, design: &Design, id: NetId, op: &Op) {
+        for (name, kind, op) in operators::of(design, id, op) {
+            let site = Site::Driver(id, Driver::Op(op));
+            self.add(format!("{}:{name}", design.net(id).name), kind, site);
+        }
+    }
+
+    fn register(&mut self, design: &Design, id: RegId) {
+        let register = design.register(id);
+        let name = &design.net(register.q).name;
+        if register.enable.is_some() {
+            for (how, always) in [("always-enabled", true), ("never-enabled", false)] {
+                self.add(format!("{name}:{how}"), FaultKind::Enable, Site::Enable(id, always));
+            }
+        }
+        if register.reset.is_some() {
+            self.add(format!("{name}:no-reset"), FaultKind::Reset, Site::Reset(id));
+        }
+    }
+
+    fn rom(&mut self, design: &Design, id: RomId) {
+        let rom = design.rom(id);
+        let control = id == design.control.rom;
+        let (width, words) = (design.width(rom.data), &rom.words);
+        let mut random = Random::new(1);
+        let total = words.len() * width as usize;
+        let bits: BTreeSet<usize> = if control || total <= ALL_BITS {
+            (0..total).collect()
+        } else {
+            std::iter::repeat_with(|| random.below(total as u64) as usize)
+                .take(SAMPLED_BITS)
+                .collect()
+        };
+        for at in bits {
+            let (word, bit) = (at / width as usize, at % width as usize);
+            let kind = match control {
+                true => FaultKind::ControlBit,
+                false if 2 * bit >= width as usize => FaultKind::RomHighBit,
+                false => FaultKind::RomBit,
+            };
+            let site = Site::Words(id, vec![(word, words[word] ^ 1 << bit)]);
+            let id_text = if control {
+                format!("{}@{word}.{}", rom.name, field_bit(design, bit as u32))
+            } else {
+                format!("{}@{word}[{bit}]", rom.name)
+            };
+            self.add(id_text, kind, site);
+        }
+        for (a, b) in pairs(words, &mut random) {
+            let kind = if control { FaultKind::ControlWords } else { FaultKind::RomWords };
+            let site = Site::Words(id, vec![(a, words[b]), (b, words[a])]);
+            self.add(format!("{}@{a},{b}", rom.name), kind, site);
+        }
+    }
+}
+
+/// Pairs of words that differ: all of a small ROM, neighbours and a sample of a large one.
+fn pairs(words: &[u64], random: &mut Random) -> BTreeSet<(usize, usize)> {
+    let mut pairs = BTreeSet::new();
+    if words.len() <= ALL_WORDS {
+        pairs.extend((0..words.len()).flat_map(|b| (0..b).map(move |a| (a, b))));
+    } else {
+        let step = words.len().div_ceil(NEIGHBOURS);
+        pairs.extend((1..words.len()).step_by(step).map(|b| (b - 1, b)));
+        let mut draw = || random.below(words.len() as u64) as usize;
+        // Words that are all alike have no such pair.
+        let sample = std::iter::repeat_with(|| (draw(), draw())).take(100 * SAMPLE);
+        let differ = |&(a, b): &(usize, usize)| a < b && words[a] != words[b];
+        pairs.extend(sample.filter(differ).take(SAMPLE));
+    }
+    pairs.retain(|&(a, b)| words[a] != words[b]);
+    pairs
+}
+
+/// The field of the control word that holds a bit, and which of its bits that is.
+fn field_bit(design: &Design, bit: u32) -> String {
+    let fields = design.control.fields.iter().zip(design.field_positions());
+    let mut holding =
+        fields.filter(|(field, low)| (*low..low + design.width(field.net)).contains(&bit));
+    match holding.next() {
+        Some((field, low)) => format!("{}[{}]", field.name, bit - low),
+        None => format!("[{bit}]"),
+    }
+}

@@ -1,0 +1,101 @@
+//! Operands that lead to a word of a table.
+//!
+//! What one value in a million shows is not left to chance. Operands are held where the word at fault is read,
+//! and the others drawn; where an operand is the address, all values of the others that determine `f` are
+//! tried.
+
+use anyhow::Result;
+
+use super::coverage::{Operands, operand_of};
+use super::verdict::Difference;
+use glint_core::core::Core;
+use glint_core::cosim::Lockstep;
+use glint_core::cosim::exhaustive::Clocks;
+use glint_rtl::netlist::{Design, Driver, RegisterKind, RomId};
+
+/// Results that are looked at with operands held.
+const POINTS: u64 = 1 << 17;
+
+/// And with all operands held.
+const FEW_POINTS: u64 = 64;
+
+/// The seed with which the others are drawn.
+const SEED: u64 = 3;
+
+/// All values of operands are tried if they have no more bits than this.
+const MOST_BITS: u32 = 22;
+
+/// The operand whose register addresses a ROM, held at a word.
+pub(super) fn addressing(core: &Core, rom: RomId, word: usize) -> Option<Operands> {
+    let design = &core.design;
+    let net = design.net(design.rom(rom).address);
+    let Driver::Register(id) = net.driver else {
+        return None;
+    };
+    let register = Some(design.register(id)).filter(|it| it.kind == RegisterKind::Operand)?;
+    Some(vec![(operand_of(design, register)?.to_owned(), word as i64)])
+}
+
+/// The first difference while these operands are held and the others drawn.
+///
+/// # Errors
+/// The mutant cannot be simulated.
+pub(super) fn drawn(core: &Core, mutant: &Design, held: Operands) -> Result<Option<Difference>> {
+    let mismatch = lockstep(core, mutant, &held)?.run(POINTS, &|_| ())?.mismatch;
+    Ok(mismatch.map(|mismatch| Difference { held, mismatch }))
+}
+
+/// Runs a few points at which all operands are held.
+///
+/// # Errors
+/// The mutant cannot be simulated.
+pub(super) fn alone(core: &Core, mutant: &Design, held: Operands) -> Result<Option<Difference>> {
+    let mismatch = lockstep(core, mutant, &held)?.run_alone(FEW_POINTS)?.mismatch;
+    Ok(mismatch.map(|mismatch| Difference { held, mismatch }))
+}
+
+fn lockstep<'a>(core: &'a Core, mutant: &'a Design, held: &Operands) -> Result<Lockstep<'a>> {
+    let model = core.device.golden(&core.config);
+    Ok(Lockstep::new(mutant, model, core.contract.as_ref(), SEED)?.holding(held))
+}
+
+/// The result of a run through the other operands that determine `f`.
+pub(super) enum Tried {
+    /// They have too many values.
+    Nothing,
+    /// All of them, and no register and no output differs on any clock.
+    All,
+    /// With these operands something does.
+    Differs(Operands),
+}
+
+/// Tries all values of the operands that determine `f` while these are held.
+///
+/// # Errors
+/// The mutant cannot be simulated.
+pub(super) fn all(core: &Core, mutant: &Design, mut held: Operands) -> Result<Tried> {
+    let contract = core.contract.as_ref();
+    if contract.length().is_some() {
+        return Ok(Tried::Nothing);
+    }
+    // A colour shows what f is; the register of f is compared.
+    let colours = contract.operands().iter().filter(|it| it.colour);
+    held.extend(colours.map(|it| (it.name.clone(), it.domain.1)));
+    let model = core.device.golden(&core.config);
+    let clocks = Clocks::new(mutant, model, contract)?.holding(&held);
+    if clocks.bits() > MOST_BITS {
+        return Ok(Tried::Nothing);
+    }
+    Ok(match clocks.check((0..clocks.blocks()).collect(), &|_| ())? {
+        None => Tried::All,
+        Some(place) => {
+            let bits = clocks.difference(place)?.operands;
+            let raw = |(name, bits): (String, u64)| {
+                let mut operands = contract.operands().iter();
+                let operand = operands.find(|it| it.name == name)?;
+                Some((name, operand.format.raw(bits) as i64))
+            };
+            Tried::Differs(bits.into_iter().filter_map(raw).collect())
+        }
+    })
+}

@@ -1,0 +1,95 @@
+//! Faults of a cell as a whole.
+
+use super::kind::FaultKind;
+use glint_rtl::netlist::{Design, Driver, NetId, Op};
+
+/// The wrong cells in the place of the one that drives `id`, each with a name and a kind.
+pub(super) fn of(design: &Design, id: NetId, op: &Op) -> Vec<(String, FaultKind, Op)> {
+    let width = design.width(id);
+    match op {
+        Op::Mux { select, inputs } => mux(design, *select, inputs),
+        Op::Add { a, b, carry } => add(design, *a, *b, *carry),
+        Op::Sub(a, b) => {
+            vec![swapped(Op::Sub(*b, *a)), operator("add", Op::Add { a: *a, b: *b, carry: None })]
+        }
+        Op::Less(a, b) => vec![swapped(Op::Less(*b, *a)), operator("equal", Op::Equal(*a, *b))],
+        Op::Equal(a, b) => {
+            let alike = design.net(*a).format.signed == design.net(*b).format.signed;
+            alike.then(|| operator("less", Op::Less(*a, *b))).into_iter().collect()
+        }
+        Op::And(a, b) => vec![operator("or", Op::Or(*a, *b))],
+        Op::Or(a, b) => vec![operator("and", Op::And(*a, *b))],
+        Op::Xor(a, b) => vec![operator("or", Op::Or(*a, *b))],
+        Op::Not(a) => vec![operator("not-inverted", Op::Relabel(*a))],
+        Op::Any(a) if design.width(*a) > 1 => vec![operator("all", Op::All(*a))],
+        Op::All(a) if design.width(*a) > 1 => vec![operator("any", Op::Any(*a))],
+        Op::Slice { of, low } => slice(*of, *low, width, design.width(*of)),
+        _ => Vec::new(),
+    }
+}
+
+fn operator(name: &str, op: Op) -> (String, FaultKind, Op) {
+    (name.to_owned(), FaultKind::Operator, op)
+}
+
+fn swapped(op: Op) -> (String, FaultKind, Op) {
+    ("operands-swapped".to_owned(), FaultKind::Operands, op)
+}
+
+/// Inputs that are different nets change places; one input is taken always.
+fn mux(design: &Design, select: NetId, inputs: &[NetId]) -> Vec<(String, FaultKind, Op)> {
+    let mut faults = Vec::new();
+    for b in 0..inputs.len() {
+        for a in (0..b).filter(|&a| inputs[a] != inputs[b]) {
+            let mut inputs = inputs.to_vec();
+            inputs.swap(a, b);
+            let name = format!("inputs-{a}-{b}-swapped");
+            faults.push((name, FaultKind::MuxInputs, Op::Mux { select, inputs }));
+        }
+    }
+    let constant = |net: NetId| matches!(design.net(net).driver, Driver::Constant(_));
+    for (at, &input) in inputs.iter().enumerate() {
+        if inputs[..at].contains(&input) {
+            continue;
+        }
+        let limits = inputs.iter().filter(|&&other| other != input);
+        let kind = if inputs.len() == 2 && !constant(input) && limits.copied().all(constant) {
+            FaultKind::Saturation
+        } else {
+            FaultKind::MuxChoice
+        };
+        faults.push((format!("input-{at}-always"), kind, Op::Relabel(input)));
+    }
+    faults
+}
+
+/// A sum without its carry or without the bit that rounds, and a difference.
+fn add(design: &Design, a: NetId, b: NetId, carry: Option<NetId>) -> Vec<(String, FaultKind, Op)> {
+    let mut faults = vec![operator("sub", Op::Sub(a, b))];
+    if carry.is_some() {
+        let op = Op::Add { a, b, carry: None };
+        faults.push(("no-carry".to_owned(), FaultKind::Rounding, op));
+    }
+    for (bit, rest) in [(a, b), (b, a)] {
+        // One unit in the last place or none: what rounds to nearest.
+        if design.net(bit).range == (0, 1) && carry.is_none() {
+            faults.push(("truncated".to_owned(), FaultKind::Rounding, Op::Relabel(rest)));
+        }
+    }
+    faults
+}
+
+/// The bits one place beside.
+fn slice(of: NetId, low: u32, width: u32, have: u32) -> Vec<(String, FaultKind, Op)> {
+    let mut faults = Vec::new();
+    let mut shifted = |name: &str, low| {
+        faults.push((name.to_owned(), FaultKind::Wiring, Op::Slice { of, low }));
+    };
+    if low > 0 {
+        shifted("one-bit-lower", low - 1);
+    }
+    if low + width < have {
+        shifted("one-bit-higher", low + 1);
+    }
+    faults
+}

@@ -1,0 +1,138 @@
+//! Faults put into a design.
+
+use std::borrow::Cow;
+
+use super::fault::{Bit, Fault, Site};
+use glint_rtl::netlist::microcode;
+use glint_rtl::netlist::{Design, Driver, Net, NetId, Op, RegId, RomId};
+
+impl Fault {
+    /// The design with this fault.
+    ///
+    /// It is a design for simulation and emission: the intervals of its nets are those of the fault-free one.
+    pub fn planted(&self, design: &Design) -> Design {
+        let mut mutant = design.clone();
+        match &self.site {
+            Site::Bit(net, bit, how) => plant_bit(&mut mutant, *net, *bit, *how),
+            Site::Driver(net, driver) => mutant.nets[net.index()].driver = driver.clone(),
+            Site::Enable(register, true) => mutant.registers[register.index()].enable = None,
+            Site::Enable(register, false) => never(&mut mutant, *register),
+            Site::Reset(register) => mutant.registers[register.index()].reset = None,
+            Site::Words(rom, words) => plant_words(&mut mutant, *rom, words),
+        }
+        mutant
+    }
+}
+
+/// A design without what only people read: cheaper to copy.
+pub(super) fn bare(design: &Design) -> Design {
+    let mut bare = design.clone();
+    for rom in &mut bare.roms {
+        rom.doc.clear();
+        rom.comments.clear();
+    }
+    for net in &mut bare.nets {
+        net.doc.clear();
+    }
+    bare
+}
+
+/// A net beside `like`.
+fn add(design: &mut Design, like: NetId, suffix: &str, driver: Driver) -> NetId {
+    let mut name = Cow::from(format!("{}_{suffix}", design.net(like).name));
+    while design.find(&name).is_some() {
+        name.to_mut().push('_');
+    }
+    let (name, doc) = (name.into_owned(), String::new());
+    let like = design.net(like).clone();
+    design.add_net(Net { name, driver, block: None, doc, named: false, ..like })
+}
+
+/// A new net that carries `sound` with a bit at fault, as a driver.
+fn at_fault(design: &mut Design, sound: NetId, bit: u32, how: Bit) -> Driver {
+    let ones = match how {
+        Bit::Stuck0 => glint_base::fixed::mask(design.width(sound)) & !(1 << bit),
+        Bit::Stuck1 | Bit::Inverted => 1 << bit,
+    };
+    let ones = add(design, sound, "fault", Driver::Constant(ones));
+    Driver::Op(match how {
+        Bit::Stuck0 => Op::And(sound, ones),
+        Bit::Stuck1 => Op::Or(sound, ones),
+        Bit::Inverted => Op::Xor(sound, ones),
+    })
+}
+
+fn plant_bit(design: &mut Design, net: NetId, bit: u32, how: Bit) {
+    match design.net(net).driver.clone() {
+        // The register of that name is compared: what it takes is at fault.
+        Driver::Register(id) => {
+            if let Some(data) = design.register(id).data {
+                let driver = at_fault(design, data, bit, how);
+                let data = add(design, net, "taken", driver);
+                let register = &mut design.registers[id.index()];
+                register.data = Some(data);
+                register.reset = register.reset.map(|reset| how.applied(reset, bit));
+            }
+        }
+        // The port stays what the environment drives: what is read of it is at fault.
+        Driver::Input => {
+            let driver = at_fault(design, net, bit, how);
+            let read = add(design, net, "read", driver);
+            let skip = [read];
+            redirect(design, net, read, &skip);
+        }
+        // All others: the net is at fault for everybody.
+        driver => {
+            let sound = add(design, net, "sound", driver.clone());
+            match driver {
+                Driver::Rom(rom) => design.roms[rom.index()].data = sound,
+                Driver::Field(field) => design.control.fields[field.index()].net = sound,
+                _ => {}
+            }
+            let driver = at_fault(design, sound, bit, how);
+            design.nets[net.index()].driver = driver;
+        }
+    }
+}
+
+/// All that reads `from` reads `to`, but the nets in `except`.
+fn redirect(design: &mut Design, from: NetId, to: NetId, except: &[NetId]) {
+    let redirect = |net: &mut NetId| {
+        if *net == from {
+            *net = to;
+        }
+    };
+    for (at, net) in design.nets.iter_mut().enumerate() {
+        if let Driver::Op(op) = &mut net.driver
+            && !except.contains(&NetId(at as u32))
+        {
+            *op = op.map(|&net| if net == from { to } else { net });
+        }
+    }
+    for register in &mut design.registers {
+        register.data.as_mut().map(redirect);
+        register.enable.as_mut().map(redirect);
+    }
+    for rom in &mut design.roms {
+        redirect(&mut rom.address);
+    }
+}
+
+/// The register keeps what it has.
+fn never(design: &mut Design, id: RegId) {
+    let register = &mut design.registers[id.index()];
+    register.data = Some(register.q);
+}
+
+fn plant_words(design: &mut Design, id: RomId, words: &[(usize, u64)]) {
+    for &(at, word) in words {
+        design.roms[id.index()].words[at] = word;
+    }
+    if id == design.control.rom {
+        let fields = design.control.fields.iter();
+        let widths: Vec<u32> = fields.map(|field| design.width(field.net)).collect();
+        for &(at, word) in words {
+            design.control.microprogram[at].values = microcode::unpack(&widths, word);
+        }
+    }
+}

@@ -1,0 +1,78 @@
+//! The interval of values of each net, from what it is made of.
+//!
+//! The intervals that the description states are not used but for registers: that of a view of a shared
+//! multiplier holds under some selections only.
+
+use super::pairs::{self, Pairs};
+use glint_base::interval::{Interval, fits, hull, of_values};
+use glint_rtl::netlist::interval::of_cell;
+use glint_rtl::netlist::{Design, Driver, NetId, Op, Register, RegisterKind};
+
+/// Whether the stated interval of a register holds in every clock from power-up on.
+pub(super) fn trusted(design: &Design, register: &Register) -> bool {
+    let (low, high) = design.net(register.q).range;
+    register.kind != RegisterKind::Internal && low <= 0 && high >= 0
+}
+
+/// Returns the interval of one net, from the intervals (`of`) and the bits (`known`) of its operands.
+pub(super) fn of(
+    design: &Design,
+    id: NetId,
+    of: &impl Fn(NetId) -> Interval,
+    known: &impl Fn(NetId) -> Pairs,
+) -> Interval {
+    let net = design.net(id);
+    let all = net.format.range();
+    let within = |interval| if fits(interval, net.format) { interval } else { all };
+    let cell = |op: &Op| of_cell(op, net.format, &|net| design.net(net).format, of);
+    match &net.driver {
+        Driver::Constant(bits) => (net.format.raw(*bits), net.format.raw(*bits)),
+        Driver::Register(register) if trusted(design, design.register(*register)) => net.range,
+        // The stage before comes before it in the order of evaluation; at power-up and after a reset it holds 0.
+        Driver::Register(register) if design.pipeline.is_some() => {
+            let data = design.register(*register).data;
+            data.and_then(|data| hull([of(data), (0, 0)])).map_or(all, within)
+        }
+        Driver::Rom(rom) => {
+            let raws = design.rom(*rom).words.iter().map(|&word| net.format.raw(word));
+            of_values(raws.chain([0])).unwrap_or(all)
+        }
+        Driver::Op(Op::Mux { select, inputs }) => {
+            let reached = pairs::choices(known(*select), design.width(*select), inputs);
+            let two = inputs.len() == 2 && inputs[0] != inputs[1];
+            let sign = sign(design, *select).filter(|_| two);
+            let signed = |net: NetId| design.net(net).format.signed;
+            let taken = |input: NetId| match sign {
+                // Where its own sign chooses it, it has one sign.
+                Some((of_it, negative))
+                    if signed(input) && pairs::named(design, input) == of_it =>
+                {
+                    let (low, high) = of(input);
+                    if negative == (input == inputs[1]) {
+                        (low.min(-1), high.min(-1))
+                    } else {
+                        (low.max(0), high.max(0))
+                    }
+                }
+                _ => of(input),
+            };
+            hull(reached.map(taken)).map_or(all, within)
+        }
+        // The same net under another name too.
+        Driver::Op(Op::Mul(a, b)) if pairs::square(design, *a, *b) => cell(&Op::Mul(*a, *a)),
+        Driver::Op(op) => cell(op),
+        _ => all,
+    }
+}
+
+/// The net whose sign a bit is, and whether the bit is 1 where it is negative.
+fn sign(design: &Design, bit: NetId) -> Option<(NetId, bool)> {
+    match &design.net(pairs::named(design, bit)).driver {
+        Driver::Op(Op::Not(a)) => sign(design, *a).map(|(of, negative)| (of, !negative)),
+        Driver::Op(Op::Slice { of, low }) => {
+            let is_sign = design.net(*of).format.signed && low + 1 == design.width(*of);
+            is_sign.then(|| (pairs::named(design, *of), true))
+        }
+        _ => None,
+    }
+}

@@ -1,0 +1,132 @@
+//! Faults that change nothing that is compared, and the proof of it.
+//!
+//! One proof is an induction over clocks. In every microinstruction, fault-free design and mutant are
+//! evaluated side by side over the pairs of bits that a net can have in both ([`pairs`]). Where neither an
+//! output nor a register that the golden model predicts differs in any microinstruction, while registers inside of
+//! blocks may differ as far as those before have left them so, they never do. The other tries every
+//! combination of values around the fault ([`window`]).
+
+mod cut;
+mod interval;
+mod pairs;
+mod step;
+mod window;
+
+use pairs::Pairs;
+use step::{Order, State, following};
+use window::Windows;
+
+use super::fault::Site;
+use super::verdict::How;
+use glint_base::fixed::mask;
+use glint_rtl::netlist::{Design, Driver, RegId, RegisterKind};
+
+/// Proves faults of one design equivalent.
+pub(super) struct Prover<'a> {
+    order: Order<'a>,
+    /// For each microinstruction, what the fault-free design can have on each net, whatever the inputs are.
+    nets: Vec<Vec<Pairs>>,
+    /// For each microinstruction those that may follow it.
+    following: Vec<Vec<usize>>,
+    /// The bits of each net that are compared in every clock.
+    compared: Vec<u64>,
+    windows: Windows<'a>,
+}
+
+impl<'a> Prover<'a> {
+    /// `None` for a design with a combinational loop.
+    pub(super) fn new(design: &'a Design) -> Option<Self> {
+        let mut compared = vec![0; design.nets.len()];
+        let outputs = design.outputs().map(|port| port.net);
+        let registers = design.registers.iter();
+        let registers = registers.filter(|register| register.kind != RegisterKind::Internal);
+        let checkpoints = design.pipeline.iter().flat_map(|pipeline| &pipeline.checkpoints);
+        let checkpoints = checkpoints.map(|checkpoint| checkpoint.net);
+        for net in outputs.chain(registers.map(|register| register.q)).chain(checkpoints) {
+            compared[net.index()] = mask(design.width(net));
+        }
+        let order = Order::of(design)?;
+        let length = design.control.microprogram.len().max(1);
+        let following: Vec<_> = (0..length).map(|at| following(design, at)).collect();
+        // At power-up everything that is held is 0, in microinstruction 0.
+        let mut held: Vec<Option<State>> = vec![None; length];
+        held[0] = Some(order.held().map(|net| Pairs::constant(0, design.width(net))).collect());
+        let mut todo = vec![0];
+        while let Some(at) = todo.pop() {
+            let Some(state) = &held[at] else { continue };
+            let after = order.next(&order.settle(at, state, None), None);
+            for &to in &following[at] {
+                let there = held[to].as_ref();
+                let joined = there.map_or_else(|| after.clone(), |it| join(it, &after));
+                if there != Some(&joined) {
+                    held[to] = Some(joined);
+                    todo.push(to);
+                }
+            }
+        }
+        let anything = || order.held().map(|net| Pairs::same(design.width(net))).collect();
+        let state = |at: usize| held[at].clone().unwrap_or_else(anything);
+        let nets = (0..length).map(|at| order.settle(at, &state(at), None)).collect();
+        Some(Self { nets, order, following, compared, windows: Windows::of(design)? })
+    }
+
+    /// How it is proved, if it is, that nothing that is compared ever differs with this fault.
+    pub(super) fn proves(&self, site: &Site) -> Option<How> {
+        if self.by_induction(site) {
+            Some(How::Induction)
+        } else {
+            self.windows.proves(site).then_some(How::Exhaustion)
+        }
+    }
+
+    fn by_induction(&self, site: &Site) -> bool {
+        let design = self.order.design;
+        let resets = |id: &RegId| design.register(*id).reset;
+        match site {
+            // What reset does is no part of the proof.
+            Site::Reset(_) => return false,
+            Site::Bit(net, bit, how) => {
+                if let Driver::Register(id) = &design.net(*net).driver
+                    && resets(id).is_some_and(|reset| how.applied(reset, *bit) != reset)
+                {
+                    return false;
+                }
+            }
+            _ => {}
+        }
+        let held = |nets: &Vec<Pairs>| -> State {
+            self.order.held().map(|net| nets[net.index()]).collect()
+        };
+        let mut states: Vec<State> = self.nets.iter().map(held).collect();
+        let mut todo: Vec<usize> = (0..states.len()).collect();
+        while let Some(at) = todo.pop() {
+            let fault = Some((site, &self.nets[at][..]));
+            let nets = self.order.settle(at, &states[at], fault);
+            let seen = |(net, bits): (&Pairs, &u64)| net.differ() & bits != 0;
+            if nets.iter().zip(&self.compared).any(seen) {
+                return false;
+            }
+            let next = self.order.next(&nets, fault);
+            let differs = |net: &Pairs| net.differ() != 0;
+            let mut registers = design.registers.iter().zip(&next);
+            if registers.any(|(it, next)| it.kind != RegisterKind::Internal && differs(next)) {
+                return false;
+            }
+            for &to in &self.following[at] {
+                let sound = held(&self.nets[to]);
+                let possible = next.iter().zip(&sound).map(|(next, sound)| next.within(*sound));
+                let joined = join(&states[to], &possible.collect());
+                if joined != states[to] {
+                    states[to] = joined;
+                    todo.push(to);
+                }
+            }
+        }
+        true
+    }
+}
+
+/// Joins two states: each bit may be as in either.
+fn join(one: &State, other: &State) -> State {
+    one.iter().zip(other).map(|(one, other)| one.or(*other)).collect()
+}

@@ -1,0 +1,298 @@
+//! The bits that a net has in the fault-free design and in the mutant, together.
+
+use std::array::from_fn;
+
+use crate::mutate::fault::Bit;
+use glint_base::fixed::mask;
+use glint_base::interval::Interval;
+use glint_rtl::netlist::{Design, Driver, NetId, Op};
+
+/// The pairs that each bit of a net can be: masks of the bits that can be 0 in both, 1 in the fault-free design alone, 1 in
+/// the mutant alone, and 1 in both. The number of a pair is the fault-free bit with the mutant's above it, so that an
+/// operation on bits is the same operation on numbers of pairs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Pairs([u64; 4]);
+
+impl Pairs {
+    /// A pattern, in both.
+    pub(super) fn constant(bits: u64, width: u32) -> Self {
+        Self([!bits & mask(width), 0, 0, bits & mask(width)])
+    }
+
+    /// Any pattern, in both.
+    pub(super) fn same(width: u32) -> Self {
+        Self([mask(width), 0, 0, mask(width)])
+    }
+
+    /// The bits that every value from `low` to `high` has, and any others, in both.
+    pub(super) fn of_interval((low, high): Interval, width: u32) -> Self {
+        let (low, high) = (low as u64 & mask(width), high as u64 & mask(width));
+        let differ = low ^ high;
+        // From the highest bit that differs down; where the interval goes through 0 that is the sign.
+        let open = if differ == 0 { 0 } else { u64::MAX >> differ.leading_zeros() };
+        Self::constant(low, width).or(Self::same(width).cut(0, open))
+    }
+
+    /// The pairs of either.
+    pub(super) fn or(self, other: Self) -> Self {
+        Self(from_fn(|pair| self.0[pair] | other.0[pair]))
+    }
+
+    /// The pairs of both.
+    pub(super) fn and(self, other: Self) -> Self {
+        Self(from_fn(|pair| self.0[pair] & other.0[pair]))
+    }
+
+    /// These with any pair for some bits.
+    pub(super) fn or_any(self, bits: u64) -> Self {
+        Self(self.0.map(|pair| pair | bits))
+    }
+
+    /// The fault-free bits of this with the mutant's of another, each with each.
+    pub(super) fn across(self, mutant: Self) -> Self {
+        let (sound, mutant) = (self.fault_free(), mutant.mutant());
+        Self(from_fn(|pair| sound[pair & 1] & mutant[pair >> 1]))
+    }
+
+    /// Keeps the pairs of which the fault-free bit can be as it is in `sound`.
+    pub(super) fn within(self, sound: Self) -> Self {
+        let sound = sound.fault_free();
+        Self(from_fn(|pair| self.0[pair] & sound[pair & 1]))
+    }
+
+    /// These with a bit of the mutant at fault.
+    pub(super) fn at_fault(self, bit: u32, how: Bit) -> Self {
+        let of_bit = self.cut(0, 1 << bit).0;
+        let mut pairs = self.cut(0, !(1 << bit)).0;
+        for (pair, bits) in of_bit.into_iter().enumerate() {
+            pairs[how.applied(pair as u64, 1) as usize] |= bits;
+        }
+        Self(pairs)
+    }
+
+    /// The bits that may differ.
+    pub(super) fn differ(self) -> u64 {
+        self.0[1] | self.0[2]
+    }
+
+    /// The bits that the fault-free design can have as 0, and as 1.
+    fn fault_free(self) -> [u64; 2] {
+        [self.0[0] | self.0[2], self.0[1] | self.0[3]]
+    }
+
+    /// The bits that the mutant can have as 0, and as 1.
+    fn mutant(self) -> [u64; 2] {
+        [self.0[0] | self.0[1], self.0[2] | self.0[3]]
+    }
+
+    /// Whether the mutant can have this pattern.
+    pub(super) fn may_be(self, bits: u64) -> bool {
+        let [zeros, ones] = self.mutant();
+        bits & !ones == 0 && !bits & !zeros & (zeros | ones) == 0
+    }
+
+    /// The pattern, if it is one, in both.
+    fn whole(self, width: u32) -> Option<u64> {
+        (self.differ() == 0 && self.0[0] ^ self.0[3] == mask(width)).then_some(self.0[3])
+    }
+
+    /// The bits of `all` from `low` up.
+    fn cut(self, low: u32, all: u64) -> Self {
+        Self(self.0.map(|pair| pair >> low & all))
+    }
+
+    /// With some bits inverted, in both.
+    fn inverted(self, bits: u64) -> Self {
+        Self(from_fn(|pair| self.0[pair] & !bits | self.0[pair ^ 3] & bits))
+    }
+
+    /// The numbers of the pairs that a bit can be.
+    fn at(self, bit: u32) -> impl Iterator<Item = usize> + Clone {
+        (0..4).filter(move |&pair| self.0[pair] >> bit & 1 == 1)
+    }
+
+    /// Every pair of one bit of each that both can be, by an operation on bits.
+    fn bitwise(self, other: Self, result: impl Fn(usize, usize) -> usize) -> Self {
+        let mut all = [0; 4];
+        for (a, left) in self.0.into_iter().enumerate() {
+            for (b, right) in other.0.into_iter().enumerate() {
+                all[result(a, b)] |= left & right;
+            }
+        }
+        Self(all)
+    }
+
+    /// From the lowest bit up, what a bit of each and what comes from below give: a bit of the result, and what goes on
+    /// to the next. Both results.
+    fn rippled(
+        self,
+        other: Self,
+        width: u32,
+        from: Self,
+        step: impl Fn(usize, usize, usize) -> (usize, usize),
+    ) -> (Self, Self) {
+        let (mut result, mut carry) = (Self([0; 4]), from);
+        for bit in 0..width {
+            let mut next = Self([0; 4]);
+            for a in self.at(bit) {
+                for b in other.at(bit) {
+                    for c in carry.at(0) {
+                        let (one, on) = step(a, b, c);
+                        result.0[one] |= 1 << bit;
+                        next.0[on] |= 1;
+                    }
+                }
+            }
+            carry = next;
+        }
+        (result, carry)
+    }
+
+    /// The sum.
+    fn plus(self, other: Self, carry: Self, width: u32) -> Self {
+        self.rippled(other, width, carry, |a, b, c| (a ^ b ^ c, a & b | a & c | b & c)).0
+    }
+
+    /// Returns the bit at the top of the fold.
+    fn folded(
+        self,
+        other: Self,
+        width: u32,
+        from: u64,
+        step: impl Fn(usize, usize, usize) -> usize,
+    ) -> Self {
+        self.rippled(other, width, Self::constant(from, 1), |a, b, c| (0, step(a, b, c))).1
+    }
+}
+
+/// Returns the pairs of a cell's result; of an input of a mux `same` says which nets the fault-free design has alike.
+pub(super) fn cell(
+    design: &Design,
+    op: &Op,
+    width: u32,
+    value: &impl Fn(NetId) -> Pairs,
+    same: &[NetId],
+) -> Pairs {
+    let of = |net: &NetId| value(*net);
+    let width_of = |net: &NetId| design.width(*net);
+    let nothing = Pairs::constant(0, 1);
+    match op {
+        Op::Relabel(a) => of(a),
+        Op::Extend(a) => {
+            let (from, above) = (width_of(a), mask(width) & !mask(width_of(a)));
+            let signed = design.net(*a).format.signed;
+            let sign = |pair: usize| match signed {
+                true => of(a).0[pair] >> (from - 1) & 1 == 1,
+                false => pair == 0,
+            };
+            Pairs(from_fn(|pair| of(a).0[pair] | if sign(pair) { above } else { 0 }))
+        }
+        Op::Slice { of: a, low } => of(a).cut(*low, mask(width)),
+        Op::Concat(parts) => parts.iter().fold(Pairs([0; 4]), |sum, part| {
+            let (part, width) = (of(part), width_of(part));
+            Pairs(from_fn(|pair| sum.0[pair].checked_shl(width).unwrap_or(0) | part.0[pair]))
+        }),
+        Op::Not(a) => of(a).inverted(mask(width)),
+        Op::And(a, b) => of(a).bitwise(of(b), |a, b| a & b),
+        Op::Or(a, b) => of(a).bitwise(of(b), |a, b| a | b),
+        Op::Xor(a, b) => of(a).bitwise(of(b), |a, b| a ^ b),
+        Op::Add { a, b, carry } => of(a).plus(of(b), carry.map_or(nothing, value), width),
+        Op::Sub(a, b) => of(a).plus(of(b).inverted(mask(width)), Pairs::constant(1, 1), width),
+        Op::Mul(a, b) => product(design, *a, *b, width, value),
+        Op::Equal(a, b) => of(a).folded(of(b), width_of(a), 1, |a, b, c| (a ^ b ^ 3) & c),
+        Op::Less(a, b) => {
+            let width = width_of(a);
+            let sign = if design.net(*a).format.signed { 1 << (width - 1) } else { 0 };
+            let [a, b] = [a, b].map(|net| of(net).inverted(sign));
+            a.folded(b, width, 0, |a, b, c| (a ^ 3) & b | (a ^ b ^ 3) & c)
+        }
+        Op::Any(a) => of(a).folded(of(a), width_of(a), 0, |a, _, c| a | c),
+        Op::All(a) => of(a).folded(of(a), width_of(a), 1, |a, _, c| a & c),
+        Op::Mux { select, inputs } => {
+            let inputs: Vec<_> = inputs.iter().map(|it| (of(it), same[it.index()])).collect();
+            chosen(of(select), width_of(select), &inputs)
+        }
+    }
+}
+
+/// Returns the pairs of a mux, of whose inputs those with the same number are alike in the fault-free design.
+pub(super) fn chosen(select: Pairs, lines: u32, inputs: &[(Pairs, NetId)]) -> Pairs {
+    let input = |number: u64| inputs[(number as usize).min(inputs.len() - 1)];
+    let mut all = Pairs([0; 4]);
+    for sound in 0..1 << lines {
+        // The bits that the mutant can have beside this pattern, as 0 and as 1.
+        let beside =
+            |pair: usize| (select.0[pair] & !sound | select.0[pair + 1] & sound) & mask(lines);
+        let [zeros, ones] = [beside(0), beside(2)];
+        if zeros | ones != mask(lines) {
+            continue;
+        }
+        let mut either = zeros & ones;
+        loop {
+            let (sound, mutant) = (input(sound), input(ones & !zeros | either));
+            let alike = sound.1 == mutant.1;
+            all = all.or(if alike { mutant.0 } else { sound.0.across(mutant.0) });
+            if either == 0 {
+                break;
+            }
+            either = (either - 1) & zeros & ones;
+        }
+    }
+    all
+}
+
+/// The inputs that a mux of the mutant may take.
+pub(super) fn choices(select: Pairs, lines: u32, inputs: &[NetId]) -> impl Iterator<Item = NetId> {
+    let possible = (0..1 << lines).filter(move |&number| select.may_be(number));
+    possible.map(|number: u64| inputs[(number as usize).min(inputs.len() - 1)])
+}
+
+/// Leading and trailing zeros of an unsigned product, and of a square; from the lowest bit on that may differ in a factor any
+/// may.
+fn product(
+    design: &Design,
+    a: NetId,
+    b: NetId,
+    width: u32,
+    value: &impl Fn(NetId) -> Pairs,
+) -> Pairs {
+    let (x, y) = (value(a), value(b));
+    let (width_a, width_b) = (design.width(a), design.width(b));
+    if let (Some(x), Some(y)) = (x.whole(width_a), y.whole(width_b)) {
+        let raw = |net: NetId, bits| design.net(net).format.raw(bits);
+        return Pairs::constant(raw(a, x).wrapping_mul(raw(b, y)) as u64, width);
+    }
+    let most = |net: NetId, of: Pairs| {
+        let format = design.net(net).format;
+        let [_, most] = of.mutant();
+        let negative = format.signed && most >> (format.width() - 1) & 1 == 1;
+        (!negative).then_some(u128::from(most))
+    };
+    let bits = most(a, x).zip(most(b, y)).map_or(width, |(a, b)| 128 - (a * b).leading_zeros());
+    let trailing = |of: Pairs, width: u32| of.mutant()[1].trailing_zeros().min(width);
+    let low = match square(design, a, b) {
+        // k² is 0 or 1 modulo 4, and (2^t·k)² has 2t more zeros below.
+        true => {
+            let zeros = 2 * trailing(x, width_a);
+            mask(zeros) | 2u64.checked_shl(zeros).unwrap_or(0)
+        }
+        false => mask(trailing(x, width_a) + trailing(y, width_b)),
+    };
+    let ones = mask(bits.min(width)) & !low;
+    let lowest = (x.differ() | y.differ()).trailing_zeros();
+    let differ = u64::MAX.checked_shl(lowest).unwrap_or(0) & mask(width);
+    Pairs([mask(width), differ, differ & ones, ones])
+}
+
+/// Whether both are the same net, under whatever names.
+pub(super) fn square(design: &Design, a: NetId, b: NetId) -> bool {
+    named(design, a) == named(design, b)
+}
+
+/// Returns the net that this one is another name of, or itself.
+pub(super) fn named(design: &Design, mut net: NetId) -> NetId {
+    while let Driver::Op(Op::Relabel(of)) = design.net(net).driver {
+        net = of;
+    }
+    net
+}

@@ -1,0 +1,247 @@
+//! One microinstruction, of the fault-free design or of a mutant beside it; a pipeline, which has none, is taken as one that
+//! follows itself.
+
+use super::interval;
+use super::pairs::{self, Pairs};
+use crate::mutate::fault::Site;
+use glint_rtl::netlist::{Design, Driver, NetId, Op, RegId, RomId};
+
+/// The contents of registers and synchronous ROMs between two clocks.
+pub(super) type State = Vec<Pairs>;
+
+/// A design as it is evaluated.
+pub(super) struct Order<'a> {
+    pub(super) design: &'a Design,
+    /// An order of evaluation.
+    order: Vec<NetId>,
+    /// For each net the first that has the same driver: the same value.
+    same: Vec<NetId>,
+}
+
+/// A fault, and what the fault-free design has on every net in the microinstruction.
+pub(super) type Injected<'s> = (&'s Site, &'s [Pairs]);
+
+impl<'a> Order<'a> {
+    /// `None` for a design with a combinational loop.
+    pub(super) fn of(design: &'a Design) -> Option<Self> {
+        let mut order = design.levelise().ok()?;
+        if let Some(pipeline) = &design.pipeline {
+            // Registers behind the logic of the stage before.
+            order.sort_by_key(|net| pipeline.clock_of(*net));
+        }
+        Some(Self { design, same: same(design, &order), order })
+    }
+
+    /// The nets of which a [`State`] is: those of the registers, then those of the ROMs.
+    pub(super) fn held(&self) -> impl Iterator<Item = NetId> {
+        let registers = self.design.registers.iter().map(|register| register.q);
+        registers.chain(self.design.roms.iter().map(|rom| rom.data))
+    }
+
+    /// All nets in a microinstruction: those of the fault-free design, or of the mutant beside it.
+    pub(super) fn settle(&self, at: usize, state: &State, fault: Option<Injected>) -> Vec<Pairs> {
+        let design = self.design;
+        let mut nets = vec![Pairs::constant(0, 0); design.nets.len()];
+        let mut intervals = vec![(0, 0); design.nets.len()];
+        for &id in &self.order {
+            let net = design.net(id);
+            let width = design.width(id);
+            let of = |net: NetId| nets[net.index()];
+            let value = match (&net.driver, fault) {
+                (_, Some((Site::Driver(at_fault, driver), sound))) if *at_fault == id => {
+                    self.replaced(id, driver, &nets, sound)
+                }
+                (Driver::Op(op), Some((_, sound)))
+                    if op.operands().iter().all(|it| of(*it).differ() == 0) =>
+                {
+                    sound[id.index()]
+                }
+                (Driver::Op(op), _) => pairs::cell(design, op, width, &of, &self.same),
+                (Driver::Constant(bits), _) => Pairs::constant(*bits, width),
+                (Driver::Register(register), None) if *register == design.control.address => {
+                    Pairs::constant(at as u64, width)
+                }
+                (Driver::Register(register), _) => state[register.index()],
+                (Driver::Rom(rom), _) if design.rom(*rom).synchronous => {
+                    state[design.registers.len() + rom.index()]
+                }
+                (Driver::Rom(rom), _) => self.read(*rom, &nets, fault),
+                (Driver::Field(field), _) => {
+                    let sound = design.control.microprogram[at].values[field.index()];
+                    let mut bits = sound;
+                    if let Some((Site::Words(rom, words), _)) = fault
+                        && *rom == design.control.rom
+                        && let Some((_, word)) = words.iter().find(|(address, _)| *address == at)
+                    {
+                        bits = word >> design.field_positions()[field.index()];
+                    }
+                    Pairs::constant(sound, width).across(Pairs::constant(bits, width))
+                }
+                (Driver::Input | Driver::Undriven, _) => Pairs::same(width),
+            };
+            nets[id.index()] = match fault {
+                None => {
+                    let of = |net: NetId| intervals[net.index()];
+                    let interval = interval::of(design, id, &of, &|net| nets[net.index()]);
+                    intervals[id.index()] = interval;
+                    value.and(Pairs::of_interval(interval, width))
+                }
+                Some((site, sound)) => {
+                    let value = match (site, &net.driver) {
+                        // What it takes is at fault.
+                        (_, Driver::Register(_)) => value,
+                        (Site::Bit(at_fault, bit, how), _) if *at_fault == id => {
+                            value.at_fault(*bit, *how)
+                        }
+                        _ => value,
+                    };
+                    value.within(sound[id.index()])
+                }
+            };
+        }
+        nets
+    }
+
+    /// A net with another driver than in the fault-free design.
+    fn replaced(&self, id: NetId, driver: &Driver, nets: &[Pairs], sound: &[Pairs]) -> Pairs {
+        let design = self.design;
+        let width = design.width(id);
+        let value = |net: NetId| nets[net.index()];
+        let new = match driver {
+            Driver::Constant(bits) => Pairs::constant(*bits, width),
+            Driver::Op(op) => pairs::cell(design, op, width, &value, &self.same),
+            _ => Pairs::same(width),
+        };
+        let before = taken(design, &design.net(id).driver, &|net| sound[net.index()]);
+        let after = taken(design, driver, &value);
+        match before.zip(after) {
+            Some((a, b)) if self.same[a.index()] == self.same[b.index()] => value(b),
+            _ => sound[id.index()].across(new),
+        }
+    }
+
+    /// The word that a ROM has at its address.
+    fn read(&self, id: RomId, nets: &[Pairs], fault: Option<Injected>) -> Pairs {
+        let rom = self.design.rom(id);
+        let width = self.design.width(rom.data);
+        let words = rom.words.iter().map(|&word| Pairs::constant(word, width));
+        // At power-up a synchronous ROM shows 0.
+        let start = rom.synchronous.then_some(Pairs::constant(0, width));
+        let Some((site, sound)) = fault else {
+            return words.chain(start).reduce(Pairs::or).unwrap_or(Pairs::same(width));
+        };
+        let address = nets[rom.address.index()];
+        let mut differ = match address.differ() {
+            0 => 0,
+            // No more than the words do, where every address has one.
+            _ if rom.words.len() == 1 << self.design.width(rom.address) => {
+                rom.words.iter().fold(0, |differ, word| differ | (word ^ rom.words[0]))
+            }
+            _ => u64::MAX,
+        };
+        if let Site::Words(at_fault, words) = site
+            && *at_fault == id
+        {
+            for &(at, word) in words.iter().filter(|(at, _)| address.may_be(*at as u64)) {
+                differ |= word ^ rom.words[at];
+            }
+        }
+        let sound = sound[rom.data.index()];
+        sound.across(Pairs::same(width)).and(Pairs::same(width).or_any(differ))
+    }
+
+    /// Returns the state after the clock.
+    pub(super) fn next(&self, nets: &[Pairs], fault: Option<Injected>) -> State {
+        let design = self.design;
+        let of = |net: NetId| nets[net.index()];
+        let one = Pairs::constant(1, 1);
+        let registers = design.registers.iter().enumerate().map(|(at, register)| {
+            let held = (of(register.q), self.same[register.q.index()]);
+            let Some(data) = register.data else { return held.0 };
+            let mut offered = (of(data), self.same[data.index()]);
+            let mut enable = register.enable.map_or(one, of);
+            match fault {
+                Some((Site::Bit(net, bit, how), _)) if *net == register.q => {
+                    offered.0 = offered.0.at_fault(*bit, *how);
+                }
+                Some((Site::Enable(id, always), _)) if *id == RegId(at as u32) => {
+                    enable = enable.across(Pairs::constant(u64::from(*always), 1));
+                }
+                _ => {}
+            }
+            // Nothing new to those who know the fault-free design.
+            if fault.is_some() && [enable, held.0, offered.0].iter().all(|it| it.differ() == 0) {
+                return held.0;
+            }
+            let next = pairs::chosen(enable, 1, &[held, offered]);
+            match (register.reset, fault) {
+                (Some(bits), None) => next.or(Pairs::constant(bits, design.width(register.q))),
+                _ => next,
+            }
+        });
+        let roms = design.roms.iter().enumerate().map(|(at, rom)| {
+            let held = (of(rom.data), rom.data);
+            let word = (self.read(RomId(at as u32), nets, fault), rom.address);
+            pairs::chosen(rom.enable.map_or(one, of), 1, &[held, word])
+        });
+        registers.chain(roms).collect()
+    }
+}
+
+/// The net whose value a net takes, if it takes one.
+fn taken(design: &Design, driver: &Driver, value: &impl Fn(NetId) -> Pairs) -> Option<NetId> {
+    match driver {
+        Driver::Op(Op::Relabel(a)) => Some(*a),
+        Driver::Op(Op::Mux { select, inputs }) => {
+            let mut possible = pairs::choices(value(*select), design.width(*select), inputs);
+            let first = possible.next()?;
+            possible.all(|input| input == first).then_some(first)
+        }
+        _ => None,
+    }
+}
+
+/// The microinstructions that may follow one, reset included, which leads to microinstruction 0 from any.
+pub(super) fn following(design: &Design, at: usize) -> Vec<usize> {
+    let Some(last) = design.control.microprogram.len().checked_sub(1) else {
+        return vec![at];
+    };
+    let mut following = vec![0];
+    following.extend(design.control.successors(at).into_iter().map(|to| to.min(last)));
+    following.sort_unstable();
+    following.dedup();
+    following
+}
+
+/// For each net the first with the same driver.
+pub(super) fn same(design: &Design, order: &[NetId]) -> Vec<NetId> {
+    let mut same: Vec<NetId> = design.iter().map(|(id, _)| id).collect();
+    let mut drivers: Vec<(Driver, u32, bool, NetId)> = Vec::new();
+    for &id in order {
+        let net = design.net(id);
+        let mut driver = net.driver.clone();
+        let mut signed = false;
+        match &mut driver {
+            Driver::Op(Op::Relabel(of)) => {
+                same[id.index()] = same[of.index()];
+                continue;
+            }
+            Driver::Op(op) => {
+                // Whether an operand is signed counts where it is extended, compared or multiplied.
+                signed = op.operands().iter().any(|net| design.net(*net).format.signed);
+                *op = op.map(|operand| same[operand.index()]);
+            }
+            Driver::Constant(_) => {}
+            _ => continue,
+        }
+        let width = design.width(id);
+        let known = drivers
+            .iter()
+            .find(|(other, bits, sign, _)| *other == driver && *bits == width && *sign == signed);
+        match known {
+            Some((.., first)) => same[id.index()] = *first,
+            None => drivers.push((driver, width, signed, id)),
+        }
+    }
+    same
+}

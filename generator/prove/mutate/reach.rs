@@ -1,0 +1,59 @@
+//! Finds faults that a test never comes to and cannot notice: a fact about the stimulus, and not about the
+//! design.
+
+use anyhow::Result;
+
+use super::coverage::Coverage;
+use super::fault::{Bit, Fault, Site};
+use glint_core::core::{Core, TEST_POINTS, TEST_SEED};
+use glint_rtl::netlist::NetId;
+use glint_rtl::sim::Simulator;
+
+/// The values that the bits of some nets have had.
+struct Watch<'a> {
+    nets: &'a [NetId],
+    /// For each net the bits that were 0, and those that were 1.
+    seen: Vec<[u64; 2]>,
+}
+
+impl Watch<'_> {
+    fn note(&mut self, _: u64, simulator: &Simulator) {
+        for (&net, [zero, one]) in self.nets.iter().zip(&mut self.seen) {
+            let bits = simulator.value(net);
+            *zero |= !bits;
+            *one |= bits;
+        }
+    }
+}
+
+/// Returns the faults that the default test never comes to: a bit of a register that is stuck at the value that it
+/// has anyway, words of tables that are never read. Of other faults it says nothing.
+///
+/// # Errors
+/// A design that cannot be simulated.
+pub fn unreached<'f>(core: &Core, faults: &[&'f Fault]) -> Result<Vec<&'f Fault>> {
+    let lockstep = core.lockstep(TEST_SEED)?;
+    // What a register holds is seen after the edge; what other nets show in between is not.
+    let registers = core.design.registers.iter().map(|register| register.q);
+    let nets: Vec<NetId> = registers.collect();
+    let begin = |_| Watch { nets: &nets, seen: vec![[0; 2]; nets.len()] };
+    let streams = lockstep.watch(TEST_POINTS, begin, Watch::note)?;
+    let had = |net: NetId, value: usize, bit: u32| {
+        let Some(at) = nets.iter().position(|&other| other == net) else {
+            return true;
+        };
+        streams.iter().any(|stream| stream.seen[at][value] >> bit & 1 == 1)
+    };
+    let reads_words = faults.iter().any(|fault| matches!(fault.site, Site::Words(..)));
+    let coverage =
+        if reads_words { Some(Coverage::of(&core.design, &lockstep, TEST_POINTS)?) } else { None };
+    let is_unreached = |fault: &Fault| match &fault.site {
+        Site::Bit(net, bit, Bit::Stuck0) => !had(*net, 1, *bit),
+        Site::Bit(net, bit, Bit::Stuck1) => !had(*net, 0, *bit),
+        Site::Words(rom, words) => coverage
+            .as_ref()
+            .is_some_and(|it| words.iter().all(|(word, _)| it.places(*rom, *word).is_empty())),
+        _ => false,
+    };
+    Ok(faults.iter().copied().filter(|fault| is_unreached(fault)).collect())
+}

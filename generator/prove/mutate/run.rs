@@ -1,0 +1,237 @@
+//! Every fault of a configuration through the checks that may notice it.
+
+use std::sync::OnceLock;
+
+use anyhow::{Context, Result};
+use rayon::prelude::*;
+
+use super::beside::PointSearch;
+use super::coverage::{Coverage, Operands, Place};
+use super::fault::{Fault, Site};
+use super::held::{self, Tried};
+use super::plant;
+use super::proof::Prover;
+use super::shipped::Shipped;
+use super::verdict::{Detector, Difference, Found, How, Verdict};
+use glint_core::core::{self, Core};
+use glint_core::cosim::{Lockstep, Mismatch};
+use glint_golden::Model;
+use glint_rtl::netlist::{Design, RomId};
+
+/// Points of a first look. They are the first of the default test's first stream, so that what differs in
+/// them differs in the test.
+const FIRST_POINTS: u64 = 256;
+
+/// The longer test in which words are looked for that the default test does not read.
+const BEYOND_POINTS: u64 = 1_000_000;
+const BEYOND_SEED: u64 = 2;
+
+/// Plants every one of the faults in turn. `progress` is called after each.
+///
+/// # Errors
+/// A mutant that cannot be simulated.
+pub fn run<'f>(
+    core: &Core,
+    faults: impl IntoIterator<Item = &'f Fault>,
+    progress: &(dyn Fn() + Sync),
+) -> Result<Vec<Found>> {
+    let lockstep = core.lockstep(core::TEST_SEED)?;
+    let sound = plant::bare(&core.design);
+    let pipeline = sound.pipeline.as_ref();
+    let beside =
+        pipeline.map(|it| PointSearch::new(&sound, it, core.contract.as_ref())).transpose()?;
+    let bench = Bench {
+        core,
+        sound,
+        beside,
+        model: core.device.golden(&core.config),
+        prover: Prover::new(&core.design),
+        tested: Coverage::of(&core.design, &lockstep, core::TEST_POINTS)?,
+        beyond: OnceLock::new(),
+        shipped: Shipped::of(core)?,
+        latency: core.design.pipeline.as_ref().map_or(0, |it| it.stages.len() as u64),
+    };
+    let faults: Vec<&Fault> = faults.into_iter().collect();
+    faults
+        .into_par_iter()
+        .map(|fault| {
+            let found = bench.found(fault);
+            progress();
+            found.with_context(|| format!("the mutant `{}`", fault.id))
+        })
+        .collect()
+}
+
+/// The shared state of all faults of a configuration.
+struct Bench<'a> {
+    core: &'a Core,
+    sound: Design,
+    beside: Option<PointSearch>,
+    model: Box<dyn Model>,
+    prover: Option<Prover<'a>>,
+    /// The words that the default test reads, with the places.
+    tested: Coverage,
+    /// The words that a longer test reads, once one is asked for that the default test does not read.
+    beyond: OnceLock<Coverage>,
+    shipped: Shipped,
+    /// Points that may be on their way together.
+    latency: u64,
+}
+
+impl Bench<'_> {
+    fn found(&self, fault: &Fault) -> Result<Found> {
+        let mutant = fault.planted(&self.sound);
+        let verdict = self.verdict(fault, &mutant)?;
+        // What changes nothing that is compared changes no output.
+        let shipped =
+            !matches!(verdict, Verdict::Equivalent(_)) && self.shipped.notices(&mutant)?;
+        Ok(Found { fault: fault.clone(), verdict, shipped })
+    }
+
+    fn verdict(&self, fault: &Fault, mutant: &Design) -> Result<Verdict> {
+        if let Some(mismatch) = self.first_look(mutant, &fault.site)? {
+            return Ok(caught(mismatch));
+        }
+        let prover = self.prover.as_ref();
+        if let Some(how) = prover.and_then(|prover| prover.proves(&fault.site)) {
+            return Ok(Verdict::Equivalent(how));
+        }
+        let word = self.words(&fault.site);
+        if word.is_none() || !self.places(&fault.site).is_empty() {
+            let lockstep = self.lockstep(mutant, core::TEST_SEED)?;
+            if let Some(mismatch) = lockstep.run(core::TEST_POINTS, &|_| ())?.mismatch {
+                return Ok(caught(mismatch));
+            }
+        }
+        match word {
+            Some((rom, words)) => self.directed(mutant, rom, words),
+            None => self.searched(mutant),
+        }
+    }
+
+    /// Searches, for a pipeline, for a point that differs beside the pipeline without a fault.
+    fn searched(&self, mutant: &Design) -> Result<Verdict> {
+        let Some(beside) = &self.beside else {
+            return Ok(Verdict::Undecided);
+        };
+        let found = beside.search(mutant, |held| held::alone(self.core, mutant, held))?;
+        Ok(found.map_or(Verdict::Undecided, |it| Verdict::Caught(Detector::Directed, it)))
+    }
+
+    /// The beginning of the default test, or of its streams that read words at fault: there it shows, if anywhere.
+    fn first_look(&self, mutant: &Design, site: &Site) -> Result<Option<Mismatch>> {
+        let looks = match self.words(site) {
+            Some(_) => self.places(site),
+            None => vec![(core::TEST_SEED, FIRST_POINTS)],
+        };
+        for (seed, points) in looks {
+            let lockstep = self.lockstep(mutant, seed)?;
+            if let Some(mismatch) = lockstep.run_alone(points)?.mismatch {
+                return Ok(Some(mismatch));
+            }
+        }
+        Ok(None)
+    }
+
+    /// With operands held at the words at fault.
+    fn directed(&self, mutant: &Design, rom: RomId, words: &[(usize, u64)]) -> Result<Verdict> {
+        let directed = |difference| Verdict::Caught(Detector::Directed, difference);
+        let mut all_tried = true;
+        for &(word, _) in words {
+            let addressing = held::addressing(self.core, rom, word);
+            for held in addressing.iter().cloned().chain(self.readings(rom, word)?) {
+                if let Some(difference) = held::drawn(self.core, mutant, held)? {
+                    return Ok(directed(difference));
+                }
+            }
+            if let Some(mismatch) = self.beyond_shows(mutant, rom, word)? {
+                return Ok(directed(Difference { held: Vec::new(), mismatch }));
+            }
+            let tried = match addressing {
+                Some(held) => held::all(self.core, mutant, held)?,
+                None => Tried::Nothing,
+            };
+            match tried {
+                Tried::All => {}
+                Tried::Nothing => all_tried = false,
+                Tried::Differs(held) => {
+                    let shown = held::drawn(self.core, mutant, held)?;
+                    return Ok(shown.map_or(Verdict::Undecided, directed));
+                }
+            }
+        }
+        Ok(if all_tried { Verdict::Equivalent(How::Operands) } else { Verdict::Undecided })
+    }
+
+    /// Control operands of computations that read a word: of the default test, or else of a longer one.
+    fn readings(&self, rom: RomId, word: usize) -> Result<Vec<Operands>> {
+        let design = &self.sound;
+        let mut readings: Vec<Operands> = self.tested.operands(design, rom, word).collect();
+        if readings.is_empty() {
+            readings = self.beyond()?.operands(design, rom, word).collect();
+        }
+        let contract = self.core.contract.operands();
+        let is_colour = |name: &str| contract.iter().any(|it| it.colour && it.name == name);
+        for reading in &mut readings {
+            reading.retain(|(name, _)| !is_colour(name));
+        }
+        Ok(readings)
+    }
+
+    /// Runs, for a pipeline, which has no registers that keep the operands of a reading, the streams of a longer test that
+    /// read a word, where the default test does not.
+    fn beyond_shows(&self, mutant: &Design, rom: RomId, word: usize) -> Result<Option<Mismatch>> {
+        if self.latency == 0 || !self.tested.places(rom, word).is_empty() {
+            return Ok(None);
+        }
+        for place in self.beyond()?.places(rom, word) {
+            let lockstep = self.lockstep(mutant, place.seed)?;
+            if let Some(mismatch) = lockstep.run_alone(self.end(place))?.mismatch {
+                return Ok(Some(mismatch));
+            }
+        }
+        Ok(None)
+    }
+
+    /// The results of a stream to the end of the computation after one that reads a word.
+    fn end(&self, place: &Place) -> u64 {
+        place.points + 2 + self.latency
+    }
+
+    fn lockstep<'d>(&'d self, mutant: &'d Design, seed: u64) -> Result<Lockstep<'d>> {
+        let contract = self.core.contract.as_ref();
+        Lockstep::new(mutant, self.model.boxed_clone(), contract, seed)
+    }
+
+    /// The words at fault of a table.
+    fn words<'s>(&self, site: &'s Site) -> Option<(RomId, &'s [(usize, u64)])> {
+        match site {
+            Site::Words(rom, words) if *rom != self.sound.control.rom => Some((*rom, words)),
+            _ => None,
+        }
+    }
+
+    /// Where the default test reads the words at fault: a seed, and the results up to where it shows.
+    fn places(&self, site: &Site) -> Vec<(u64, u64)> {
+        let Some((rom, words)) = self.words(site) else {
+            return Vec::new();
+        };
+        let places = words.iter().flat_map(|&(word, _)| self.tested.places(rom, word));
+        places.map(|place| (place.seed, self.end(place))).collect()
+    }
+
+    fn beyond(&self) -> Result<&Coverage> {
+        if let Some(coverage) = self.beyond.get() {
+            return Ok(coverage);
+        }
+        let lockstep = self.lockstep(&self.sound, BEYOND_SEED)?;
+        let coverage = Coverage::of(&self.sound, &lockstep, BEYOND_POINTS)?;
+        Ok(self.beyond.get_or_init(|| coverage))
+    }
+}
+
+/// Noticed by the default test.
+fn caught(mismatch: Mismatch) -> Verdict {
+    let held = Vec::new();
+    Verdict::Caught(Detector::Cosim, Difference { held, mismatch })
+}

@@ -1,0 +1,58 @@
+//! The shipped bench as a check of its own: its vectors, and nothing but the outputs.
+
+use anyhow::Result;
+
+use glint_core::core::Core;
+use glint_core::package::Vectors;
+use glint_rtl::netlist::{Design, Role};
+use glint_rtl::sim::Simulator;
+
+/// The bench that goes with a core, as the built-in simulator runs it.
+pub(super) struct Shipped(Vectors);
+
+impl Shipped {
+    /// That of a configuration.
+    ///
+    /// # Errors
+    /// Golden model and simulation do not agree.
+    pub(super) fn of(core: &Core) -> Result<Self> {
+        core.shipped_vectors().map(Self)
+    }
+
+    /// Whether a mutant differs in an output that the bench compares.
+    ///
+    /// # Errors
+    /// A mutant that cannot be simulated.
+    pub(super) fn notices(&self, mutant: &Design) -> Result<bool> {
+        let mut simulator: Simulator = Simulator::new(mutant)?;
+        let Self(vectors) = self;
+        let outputs: Vec<_> = mutant.outputs().collect();
+        let reset = mutant.inputs().position(|port| port.role == Role::Reset);
+        // Of a pipeline, what says that results are those of a point.
+        let valid = outputs.iter().position(|port| port.role == Role::Valid);
+        let shown = valid.filter(|_| mutant.pipeline.is_some());
+        let mut was_reset = false;
+        for (clock, (inputs, row)) in vectors.inputs.iter().zip(&vectors.expected).enumerate() {
+            for (at, &bits) in inputs.iter().enumerate() {
+                simulator.set(at, bits);
+            }
+            // Those of a sequential core depend on registers alone, and stand as they were after the edge before; the
+            // `in_ready` of a pipeline depends on `out_ready`.
+            if shown.is_some() {
+                simulator.settle()?;
+            }
+            for (port, &expected) in outputs.iter().zip(row) {
+                let compared = match port.role {
+                    role if role.is_status() => was_reset,
+                    _ => clock >= vectors.known_from && shown.is_none_or(|at| row[at] == 1),
+                };
+                if compared && simulator.value(port.net) != expected {
+                    return Ok(true);
+                }
+            }
+            was_reset |= reset.is_none_or(|reset| inputs[reset] == 0);
+            simulator.clock()?;
+        }
+        Ok(false)
+    }
+}

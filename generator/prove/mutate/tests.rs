@@ -1,0 +1,146 @@
+//! Proofs against the simulation: what is noticed is never proved equivalent.
+
+use std::path::Path;
+
+use rayon::prelude::*;
+
+use super::proof::Prover;
+use super::shipped::Shipped;
+use super::{Detector, Fault, FaultKind, Faults, How, Verdict, plant, run, unreached};
+use glint_base::fixed::Format;
+use glint_config as config;
+use glint_core::core::{Core, TEST_SEED};
+use glint_core::cosim::Lockstep;
+use glint_core::registry::Registry;
+use glint_rtl::dsl::fixture::design;
+use glint_rtl::dsl::step;
+
+/// One in this number of faults is planted, fewer in a run of the quick tests alone: not a multiple of three, as for each
+/// bit there are three.
+const EVERY: usize = if cfg!(feature = "outside-tools") { 29 } else { 211 };
+
+/// Points in which most faults show.
+const POINTS: u64 = 200;
+
+fn core(path: &str) -> Core {
+    let registry = Registry::catalogue();
+    let config = config::read(Path::new(path), &registry.schemas()).unwrap();
+    Core::new(*registry.device(&config.device).unwrap(), config).unwrap()
+}
+
+#[test]
+fn no_proof_of_what_shows() {
+    let devices = Registry::catalogue();
+    let (mut proved, mut noticed) = (0, 0);
+    let names = devices.devices().iter().map(|device| device.name.replace('-', "_"));
+    let paths =
+        names.flat_map(|name| ["", "_pipelined"].map(|it| format!("configs/{name}{it}.toml")));
+    for path in paths.filter(|path| Path::new(path).exists()) {
+        let core = core(&path);
+        let prover = Prover::new(&core.design).unwrap();
+        let sound = plant::bare(&core.design);
+        let bench = Shipped::of(&core).unwrap();
+        assert!(!bench.notices(&sound).unwrap(), "{path}");
+        let faults = Faults::of(&core.design);
+        let faults: Vec<_> = faults.iter().step_by(EVERY).collect();
+        let of_each: Vec<(bool, bool)> = faults
+            .par_iter()
+            .map(|fault| {
+                let is_proved = prover.proves(&fault.site).is_some();
+                let mutant = fault.planted(&sound);
+                let model = core.device.golden(&core.config);
+                let lockstep = Lockstep::new(&mutant, model, core.contract.as_ref(), 5).unwrap();
+                let shows = lockstep.run_alone(POINTS).unwrap().mismatch.is_some();
+                assert!(!(is_proved && shows), "{path}: {}", fault.id);
+                let benched = is_proved && bench.notices(&mutant).unwrap();
+                assert!(!benched, "{path}: the bench notices {}", fault.id);
+                (is_proved, shows)
+            })
+            .collect();
+        proved += of_each.iter().filter(|(is_proved, _)| *is_proved).count();
+        noticed += of_each.iter().filter(|(_, shows)| *shows).count();
+    }
+    assert!(proved * EVERY > 2_900 && noticed * EVERY > 29_000, "{proved}, {noticed}");
+}
+
+/// The default test cannot notice what it never comes to, and comes to nearly everything.
+#[test]
+fn what_is_never_reached_is_never_noticed() {
+    let core = core("configs/reduced/schlick.toml");
+    let faults = Faults::of(&core.design);
+    let faults: Vec<&Fault> = faults.iter().collect();
+    let unreached = unreached(&core, &faults).unwrap();
+    assert!(unreached.len() * 4 < faults.len(), "{} of {}", unreached.len(), faults.len());
+    for fault in &unreached {
+        let mutant = fault.planted(&core.design);
+        let model = core.device.golden(&core.config);
+        let contract = core.contract.as_ref();
+        let lockstep = Lockstep::new(&mutant, model, contract, TEST_SEED).unwrap();
+        assert_eq!(lockstep.run(2_000, &|_| ()).unwrap().mismatch, None, "{}", fault.id);
+    }
+    // A bit that is inverted shows wherever it is looked at.
+    assert!(unreached.iter().all(|fault| fault.kind != FaultKind::Inverted));
+    // The signal that says that the device runs is 0 and is 1.
+    let stuck = |fault: &&&Fault| fault.id.starts_with("run[0]:stuck");
+    assert!(faults.iter().any(|fault| stuck(&fault)), "no such fault");
+    assert_eq!(unreached.iter().filter(stuck).count(), 0);
+}
+
+/// Returns the verdict on a fault.
+fn verdict(core: &Core, id: &str) -> Verdict {
+    let faults = Faults::of(&core.design);
+    let fault = faults.iter().find(|fault| fault.id == id);
+    run(core, fault, &|| ()).unwrap().remove(0).verdict
+}
+
+/// Only a cosine with no other bit set shows it, and only with an n for which the highlight is still lit there.
+#[test]
+fn a_point_is_searched_for_that_shows_a_fault() {
+    let core = core("configs/cosine_power_pipelined.toml");
+    let verdict = verdict(&core, "cos_gamma_reg_s0[5]:stuck-at-0");
+    let Verdict::Caught(Detector::Directed, difference) = verdict else {
+        panic!("{verdict:?}");
+    };
+    assert!(difference.held.contains(&("cos_gamma".to_owned(), 1 << 5)), "{difference:?}");
+}
+
+/// Below 1.0 are all numbers without a bit from that of 1.0 on, whatever the others are.
+#[test]
+fn lower_bits_do_not_decide_a_comparison() {
+    let core = core("configs/lyon_pipelined.toml");
+    assert_eq!(
+        verdict(&core, "beta_distance_s6[15]:inverted"),
+        Verdict::Equivalent(How::Induction)
+    );
+    assert!(matches!(verdict(&core, "beta_distance_s6[16]:inverted"), Verdict::Caught(..)));
+}
+
+/// Whether a number is below 0 its sign says alone, though 0 ends in nothing but zeros.
+#[test]
+fn the_sign_decides_a_comparison_with_0() {
+    let design = design(|d| {
+        let [x, y] = ["x", "y"].map(|name| d.operand(name, Format::signed(3, 0)).q());
+        let sum = d.add("sum", x, y);
+        let held = d.register("held", Format::BIT);
+        held.takes(d.less("negative", sum, d.constant("nothing", 0.0, sum.format())));
+        d.output("held_out", held.q());
+        vec![step("load", [held.load()])]
+    });
+    let prover = Prover::new(&design).unwrap();
+    let proved = |id: &str| {
+        let faults = Faults::of(&design);
+        let fault = faults.iter().find(|fault| fault.id == id).expect("a fault");
+        prover.proves(&fault.site).is_some()
+    };
+    assert!(proved("sum[0]:inverted"));
+    assert!(!proved("sum[4]:inverted") && !proved("sum[4]:stuck-at-0"));
+}
+
+/// The remainder of a dividend is the difference where that is not negative: no more than before.
+#[test]
+fn a_remainder_does_not_grow_by_a_subtraction() {
+    let core = core("configs/schlick_pipelined.toml");
+    let id = "quotient_remainder_s4[25]";
+    assert_eq!(verdict(&core, &format!("{id}:stuck-at-0")), Verdict::Equivalent(How::Induction));
+    assert!(matches!(verdict(&core, &format!("{id}:stuck-at-1")), Verdict::Caught(..)));
+}

@@ -1,0 +1,87 @@
+//! Verdicts on faults.
+
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+
+use super::fault::Fault;
+use glint_core::cosim::Mismatch;
+
+/// The check that notices a fault.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Detector {
+    /// The default test: golden model against built-in simulator.
+    Cosim,
+    /// Operands held where the words at fault are read.
+    Directed,
+}
+
+/// How a fault was proved equivalent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum How {
+    /// By induction over the microprogram.
+    Induction,
+    /// By every combination of the values around it.
+    Exhaustion,
+    /// By every combination of the operands that are used with the word at fault.
+    Operands,
+}
+
+impl fmt::Display for Detector {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.pad(match self {
+            Self::Cosim => "co-simulation",
+            Self::Directed => "directed stimulus",
+        })
+    }
+}
+
+impl fmt::Display for How {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.pad(match self {
+            Self::Induction => "by induction over the microprogram",
+            Self::Exhaustion => "by every combination of the values around it",
+            Self::Operands => "by every combination of the operands that are used with the word",
+        })
+    }
+}
+
+/// The difference that a check showed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Difference {
+    /// Operands that the stimulus held, by name, at raw values ([`glint_core::cosim::Lockstep::holding`]).
+    pub held: Vec<(String, i64)>,
+    /// The signal, on a clock.
+    pub mismatch: Mismatch,
+}
+
+/// The verdict on a mutant.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Verdict {
+    /// A check differs, and where.
+    Caught(Detector, Difference),
+    /// Proved to change nothing that is compared.
+    Equivalent(How),
+    /// Neither caught nor proved equivalent.
+    Undecided,
+}
+
+/// A fault and what became of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Found {
+    /// The fault.
+    pub fault: Fault,
+    /// The verdict.
+    pub verdict: Verdict,
+    /// Whether the vectors of the shipped bench notice it, at the outputs alone.
+    pub shipped: bool,
+}
+
+impl Found {
+    /// Whether a check notices it and the shipped bench does not.
+    pub fn is_missed(&self) -> bool {
+        matches!(self.verdict, Verdict::Caught(..)) && !self.shipped
+    }
+}

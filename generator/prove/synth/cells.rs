@@ -1,0 +1,158 @@
+//! Standard cells of 0.18 µm, before layout: Yosys with a liberty file, and OpenSTA for the delay.
+//!
+//! Nets of a large fan-out are buffered, and cells sized: without, the clock enable of a pipeline takes longer than everything that
+//! it enables. The library is that of Oklahoma State University, in the typical corner, as Debian's `qflow-tech-osu018` has it; a gate is
+//! the area of its NAND2X1.
+
+use std::fs;
+use std::path::Path;
+
+use anyhow::{Context, Result, bail};
+
+use super::harness::TOP;
+use super::netlist::{self, Netlist};
+use super::workspace::{self, HARNESS, Workspace};
+use super::{Subject, Target};
+use glint_show::figures::{Area, Figures, Step, rounded};
+use glint_tools::Tool;
+use glint_tools::gates::cells::{LOAD, MAPPING};
+use glint_tools::sources::Sources;
+
+const DEVICE: &str = "OSU 0.18 µm, typical corner, before layout";
+const NETLIST: &str = "cells.v";
+const STATISTICS: &str = "cells.txt";
+const GATE: &str = "NAND2X1";
+const CONSTRAINTS: &str = "cells.constr";
+
+/// Makes sure that there is a library.
+///
+/// # Errors
+/// There is none; the message says how to get it.
+pub fn check(liberty: &Path) -> Result<()> {
+    if !liberty.is_file() {
+        bail!(
+            "`{}`, which describes cells of 0.18 µm, is not there; install it (Debian, Ubuntu: `apt install \
+             qflow-tech-osu018`), or name another with --liberty",
+            liberty.display()
+        );
+    }
+    Ok(())
+}
+
+pub fn measure(
+    yosys: &Tool,
+    sta: &Tool,
+    liberty: &Path,
+    subject: &Subject,
+    done: &(dyn Fn() + Sync),
+) -> Result<Figures> {
+    let text = fs::read_to_string(liberty)
+        .with_context(|| format!("cannot read `{}`", liberty.display()))?;
+    let gate = gate(&text).with_context(|| {
+        format!("`{}` tells no area of the cell {GATE}, the unit of gates", liberty.display())
+    })?;
+    let workspace = Workspace::new(yosys, subject)?;
+    let (sources, library) = (&workspace.sources, "cells.lib");
+    sources.write(library, &text)?;
+    sources.write(CONSTRAINTS, LOAD)?;
+    let map = |top: &str| format!("synth -flatten -top {top}; {MAPPING}");
+    let name = &subject.design.name;
+    let commands = [
+        "design -save source".to_owned(),
+        map(name),
+        format!("tee -q -o {STATISTICS} stat -liberty {library}"),
+        "design -load source".to_owned(),
+        format!("read_verilog {HARNESS}"),
+        map(TOP),
+        // Names that netlist and OpenSTA share.
+        "splitnets; opt_clean -purge; rename -enumerate -pattern glint_%".to_owned(),
+        format!("write_json {}", workspace::NETLIST),
+        format!("write_verilog -noattr -noexpr -simple-lhs {NETLIST}"),
+    ];
+    sources.run(&commands.join("; "))?;
+    done();
+    let area = area(&sources.text(STATISTICS)?, gate)
+        .context("`yosys` does not tell the area of the cells")?;
+    let netlist = workspace.netlist()?;
+    let (period, path) = timing(sta, subject, sources, &netlist)?;
+    done();
+    Ok(Figures::new(Target::Osu018, DEVICE, area).with_runs(vec![(1000.0 / period, path)]))
+}
+
+/// The area of the cell that is the unit of gates.
+fn gate(liberty: &str) -> Option<f64> {
+    let (_, cell) = liberty.split_once(&format!("cell ({GATE})"))?;
+    let (_, area) = cell.split_once("area :")?;
+    area.split(';').next()?.trim().parse().ok()
+}
+
+/// The area of the cells, with the flip-flops counted.
+fn area(statistics: &str, gate: f64) -> Option<Area> {
+    let total = statistics.lines().find_map(|line| {
+        let (before, area) = line.split_once(": ")?;
+        before.trim_start().starts_with("Chip area").then(|| area.trim().parse::<f64>().ok())?
+    })?;
+    let flip_flops = statistics.lines().filter_map(|line| {
+        let (cell, count) = line.trim().split_once(' ')?;
+        cell.starts_with("DFF").then(|| count.trim().parse::<u64>().ok())?
+    });
+    Some(Area {
+        flip_flops: flip_flops.sum(),
+        gates: Some((total / gate).round()),
+        square_micrometres: Some(rounded(total)),
+        ..Area::default()
+    })
+}
+
+/// The shortest period in nanoseconds, and the longest path.
+fn timing(
+    sta: &Tool,
+    subject: &Subject,
+    sources: &Sources,
+    netlist: &Netlist,
+) -> Result<(f64, Vec<Step>)> {
+    // Longer than any path: what is left of it is the slack.
+    const PERIOD: f64 = 1000.0;
+    const SCRIPT: &str = "timing.tcl";
+    let script = format!(
+        "read_liberty cells.lib\nread_verilog {NETLIST}\nlink_design {TOP}\n\
+         create_clock -name clk -period {PERIOD} [get_ports clk]\n\
+         report_checks -path_delay max -fields {{net}} -digits 4\nexit\n"
+    );
+    sources.write(SCRIPT, &script)?;
+    let said =
+        sta.run_to_success(["-no_splash", "-exit", SCRIPT], sources.path(), subject.limit)?;
+    if let Some(error) = said.lines().find(|line| line.starts_with("Error")) {
+        bail!("`sta` failed: {error}");
+    }
+    let slack = said
+        .lines()
+        .find_map(|line| line.trim().strip_suffix("slack (MET)")?.trim().parse::<f64>().ok());
+    let slack = slack.context("`sta` does not tell the longest path")?;
+    Ok((PERIOD - slack, steps(netlist, &said)))
+}
+
+/// The nets of the path, and the register at its end.
+fn steps(netlist: &Netlist, said: &str) -> Vec<Step> {
+    let mut points = Vec::new();
+    let mut time = 0.0;
+    for line in said.lines() {
+        let mut words = line.split_whitespace();
+        let first = words.next().unwrap_or_default();
+        if line.contains("data arrival time") {
+            break;
+        }
+        if line.trim_end().ends_with("(net)") {
+            let name = words.next().and_then(|net| netlist.name(net));
+            points.extend(name.map(|name| (name.to_owned(), time)));
+        } else if let Some(arrival) = words.next().and_then(|word| word.parse().ok())
+            && first.parse::<f64>().is_ok()
+        {
+            time = arrival;
+        }
+    }
+    let end = said.lines().find_map(|line| line.strip_prefix("Endpoint: ")?.split(' ').next());
+    let end = end.and_then(|cell| netlist.register(cell));
+    points.extend(end.map(|name| (name.to_owned(), time)));
+    netlist::path(points)
+}

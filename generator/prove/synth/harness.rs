@@ -1,0 +1,45 @@
+//! Registers around a core.
+
+use anyhow::Result;
+use glint_base::fill;
+
+use glint_rtl::netlist::{Design, Port};
+
+/// The name of the module around the core, and of the core's instance in it.
+pub const TOP: &str = "glint_harness";
+pub const CORE: &str = "core";
+
+/// A port's bits in the register beside it.
+struct Slice<'a> {
+    port: &'a str,
+    high: u32,
+    low: u32,
+}
+
+/// The Verilog of the harness: a shift register feeds every input, and every output is captured in a register of its own,
+/// which is shifted out: four pins, whatever the ports of the core.
+pub fn harness(design: &Design) -> Result<String> {
+    let (inputs, fed) = slices(design, design.inputs());
+    let (outputs, captured) = slices(design, design.outputs());
+    fill!("harness.v" {
+        top: &'a str = TOP,
+        core: &'a str = CORE,
+        name: &'a str = &design.name,
+        inputs: Vec<Slice<'a>>,
+        outputs: Vec<Slice<'a>>,
+        fed: u32,
+        captured: u32,
+    })
+}
+
+fn slices<'a>(design: &'a Design, ports: impl Iterator<Item = &'a Port>) -> (Vec<Slice<'a>>, u32) {
+    let mut low = 0;
+    let slices = ports.map(|port| {
+        let net = design.net(port.net);
+        let slice = Slice { port: &net.name, high: low + net.format.width() - 1, low };
+        low += net.format.width();
+        slice
+    });
+    let slices = slices.collect();
+    (slices, low)
+}

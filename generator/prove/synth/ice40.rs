@@ -1,0 +1,148 @@
+//! iCE40 UltraPlus 5K: Yosys, nextpnr-ice40 and icetime.
+//!
+//! nextpnr-ice40 takes every DSP block for a register and leaves its delay out. `icetime` knows the delay of a
+//! block that is a multiplier and nothing else, so that is what [`glint_tools::synthesis`] makes of products.
+
+use std::collections::BTreeMap;
+
+use anyhow::{Context, Result};
+use serde_json::Value;
+
+use super::netlist::{self, Netlist};
+use super::routes::routed;
+use super::workspace::Workspace;
+use super::{Subject, Target};
+use glint_base::target::{Chip, ICE40};
+use glint_show::figures::{Figures, Step};
+use glint_tools::Tool;
+
+const DEVICE: &str = "iCE40 UP5K, SG48";
+
+/// The largest of the family that has DSP blocks.
+const CHIP: &Chip = &ICE40.chips[0];
+
+/// Out of reach, so that the placer tries hardest, in MHz.
+const GOAL: &str = "60";
+
+pub fn measure(
+    yosys: &Tool,
+    nextpnr: &Tool,
+    icetime: &Tool,
+    subject: &Subject,
+    done: &(dyn Fn() + Sync),
+) -> Result<Figures> {
+    let workspace = Workspace::new(yosys, subject)?;
+    let (usage, netlist) = workspace.synthesise(Target::Ice40)?;
+    netlist.check_timed("SB_MAC16", is_pure, |is| {
+        format!("is more than a multiplier ({is}), which icetime cannot time")
+    })?;
+    done();
+    let mut figures = Figures::new(Target::Ice40, DEVICE, usage.into());
+    let lack = CHIP.lack(usage.taken()).into_iter().map(|(at, wanted, there)| {
+        let what = ["LUTs", "DSP blocks", "block RAMs"][at];
+        format!("{wanted} {what}, UP5K has {there}")
+    });
+    let lack: Vec<String> = lack.collect();
+    figures.untimed = (!lack.is_empty()).then(|| format!("does not fit: {}", lack.join("; ")));
+    routed(figures, subject, done, |seed| {
+        route(nextpnr, icetime, subject, &workspace, &netlist, seed)
+    })
+}
+
+/// Whether a parameter leaves a DSP block a multiplier and nothing else.
+fn is_pure(parameter: &str, value: &Value) -> bool {
+    let value = value.as_str().unwrap_or_default();
+    match parameter {
+        "TOPOUTPUT_SELECT" | "BOTOUTPUT_SELECT" => value.ends_with("11"),
+        "A_SIGNED" | "B_SIGNED" => true,
+        _ => !value.contains('1'),
+    }
+}
+
+fn route(
+    nextpnr: &Tool,
+    icetime: &Tool,
+    subject: &Subject,
+    workspace: &Workspace,
+    netlist: &Netlist,
+    seed: u32,
+) -> Result<(f64, Vec<Step>)> {
+    let (bits, timing) = (format!("seed{seed}.asc"), format!("seed{seed}.json"));
+    let placed = format!("placed{seed}.json");
+    let options = format!(
+        "{} --pcf-allow-unconstrained --freq {GOAL} --asc {bits} --write {placed}",
+        CHIP.options
+    );
+    workspace.nextpnr(nextpnr, seed, &options)?;
+    let arguments = ["-d", "up5k", "-P", "sg48", "-i", "-t", "-j", &timing, &bits];
+    let said = icetime.run_to_success(arguments, workspace.sources.path(), subject.limit)?;
+    let nanoseconds = said.lines().find_map(|line| {
+        line.strip_prefix("Total path delay: ")?.split(' ').next()?.parse::<f64>().ok()
+    });
+    let nanoseconds = nanoseconds.context("`icetime` does not tell the longest path")?;
+    let (path, placed) = (workspace.sources.json(&timing)?, workspace.sources.json(&placed)?);
+    Ok((1000.0 / nanoseconds, steps(netlist, &path, &placed)))
+}
+
+/// The longest path. What icetime calls a net is often the next one that has a name, so that cells are looked up by their
+/// place.
+fn steps(netlist: &Netlist, path: &Value, placed: &Value) -> Vec<Step> {
+    let outputs = outputs(placed);
+    let points = path[0].as_array().into_iter().flatten();
+    netlist::path(points.filter_map(|point| {
+        let net = outputs.get(&location_of(point["cell"].as_str()?)?)?;
+        let name = netlist.name(net)?;
+        Some((name.to_owned(), point["delay_ns"].as_f64()?))
+    }))
+}
+
+/// The location of a cell of icetime, `lc40_16_2_0`, as nextpnr writes it, without the kind of cell: `16 2 0`. Routing is at no location.
+fn location_of(cell: &str) -> Option<String> {
+    let mut parts = cell.split('_');
+    let kind = parts.next()?;
+    // DSP blocks and block RAMs have a tile, or the tile of their first part, to themselves.
+    let location: Vec<&str> = parts.collect();
+    match kind {
+        "lc40" => (location.len() == 3).then(|| location.join(" ")),
+        "MAC16" | "ram" | "ram40" => Some(format!("{} {}", location.first()?, location.get(1)?)),
+        _ => None,
+    }
+}
+
+/// A net that each cell drives, by the cell's location: of a block the first of its outputs.
+fn outputs(placed: &Value) -> BTreeMap<String, String> {
+    // nextpnr calls the only module `top`.
+    let Some(module) = placed["modules"].as_object().and_then(|modules| modules.values().next())
+    else {
+        return BTreeMap::new();
+    };
+    let objects = |value: &'_ Value| value.as_object().cloned().unwrap_or_default();
+    let nets: BTreeMap<u64, String> = objects(&module["netnames"])
+        .iter()
+        .filter_map(|(name, net)| Some((net["bits"][0].as_u64()?, name.clone())))
+        .collect();
+    let mut found = BTreeMap::new();
+    for cell in objects(&module["cells"]).values() {
+        // X16/Y2/lc0
+        let bel = cell["attributes"]["NEXTPNR_BEL"].as_str().unwrap_or_default();
+        let mut parts =
+            bel.split('/').map(|part| part.trim_start_matches(|c: char| !c.is_ascii_digit()));
+        let (Some(x), Some(y), Some(z)) = (parts.next(), parts.next(), parts.next()) else {
+            continue;
+        };
+        let (prefix, location) = match cell["type"].as_str() {
+            Some("ICESTORM_LC") => ("O", format!("{x} {y} {z}")),
+            Some("ICESTORM_DSP") => ("O_", format!("{x} {y}")),
+            Some("ICESTORM_RAM") => ("RDATA_", format!("{x} {y}")),
+            _ => continue,
+        };
+        let connections = objects(&cell["connections"]);
+        let driven = connections.iter().filter(|(port, _)| match prefix {
+            "O" => *port == "O",
+            _ => port.starts_with(prefix),
+        });
+        let net = driven.filter_map(|(_, bits)| nets.get(&bits[0].as_u64()?)).next();
+        found.extend(net.map(|net| (location, net.clone())));
+    }
+    found
+}

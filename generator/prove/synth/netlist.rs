@@ -1,0 +1,146 @@
+//! A mapped netlist in the names of the description.
+
+use std::collections::BTreeMap;
+
+use anyhow::{Context, Result, bail};
+use serde_json::{Map, Value};
+
+use super::harness::{CORE, TOP};
+use glint_rtl::netlist::{Design, Driver, Op};
+use glint_show::figures::{Step, rounded};
+
+/// The flat netlist of a core in its harness.
+pub struct Netlist {
+    /// By the name of a net's bit, `core.datapath.product[3]`: the name in the description.
+    names: BTreeMap<String, String>,
+    /// By the name of a flip-flop, or of a DSP block: the name in the description.
+    registers: BTreeMap<String, String>,
+    /// The cells, by name.
+    cells: Map<String, Value>,
+}
+
+impl Netlist {
+    /// Reads what `write_json` of Yosys has written.
+    ///
+    /// # Errors
+    /// It has no nets or cells of the harness.
+    pub fn new(design: &Design, json: &Value) -> Result<Self> {
+        let module = &json["modules"][TOP];
+        let part = |name: &str| {
+            let part = module[name].as_object();
+            part.with_context(|| format!("the netlist of `yosys` has no {name} of `{TOP}`"))
+        };
+        let (nets, cells) = (part("netnames")?, part("cells")?);
+        let known = known(design);
+        // One bit has several names, most of them made by tools.
+        let mut best: BTreeMap<u64, (u8, &str)> = BTreeMap::new();
+        for (name, net) in nets {
+            let Some((rank, shown)) = known.get(own_name(name)) else {
+                continue;
+            };
+            for bit in bits(net) {
+                let entry = best.entry(bit).or_insert((*rank, shown));
+                if *rank < entry.0 {
+                    *entry = (*rank, shown);
+                }
+            }
+        }
+        let mut names = BTreeMap::new();
+        for (name, net) in nets {
+            let all = net["bits"].as_array().map_or(&[] as &[Value], Vec::as_slice);
+            let offset = net["offset"].as_u64().unwrap_or(0);
+            for (at, bit) in all.iter().enumerate() {
+                let Some((_, shown)) = bit.as_u64().and_then(|bit| best.get(&bit)) else {
+                    continue;
+                };
+                let name = match all.len() {
+                    1 => name.clone(),
+                    _ => format!("{name}[{}]", at as u64 + offset),
+                };
+                names.insert(name, (*shown).to_owned());
+            }
+        }
+        // A flip-flop, or a DSP block with a register at its output.
+        let outputs: Vec<String> =
+            std::iter::once("Q".to_owned()).chain((0..36).map(|bit| format!("P{bit}"))).collect();
+        let registers = cells.iter().filter_map(|(name, cell)| {
+            let bits = outputs.iter().filter_map(|pin| cell["connections"][pin][0].as_u64());
+            let (_, shown) = bits.filter_map(|bit| best.get(&bit)).next()?;
+            Some((name.clone(), (*shown).to_owned()))
+        });
+        Ok(Self { names, registers: registers.collect(), cells: cells.clone() })
+    }
+
+    /// Makes sure that the delay of no DSP block is left out: each parameter of the cells of a kind is one that is `timed`.
+    ///
+    /// # Errors
+    /// One is not; `why` says what that means.
+    pub fn check_timed(
+        &self,
+        kind: &str,
+        timed: impl Fn(&str, &Value) -> bool,
+        why: impl Fn(&str) -> String,
+    ) -> Result<()> {
+        for (name, cell) in self.cells.iter().filter(|(_, cell)| cell["type"] == kind) {
+            let mut parameters = cell["parameters"].as_object().into_iter().flatten();
+            if let Some((parameter, value)) = parameters.find(|(it, value)| !timed(it, value)) {
+                let is = format!("{parameter} is {}", value.as_str().unwrap_or_default());
+                bail!("the DSP block `{name}` {}", why(&is));
+            }
+        }
+        Ok(())
+    }
+
+    /// The register that a flip-flop is a bit of, in the description's names.
+    pub fn register(&self, cell: &str) -> Option<&str> {
+        self.registers.get(cell).map(String::as_str)
+    }
+
+    /// Returns the description's name of a net's bit.
+    pub fn name(&self, net: &str) -> Option<&str> {
+        self.names.get(net).map(String::as_str)
+    }
+}
+
+/// A path, from pairs of a name and the time in nanoseconds at which it settles: each name once in a row, at its last time.
+pub fn path(points: impl IntoIterator<Item = (String, f64)>) -> Vec<Step> {
+    let mut steps: Vec<Step> = Vec::new();
+    for (name, ns) in points {
+        let ns = rounded(ns);
+        match steps.last_mut() {
+            Some(last) if last.name == name => last.ns = ns,
+            _ => steps.push(Step { name, ns }),
+        }
+    }
+    steps
+}
+
+/// The nets of a design by name, each with what it is shown as, and a rank: of several names for one wire the first
+/// is a register's, then a ROM's, a product's, one that the author gave, any other.
+fn known(design: &Design) -> BTreeMap<&str, (u8, String)> {
+    let known = design.nets.iter().map(|net| {
+        let shown = match net.driver {
+            Driver::Rom(rom) => (1, format!("ROM {}", design.rom(rom).name)),
+            Driver::Register(_) => (0, net.name.clone()),
+            Driver::Op(Op::Mul(..)) => (2, net.name.clone()),
+            Driver::Input => (5, net.name.clone()),
+            _ => (if net.named { 3 } else { 4 }, net.name.clone()),
+        };
+        (net.name.as_str(), shown)
+    });
+    known.collect()
+}
+
+/// A net's name without the instances that it lies in, and without the bit of one that was split.
+fn own_name(name: &str) -> &str {
+    let inside = name.strip_prefix(CORE).and_then(|rest| rest.strip_prefix('.')).unwrap_or("");
+    let units = ["control.", "datapath."];
+    let inside = units.iter().find_map(|unit| inside.strip_prefix(unit)).unwrap_or(inside);
+    inside.split('[').next().unwrap_or(inside)
+}
+
+/// The bits of a net that are no constants.
+fn bits(net: &Value) -> impl Iterator<Item = u64> {
+    let bits = net["bits"].as_array().into_iter().flatten();
+    bits.filter_map(Value::as_u64)
+}

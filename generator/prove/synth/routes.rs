@@ -1,0 +1,27 @@
+//! Runs of place and route with several seeds.
+
+use anyhow::{Context, Result};
+use rayon::prelude::*;
+
+use super::{Figures, Step, Subject};
+
+/// Puts into `figures` what `route` finds with each seed, a frequency in MHz and the longest path, unless there is a reason why
+/// it cannot.
+///
+/// # Errors
+/// A run fails; the message has its seed.
+pub fn routed(
+    figures: Figures,
+    subject: &Subject,
+    done: &(dyn Fn() + Sync),
+    route: impl Fn(u32) -> Result<(f64, Vec<Step>)> + Sync,
+) -> Result<Figures> {
+    let possible = figures.untimed.is_none();
+    let runs = (1..=subject.seeds).into_par_iter().filter_map(|seed| {
+        let run = possible.then(|| route(seed).with_context(|| format!("seed {seed}")));
+        done();
+        run
+    });
+    let runs = runs.collect::<Result<_>>()?;
+    Ok(figures.with_runs(runs))
+}

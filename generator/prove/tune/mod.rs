@@ -1,0 +1,126 @@
+//! Finds the smallest configuration of a device for an error.
+//!
+//! The proved bound of the accuracy contract decides, so that the answer of [`tune`] keeps the error for every operand of the domain; the
+//! cost is estimated from the netlist ([`model`]). Free are the keys that change neither a port nor the formula (`space`), with those that
+//! add microinstructions where a rate is stated as enough, DSP blocks are dear, or nothing else fits the chip.
+
+pub mod model;
+mod search;
+mod space;
+
+use std::fmt;
+
+use anyhow::{Context, Result};
+use clap::ValueEnum;
+use serde::Serialize;
+
+use glint_config::Config;
+use glint_core::registry::Device;
+use glint_golden::Bound;
+pub use model::{Cost, Features};
+use search::Search;
+pub use search::{Answer, Candidate};
+use space::Space;
+
+use crate::synth::Target;
+
+/// The unit of an error.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub enum ErrorUnit {
+    /// The reflectance f, from 0 to 1.
+    F,
+    /// An output's least significant bit.
+    Output,
+}
+
+impl ErrorUnit {
+    /// The bound in this unit.
+    pub fn of(self, bound: &Bound) -> f64 {
+        match self {
+            Self::F => bound.f,
+            Self::Output => bound.units,
+        }
+    }
+}
+
+impl fmt::Display for ErrorUnit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::F => "of f",
+            Self::Output => "output units",
+        })
+    }
+}
+
+/// The cost that is minimised.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Objective {
+    /// Look-up tables; a DSP block or a block RAM counts for as many as the chip has of them.
+    Area,
+    /// Look-up tables.
+    Luts,
+    /// DSP blocks, then area.
+    Dsps,
+    /// Bits of the ROMs, then area.
+    Memory,
+}
+
+/// The goal of a search.
+#[derive(Clone, Debug)]
+pub struct Goal {
+    /// The largest error.
+    pub error: f64,
+    /// The unit of the error.
+    pub unit: ErrorUnit,
+    /// The target of the core.
+    pub target: Target,
+    /// The cost that is minimised.
+    pub objective: Objective,
+    /// The slowest clock in MHz, by the estimate.
+    pub clock: Option<f64>,
+    /// The fewest million points a second, by the estimate of the clock.
+    pub rate: Option<f64>,
+}
+
+/// Searches for the smallest configuration. `base` has the keys that are part of the goal; the free ones are changed, but for those
+/// in `fixed`. `progress` is called with the number of configurations that were looked at.
+///
+/// # Errors
+/// No configuration keeps the goal; the message says which term of the bound, or the clock, is in the way.
+pub fn tune(
+    device: &Device,
+    base: &Config,
+    fixed: &[&str],
+    goal: &Goal,
+    progress: &(dyn Fn(usize) + Sync),
+) -> Result<Answer> {
+    let slower = goal.rate.is_some() || goal.objective == Objective::Dsps;
+    let run = |slower| -> Result<Answer> {
+        let space = Space::new(device, base, fixed, slower)?;
+        Search::new(device, &space, goal, progress).run(base)
+    };
+    let of_device = || format!("`{}` cannot be tuned", device.name);
+    let answer = run(slower).with_context(of_device)?;
+    let fits = |answer: &Answer| answer.best.cost.excess(goal.target).is_empty();
+    if slower || fits(&answer) {
+        return Ok(answer);
+    }
+    let shared = run(true).with_context(of_device)?;
+    Ok(if fits(&shared) { shared } else { answer })
+}
+
+/// Every configuration of the free keys whose values are given, each with its cost, in the order of the values: for tests
+/// of the search, and for small spaces.
+///
+/// # Errors
+/// A configuration that the device accepts and that makes no design.
+pub fn exhaustive(
+    device: &Device,
+    base: &Config,
+    values: &[(&str, Vec<glint_config::Value>)],
+    goal: &Goal,
+) -> Result<Option<Candidate>> {
+    let space = Space::new(device, base, &[], true)?;
+    Search::new(device, &space, goal, &|_| ()).exhaustive(base, values)
+}

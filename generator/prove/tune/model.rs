@@ -1,0 +1,226 @@
+//! Estimates the cost of a configuration from its netlist.
+//!
+//! DSP blocks and block RAMs follow from the widths; look-up tables are a weighted sum of [`Features`], whose weights
+//! `benches/tune/fit` fits to the records in `synthesis/`. The clock is the longest path by the measured delays of the pipelines' targets.
+
+use std::collections::BTreeSet;
+
+use serde::{Deserialize, Serialize};
+
+use crate::synth::Target;
+use glint_base::target::{ECP5, Family};
+use glint_rtl::netlist::{Design, Driver, NetId, Op, RegId};
+use glint_rtl::pipeline::delay_of;
+
+/// The composition of a netlist, as far as look-up tables are concerned.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Features {
+    /// Bits of sums, differences and comparisons.
+    pub adder: f64,
+    /// Bits of multiplexers, for each input beyond the first.
+    pub mux: f64,
+    /// Bits of gates; a reduction or an equality takes a look-up table for three bits.
+    pub logic: f64,
+    /// Bits of ROMs that are look-up tables, in sixteenths.
+    pub rom: f64,
+    /// Bits of the sums of partial products.
+    pub product: f64,
+}
+
+/// The cost of a configuration on a target.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Cost {
+    /// Look-up tables.
+    pub luts: f64,
+    /// DSP blocks.
+    pub dsps: u64,
+    /// Block RAMs.
+    pub block_rams: u64,
+    /// Bits of all ROMs.
+    pub rom_bits: u64,
+    /// The clock in MHz.
+    pub mhz: f64,
+}
+
+/// The family of a target. Cells have no model of their own: of the FPGAs ECP5 is nearest, where a product is not split.
+fn family(target: Target) -> &'static Family {
+    target.family().unwrap_or(&ECP5)
+}
+
+impl Cost {
+    /// The estimate for a design.
+    pub fn new(design: &Design, target: Target) -> Self {
+        let family = family(target);
+        let features = Features::new(design, target);
+        let Features { adder, mux, logic, rom, product } = features;
+        let parts = [adder, mux, logic, rom, product, 1.0];
+        let luts = parts
+            .iter()
+            .zip(family.estimate.weights)
+            .map(|(part, weight)| part * weight)
+            .sum::<f64>();
+        Self {
+            // A tenth of a look-up table is more than an estimate is worth.
+            luts: (luts * 10.0).round() / 10.0,
+            dsps: products(design).map(|(a, b)| dsps(design, family, a, b)).sum(),
+            block_rams: block_rams(design, family),
+            rom_bits: design.rom_bits(),
+            mhz: (10_000.0 / (family.estimate.scale * period(design, family))).round() / 10.0,
+        }
+    }
+
+    /// Everything in look-up tables.
+    pub fn area(&self, target: Target) -> f64 {
+        let [luts, dsps, blocks] = family(target).chips[0].has.map(|has| has as f64);
+        let (dsp, block) = ((luts / dsps).round(), (luts / blocks).round());
+        self.luts + dsp * self.dsps as f64 + block * self.block_rams as f64
+    }
+
+    /// Returns the resources that a usual chip of the target lacks, in words; empty where the core fits.
+    pub fn excess(&self, target: Target) -> String {
+        let chip = &family(target).chips[0];
+        let wanted = [self.luts.ceil() as u64, self.dsps, self.block_rams];
+        let short = chip.lack(wanted).into_iter().map(|(at, wanted, has)| {
+            format!("{wanted} of {has} {}", ["look-up tables", "DSP blocks", "block RAMs"][at])
+        });
+        let short: Vec<String> = short.collect();
+        if short.is_empty() {
+            return String::new();
+        }
+        format!("it does not fit the {}: it takes {}", chip.name, short.join(", "))
+    }
+}
+
+impl Features {
+    /// Counts the features of a design on a target.
+    pub fn new(design: &Design, target: Target) -> Self {
+        let family = family(target);
+        let mut sum = Self::default();
+        let width = |net: NetId| f64::from(design.width(net));
+        for (id, net) in design.iter() {
+            let Driver::Op(op) = &net.driver else {
+                continue;
+            };
+            match op {
+                Op::Add { a, .. } | Op::Sub(a, _) | Op::Less(a, _) => sum.adder += width(*a),
+                Op::And(..) | Op::Or(..) | Op::Xor(..) => sum.logic += width(id),
+                Op::Any(a) | Op::All(a) => sum.logic += width(*a) / 3.0,
+                Op::Equal(a, _) => sum.logic += 2.0 * width(*a) / 3.0,
+                Op::Mux { inputs, .. } => sum.mux += width(id) * (inputs.len() - 1) as f64,
+                Op::Mul(a, b) => {
+                    let blocks = blocks(family, design.width(*a), design.width(*b));
+                    sum.product += blocks.saturating_sub(1) as f64 * width(id) / 2.0;
+                }
+                Op::Relabel(_) | Op::Extend(_) | Op::Slice { .. } | Op::Concat(_) | Op::Not(_) => {}
+            }
+        }
+        for rom in &design.roms {
+            let bits = rom.words.len() as u64 * u64::from(design.width(rom.data));
+            if !rom.synchronous || bits < family.estimate.least_block {
+                sum.rom += bits as f64 / 16.0;
+            }
+        }
+        sum
+    }
+}
+
+fn products(design: &Design) -> impl Iterator<Item = (NetId, NetId)> {
+    design.nets.iter().filter_map(|net| match net.driver {
+        Driver::Op(Op::Mul(a, b)) => Some((a, b)),
+        _ => None,
+    })
+}
+
+/// DSP blocks for a product, the better way round. As Yosys cuts operands: whole slices, and a rest, of which a single bit is a
+/// row of gates.
+fn dsps(design: &Design, family: &Family, a: NetId, b: NetId) -> u64 {
+    let [a, b] = [a, b].map(|net| {
+        let sign = if design.net(net).format.signed { family.estimate.sign } else { 0 };
+        design.width(net) - sign
+    });
+    let (wide, narrow) = family.timing.multiplier;
+    let slices = |operand: u32, block: u32| {
+        let whole = std::iter::repeat_n(block, (operand / block) as usize);
+        let rest = Some(operand % block).filter(|rest| *rest > 1 || operand < block);
+        whole.chain(rest).collect::<Vec<u32>>()
+    };
+    let either = |a: u32, b: u32| {
+        let others = slices(b, narrow);
+        let pairs = slices(a, wide).into_iter().flat_map(|a| others.iter().map(move |b| a + b));
+        pairs.filter(|bits| *bits >= family.estimate.least_product).count() as u64
+    };
+    either(a, b).min(either(b, a))
+}
+
+/// Partial products of a product, the better way round.
+fn blocks(family: &Family, a: u32, b: u32) -> u64 {
+    let (wide, narrow) = family.timing.multiplier;
+    let slices = |operand: u32, block: u32| {
+        if operand <= block { 1 } else { u64::from(operand.div_ceil(block)) }
+    };
+    let either = |a: u32, b: u32| slices(a, wide) * slices(b, narrow);
+    either(a, b).min(either(b, a))
+}
+
+fn block_rams(design: &Design, family: &Family) -> u64 {
+    let (capacity, widest) = family.estimate.block;
+    design
+        .roms
+        .iter()
+        .filter(|rom| rom.synchronous && rom.shares.is_none())
+        .map(|rom| (rom.words.len() as u64, u64::from(design.width(rom.data))))
+        .filter(|(words, width)| words * width >= family.estimate.least_block)
+        .map(|(words, width)| {
+            // The word of a block shrinks as the number of words grows, by powers of two.
+            let mut shapes =
+                std::iter::successors(Some(widest), |wide| (*wide > 1).then_some(wide / 2));
+            let fits = |wide: &u64| capacity / wide >= words;
+            let wide = shapes.find(fits);
+            wide.map_or((words * width).div_ceil(capacity), |wide| width.div_ceil(wide))
+        })
+        .sum()
+}
+
+/// The longest path between registers in nanoseconds, by the delays of the pipelines' target.
+fn period(design: &Design, family: &Family) -> f64 {
+    let delays = &family.timing;
+    let order = design.levelise().unwrap_or_default();
+    let mut arrival = vec![0.0_f64; design.nets.len()];
+    let levels = |inputs: u32| delays.logic * f64::from(inputs.max(2).ilog2().div_ceil(2).max(1));
+    let mut longest = 0.0_f64;
+    let registers = (0..design.registers.len()).map(|at| RegId(at as u32));
+    let inside = registers.filter_map(|register| design.multiplier(register));
+    let inside: BTreeSet<NetId> = inside.map(|multiplier| multiplier.product).collect();
+    for id in order {
+        let net = design.net(id);
+        let before = design.combinational_inputs(id);
+        let before = before.iter().map(|input| arrival[input.index()]).fold(0.0, f64::max);
+        let own = match &net.driver {
+            Driver::Op(Op::Mul(..)) if inside.contains(&id) => {
+                delays.registered.map_or(delays.product, |it| it.product)
+            }
+            Driver::Op(Op::Mul(a, b)) if blocks(family, design.width(*a), design.width(*b)) > 1 => {
+                delays.product + delays.chain(design.width(id) / 2)
+            }
+            // As at the last fit: fewer levels than the schedules of pipelines count.
+            Driver::Op(Op::Equal(a, _)) => levels(2 * design.width(*a)),
+            Driver::Op(Op::Any(a) | Op::All(a)) => levels(design.width(*a)),
+            Driver::Op(Op::Mux { inputs, .. }) => levels(inputs.len() as u32),
+            Driver::Op(Op::Less(a, _)) => delays.chain(design.width(*a)),
+            Driver::Op(op) => delay_of(delays, op, &|operand| design.width(operand)),
+            Driver::Rom(rom) => {
+                let rom = design.rom(*rom);
+                let address = design.width(rom.address).saturating_sub(2).max(1);
+                if rom.synchronous { delays.block } else { levels(2 * address) }
+            }
+            Driver::Undriven
+            | Driver::Input
+            | Driver::Constant(_)
+            | Driver::Register(_)
+            | Driver::Field(_) => 0.0,
+        };
+        arrival[id.index()] = before + own;
+        longest = longest.max(before + own);
+    }
+    longest + delays.register
+}

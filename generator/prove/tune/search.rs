@@ -1,0 +1,286 @@
+//! The search: up until the bound is kept, then down as far as it is.
+
+use std::cmp::Ordering;
+use std::collections::BTreeMap;
+use std::sync::Mutex;
+
+use anyhow::{Context, Result, bail};
+use rayon::prelude::*;
+
+use super::model::Cost;
+use super::space::Space;
+use super::{ErrorUnit, Goal, Objective};
+use glint_config::{Config, Value};
+use glint_core::registry::Device;
+use glint_golden::{Bound, Term};
+use glint_show::evidence::comparison::clocks_per_point;
+
+/// The exponent at which the clocks of a point are counted where they depend on it.
+const EXPONENT: f64 = 35.0;
+
+/// A configuration with what is known of it.
+#[derive(Clone, Debug)]
+pub struct Candidate {
+    /// The configuration.
+    pub config: Config,
+    /// The proved bound.
+    pub bound: Bound,
+    /// The estimate of what it costs.
+    pub cost: Cost,
+    /// Clocks from a point to the next, as `glint synth` counts them; `None` if the device shows none.
+    pub clocks: Option<f64>,
+}
+
+impl Candidate {
+    /// Million points a second at the estimated clock.
+    pub fn rate(&self) -> Option<f64> {
+        self.clocks.map(|clocks| self.cost.mhz / clocks)
+    }
+}
+
+/// The result of a search.
+#[derive(Clone, Debug)]
+pub struct Answer {
+    /// The smallest configuration that was found.
+    pub best: Candidate,
+    /// Configurations that none of those looked at betters both in error and in the objective, by rising error.
+    pub front: Vec<Candidate>,
+    /// The keys that were changed or could have been.
+    pub free: Vec<&'static str>,
+    /// How many configurations were looked at.
+    pub looked_at: usize,
+}
+
+/// A search in the making. What was looked at is kept by its text: `None` is no device.
+pub struct Search<'a> {
+    device: &'a Device,
+    space: &'a Space,
+    goal: &'a Goal,
+    progress: &'a (dyn Fn(usize) + Sync),
+    seen: Mutex<BTreeMap<String, Option<Candidate>>>,
+}
+
+impl<'a> Search<'a> {
+    pub fn new(
+        device: &'a Device,
+        space: &'a Space,
+        goal: &'a Goal,
+        progress: &'a (dyn Fn(usize) + Sync),
+    ) -> Self {
+        Self { device, space, goal, progress, seen: Mutex::default() }
+    }
+
+    /// From `base` up to the goal, then down.
+    pub fn run(&self, base: &Config) -> Result<Answer> {
+        let base = self.look(base).context("the configuration to start from makes no design")?;
+        let mut best = self.reach(base)?;
+        // Single changes first; pairs, of which there are many, only where no single one helps.
+        while let Some(better) = self.descend(&best, 1).or_else(|| self.descend(&best, 2)) {
+            best = better;
+        }
+        let seen = self.seen.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let all: Vec<Candidate> = seen.values().flatten().cloned().collect();
+        let (looked_at, free) = (seen.len(), self.space.free().to_vec());
+        Ok(Answer { front: self.front(all), best, free, looked_at })
+    }
+
+    /// Goes through all combinations of values; the smallest that keeps the goal.
+    pub fn exhaustive(
+        &self,
+        base: &Config,
+        values: &[(&str, Vec<Value>)],
+    ) -> Result<Option<Candidate>> {
+        let mut all: Vec<Vec<(&'static str, Value)>> = vec![Vec::new()];
+        for (key, values) in values {
+            let key = self.space.schema().key(key).with_context(|| format!("no key `{key}`"))?.name;
+            let longer = |start: &Vec<(&'static str, Value)>| -> Vec<_> {
+                values
+                    .iter()
+                    .map(|value| [start.as_slice(), &[(key, value.clone())]].concat())
+                    .collect()
+            };
+            all = all.iter().flat_map(longer).collect();
+        }
+        let found: Vec<Candidate> = all
+            .par_iter()
+            .filter_map(|values| self.look(&self.space.with(base, values)?))
+            .collect();
+        Ok(self.smallest(found))
+    }
+
+    /// Looks at a configuration, once.
+    fn look(&self, config: &Config) -> Option<Candidate> {
+        let text = config.to_toml(self.space.schema());
+        let known = |seen: &BTreeMap<String, Option<Candidate>>| seen.get(&text).cloned();
+        let lock = || self.seen.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        if let Some(known) = known(&lock()) {
+            return known;
+        }
+        let contract = (self.device.contract)(config);
+        let design = self.device.design(config).ok();
+        // What a free key leaves as it is alone, two together may not.
+        let design = design.filter(|design| self.space.holds(design, contract.as_ref()));
+        let found = design.map(|design| Candidate {
+            config: config.clone(),
+            bound: contract.bound(),
+            cost: Cost::new(&design, self.goal.target),
+            clocks: clocks_per_point(&design, contract.as_ref(), EXPONENT).ok(),
+        });
+        let mut seen = lock();
+        seen.insert(text, found.clone());
+        (self.progress)(seen.len());
+        found
+    }
+
+    fn error(&self, candidate: &Candidate) -> f64 {
+        self.goal.unit.of(&candidate.bound)
+    }
+
+    fn keeps(&self, candidate: &Candidate) -> bool {
+        self.error(candidate) <= self.goal.error && self.is_fast(candidate)
+    }
+
+    fn is_fast(&self, candidate: &Candidate) -> bool {
+        candidate.cost.mhz >= self.wanted_mhz(candidate)
+    }
+
+    /// The clock that a candidate needs for the goal, in MHz: infinite where it shows no point.
+    fn wanted_mhz(&self, candidate: &Candidate) -> f64 {
+        let of_rate = self.goal.rate.map(|rate| match candidate.clocks {
+            Some(clocks) => rate * clocks,
+            None => f64::INFINITY,
+        });
+        self.goal.clock.unwrap_or_default().max(of_rate.unwrap_or_default())
+    }
+
+    /// Returns the costs, the most important first: fit to the chip, objective, error, and bits of ROM. Candidates of equal costs
+    /// differ in their text.
+    fn order(&self, candidate: &Candidate) -> ([f64; 5], String) {
+        let (cost, target) = (&candidate.cost, self.goal.target);
+        let excess = if cost.excess(target).is_empty() { 0.0 } else { 1.0 };
+        let (first, second) = (self.objective(candidate), cost.area(target));
+        let small = [excess, first, second, self.error(candidate), cost.rom_bits as f64];
+        (small, candidate.config.to_toml(self.space.schema()))
+    }
+
+    fn objective(&self, candidate: &Candidate) -> f64 {
+        let cost = &candidate.cost;
+        match self.goal.objective {
+            Objective::Area => cost.area(self.goal.target),
+            Objective::Luts => cost.luts,
+            Objective::Dsps => cost.dsps as f64,
+            Objective::Memory => cost.rom_bits as f64,
+        }
+    }
+
+    fn smallest(&self, candidates: Vec<Candidate>) -> Option<Candidate> {
+        let kept = candidates.into_iter().filter(|candidate| self.keeps(candidate));
+        kept.map(|one| (self.order(&one), one))
+            .min_by(|(one, _), (other, _)| {
+                one.0.partial_cmp(&other.0).unwrap_or(Ordering::Equal).then(one.1.cmp(&other.1))
+            })
+            .map(|(_, one)| one)
+    }
+
+    /// The neighbours that differ by this number of changes.
+    fn around(&self, candidate: &Candidate, changes: usize) -> Vec<Candidate> {
+        let moves = self.space.moves(&candidate.config);
+        let single = moves.iter().map(|one| vec![one.clone()]);
+        let changed: Vec<Vec<(&'static str, Value)>> = if changes == 1 {
+            single.collect()
+        } else {
+            let pairs = moves.iter().enumerate().flat_map(|(at, one)| {
+                let others = moves[at + 1..].iter().filter(move |other| other.0 != one.0);
+                others.map(move |other| vec![one.clone(), other.clone()])
+            });
+            pairs.collect()
+        };
+        let all = changed.par_iter();
+        all.filter_map(|values| self.look(&self.space.with(&candidate.config, values)?)).collect()
+    }
+
+    /// Goes on to the neighbour with the smallest error until the goal is kept.
+    fn reach(&self, base: Candidate) -> Result<Candidate> {
+        let mut here = base;
+        while !self.keeps(&here) {
+            let wanted = self.error(&here) > self.goal.error;
+            let measure = |candidate: &Candidate| match wanted {
+                true => self.error(candidate),
+                // The error is kept, and the clock is not.
+                false if self.error(candidate) > self.goal.error => f64::INFINITY,
+                false => -candidate.cost.mhz / self.wanted_mhz(candidate),
+            };
+            let next = self.around(&here, 1).into_iter();
+            let next = next.min_by(|one, other| measure(one).total_cmp(&measure(other)));
+            match next.filter(|next| measure(next) < measure(&here) - 1e-9) {
+                Some(next) => here = next,
+                None if wanted => return self.out_of_reach(&here),
+                None => return self.too_slow(&here),
+            }
+        }
+        Ok(here)
+    }
+
+    /// The clock that cannot be kept.
+    fn too_slow(&self, fastest: &Candidate) -> Result<Candidate> {
+        let wanted = match (self.goal.rate, fastest.clocks) {
+            (Some(rate), Some(clocks)) => {
+                format!("for {rate} million points a second at {clocks} clocks a point")
+            }
+            _ => "as --clock".to_owned(),
+        };
+        bail!(
+            "the estimate of the fastest clock that keeps the error is {:.1} MHz, {:.1} MHz are wanted {wanted}; \
+             `--set architecture=pipelined` computes a point a clock",
+            fastest.cost.mhz,
+            self.wanted_mhz(fastest)
+        )
+    }
+
+    /// The error that cannot be kept, and what is in the way.
+    fn out_of_reach(&self, nearest: &Candidate) -> Result<Candidate> {
+        let unit = self.goal.unit;
+        // The rounding of the outputs is no part of the error of f.
+        let counts = |term: &&Term| unit == ErrorUnit::Output || term.key != "output.rounding";
+        let largest = nearest.bound.terms.iter().filter(counts);
+        let largest = largest.max_by(|one, other| one.units.total_cmp(&other.units));
+        let way = largest.map_or_else(String::new, |term| {
+            format!("; in the way: {} (`{}`), {:.6} output units", term.what, term.key, term.units)
+        });
+        bail!(
+            "no configuration keeps {} {unit}; the smallest bound that was found is {} {unit}{way}",
+            self.goal.error,
+            above(self.error(nearest), self.goal.error)
+        )
+    }
+
+    /// A smaller neighbour that keeps the goal.
+    fn descend(&self, here: &Candidate, changes: usize) -> Option<Candidate> {
+        let smallest = self.smallest(self.around(here, changes))?;
+        (self.order(&smallest).0 < self.order(here).0).then_some(smallest)
+    }
+
+    fn front(&self, all: Vec<Candidate>) -> Vec<Candidate> {
+        let mut all: Vec<Candidate> = all.into_iter().filter(|it| self.is_fast(it)).collect();
+        all.sort_by(|one, other| {
+            let by_error = self.error(one).total_cmp(&self.error(other));
+            by_error.then(self.objective(one).total_cmp(&self.objective(other)))
+        });
+        let mut front: Vec<Candidate> = Vec::new();
+        for candidate in all {
+            let smaller =
+                front.last().is_none_or(|last| self.objective(&candidate) < self.objective(last));
+            if smaller {
+                front.push(candidate);
+            }
+        }
+        front
+    }
+}
+
+/// A value with as many digits as show that it is above a limit, and six at least.
+fn above(value: f64, limit: f64) -> String {
+    let shown = (6..17).map(|digits| format!("{value:.digits$}"));
+    let is_above = |text: &String| text.parse::<f64>().is_ok_and(|shown| shown > limit);
+    shown.into_iter().find(is_above).unwrap_or_else(|| value.to_string())
+}

@@ -1,0 +1,216 @@
+//! The free keys, and the neighbours of a configuration.
+
+use anyhow::{Context, Result};
+
+use glint_config::{Config, Key, Kind, Schema, Value};
+use glint_core::cosim::{Points, Random};
+use glint_core::registry::Device;
+use glint_golden::Contract;
+use glint_rtl::netlist::Design;
+
+/// Steps by which an integer is changed.
+const STEPS: [i64; 3] = [1, 2, 4];
+
+/// Tables of keys that state what is computed, and where.
+const STATEMENT: [&str; 2] = ["domain", "function"];
+
+/// Points at which formulas are compared, drawn as those of a test are: most of them where the formula is neither 0 nor flat.
+const POINTS: u32 = 600;
+
+/// The free keys of a device.
+pub struct Space {
+    schema: Schema,
+    free: Vec<&'static str>,
+    outside: Outside,
+    /// Whether microinstructions may be added.
+    slower: bool,
+}
+
+impl Space {
+    /// The keys of `base` that change neither ports nor formula, and add no microinstructions unless `slower`, without those in
+    /// `fixed`.
+    ///
+    /// # Errors
+    /// `base` makes no design.
+    pub fn new(device: &Device, base: &Config, fixed: &[&str], slower: bool) -> Result<Self> {
+        let schema = (device.schema)();
+        let design = device.design(base).context("this configuration makes no design")?;
+        let outside = Outside::new(&design, (device.contract)(base).as_ref());
+        let mut space = Self { schema, free: Vec::new(), outside, slower };
+        let is_free = |key: &&Key| {
+            let values = alternatives(key, base.value(key.name));
+            let states = STATEMENT.contains(&key.table_and_leaf().0);
+            !(values.is_empty() || states || fixed.contains(&key.name))
+                && values.into_iter().all(|value| {
+                    // A value that does not go with the others says nothing.
+                    let changed = space.with(base, &[(key.name, value)]);
+                    changed.is_none_or(|config| {
+                        let contract = (device.contract)(&config);
+                        device.design(&config).is_ok_and(|it| space.holds(&it, contract.as_ref()))
+                    })
+                })
+        };
+        space.free = space.schema.keys.iter().filter(is_free).map(|key| key.name).collect();
+        Ok(space)
+    }
+
+    /// Whether somebody outside sees the same core, but for its accuracy.
+    pub fn holds(&self, design: &Design, contract: &dyn Contract) -> bool {
+        let own = &self.outside;
+        own.ports == ports(design)
+            && (self.slower || own.microinstructions == design.control.microprogram.len())
+            && own.has_formula(contract)
+    }
+
+    /// The free keys.
+    pub fn free(&self) -> &[&'static str] {
+        &self.free
+    }
+
+    /// The schema of the device.
+    pub fn schema(&self) -> &Schema {
+        &self.schema
+    }
+
+    /// The changes of one free key that applies.
+    pub fn moves(&self, config: &Config) -> Vec<(&'static str, Value)> {
+        let keys =
+            self.schema.keys.iter().filter(|key| {
+                self.free.contains(&key.name) && config.applies(&self.schema, key.name)
+            });
+        keys.flat_map(|key| {
+            let values = neighbours(&key.kind, config.value(key.name));
+            values.into_iter().map(|value| (key.name, value))
+        })
+        .collect()
+    }
+
+    /// A configuration with values replaced, if the device accepts it.
+    pub fn with(&self, config: &Config, values: &[(&'static str, Value)]) -> Option<Config> {
+        with(&self.schema, config, values)
+    }
+}
+
+/// A configuration with values replaced; `None` where the device does not accept that.
+fn with(schema: &Schema, config: &Config, values: &[(&'static str, Value)]) -> Option<Config> {
+    let changed = |name: &str| values.iter().find(|(key, _)| *key == name).map(|(_, value)| value);
+    // A choice decides which other keys apply; those that no longer do are left out.
+    let mut draft: Vec<(String, Value)> = config
+        .values()
+        .map(|(name, own)| (name.to_owned(), changed(name).unwrap_or(own).clone()))
+        .collect();
+    let bare = |draft: &[(String, Value)], key: &str| {
+        draft.iter().find(|(name, _)| name == key).map(|(_, value)| value.bare())
+    };
+    let applies = |draft: &[(String, Value)], name: &str| {
+        let mut condition = schema.key(name).and_then(|key| key.only_when);
+        while let Some((other, value)) = condition {
+            if bare(draft, other).as_deref() != Some(value) {
+                return false;
+            }
+            condition = schema.key(other).and_then(|key| key.only_when);
+        }
+        true
+    };
+    let all = draft.clone();
+    draft.retain(|(name, _)| applies(&all, name));
+    // Two keys that say the same thing: only one may be there.
+    draft.retain(|(name, value)| {
+        schema.key(name).is_none_or(|key| !name.starts_with("pipeline.") || *value != key.default)
+    });
+    let mut config = Config::from_values(schema, &config.name, draft).ok()?;
+    // What a file may say beside the keys.
+    config.strict = false;
+    values.iter().all(|(key, value)| config.value(key) == value).then_some(config)
+}
+
+/// The interface of a core: its ports, its microinstructions, each at least a clock of a point, and its
+/// formula at some points.
+struct Outside {
+    ports: Vec<String>,
+    microinstructions: usize,
+    points: Vec<Vec<i64>>,
+    formula: Vec<[f64; 2]>,
+}
+
+impl Outside {
+    fn new(design: &Design, contract: &dyn Contract) -> Self {
+        let (drawn, mut random) = (Points::new(contract), Random::new(1));
+        let points: Vec<Vec<i64>> = (0..POINTS).map(|_| drawn.of_domain(&mut random)).collect();
+        Self {
+            ports: ports(design),
+            microinstructions: design.control.microprogram.len(),
+            formula: formula(contract, &points),
+            points,
+        }
+    }
+
+    /// Whether the formula is this one. Where it jumps, two values are right, which depend on the widths: one of them is the
+    /// formula's.
+    fn has_formula(&self, contract: &dyn Contract) -> bool {
+        let other = formula(contract, &self.points);
+        let same = |(a, b): (&[f64; 2], &[f64; 2])| a.iter().any(|value| b.contains(value));
+        other.len() == self.formula.len() && self.formula.iter().zip(&other).all(same)
+    }
+}
+
+fn ports(design: &Design) -> Vec<String> {
+    let ports = design.ports.iter().map(|port| design.net(port.net));
+    ports.map(|net| format!("{} {}", net.name, net.format)).collect()
+}
+
+fn formula(contract: &dyn Contract, points: &[Vec<i64>]) -> Vec<[f64; 2]> {
+    let mut values = Vec::new();
+    points.iter().for_each(|point| contract.exact(point, 0, &mut values));
+    values
+}
+
+/// The values by which it is seen what a key does: those next to its own, and the ends of its range.
+fn alternatives(key: &Key, value: &Value) -> Vec<Value> {
+    let mut values = neighbours(&key.kind, value);
+    match (&key.kind, value) {
+        (Kind::Integer { min, max }, _) => {
+            values.extend([*min, *max].map(Value::Integer));
+        }
+        (Kind::Integers { min, max, .. }, Value::Integers(list)) => {
+            values.extend([*min, *max].map(|end| Value::Integers(vec![end; list.len()])));
+        }
+        _ => {}
+    }
+    values
+}
+
+/// The values next to one, inside the range.
+fn neighbours(kind: &Kind, value: &Value) -> Vec<Value> {
+    match (kind, value) {
+        (Kind::Integer { min, max }, Value::Integer(value)) => {
+            let values = STEPS.iter().flat_map(|step| [value - step, value + step]);
+            values.filter(|value| (min..=max).contains(&value)).map(Value::Integer).collect()
+        }
+        (Kind::Choice(options), Value::Text(text)) => {
+            let others = options.iter().filter(|option| *option != text);
+            others.map(|option| Value::Text((*option).to_owned())).collect()
+        }
+        (Kind::Flag, Value::Flag(flag)) => vec![Value::Flag(!flag)],
+        (Kind::Integers { min, max, len_min, len_max }, Value::Integers(list)) => {
+            let mut lists = Vec::new();
+            for at in 0..list.len() {
+                for by in [-1, 1] {
+                    let mut changed = list.clone();
+                    changed[at] += by;
+                    lists.push(changed);
+                }
+            }
+            lists.push(
+                [list.as_slice(), list.last().map_or(&[] as &[i64], std::slice::from_ref)].concat(),
+            );
+            lists.push(list[..list.len().saturating_sub(1)].to_vec());
+            lists.retain(|list| {
+                (len_min..=len_max).contains(&&list.len())
+                    && list.iter().all(|entry| (min..=max).contains(&entry))
+            });
+            lists.into_iter().map(Value::Integers).collect()
+        }
+        _ => Vec::new(),
+    }
+}

@@ -1,0 +1,302 @@
+//! Checks that need nothing but Glint.
+
+use std::ops::ControlFlow;
+
+use anyhow::Result;
+
+use super::{Check, Finding, Subject, Verdict};
+use crate::mutate::{self, Fault, Faults, Score};
+use glint_base::input;
+use glint_base::program::Program;
+use glint_base::text::{counted, grouped};
+use glint_core::core::{TEST_POINTS, TEST_SEED};
+use glint_core::cosim::exhaustive::{Job, Proof, Record as Recorded, Shard, State};
+use glint_golden::{Contract, Sweep};
+
+/// Results that lock-step compares, and with full effort.
+const POINTS: [u64; 2] = [TEST_POINTS, 100 * TEST_POINTS];
+
+/// Without full effort a proof has no more evaluations than some seconds allow.
+const EVALUATIONS: u64 = 1 << 28;
+
+/// About how many evaluations of `f` of a recorded proof are made again.
+const AGAIN: u64 = 1 << 24;
+
+/// The description, as it was built.
+pub const DESIGN: Check = Check {
+    id: "design",
+    title: "Design rules",
+    question: "Is every net driven once, every width explicit, every value within its interval, and is there no loop?",
+    reads: "the netlist, of which the files are made",
+    tools: &[],
+    steps: |_| 1,
+    run: |subject, _, _| {
+        let (design, bound) = (&subject.core.design, subject.core.contract.bound());
+        let finding = Finding::new(
+            Verdict::Proved,
+            "all nets, registers, ROMs and microinstructions",
+            format!(
+                "{}, {}, {} and {} obey the rules. {}",
+                counted(design.nets.len(), "net"),
+                counted(design.registers.len(), "register"),
+                counted(design.roms.len(), "ROM"),
+                counted(design.control.microprogram.len(), "microinstruction"),
+                if bound.is_stated() {
+                    format!("The stated bound on an output is {:.3} units.", bound.units)
+                } else {
+                    "No bound on an output is stated.".to_owned()
+                },
+            ),
+        );
+        Ok(if bound.units < 1.0 {
+            finding
+        } else {
+            finding.open(
+                "The bound is not below one unit: the configuration is outside the accuracy contract.",
+            )
+        })
+    },
+};
+
+/// Golden model and simulation.
+pub const LOCKSTEP: Check = Check {
+    id: "lockstep",
+    title: "Golden model against simulation",
+    question: "Has every register and output the value that the golden model predicts, on every clock?",
+    reads: "the netlist and the golden model",
+    tools: &[],
+    steps: points,
+    run: |subject, _, progress| lockstep(subject, progress),
+};
+
+fn points(subject: &Subject<'_>) -> u64 {
+    POINTS[usize::from(subject.effort.full)]
+}
+
+fn lockstep(subject: &Subject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Result<Finding> {
+    let outcome = subject.core.lockstep(TEST_SEED)?.run(points(subject), progress)?;
+    let bound = subject.core.contract.bound();
+    let worst = outcome.worst.as_ref().map_or_else(String::new, |worst| {
+        format!(
+            " The largest error against the formula in f64 is {:.3} units, of a stated {:.3}.",
+            worst.units, bound.units
+        )
+    });
+    let stimulus = match subject.core.design.pipeline {
+        None => "resets, pauses, starts and writes while busy",
+        Some(_) => "resets, bubbles and stalls",
+    };
+    Ok(Finding::new(
+        Verdict::Passed,
+        format!(
+            "{} results in {} clocks, with {stimulus} (seed {TEST_SEED})",
+            grouped(outcome.points),
+            grouped(outcome.clocks)
+        ),
+        format!(
+            "{} and {} equal the golden model on every clock.{worst}",
+            counted(outcome.registers, "register"),
+            counted(outcome.outputs, "output"),
+        ),
+    )
+    .failures(outcome.failures(&bound))
+    .open("Operands that were not drawn."))
+}
+
+/// The accuracy contract.
+pub const CONTRACT: Check = Check {
+    id: "contract",
+    title: "Golden model against the formula",
+    question: "Is no output further from the formula in f64 than the stated bound, for any operands?",
+    reads: "the golden model, which the check of it against simulation ties to the netlist",
+    tools: &[],
+    steps: |subject| match evaluations(subject) {
+        all if is_short(subject, all) => all,
+        _ => record(subject)
+            .ok()
+            .flatten()
+            .map_or(1, |record| record.steps(subject.core.contract.as_ref(), AGAIN)),
+    },
+    run: |subject, _, progress| contract(subject, progress),
+};
+
+fn evaluations(subject: &Subject<'_>) -> u64 {
+    let job = Job::new(subject.core.contract.as_ref());
+    job.f.count() + job.colours.count()
+}
+
+fn is_short(subject: &Subject<'_>, evaluations: u64) -> bool {
+    subject.effort.full || evaluations <= EVALUATIONS
+}
+
+/// The record of a long proof, if there is one.
+fn record(subject: &Subject<'_>) -> Result<Option<Recorded>> {
+    let (core, digest) = (subject.core, subject.core.contract_digest());
+    Recorded::find(subject.proofs, &digest, core.contract.as_ref())
+}
+
+/// The whole proof; or, where it is long, its record, checked again in part.
+fn contract(subject: &Subject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Result<Finding> {
+    let contract = subject.core.contract.as_ref();
+    if !contract.bound().is_stated() {
+        let why =
+            format!("The contract states no bound: `{Program} certify` finds one where it can.");
+        return Ok(Finding::without(Verdict::NotApplicable, &why));
+    }
+    let all = evaluations(subject);
+    if !is_short(subject, all) {
+        return Ok(match record(subject)? {
+            Some(record) => recorded(&record, contract, progress),
+            None => without_record(subject, all),
+        });
+    }
+    let job = Job::new(contract);
+    let mut state = State::new("", Shard::WHOLE);
+    let whole = job.run(&mut state, progress, &mut |_| ControlFlow::Continue(()))?;
+    debug_assert!(whole.is_continue(), "nothing stops it");
+    let proof = Proof::new(contract, state.f.peak, state.colours.peak);
+    Ok(Finding::new(
+        of_sweep(job.f.sweep()),
+        domain(&job),
+        format!("The stated bound is {:.3} units; {}.", contract.bound().units, proof.words("")),
+    )
+    .failures(proof.failures)
+    .open(job.f.sweep().omits.clone()))
+}
+
+/// A sweep that leaves something out proves nothing.
+fn of_sweep(sweep: &Sweep) -> Verdict {
+    if sweep.omits.is_empty() { Verdict::Proved } else { Verdict::Passed }
+}
+
+fn domain(job: &Job<'_>) -> String {
+    format!("{}: {}", job.words(), job.f.sweep().words())
+}
+
+fn recorded(
+    record: &Recorded,
+    contract: &dyn Contract,
+    progress: &(dyn Fn(u64) + Sync),
+) -> Finding {
+    let job = Job::of_sweep(contract, record.sweep(contract));
+    let (again, failures) = record.recheck(contract, AGAIN, progress);
+    let path = record.path.display().to_string().replace('\\', "/");
+    let words = format!(
+        "The stated bound is {:.3} units; by the record `{path}` {}. Of it, {} evaluations, spread evenly, and the one with the \
+         largest error{} were made again.",
+        contract.bound().units,
+        record.words(contract),
+        grouped(again),
+        if job.colours.count() > 0 { ", and all colour products," } else { "" },
+    );
+    let verdict = of_sweep(job.f.sweep());
+    let finding = Finding::new(verdict, domain(&job), words).failures(failures);
+    Finding { record: Some(path), ..finding }.open(job.f.sweep().omits.clone())
+}
+
+fn without_record(subject: &Subject<'_>, evaluations: u64) -> Finding {
+    let without_tools = if subject.effort.without_tools { " --without-tools" } else { "" };
+    let why = format!(
+        "It has {} evaluations, and in `{}` there is no record of them for this configuration.",
+        grouped(evaluations),
+        subject.proofs.display(),
+    );
+    let command = format!("{Program} verify {} --full{without_tools}", input::label(subject.path));
+    Finding { complete_with: Some(command), ..Finding::without(Verdict::NotRun, why) }
+}
+
+/// Every combination of operands.
+pub const CLOCKS: Check = Check {
+    id: "clocks",
+    title: "Golden model against simulation, every operand",
+    question: "Has every register and output the value that the golden model predicts, on every clock, for every combination of operands?",
+    reads: "the netlist and the golden model",
+    tools: &[],
+    steps: |subject| {
+        let clocks = subject.core.clocks();
+        clocks.map_or(1, |clocks| clocks.count().max(1))
+    },
+    run: |subject, _, progress| {
+        let clocks = subject.core.clocks()?;
+        if clocks.count() == 0 {
+            return Ok(Finding::without(Verdict::NotApplicable, clocks.omits()));
+        }
+        let differs = clocks.check((0..clocks.blocks()).collect(), progress)?;
+        let failures = match differs {
+            Some(place) => vec![clocks.difference(place)?.to_string()],
+            None => Vec::new(),
+        };
+        Ok(Finding::new(
+            Verdict::Proved,
+            format!("{} combinations of {} operand bits", grouped(clocks.count()), clocks.bits()),
+            "Every register and output equals the golden model on every clock.",
+        )
+        .failures(failures)
+        .open(clocks.omits()))
+    },
+};
+
+/// Faults in the netlist.
+pub const MUTATION: Check = Check {
+    id: "mutation",
+    title: "Faults in the netlist",
+    question: "Does the test notice each of the faults that are planted in the netlist, one at a time?",
+    reads: "the netlist and the golden model",
+    tools: &[],
+    steps: |subject| match subject.core.design.pipeline {
+        None => Faults::of(&subject.core.design).len() as u64,
+        Some(_) => 1,
+    },
+    run: |subject, _, progress| {
+        if subject.core.design.pipeline.is_some() {
+            let why = format!("Of a pipeline this check plants none; `{Program} mutate` does.");
+            return Ok(Finding::without(Verdict::NotApplicable, &why));
+        }
+        let faults = Faults::of(&subject.core.design);
+        let found = mutate::run(subject.core, faults.iter(), &|| progress(1))?;
+        let score = Score::of(&found);
+        let all = &score.all;
+        let (caught, equivalent) = (all.all_caught(), all.all_equivalent());
+        let undecided = named(&score.undecided);
+        let domain = counted(all.planted, "fault");
+        let words = format!(
+            "{caught} are caught, {equivalent} are proved to change nothing that is compared, {} are undecided ({:.2} %). \
+             The shipped bench by itself notices {:.1} % of those that anything notices.",
+            all.undecided,
+            100.0 * all.share_undecided(),
+            100.0 * all.of_shipped().value()
+        );
+        if score.holds() {
+            let finding = Finding::new(Verdict::Passed, domain, words);
+            return Ok(finding.open(undecided));
+        }
+        // The fault-free design passes the same test: that too little is noticed speaks of the test.
+        let unnoticed = found.iter().filter(|found| found.verdict == mutate::Verdict::Undecided);
+        let unnoticed: Vec<&Fault> = unnoticed.map(|found| &found.fault).collect();
+        let unreached = mutate::unreached(subject.core, &unnoticed)?;
+        let ids: Vec<String> = unreached.iter().map(|fault| fault.id.clone()).collect();
+        let words = format!(
+            "{words} More than 1 %: the test is too weak to say much; it shows nothing against the core. {}To add stimulus, \
+             widen the keys of `domain`, or have the device's contract say where the formula is largest \
+             (`Contract::peak`); `{Program} mutate --only ID` shows what becomes of one fault.",
+            match ids.is_empty() {
+                true => String::new(),
+                false =>
+                    format!("To {} of them its stimulus never comes: {}. ", ids.len(), named(&ids)),
+            }
+        );
+        Ok(Finding::new(Verdict::Undecided, domain, words).open(undecided))
+    },
+};
+
+/// The most faults that are named.
+const NAMED: usize = 20;
+
+/// Some of the faults, and how many more there are.
+fn named(ids: &[String]) -> String {
+    let named = ids[..ids.len().min(NAMED)].join(", ");
+    match ids.len() - ids.len().min(NAMED) {
+        0 => named,
+        more => format!("{named} and {more} more; `{Program} mutate` names all"),
+    }
+}

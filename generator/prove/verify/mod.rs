@@ -1,0 +1,396 @@
+//! Runs every check of a configuration, and writes a record and a page about it.
+//!
+//! A [`Check`] asks one question, with the tools that it names, and gives a [`Finding`]: the answer, its domain, and what it leaves
+//! open. No check knows the finding of another, and the same tools give the same findings; durations stand apart, in [`CheckTime`].
+
+mod inside;
+mod outside;
+pub mod page;
+
+#[cfg(test)]
+mod tests;
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::OnceLock;
+use std::time::{Duration, Instant};
+
+use anyhow::Result;
+use serde::Serialize;
+
+use glint_base::input;
+use glint_core::core::Core;
+use glint_core::package::{self, OutputFile};
+use glint_tools::{LimitReached, Tool};
+
+/// A configuration to be verified.
+pub struct Subject<'a> {
+    /// The path on the command line.
+    pub path: &'a str,
+    /// The configuration and its design.
+    pub core: &'a Core,
+    /// How much is done.
+    pub effort: Effort,
+    /// Where records of `cosim --exhaustive --json` are.
+    pub proofs: &'a Path,
+    files: OnceLock<Vec<OutputFile>>,
+}
+
+impl<'a> Subject<'a> {
+    /// Prepares the checks of a core, none of which has run yet.
+    pub fn new(path: &'a str, core: &'a Core, effort: Effort, proofs: &'a Path) -> Self {
+        Self { path, core, effort, proofs, files: OnceLock::new() }
+    }
+
+    /// Every file that `generate` writes.
+    fn files(&self) -> Result<&[OutputFile]> {
+        if let Some(files) = self.files.get() {
+            return Ok(files);
+        }
+        let files = self.core.files(self.path, self.core.shipped_vectors()?)?;
+        Ok(self.files.get_or_init(|| files))
+    }
+
+    /// Returns the core's files that tools read for a target, pairs of a plain name and contents.
+    fn sources(&self, target: &str) -> Result<Vec<(String, String)>> {
+        let own = self.core.verilog()?;
+        let is_own = |file: &&OutputFile| {
+            file.path.starts_with("rtl_out/") && own.iter().any(|(name, _)| name == file.name())
+        };
+        Ok(package::sources_for(self.files()?.iter().filter(is_own).cloned().collect(), target))
+    }
+}
+
+/// A file that a record speaks of.
+#[derive(Clone, Debug, Serialize)]
+pub struct FileDigest {
+    /// As `generate` names it.
+    pub path: String,
+    /// SHA-256 in hexadecimal.
+    pub sha256: String,
+}
+
+/// How much a verification does.
+#[derive(Clone, Copy, Debug)]
+pub struct Effort {
+    /// Everything, however long it takes.
+    pub full: bool,
+    /// Only what needs no tool outside Glint.
+    pub without_tools: bool,
+    /// After which a run of an outside tool is given up.
+    pub time_limit: Duration,
+}
+
+/// The verdict of a check.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Verdict {
+    /// It holds for everything in the domain.
+    Proved,
+    /// It held wherever it was tried.
+    Passed,
+    /// It does not hold.
+    Failed,
+    /// It was run to its end and does not say whether it holds: the test is too weak, or the solver answers unknown.
+    Undecided,
+    /// It reached a limit of time or memory.
+    LimitReached,
+    /// The check could not be run: a tool is missing, or it takes more than this effort allows.
+    #[default]
+    NotRun,
+    /// It is a second proof of what another check shows, and did not succeed; why is said.
+    Unconfirmed,
+    /// It was left out on purpose.
+    LeftOut,
+    /// It asks nothing of this configuration.
+    NotApplicable,
+}
+
+impl Verdict {
+    /// For people.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Proved => "proved",
+            Self::Passed => "passed",
+            Self::Failed => "FAILED",
+            Self::Undecided => "undecided",
+            Self::LimitReached => "limit reached",
+            Self::NotRun => "not run",
+            Self::Unconfirmed => "not confirmed",
+            Self::LeftOut => "left out",
+            Self::NotApplicable => "not applicable",
+        }
+    }
+
+    /// Returns the conclusion of all checks if this verdict decides.
+    fn conclusion(self) -> Conclusion {
+        match self {
+            Self::Failed => Conclusion::Failed,
+            Self::Undecided | Self::LimitReached | Self::NotRun => Conclusion::Incomplete,
+            Self::LeftOut => Conclusion::InPart,
+            Self::Proved | Self::Passed | Self::Unconfirmed | Self::NotApplicable => {
+                Conclusion::Verified
+            }
+        }
+    }
+}
+
+/// The finding of a check.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Finding {
+    /// The verdict.
+    pub verdict: Verdict,
+    /// For what: operands, clocks, faults.
+    pub domain: String,
+    /// The outcome in a sentence or two.
+    pub words: String,
+    /// The part that the check leaves undecided; may be empty.
+    pub open: String,
+    /// The record that stands for a part of the work, by its file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub record: Option<String>,
+    /// The command that completes what was not run.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub complete_with: Option<String>,
+    /// The failures, each with its reproducer.
+    #[serde(rename = "faults")]
+    pub failures: Vec<String>,
+}
+
+impl Finding {
+    /// A verdict on a domain.
+    fn new(verdict: Verdict, domain: impl Into<String>, words: impl Into<String>) -> Self {
+        Self { domain: domain.into(), ..Self::without(verdict, words) }
+    }
+
+    /// The finding of a check that has nothing to say here.
+    fn without(verdict: Verdict, why: impl Into<String>) -> Self {
+        Self { verdict, words: why.into(), ..Self::default() }
+    }
+
+    /// A verdict of failure if there are any.
+    fn failures(self, failures: Vec<String>) -> Self {
+        let verdict = if failures.is_empty() { self.verdict } else { Verdict::Failed };
+        Self { verdict, failures, ..self }
+    }
+
+    fn open(self, open: impl Into<String>) -> Self {
+        Self { open: open.into(), ..self }
+    }
+}
+
+/// The function that runs a check, with its tools; it tells the steps that are done.
+type Run = fn(&Subject<'_>, &[Tool], &(dyn Fn(u64) + Sync)) -> Result<Finding>;
+
+/// One question about a configuration.
+pub struct Check {
+    /// For scripts.
+    pub id: &'static str,
+    /// For people.
+    pub title: &'static str,
+    /// The two sides that it compares.
+    pub question: &'static str,
+    /// The files or structures that it reads.
+    pub reads: &'static str,
+    /// The tools outside Glint that it runs.
+    tools: &'static [&'static str],
+    /// How many steps its progress has.
+    steps: fn(&Subject<'_>) -> u64,
+    run: Run,
+}
+
+/// All checks: first those that need nothing but Glint.
+pub const CHECKS: [&Check; 15] = [
+    &inside::DESIGN,
+    &inside::LOCKSTEP,
+    &inside::CLOCKS,
+    &inside::CONTRACT,
+    &inside::MUTATION,
+    &outside::CERTIFICATE,
+    &outside::EQUALITY,
+    &outside::TEXT,
+    &outside::LINT,
+    &outside::ICARUS,
+    &outside::VERILATOR,
+    &outside::COCOTB,
+    &outside::FORMAL,
+    &outside::SYNTHESIS,
+    &outside::GATES,
+];
+
+impl Check {
+    /// Whether it needs a tool outside Glint.
+    pub fn is_outside(&self) -> bool {
+        !self.tools.is_empty()
+    }
+
+    /// The steps that its progress will have.
+    pub fn steps(&self, subject: &Subject<'_>) -> u64 {
+        (self.steps)(subject)
+    }
+
+    /// Runs it. A tool that is missing, or that does not do its work, is a finding too.
+    pub fn run(&self, subject: &Subject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Answer {
+        let begin = Instant::now();
+        let (tools, finding) = self.find(subject, progress);
+        self.answer(tools, finding, begin.elapsed())
+    }
+
+    /// Returns the answer of a check that is not run on purpose.
+    pub fn left_out(&self, why: &str) -> Answer {
+        let finding = Finding::without(Verdict::LeftOut, why);
+        self.answer(Vec::new(), finding, Duration::ZERO)
+    }
+
+    fn answer(&self, tools: Vec<String>, finding: Finding, took: Duration) -> Answer {
+        Answer {
+            check: self.id,
+            title: self.title,
+            question: self.question,
+            reads: self.reads,
+            tools,
+            finding,
+            timing: CheckTime { check: self.id, seconds: took.as_secs_f64() },
+        }
+    }
+
+    fn find(
+        &self,
+        subject: &Subject<'_>,
+        progress: &(dyn Fn(u64) + Sync),
+    ) -> (Vec<String>, Finding) {
+        let tools: Result<Vec<Tool>> = self.tools.iter().map(|name| Tool::find(name)).collect();
+        let tools = match tools {
+            Ok(tools) => tools,
+            Err(missing) => {
+                let why = Finding::without(Verdict::NotRun, format!("{missing:#}"));
+                return (Vec::new(), why);
+            }
+        };
+        // A tool that does not tell its version will say more about it when it is run.
+        let versions = tools.iter().filter_map(|tool| tool.version().ok());
+        let versions = versions.collect();
+        let limit = subject.effort.time_limit;
+        let finding = (tools.iter().try_for_each(|tool| tool.ensure_works(limit)))
+            .and_then(|()| (self.run)(subject, &tools, progress))
+            .unwrap_or_else(|error| match error.downcast_ref::<LimitReached>() {
+                // A tool that was stopped has found no failure.
+                Some(_) => Finding::without(Verdict::LimitReached, format!("{error:#}")),
+                None => Finding::default().failures(vec![format!("{error:#}")]),
+            });
+        (versions, finding)
+    }
+}
+
+/// A check and what it found.
+#[derive(Clone, Debug, Serialize)]
+pub struct Answer {
+    /// [`Check::id`].
+    pub check: &'static str,
+    /// [`Check::title`].
+    pub title: &'static str,
+    /// [`Check::question`].
+    pub question: &'static str,
+    /// [`Check::reads`].
+    pub reads: &'static str,
+    /// Versions of the tools outside Glint.
+    pub tools: Vec<String>,
+    /// The finding.
+    #[serde(flatten)]
+    pub finding: Finding,
+    /// How long it took: not among what is the same every time.
+    #[serde(skip)]
+    pub timing: CheckTime,
+}
+
+/// How long a check took.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct CheckTime {
+    /// [`Check::id`].
+    pub check: &'static str,
+    /// Wall-clock seconds.
+    pub seconds: f64,
+}
+
+/// The conclusion of all checks; the worst of their verdicts decides.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Conclusion {
+    /// Every check that asks something of the configuration was run, and all of them hold.
+    Verified,
+    /// Every check that was not left out on purpose was run, and all of them hold.
+    InPart,
+    /// Nothing failed, but a check could not be run to its end, or decides nothing.
+    Incomplete,
+    /// Something does not hold.
+    Failed,
+}
+
+impl Conclusion {
+    /// Returns the conclusion from some answers.
+    pub fn of(answers: &[Answer]) -> Self {
+        let verdicts = answers.iter().map(|answer| answer.finding.verdict.conclusion());
+        verdicts.max().unwrap_or(Self::Incomplete)
+    }
+
+    /// For people.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Verified => "verified",
+            Self::InPart => "verified in part",
+            Self::Incomplete => "incomplete",
+            Self::Failed => "FAILED",
+        }
+    }
+}
+
+/// The record of one configuration, written to `<name>.json`.
+#[derive(Clone, Debug, Serialize)]
+pub struct Record {
+    /// The version of Glint.
+    pub glint: &'static str,
+    /// The path of the configuration on the command line.
+    pub config: String,
+    /// The top module.
+    pub name: String,
+    /// The device.
+    pub device: &'static str,
+    /// SHA-256 of the configuration with all its keys.
+    pub configuration: String,
+    /// Each Verilog and memory file that `generate` writes; none where golden model and simulation do not agree on the bench.
+    pub files: Vec<FileDigest>,
+    /// Whether everything was done, however long it takes.
+    pub full: bool,
+    /// The conclusion of all checks.
+    pub conclusion: Conclusion,
+    /// How many checks say what.
+    pub counts: BTreeMap<Verdict, usize>,
+    /// In the order in which they were run.
+    pub checks: Vec<Answer>,
+}
+
+impl Record {
+    /// Makes the record of the answers of all checks.
+    pub fn new(subject: &Subject<'_>, checks: Vec<Answer>) -> Self {
+        let mut counts = BTreeMap::new();
+        let of_text = |file: &&OutputFile| [".v", ".mem"].iter().any(|it| file.path.ends_with(it));
+        let files = subject.files().unwrap_or_default().iter().filter(of_text);
+        let digest = |file: &OutputFile| FileDigest {
+            path: file.path.clone(),
+            sha256: package::digest(file.contents.as_bytes()),
+        };
+        checks.iter().for_each(|it| *counts.entry(it.finding.verdict).or_insert(0) += 1);
+        Self {
+            glint: env!("CARGO_PKG_VERSION"),
+            config: input::label(subject.path),
+            name: subject.core.config.name.clone(),
+            device: subject.core.device.name,
+            configuration: subject.core.digest(),
+            files: files.map(digest).collect(),
+            full: subject.effort.full,
+            conclusion: Conclusion::of(&checks),
+            counts,
+            checks,
+        }
+    }
+}

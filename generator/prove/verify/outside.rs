@@ -1,0 +1,491 @@
+//! Checks that run tools outside Glint, on the emitted files.
+
+use std::fs;
+use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Duration;
+
+use anyhow::{Context, Result};
+use rayon::prelude::*;
+
+use super::{Check, Finding, Subject, Verdict};
+use crate::certify::{self, Outcome, statements};
+use crate::equality;
+use glint_base::input;
+use glint_base::program::Program;
+use glint_base::target::{FAMILIES, Family};
+use glint_base::text::{counted, grouped};
+use glint_core::core::{BENCH_SEED, Core};
+use glint_core::package;
+use glint_tools::gates;
+use glint_tools::gates::cells::{LIBERTY, Start};
+use glint_tools::synthesis::synthesise;
+use glint_tools::transient::Directory;
+use glint_tools::{Limits, PROOF_LIMITS, Simulator, elaborate, lint, prove, run_bench};
+
+/// Results of a bench, and with full effort.
+const POINTS: [u64; 2] = [200, 20_000];
+
+/// How long it may take to write the statements for Gappa, and to prove one, but with full effort.
+const STATEMENT: Duration = Duration::from_secs(10);
+
+/// How long the solver may take to prove a pipeline equal to its sequential core, but with full effort.
+const EQUAL: Duration = Duration::from_secs(300);
+
+/// The version of cocotb that the benches in Python are written for.
+const COCOTB_VERSION: &str = "2.1.0";
+
+/// The suffixes of the modules that a system can instantiate.
+const TOPS: [&str; 4] = ["", "_axis", "_axil", "_wb"];
+
+/// Results of a bench around a netlist.
+const GATE_POINTS: u64 = 40;
+
+/// The bound of the contract, proved a second way.
+pub const CERTIFICATE: Check = Check {
+    id: "certificate",
+    title: "Proof of the error bound",
+    question: "Does the bound of the contract follow from the netlist and the microprogram, for all operands?",
+    reads: "the netlist and the microprogram",
+    tools: &["gappa"],
+    steps: |_| 1,
+    run: |subject, tools, _| {
+        let Core { design, contract, .. } = subject.core;
+        if design.pipeline.is_some() {
+            let why =
+                "It is made of a microprogram: see the sequential core of the same description.";
+            return Ok(Finding::without(Verdict::NotApplicable, why));
+        }
+        let own = if subject.effort.full { subject.effort.time_limit } else { STATEMENT };
+        let limit = own.min(subject.effort.time_limit);
+        let statements = match statements(design, contract.as_ref(), limit) {
+            Ok(statements) => statements,
+            Err(step) => {
+                let why = format!("Gappa is not asked: {step}.");
+                return Ok(Finding::without(Verdict::Unconfirmed, why));
+            }
+        };
+        let outcome = |statement| (statement, certify::prove(&tools[0], None, statement, limit));
+        let empty = AtomicUsize::new(0);
+        let open = |(_, outcome): &(_, Result<Outcome>)| {
+            if let Ok(Outcome::Proved(_, certify::Subject::Nothing)) = outcome {
+                empty.fetch_add(1, Ordering::Relaxed);
+            }
+            !matches!(outcome, Ok(Outcome::Proved(..)))
+        };
+        // The first that is open ends it, whichever is done first.
+        if let Some((statement, outcome)) = statements.par_iter().map(outcome).find_first(open) {
+            outcome?;
+            let why = format!(
+                "Gappa has no proof of statement {} of `{}` within {} s, among {} statements.",
+                statement.number,
+                statement.output,
+                limit.as_secs(),
+                statements.len()
+            );
+            return Ok(Finding::without(Verdict::Unconfirmed, why));
+        }
+        Ok(Finding::new(
+            Verdict::Proved,
+            "all operands of the domain",
+            format!(
+                "Gappa proves {} statements{}: an output differs from its formula by {:.3} units at most.",
+                statements.len(),
+                match empty.into_inner() {
+                    0 => String::new(),
+                    empty => format!(", of which {empty} have hypotheses that contradict each other"),
+                },
+                contract.bound().units
+            ),
+        )
+        .open("The words of tables are taken as they are."))
+    },
+};
+
+/// A pipeline and the sequential core of the same description.
+pub const EQUALITY: Check = Check {
+    id: "equality",
+    title: "Equal to the sequential core",
+    question: "Does the pipeline show for every point what the sequential core of the same description shows?",
+    reads: "the netlists of pipeline and sequential core",
+    tools: &["z3"],
+    steps: |_| 1,
+    run: |subject, tools, _| {
+        let (core, effort) = (subject.core, subject.effort);
+        if core.design.pipeline.is_none() {
+            let why = "It is the sequential core.";
+            return Ok(Finding::without(Verdict::NotApplicable, why));
+        }
+        let sequential = core.device.sequential(&core.config)?;
+        let limit = if effort.full { effort.time_limit } else { EQUAL.min(effort.time_limit) };
+        Ok(match equality::compare(&sequential, &core.design, &tools[0], limit)? {
+            equality::Verdict::Equal(proof) => Finding::new(
+                Verdict::Proved,
+                "every point: all bits of all operands",
+                format!(
+                    "{} and {} of the core on its way to them are equal, whatever {} and the words of memories are.",
+                    counted(proof.outputs, "output"),
+                    counted(proof.registers, "register value"),
+                    counted(proof.products, "product"),
+                ),
+            )
+            .open("Stalls and resets: a value of a stage is made of this stage alone, and the handshake is proved by induction."),
+            equality::Verdict::Different(difference) => {
+                Finding::default().failures(vec![difference.to_string()])
+            }
+            equality::Verdict::Open(open) => undecided(subject, open, limit),
+        })
+    },
+};
+
+/// The emitted Verilog of a pipeline and its netlist.
+pub const TEXT: Check = Check {
+    id: "text",
+    title: "Emitted Verilog equal to the netlist",
+    question: "Does the emitted Verilog of the pipeline, memories of delay lines and all, show for every point what its netlist shows?",
+    reads: "the Verilog and memory files of the core, and the netlist",
+    tools: &["yosys", "z3"],
+    steps: |_| 1,
+    run: |subject, tools, _| {
+        let (core, effort) = (subject.core, subject.effort);
+        if core.design.pipeline.is_none() {
+            let why = "It is asked of pipelines; the Verilog of a microprogram is simulated.";
+            return Ok(Finding::without(Verdict::NotApplicable, why));
+        }
+        let limit = if effort.full { effort.time_limit } else { EQUAL.min(effort.time_limit) };
+        let text =
+            elaborate(&tools[0], &subject.sources("")?, &core.config.name, effort.time_limit)?;
+        Ok(match equality::compare_text(&core.design, &text, &tools[1], limit)? {
+            equality::TextVerdict::Equal(proof) => Finding::new(
+                Verdict::Proved,
+                "every point, stalls too, from any state of registers, valid bits and memories after a reset",
+                format!(
+                    "{} of the text equal those of the netlist{}; the check above has the netlist.",
+                    counted(proof.outputs, "output"),
+                    match proof.delays.len() {
+                        0 => String::new(),
+                        memories => format!(
+                            ", and {} delay by a fixed number of clocks",
+                            counted(memories, "memory port")
+                        ),
+                    }
+                ),
+            )
+            .open("Resets between points, which the handshake's proof has; how other tools than Yosys read the text."),
+            equality::TextVerdict::Different(difference) => {
+                Finding::default().failures(vec![difference])
+            }
+            equality::TextVerdict::Open(open) => undecided(subject, open, limit),
+            equality::TextVerdict::Unread(why) => Finding::without(Verdict::Undecided, format!("{why}.")),
+        })
+    },
+};
+
+/// Returns the finding where the solver proves nothing and no point is found that differs.
+fn undecided(subject: &Subject<'_>, open: equality::Open, limit: Duration) -> Finding {
+    let limit = limit.as_secs();
+    match open {
+        equality::Open::Unknown => Finding::without(
+            Verdict::Undecided,
+            "Unknown: z3 gives up or proposes values of products that there are not, and no point was found that differs.",
+        ),
+        equality::Open::Limit => Finding {
+            complete_with: Some(format!(
+                "{Program} verify {} --full --time-limit {}",
+                input::label(subject.path),
+                limit.saturating_mul(10)
+            )),
+            ..Finding::without(
+                Verdict::LimitReached,
+                format!("z3 has no proof within {limit} s, and no point was found that differs."),
+            )
+        },
+    }
+}
+
+/// The emitted text.
+pub const LINT: Check = Check {
+    id: "lint",
+    title: "Lint",
+    question: "Have linters at their strictest nothing to say about the emitted Verilog?",
+    reads: "the Verilog and memory files of the core",
+    tools: &["iverilog", "verilator"],
+    steps: |_| 1,
+    run: |subject, tools, _| {
+        let dir = Directory::new().context("cannot make a directory for the linters")?;
+        let (name, limit) = (&subject.core.config.name, subject.effort.time_limit);
+        let mut sources = Vec::new();
+        let rtl = subject.files()?.iter().filter(|file| file.path.starts_with("rtl_out/"));
+        for (name, contents) in package::sources(rtl.cloned().collect()) {
+            fs::write(dir.path().join(&name), contents)
+                .with_context(|| format!("cannot write `{name}` for the linters"))?;
+            if name.ends_with(".v") {
+                sources.push(name);
+            }
+        }
+        let mut failures = Vec::new();
+        let tops = TOPS.map(|top| format!("{name}{top}"));
+        for top in tops.iter().filter(|top| sources.contains(&format!("{top}.v"))) {
+            for tool in tools {
+                let remarks = lint(tool, dir.path(), &sources, top, limit)?;
+                if !remarks.trim().is_empty() {
+                    failures.push(format!("{tool}: {}", remarks.trim()));
+                }
+            }
+        }
+        Ok(Finding::new(
+            Verdict::Passed,
+            sources.join(", "),
+            "Neither Icarus Verilog nor Verilator has a remark.",
+        )
+        .failures(failures))
+    },
+};
+
+/// The emitted Verilog in Icarus Verilog.
+pub const ICARUS: Check = Check {
+    id: "icarus",
+    title: "Emitted Verilog in Icarus Verilog",
+    question: "Does the emitted Verilog give, on every clock, the outputs on which golden model and simulation agree?",
+    reads: "the Verilog and memory files of the core, and the shipped bench with other points",
+    tools: &["iverilog", "vvp"],
+    steps: |_| 1,
+    run: |subject, _, _| bench(subject, Simulator::Icarus),
+};
+
+/// The emitted Verilog in Verilator.
+pub const VERILATOR: Check = Check {
+    id: "verilator",
+    title: "Emitted Verilog in Verilator",
+    question: ICARUS.question,
+    reads: "the Verilog and memory files of the core, and the shipped bench with other points",
+    tools: &["verilator"],
+    steps: |_| 1,
+    run: |subject, _, _| bench(subject, Simulator::Verilator),
+};
+
+fn bench(subject: &Subject<'_>, simulator: Simulator) -> Result<Finding> {
+    let (core, effort) = (subject.core, subject.effort);
+    let points = POINTS[usize::from(effort.full)];
+    let vectors = core.vectors(points, BENCH_SEED)?;
+    let clocks = vectors.inputs.len() as u64;
+    let files = package::sources(core.files(subject.path, vectors)?);
+    let mut failures = Vec::new();
+    let tops = TOPS.map(|top| format!("{}{top}_tb", core.config.name));
+    for top in tops.iter().filter(|top| files.iter().any(|(it, _)| *it == format!("{top}.v"))) {
+        let outcome = run_bench(simulator, &files, top, effort.time_limit)?;
+        if !outcome.passed {
+            failures.push(outcome.transcript.trim().to_owned());
+        }
+    }
+    Ok(Finding::new(
+        Verdict::Passed,
+        format!("{} results in {} clocks (seed {BENCH_SEED})", grouped(points), grouped(clocks)),
+        "Every output is right on every clock.",
+    )
+    .failures(failures)
+    .open("Operands that were not drawn."))
+}
+
+/// Synthesis for FPGAs.
+pub const SYNTHESIS: Check = Check {
+    id: "synthesis",
+    title: "Synthesis",
+    question: "Is the emitted Verilog synthesised for each family of FPGAs, and what does it take?",
+    reads: "the Verilog and memory files of the core",
+    tools: &["yosys"],
+    steps: |_| FAMILIES.len() as u64,
+    run: |subject, tools, progress| {
+        let (name, limit) = (&subject.core.config.name, subject.effort.time_limit);
+        let taken: Vec<String> = FAMILIES
+            .par_iter()
+            .map(|family| {
+                let files = subject.sources(family.name())?;
+                let usage = synthesise(&tools[0], &files, name, family, limit)?;
+                progress(1);
+                Ok(format!(
+                    "{} LUTs, {} DSP blocks and {} block RAMs of {}",
+                    usage.luts, usage.dsps, usage.block_rams, family.title
+                ))
+            })
+            .collect::<Result<_>>()?;
+        Ok(Finding::new(
+            Verdict::Passed,
+            "before placement",
+            format!("It takes {}.", taken.join("; ")),
+        ))
+    },
+};
+
+/// Properties of the emitted Verilog.
+pub const FORMAL: Check = Check {
+    id: "formal",
+    title: "Proof of the handshake",
+    question: "Do valid, busy and done come exactly when they should, for all inputs and from any state, and are operands stable meanwhile?",
+    reads: "the files as they are, from which products and ROMs of the datapath are cut",
+    tools: &["yosys", "yosys-smtbmc", "z3"],
+    steps: |_| 1,
+    run: |subject, _, _| {
+        let dir = written(subject)?;
+        let (name, limit) = (&subject.core.config.name, subject.effort.time_limit);
+        let flat = dir.path().join("proof");
+        fs::create_dir(&flat).context("cannot make a directory for the proof")?;
+        for directory in ["rtl_out", "testbench"] {
+            let directory = dir.path().join(directory).join(name);
+            for entry in directory.read_dir().context("cannot read what was emitted")? {
+                let entry = entry.context("cannot read what was emitted")?;
+                if entry.path().is_dir() {
+                    // What a target has of its own.
+                    continue;
+                }
+                fs::copy(entry.path(), flat.join(entry.file_name()))
+                    .context("cannot copy what was emitted")?;
+            }
+        }
+        let limits = Limits { time: limit.min(PROOF_LIMITS.time), ..PROOF_LIMITS };
+        // The core's, and one for each wrapper.
+        let mut proofs = Vec::new();
+        for entry in flat.read_dir().context("cannot read what was emitted")? {
+            let file = entry.context("cannot read what was emitted")?.file_name();
+            let module = file.to_str().and_then(|file| file.strip_suffix("_formal.sv"));
+            proofs.extend(module.map(str::to_owned));
+        }
+        proofs.sort();
+        for module in &proofs {
+            prove(&flat, module, limits)?;
+        }
+        let files: Vec<String> =
+            proofs.iter().map(|module| format!("{module}_formal.sv")).collect();
+        Ok(Finding::new(
+            Verdict::Proved,
+            "all inputs, any state, any number of clocks",
+            format!("The properties of {} are proved by k-induction.", files.join(", ")),
+        )
+        .open("Values: products and ROMs of the datapath are cut away."))
+    },
+};
+
+/// The emitted Verilog driven from Python.
+pub const COCOTB: Check = Check {
+    id: "cocotb",
+    title: "Emitted Verilog driven from Python",
+    question: "Does the core do what its manifest says, for a bench in Python that knows nothing else of it?",
+    reads: "the files as they are",
+    tools: &["python3", "iverilog"],
+    steps: |_| 1,
+    run: |subject, tools, _| {
+        let limit = subject.effort.time_limit;
+        let (python, here) = (&tools[0], std::path::Path::new("."));
+        let version =
+            python.run(["-c", "import cocotb; print(cocotb.__version__)"], here, limit)?;
+        if !version.status.success() {
+            let why = format!(
+                "{0} has no cocotb; `{0} -m pip install cocotb=={COCOTB_VERSION}` installs it. Where Python is managed by the \
+                 system: `python3 -m venv env`, `env/bin/pip install cocotb=={COCOTB_VERSION}`, and env/bin first on PATH",
+                python.path().display()
+            );
+            return Ok(Finding::without(Verdict::NotRun, why));
+        }
+        let dir = written(subject)?;
+        let name = &subject.core.config.name;
+        let benches = TOPS.map(|top| format!("testbench/{name}/test_{name}{top}.py"));
+        let benches: Vec<&String> =
+            benches.iter().filter(|bench| dir.path().join(bench).exists()).collect();
+        let (mut verdicts, mut failures) = (Vec::new(), Vec::new());
+        for bench in &benches {
+            let run = python.run([bench], dir.path(), limit)?;
+            let verdict = run.output.lines().rev().find(|line| line.starts_with("PASS "));
+            match verdict.filter(|_| run.status.success()) {
+                Some(verdict) => verdicts.push(verdict.to_owned()),
+                None => failures.push(run.output.trim().to_owned()),
+            }
+        }
+        let benches: Vec<&str> = benches.into_iter().map(String::as_str).collect();
+        Ok(Finding::new(
+            Verdict::Passed,
+            format!("{}, with cocotb {}", benches.join(", "), version.output.trim()),
+            verdicts.join("; "),
+        )
+        .failures(failures)
+        .open("Operands that were not drawn."))
+    },
+};
+
+/// Everything that is emitted, in a directory of its own.
+fn written(subject: &Subject<'_>) -> Result<Directory> {
+    let dir = Directory::new().context("cannot make a directory for what is emitted")?;
+    for file in subject.files()?.iter().chain([&package::driver()]) {
+        let path = dir.path().join(&file.path);
+        path.parent()
+            .map_or(Ok(()), fs::create_dir_all)
+            .and_then(|()| fs::write(&path, &file.contents))
+            .with_context(|| format!("cannot write `{}` for a tool", file.path))?;
+    }
+    Ok(dir)
+}
+
+/// The synthesised netlists.
+pub const GATES: Check = Check {
+    id: "gates",
+    title: "Netlists at gate level",
+    question: "Do the netlists that synthesis makes for FPGAs and of standard cells, ROM contents and all, pass the bench of \
+               their source?",
+    reads: "netlists that Yosys makes of the Verilog and memory files of the core, and the shipped bench with other points",
+    tools: &["yosys", "iverilog", "vvp"],
+    steps: |_| simulated().count() as u64 + 1,
+    run: |subject, tools, progress| {
+        let (name, limit) = (&subject.core.config.name, subject.effort.time_limit);
+        let vectors = subject.core.vectors(GATE_POINTS, BENCH_SEED)?;
+        let clocks = vectors.inputs.len() as u64;
+        let sources = package::sources(subject.core.files(subject.path, vectors)?);
+        let families: Vec<_> = simulated().collect();
+        let failures: Vec<Option<String>> = families
+            .par_iter()
+            .map(|family| {
+                let rtl = subject.sources(family.name())?;
+                let names: Vec<String> = rtl.iter().map(|(name, _)| name.clone()).collect();
+                let netlist = gates::netlist(&tools[0], &rtl, name, family, limit)?;
+                let files = gates::bench(&tools[0], sources.clone(), &names, netlist, family)?;
+                let outcome = run_bench(Simulator::Icarus, &files, &format!("{name}_tb"), limit)?;
+                progress(1);
+                let failure = || format!("{}: {}", family.title, outcome.transcript.trim());
+                Ok((!outcome.passed).then(failure))
+            })
+            .collect::<Result<_>>()?;
+        let titles: Vec<&str> = families.iter().map(|family| family.title).collect();
+        let mut failures: Vec<String> = failures.into_iter().flatten().collect();
+        let cells = Path::new(LIBERTY).is_file();
+        if cells {
+            let rtl = subject.core.verilog()?;
+            let names: Vec<String> = rtl.iter().map(|(name, _)| name.clone()).collect();
+            let netlist = gates::cells::netlist(&tools[0], &rtl, name, limit)?;
+            for &start in Start::of(subject.core.design.pipeline.is_some()) {
+                let models = gates::cells::models(start)?;
+                let files = gates::around(sources.clone(), &names, netlist.clone(), models);
+                let outcome = run_bench(Simulator::Icarus, &files, &format!("{name}_tb"), limit)?;
+                if !outcome.passed {
+                    failures.push(format!("cells, {start:?}: {}", outcome.transcript.trim()));
+                }
+            }
+        }
+        progress(1);
+        let cells = if cells { ", and of cells of 0.18 µm" } else { "" };
+        Ok(Finding::new(
+            Verdict::Passed,
+            format!(
+                "{} results in {} clocks (seed {BENCH_SEED}) of the netlists for {}{cells}",
+                grouped(GATE_POINTS),
+                grouped(clocks),
+                titles.join(" and ")
+            ),
+            "Every output is right on every clock.",
+        )
+        .failures(failures)
+        .open("Timing: the models of the cells have none. Families without models of all cells."))
+    },
+};
+
+/// The families whose netlists can be simulated.
+fn simulated() -> impl Iterator<Item = &'static Family> {
+    FAMILIES.iter().filter(|family| gates::is_simulated(family))
+}

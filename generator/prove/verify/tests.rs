@@ -1,0 +1,78 @@
+//! A fault is found by the check that looks for it, and by no other.
+
+use std::path::Path;
+use std::time::Duration;
+
+use super::{CHECKS, Conclusion, Effort, Finding, Record, Subject, Verdict};
+use glint_config as config;
+use glint_core::core::Core;
+use glint_core::registry::Registry;
+
+/// A narrow device, of which every check says something.
+fn core() -> Core {
+    let registry = Registry::catalogue();
+    let text = include_str!("../../../configs/reduced/rough.toml");
+    let config = config::parse("core.toml", text, &registry.schemas()).expect("a configuration");
+    let device = *registry.device(&config.device).expect("a device");
+    Core::new(device, config).expect("a design")
+}
+
+/// Runs the checks that need nothing but Glint.
+fn verified(core: &Core) -> Record {
+    let effort = Effort { full: false, without_tools: true, time_limit: Duration::from_secs(1) };
+    let subject = Subject::new("core.toml", core, effort, Path::new("proofs"));
+    let checks = CHECKS.iter().filter(|check| !check.is_outside());
+    let answers = checks.map(|check| check.run(&subject, &|_| ())).collect();
+    Record::new(&subject, answers)
+}
+
+fn finding<'a>(record: &'a Record, check: &str) -> &'a Finding {
+    let answer = record.checks.iter().find(|answer| answer.check == check);
+    &answer.expect("a check").finding
+}
+
+#[test]
+fn the_worst_verdict_decides() {
+    let answer =
+        |verdict| CHECKS[0].answer(Vec::new(), Finding::without(verdict, ""), Duration::ZERO);
+    for (verdict, conclusion) in [
+        (Verdict::Passed, Conclusion::Verified),
+        (Verdict::NotApplicable, Conclusion::Verified),
+        (Verdict::Unconfirmed, Conclusion::Verified),
+        (Verdict::LeftOut, Conclusion::InPart),
+        (Verdict::Undecided, Conclusion::Incomplete),
+        (Verdict::LimitReached, Conclusion::Incomplete),
+        (Verdict::NotRun, Conclusion::Incomplete),
+        (Verdict::Failed, Conclusion::Failed),
+    ] {
+        let both = [answer(Verdict::Proved), answer(verdict)];
+        assert_eq!(Conclusion::of(&both), conclusion, "{verdict:?}");
+    }
+}
+
+#[test]
+fn a_fault_in_the_design_fails_the_lockstep() {
+    let mut core = core();
+    assert_eq!(verified(&core).conclusion, Conclusion::Verified);
+    // The words of a ROM of the datapath, from the last to the first.
+    let control = core.design.control.rom.index();
+    let rom = core.design.roms.iter_mut().enumerate();
+    let rom = rom.filter(|(at, _)| *at != control).map(|(_, rom)| rom);
+    rom.for_each(|rom| rom.words.reverse());
+    let record = verified(&core);
+    assert_eq!(record.conclusion, Conclusion::Failed);
+    let lockstep = finding(&record, "lockstep");
+    assert_eq!(lockstep.verdict, Verdict::Failed);
+    // Its reproducer: seed, clock, microinstruction, signal, both values.
+    for part in [
+        "seed ",
+        "after clock ",
+        "microinstruction `",
+        "in the simulated hardware",
+        "in the golden model",
+    ] {
+        assert!(lockstep.failures[0].contains(part), "{:?}", lockstep.failures);
+    }
+    // Its sweep leaves values of cos_dgamma out.
+    assert_eq!(finding(&record, "contract").verdict, Verdict::Passed);
+}

@@ -1,0 +1,231 @@
+//! Devices side by side at one exponent: how near they come to `cosⁿγ`, and what they take.
+
+use std::fmt;
+
+use anyhow::Result;
+use serde::Serialize;
+
+use glint_core::cosim::trial;
+use glint_golden::formulas;
+use glint_golden::{Contract, Highlight};
+use glint_rtl::netlist::{Design, Driver, Op};
+
+/// Angles to a degree in the grid from 0 to 90°.
+pub const ANGLES_PER_DEGREE: u32 = 100;
+
+/// Angles of the grid, both ends among them.
+pub const ANGLES: u32 = 90 * ANGLES_PER_DEGREE + 1;
+
+/// An angle at which a device is timed, in degrees.
+const TYPICAL: f64 = 10.0;
+
+/// An absolute error over the grid.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Spread {
+    /// The largest.
+    pub largest: f64,
+    /// The mean over all angles.
+    pub mean: f64,
+}
+
+impl Spread {
+    /// Takes the error at one angle of the grid.
+    fn take(&mut self, error: f64) {
+        let error = error.abs();
+        self.largest = self.largest.max(error);
+        self.mean += error / f64::from(ANGLES);
+    }
+}
+
+/// The error of `f` against `cosⁿγ`, whole and by cause. At every angle the whole error is the sum of the
+/// signed errors by cause; the largest of each may be at different angles.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Accuracy {
+    /// The word f against `cosⁿγ`.
+    #[serde(rename = "error")]
+    pub whole: Spread,
+    /// The source's formula, in f64 and at the quantised operands, against `cosⁿ` of the angle that these
+    /// denote.
+    pub formula: Spread,
+    /// `cosⁿ` of the angle that the quantised operands denote against `cosⁿγ`. 0 where a contract does not
+    /// tell that angle ([`Highlight::cosine`]): then the formula's error includes it.
+    pub operands: Spread,
+    /// The word f against the formula at the quantised operands.
+    pub fixed_point: Spread,
+}
+
+/// Returns the formula at the quantised operands: where it jumps, the right value that is nearer to `f`.
+pub fn formula(highlight: &Highlight, control: &[i64], f: f64) -> f64 {
+    let [one, other] = highlight.references(control);
+    if (f - other).abs() < (f - one).abs() { other } else { one }
+}
+
+/// The errors over the grid of angles; `None` when the operands cannot denote `n`.
+pub fn accuracy(contract: &dyn Contract, n: f64) -> Option<Accuracy> {
+    let highlight = contract.highlight()?;
+    let format = highlight.f_format();
+    let mut accuracy = Accuracy::default();
+    for step in 0..ANGLES {
+        let gamma = (f64::from(step) / f64::from(ANGLES_PER_DEGREE)).to_radians();
+        // cos 90° is not 0 in f64, which n = 0 would show.
+        let cosine = if step == ANGLES - 1 { 0.0 } else { libm::cos(gamma) };
+        let control = highlight.at(gamma, n)?;
+        let exact = formulas::blinn(cosine, n);
+        let denoted = highlight.cosine(&control);
+        let denoted = denoted.map_or(exact, |cosine| formulas::blinn(cosine, n));
+        let f = format.to_f64(i128::from(highlight.f(&control)));
+        let formula = formula(highlight, &control, f);
+        accuracy.whole.take(f - exact);
+        accuracy.formula.take(formula - denoted);
+        accuracy.operands.take(denoted - exact);
+        accuracy.fixed_point.take(f - formula);
+    }
+    Some(accuracy)
+}
+
+/// Clocks per point of the exponent `n`, from one `start` to the next; where a `start` shows a line of points,
+/// on the longest.
+///
+/// # Errors
+/// A device that does not end, or shows no point.
+pub fn clocks_per_point(design: &Design, contract: &dyn Contract, n: f64) -> Result<f64> {
+    let point = contract.highlight().and_then(|it| it.at(TYPICAL.to_radians(), n));
+    let point = point.unwrap_or_default();
+    let operands = contract.operands().iter().enumerate();
+    let operands: Vec<i64> = operands
+        .map(|(place, operand)| match point.get(place) {
+            Some(&raw) if contract.length() != Some(&operand.name) => raw,
+            _ => operand.domain.1,
+        })
+        .collect();
+    let (clocks, points) = trial::throughput(design, contract, &operands)?;
+    Ok(f64::from(clocks) / f64::from(points))
+}
+
+/// The widths of the operands of a multiplier, the wider one first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Multiplier {
+    /// Bits of the wider operand.
+    pub first: u32,
+    /// Bits of the other.
+    pub second: u32,
+}
+
+impl fmt::Display for Multiplier {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}x{}", self.first, self.second)
+    }
+}
+
+/// The multipliers of a design, the largest first.
+pub fn multipliers(design: &Design) -> Vec<Multiplier> {
+    let mut found: Vec<Multiplier> = design
+        .nets
+        .iter()
+        .filter_map(|net| match net.driver {
+            Driver::Op(Op::Mul(a, b)) => {
+                let (a, b) = (design.width(a), design.width(b));
+                Some(Multiplier { first: a.max(b), second: a.min(b) })
+            }
+            _ => None,
+        })
+        .collect();
+    found.sort_unstable_by_key(|it| std::cmp::Reverse((it.first * it.second, it.first)));
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glint_base::fixed::Format;
+    use glint_golden::contract::{ErrorShare, control};
+    use glint_golden::highlight::{Products, Reflectance};
+    use glint_rtl::dsl::{Designer, end, fixture, loop_while, step, valid};
+
+    /// cosⁿγ itself, but for an eighth too much: one fraction bit of the cosine, eight of f.
+    struct Line;
+
+    impl Line {
+        fn contract() -> Highlight {
+            let operands = vec![
+                control("cos_gamma", Format::unsigned(1, 1), (0, 2), ""),
+                control("intervals", Format::unsigned(4, 0), (0, 15), ""),
+                control("exponent", Format::unsigned(4, 0), (1, 15), ""),
+            ];
+            Highlight::new(Self, operands, Products::none(Format::unsigned(1, 8)))
+        }
+    }
+
+    impl Reflectance for Line {
+        fn f(&self, control: &[i64]) -> i64 {
+            (self.reference(control) * 256.0) as i64 + 32
+        }
+
+        fn reference(&self, control: &[i64]) -> f64 {
+            0.5 * formulas::blinn(control[0] as f64 / 2.0, control[2] as f64)
+        }
+
+        fn length(&self) -> Option<&str> {
+            Some("intervals")
+        }
+
+        fn shares(&self) -> Vec<ErrorShare> {
+            Vec::new()
+        }
+    }
+
+    /// `intervals + 1` results, one a clock.
+    fn design() -> Design {
+        let d = Designer::new("line");
+        let cosine = d.operand("cos_gamma", Format::unsigned(1, 1));
+        let intervals = d.operand("intervals", Format::unsigned(4, 0));
+        let exponent = d.operand("exponent", Format::unsigned(4, 0));
+        let left = d.down_counter("left", intervals.q());
+        let more = d.any("more", left.q());
+        d.output("left_out", left.q());
+        d.output("cosine_out", cosine.q());
+        d.output("exponent_out", exponent.q());
+        d.microprogram([
+            step("operands", []),
+            step("load", [left.load()]),
+            step("point", [valid(), left.count(), loop_while(more, "point")]),
+            step("end", [end()]),
+        ]);
+        d.finish().unwrap_or_else(|mistakes| panic!("{mistakes}"))
+    }
+
+    #[test]
+    fn errors_are_told_apart() {
+        // n = 1: c is rounded to halves, f is half of it and an eighth.
+        let found = accuracy(&Line::contract(), 1.0).expect("within the domain");
+        assert_eq!(found.fixed_point, Spread { largest: 0.125, mean: found.fixed_point.mean });
+        assert!((found.fixed_point.mean - 0.125).abs() < 1e-12);
+        assert_eq!(found.formula.largest, 0.5);
+        // cos γ near 1/4 and 3/4 is rounded furthest.
+        assert!((found.operands.largest - 0.25).abs() < 1e-3, "{found:?}");
+        // At γ = 0: 1/2 + 1/8 for 1.
+        assert_eq!(found.whole.largest, 0.375);
+        assert_eq!(accuracy(&Line::contract(), 16.0), None);
+    }
+
+    #[test]
+    fn a_line_counts_by_its_points() {
+        // The clock of `start`, words 0 and 1, 16 points, the last word.
+        let clocks = clocks_per_point(&design(), &Line::contract(), 3.0).expect("it ends");
+        assert_eq!(clocks, 20.0 / 16.0);
+    }
+
+    #[test]
+    fn multipliers_are_listed_by_size() {
+        let design = fixture::design(|d| {
+            let a = d.operand("a", Format::unsigned(0, 4)).q();
+            let b = d.operand("b", Format::signed(0, 8)).q();
+            d.output("square_out", d.mul("square", a, a));
+            d.output("scaled_out", d.mul("scaled", a, b));
+            Vec::new()
+        });
+        // A sign bit each.
+        let sizes: Vec<String> = multipliers(&design).iter().map(Multiplier::to_string).collect();
+        assert_eq!(sizes, ["9x5", "4x4"]);
+    }
+}

@@ -1,0 +1,288 @@
+//! Error curves of a configuration: its formula against `cosⁿγ`, and its fixed point
+//! against its formula, over the exponent and over the angle.
+
+use serde::Serialize;
+
+use super::chart::{Chart, ChartAxis, Mark, Series, even};
+use super::comparison;
+use glint_core::registry::Device;
+use glint_golden::Contract;
+use glint_golden::formulas;
+
+/// The exponents at which a device is measured.
+pub const EXPONENTS: [u32; 20] =
+    [1, 2, 3, 4, 6, 8, 11, 16, 23, 32, 45, 64, 91, 128, 181, 256, 362, 512, 724, 1000];
+
+/// The exponents with a curve over the angle.
+const SHOWN: [u32; 5] = [2, 8, 35, 128, 1000];
+
+/// How far out the curves over the angle go, in `√n·γ`.
+const REACH: f64 = 4.0;
+
+/// Places of a curve over the angle, and angles about each of them of which the worst counts.
+const PLACES: u32 = 100;
+const ANGLES: u32 = 12;
+
+/// Smaller errors are shown at the bottom of a logarithmic axis.
+const FLOOR: f64 = 1e-6;
+
+/// The curves of a device.
+#[derive(Clone, Debug, Serialize)]
+pub struct DeviceCurves {
+    /// As the registry names it.
+    pub device: String,
+    /// Its summary there.
+    pub summary: String,
+    /// The proven bound on the error of an output, in output units.
+    pub bound_units: f64,
+    /// The largest colour operand, which an error of f is multiplied by.
+    pub largest_colour: f64,
+    /// Errors by exponent; empty when the operands do not denote γ and n.
+    pub exponents: Vec<AtExponent>,
+    /// The charts, none without errors.
+    pub charts: Vec<Chart>,
+}
+
+/// The largest errors of f at one exponent, over all angles from 0 to 90°.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct AtExponent {
+    /// The exponent.
+    pub n: u32,
+    /// The formula against `cosⁿγ`.
+    pub formula: f64,
+    /// The word f against the formula at the quantised operands.
+    pub fixed_point: f64,
+    /// The word f against `cosⁿγ` at the wanted angle.
+    pub whole: f64,
+}
+
+/// The steps of work that [`device`] reports as done.
+pub const STEPS: usize = EXPONENTS.len() + SHOWN.len();
+
+/// Errors at one angle.
+#[derive(Clone, Copy, Default)]
+struct AtAngle {
+    formula: f64,
+    fixed_point: f64,
+}
+
+/// Measures the defaults of a device.
+pub fn device(device: &Device, done: &(dyn Fn() + Sync)) -> DeviceCurves {
+    let config = device.defaults();
+    let contract = (device.contract)(&config);
+    configuration(device, contract.as_ref(), done)
+}
+
+/// Measures a configuration of a device, which has this contract.
+pub fn configuration(
+    device: &Device,
+    contract: &dyn Contract,
+    done: &(dyn Fn() + Sync),
+) -> DeviceCurves {
+    use rayon::prelude::*;
+
+    let exponents: Vec<AtExponent> = EXPONENTS
+        .par_iter()
+        .filter_map(|&n| {
+            let accuracy = comparison::accuracy(contract, f64::from(n));
+            done();
+            let accuracy = accuracy?;
+            Some(AtExponent {
+                n,
+                formula: accuracy.formula.largest,
+                fixed_point: accuracy.fixed_point.largest,
+                whole: accuracy.whole.largest,
+            })
+        })
+        .collect();
+    let lines: Vec<(u32, Option<Vec<AtAngle>>)> = SHOWN
+        .par_iter()
+        .map(|&n| {
+            let line = over_angle(contract, f64::from(n));
+            done();
+            (n, line)
+        })
+        .collect();
+    let largest_colour = contract
+        .operands()
+        .iter()
+        .filter(|operand| operand.colour)
+        .map(|operand| operand.format.to_f64(i128::from(operand.domain.1)))
+        .fold(0.0, f64::max);
+    let charts = if exponents.is_empty() {
+        Vec::new()
+    } else {
+        charts(device.name, &exponents, &lines, largest_colour)
+    };
+    DeviceCurves {
+        device: device.name.to_owned(),
+        summary: device.summary.to_owned(),
+        bound_units: contract.bound().units,
+        largest_colour,
+        exponents,
+        charts,
+    }
+}
+
+/// `√n·γ` at the places of a curve over the angle.
+fn places() -> Vec<f64> {
+    even(0.0, REACH, PLACES)
+}
+
+/// The signed formula error at each place, and the largest fixed-point error about it; zero beyond 90°,
+/// where nothing is reflected. `None` when the operands cannot denote `n`.
+fn over_angle(contract: &dyn Contract, n: f64) -> Option<Vec<AtAngle>> {
+    let highlight = contract.highlight()?;
+    let format = highlight.f_format();
+    let right = std::f64::consts::FRAC_PI_2;
+    let measure = |x: f64| {
+        let gamma = (x / n.sqrt()).clamp(0.0, right);
+        let control = highlight.at(gamma, n)?;
+        let cosine = highlight.cosine(&control);
+        let cosine = cosine.unwrap_or_else(|| libm::cos(gamma));
+        let f = format.to_f64(i128::from(highlight.f(&control)));
+        let formula = comparison::formula(highlight, &control, f);
+        Some(AtAngle {
+            formula: formula - formulas::blinn(cosine, n),
+            fixed_point: (f - formula).abs(),
+        })
+    };
+    let half = REACH / f64::from(PLACES) / 2.0;
+    places()
+        .into_iter()
+        .map(|x| {
+            if x > right * n.sqrt() {
+                return Some(AtAngle { formula: f64::NAN, fixed_point: f64::NAN });
+            }
+            let mut found = measure(x)?;
+            for near in even(x - half, x + half, ANGLES) {
+                found.fixed_point = found.fixed_point.max(measure(near)?.fixed_point);
+            }
+            Some(found)
+        })
+        .collect()
+}
+
+fn charts(
+    name: &str,
+    exponents: &[AtExponent],
+    lines: &[(u32, Option<Vec<AtAngle>>)],
+    largest_colour: f64,
+) -> Vec<Chart> {
+    let column = |name: &str, value: fn(&AtExponent) -> f64| Series {
+        name: name.to_owned(),
+        values: exponents.iter().map(|at| value(at).max(FLOOR)).collect(),
+    };
+    let unit = 1.0 / largest_colour;
+    let over_n = Chart {
+        id: format!("{name}-over-n"),
+        title: "Largest error of f against n".to_owned(),
+        caption: format!(
+            "The formula against cos\u{207f}\u{3b3}, and the fixed-point word f against the formula, over all angles. \
+             f is 1 at the peak; the line across is one output unit, 1/{largest_colour}."
+        ),
+        x: ChartAxis::logarithmic("n", 1.0, 1000.0),
+        y: ChartAxis::logarithmic("absolute error of f", FLOOR, 1.0),
+        places: exponents.iter().map(|at| f64::from(at.n)).collect(),
+        series: vec![
+            column("formula", |at| at.formula),
+            column("fixed point", |at| at.fixed_point),
+        ],
+        marks: vec![Mark { label: "one output unit".to_owned(), at: unit }],
+    };
+    let shown = || lines.iter().filter_map(|(n, line)| Some((n, line.as_ref()?)));
+    let lines = |value: fn(&AtAngle) -> f64| -> Vec<Series> {
+        shown()
+            .map(|(n, line)| Series {
+                name: format!("n = {n}"),
+                values: line.iter().map(value).collect(),
+            })
+            .collect()
+    };
+    let scaled = || ChartAxis::linear("\u{221a}n\u{b7}\u{3b3}, \u{3b3} in radians", 0.0, REACH);
+    let formula = lines(|at| at.formula);
+    let reach = reach(&formula);
+    let over_gamma = Chart {
+        id: format!("{name}-formula"),
+        title: "The formula's error against the angle".to_owned(),
+        caption: "Formula less cos\u{207f}\u{3b3}. In \u{221a}n\u{b7}\u{3b3} the highlights of all exponents have the same \
+                  width: the inflection point is near 1."
+            .to_owned(),
+        x: scaled(),
+        y: ChartAxis::linear("f, formula \u{2212} cos\u{207f}\u{3b3}", -reach, reach),
+        places: places(),
+        series: formula,
+        marks: vec![Mark {
+            label: "no error".to_owned(),
+            at: 0.0,
+        }],
+    };
+    let fixed_point = Chart {
+        id: format!("{name}-fixed-point"),
+        title: "The fixed point's error against the angle".to_owned(),
+        caption: "The largest difference between the word f and the formula at the same operands, about each angle. \
+                  The line across is one output unit."
+            .to_owned(),
+        x: scaled(),
+        y: ChartAxis::logarithmic("absolute error of f", FLOOR, 0.1),
+        places: places(),
+        series: lines(|at| if at.fixed_point.is_nan() { f64::NAN } else { at.fixed_point.max(FLOOR) }),
+        marks: vec![Mark {
+            label: "one output unit".to_owned(),
+            at: unit,
+        }],
+    };
+    vec![over_n, over_gamma, fixed_point]
+}
+
+/// A round number that no value exceeds.
+fn reach(series: &[Series]) -> f64 {
+    let largest = series
+        .iter()
+        .flat_map(|series| &series.values)
+        .filter(|value| value.is_finite())
+        .fold(0.0, |largest: f64, value| largest.max(value.abs()));
+    [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5]
+        .into_iter()
+        .find(|reach| *reach >= largest)
+        .unwrap_or(1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glint_core::registry::Registry;
+
+    fn curves(name: &str) -> DeviceCurves {
+        let registry = Registry::catalogue();
+        device(registry.device(name).expect("it is in the catalogue"), &|| ())
+    }
+
+    #[test]
+    fn formula_and_fixed_point_apart() {
+        let found = curves("cosine-power");
+        assert_eq!(found.largest_colour, 255.0);
+        assert_eq!(found.exponents.len(), EXPONENTS.len());
+        // For n = 16 = m the formula is c to the 16th: nothing but the fixed point is left.
+        let at = |n| found.exponents.iter().find(|at| at.n == n).expect("measured");
+        assert!(at(16).formula < 1e-12, "{:?}", at(16));
+        // The square's share beyond the peak: e^(-2) - 0 is far below, W(1000) misses by about 0.01.
+        assert!((0.005..0.02).contains(&at(1000).formula), "{:?}", at(1000));
+        for at in &found.exponents {
+            let units = 255.0 * at.fixed_point + 0.5;
+            assert!(units <= found.bound_units, "{at:?}: {}", found.bound_units);
+            assert!(at.fixed_point > 0.0 && at.fixed_point < at.formula.max(1e-3), "{at:?}");
+        }
+    }
+
+    #[test]
+    fn curves_end_at_a_right_angle() {
+        let found = curves("cosine-power");
+        let formula = &found.charts[1];
+        let n2 = &formula.series[0];
+        assert_eq!(n2.name, "n = 2");
+        // √2·π/2 = 2.22.
+        let last = n2.values.iter().rposition(|value| value.is_finite());
+        assert_eq!(last.map(|at| formula.places[at]), Some(2.2));
+    }
+}

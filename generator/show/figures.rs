@@ -1,0 +1,197 @@
+//! The figures of a measurement: area and frequency.
+
+mod record;
+
+use std::fmt;
+
+use clap::ValueEnum;
+use clap::builder::PossibleValue;
+use serde::{Deserialize, Serialize};
+
+use glint_base::target::{FAMILIES, Family, Usage};
+
+pub use record::{DIRECTORY, Rate, Record, tools};
+
+/// A family or library for which a core is measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Target {
+    /// Lattice iCE40 UltraPlus 5K: area and frequency.
+    Ice40,
+    /// Lattice ECP5, speed grade 6: area and frequency.
+    Ecp5,
+    /// Xilinx 7 series: area.
+    Xilinx7,
+    /// Standard cells of 0.18 µm, the OSU library, before layout: area and delay.
+    Osu018,
+}
+
+/// All targets.
+pub const TARGETS: [Target; 4] = [Target::Ice40, Target::Ecp5, Target::Xilinx7, Target::Osu018];
+
+impl Target {
+    /// For scripts: `ice40`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Ice40 => "ice40",
+            Self::Ecp5 => "ecp5",
+            Self::Xilinx7 => "xilinx7",
+            Self::Osu018 => "osu018",
+        }
+    }
+
+    /// For people.
+    pub fn title(self) -> &'static str {
+        self.family().map_or("0.18 µm cells", |family| family.title)
+    }
+
+    /// The family as Yosys knows it; none of standard cells.
+    pub fn family(self) -> Option<&'static Family> {
+        FAMILIES.iter().find(|family| family.name() == self.name())
+    }
+}
+
+impl ValueEnum for Target {
+    fn value_variants<'a>() -> &'a [Self] {
+        &TARGETS
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        Some(PossibleValue::new(self.name()).help(self.title()))
+    }
+}
+
+impl fmt::Display for Target {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// The area and the frequency of a core on a target.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Figures {
+    /// The target.
+    pub target: Target,
+    /// The chip or the library, for people.
+    pub device: String,
+    /// The area of the core, without the registers around it.
+    pub area: Area,
+    /// How fast it is, with the registers around it; not of every target.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub frequency: Option<Frequency>,
+    /// The longest path between registers, by names of the description; of the median run.
+    #[serde(skip_serializing_if = "Vec::is_empty", default)]
+    pub critical_path: Vec<Step>,
+    /// Why there is no frequency.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub untimed: Option<String>,
+    /// The tools with their versions.
+    pub tools: Vec<String>,
+}
+
+/// The area of a core. A resource that a target does not have is `None`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Area {
+    /// Look-up tables.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub luts: Option<u64>,
+    /// DSP blocks.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dsps: Option<u64>,
+    /// Block RAMs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub block_rams: Option<u64>,
+    /// Flip-flops.
+    pub flip_flops: u64,
+    /// Area in NAND gates of two inputs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gates: Option<f64>,
+    /// Area of the cells in µm².
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub square_micrometres: Option<f64>,
+}
+
+/// Frequencies in MHz.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Frequency {
+    /// The frequency of the slowest run.
+    pub lowest: f64,
+    /// The frequency of the run in the middle; of an even number of runs the slower of two.
+    pub median: f64,
+    /// The frequency of the fastest run.
+    pub highest: f64,
+    /// The number of runs.
+    pub runs: u32,
+}
+
+/// A point of a path.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Step {
+    /// The net, as the description names it; `ROM` before that of a ROM.
+    pub name: String,
+    /// When it settles, after the clock's edge, in nanoseconds.
+    pub ns: f64,
+}
+
+impl Figures {
+    /// Figures with an area alone.
+    pub fn new(target: Target, device: &str, area: Area) -> Self {
+        Self {
+            target,
+            device: device.to_owned(),
+            area,
+            frequency: None,
+            critical_path: Vec::new(),
+            untimed: None,
+            tools: Vec::new(),
+        }
+    }
+
+    /// The longest path as `first 0.4 → second 3.1 → third 7.9 ns`.
+    pub fn path_in_words(&self) -> String {
+        let steps = self.critical_path.iter().map(|step| format!("{} {:.1}", step.name, step.ns));
+        format!("{} ns", Vec::from_iter(steps).join(" → "))
+    }
+
+    /// Puts the runs in, each a frequency in MHz and its longest path.
+    pub fn with_runs(mut self, mut runs: Vec<(f64, Vec<Step>)>) -> Self {
+        runs.sort_by(|one, other| one.0.total_cmp(&other.0));
+        let (Some(first), Some(last)) = (runs.first(), runs.last()) else {
+            return self;
+        };
+        let (lowest, highest) = (rounded(first.0), rounded(last.0));
+        let count = runs.len();
+        let (median, path) = runs.swap_remove((count - 1) / 2);
+        let median = rounded(median);
+        self.frequency = Some(Frequency { lowest, median, highest, runs: count as u32 });
+        self.critical_path = path;
+        self
+    }
+}
+
+impl Area {
+    /// Returns the FPGA's resources; none of cells.
+    pub fn usage(&self) -> Option<Usage> {
+        let flip_flops = self.flip_flops;
+        let (luts, dsps, block_rams) = (self.luts?, self.dsps?, self.block_rams?);
+        Some(Usage { luts, dsps, block_rams, flip_flops })
+    }
+}
+
+impl From<Usage> for Area {
+    fn from(usage: Usage) -> Self {
+        Self {
+            luts: Some(usage.luts),
+            dsps: Some(usage.dsps),
+            block_rams: Some(usage.block_rams),
+            flip_flops: usage.flip_flops,
+            ..Self::default()
+        }
+    }
+}
+
+/// To two decimals: more than a tool's figures are worth.
+pub fn rounded(number: f64) -> f64 {
+    (number * 100.0).round() / 100.0
+}

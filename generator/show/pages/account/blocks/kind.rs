@@ -1,0 +1,101 @@
+//! The kinds of blocks.
+
+use std::fmt;
+
+use glint_rtl::netlist::{Driver, Op};
+
+/// The kind of a block.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BlockKind {
+    /// A register that a port writes.
+    Operand,
+    /// A register.
+    Register,
+    /// A ROM.
+    Rom,
+    /// A constant.
+    Constant,
+    /// Rounding of a number to fewer places.
+    Rounding,
+    /// Narrowing that saturates.
+    Limiter,
+    /// Both.
+    RoundingLimiter,
+    /// A multiplexer with this number of inputs.
+    Mux(usize),
+    /// A multiplier of operands that are so wide.
+    Multiplier(u32, u32),
+    /// An adder.
+    Adder,
+    /// A subtractor.
+    Subtractor,
+    /// A comparison of two numbers.
+    Comparator,
+    /// Operators that one statement of the description makes, how many of each of `OPERATORS`.
+    Several([u16; 5]),
+    /// All bits inverted.
+    Inverter,
+    /// Any other logic of single bits.
+    Gate,
+    /// Bits under another name, or side by side.
+    Wiring,
+    /// None of these.
+    Other,
+}
+
+/// The names of operators, singular and plural.
+pub const OPERATORS: [[&str; 2]; 5] = [
+    ["multiplier", "multipliers"],
+    ["adder", "adders"],
+    ["subtractor", "subtractors"],
+    ["comparator", "comparators"],
+    ["mux", "muxes"],
+];
+
+impl fmt::Display for BlockKind {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(match self {
+            Self::Mux(inputs) => return write!(f, "{inputs}:1 mux"),
+            Self::Multiplier(a, b) => return write!(f, "{a} × {b} multiplier"),
+            Self::Several(counts) => {
+                let parts = counts.iter().zip(OPERATORS).filter(|(count, _)| **count > 0);
+                let parts = parts.map(|(&count, [one, several])| match count {
+                    1 => one.to_owned(),
+                    _ => format!("{count} {several}"),
+                });
+                return f.write_str(&parts.collect::<Vec<_>>().join(", "));
+            }
+            Self::Operand => "operand register",
+            Self::Register => "register",
+            Self::Rom => "ROM",
+            Self::Constant => "constant",
+            Self::Rounding => "rounding",
+            Self::Limiter => "limiter",
+            Self::RoundingLimiter => "rounding and limiter",
+            Self::Adder => "adder",
+            Self::Subtractor => "subtractor",
+            Self::Comparator => "comparator",
+            Self::Inverter => "inverter",
+            Self::Gate => "gate",
+            Self::Wiring => "wiring",
+            Self::Other => "",
+        })
+    }
+}
+
+/// The places of some of them.
+pub const MULTIPLIER: usize = 0;
+pub const ADDER: usize = 1;
+pub const MUX: usize = 4;
+
+/// The place of an operator among [`OPERATORS`].
+pub fn operator(driver: &Driver) -> Option<usize> {
+    match driver {
+        Driver::Op(Op::Mul(..)) => Some(MULTIPLIER),
+        Driver::Op(Op::Add { .. }) => Some(ADDER),
+        Driver::Op(Op::Sub(..)) => Some(2),
+        Driver::Op(Op::Equal(..) | Op::Less(..)) => Some(3),
+        Driver::Op(Op::Mux { .. }) => Some(MUX),
+        _ => None,
+    }
+}

@@ -1,0 +1,396 @@
+//! Tables and sentences about a configuration, for pages of any format.
+//!
+//! A cell and a sentence are plain text in which names stand in backquotes.
+
+pub mod blocks;
+mod table;
+
+use crate::evidence::advice::Advice;
+use glint_base::fixed::Format;
+use glint_base::program::Program;
+use glint_config::{Config, Key, Schema, Value, shared_keys};
+use glint_core::cosim::exhaustive::Backing;
+use glint_core::package::facts::{self, Sequence};
+use glint_core::package::{LineClocks, Linear, Quantity, Surroundings, Timing, WorkedExample};
+use glint_golden::{Bound, Contract, Values};
+use glint_rtl::netlist::{Design, Pipeline};
+use glint_rtl::verilog::naming::Naming;
+pub use table::{Align, Column, Table, code};
+
+/// The heading of the column with the source's numbers.
+const NUMBER: &str = "no.";
+
+/// The facts of a page beyond the design.
+pub struct PageInputs<'a> {
+    /// The configuration as the command line names it, `configs/<name>.toml`.
+    pub path: &'a str,
+    /// The values of the keys.
+    pub config: &'a Config,
+    /// The keys.
+    pub schema: &'a Schema,
+    /// The accuracy contract.
+    pub contract: &'a dyn Contract,
+    /// The evidence for its bound.
+    pub backing: &'a Backing,
+    /// The key that would bring the bound down most.
+    pub advice: Option<Advice>,
+    /// Clocks.
+    pub timing: &'a Timing,
+    /// One computation with all its numbers.
+    pub example: &'a WorkedExample,
+    /// Clocks of a line, for a device that walks lines.
+    pub line: Option<&'a LineClocks>,
+}
+
+/// The formats, in a sentence.
+pub const FORMATS: &str = "Formats: `uI.F` is unsigned, `sI.F` two's complement, with I integer bits (a sign bit apart) \
+                           and F fraction bits; the value of a signal is its integer times 2⁻ᶠ.";
+
+/// Returns the source whose numbers the blocks carry.
+pub fn numbering(design: &Design) -> &'static str {
+    if design.nets.iter().any(|net| net.block.is_some()) {
+        "In order of their numbers in the source's figure; those without a number are ours."
+    } else {
+        "The source gives them no numbers."
+    }
+}
+
+/// How a format is written: a single bit is no number.
+pub fn format_text(format: Format) -> String {
+    match format.width() {
+        1 => "1 bit".to_owned(),
+        _ => format.to_string(),
+    }
+}
+
+/// The key that would bring the bound down most, in a sentence; nothing when there is none.
+pub fn limit(inputs: &PageInputs) -> String {
+    inputs
+        .advice
+        .as_ref()
+        .map_or_else(String::new, |advice| format!("The key that helps most: {advice}."))
+}
+
+/// The bound, in sentences.
+pub fn accuracy(contract: &dyn Contract, backing: &Backing) -> String {
+    let bound = contract.bound();
+    if !bound.is_stated() {
+        return format!(
+            "The contract states no bound of the error; `{Program} certify` finds one where it can."
+        );
+    }
+    let verdict = if bound.units < 1.0 {
+        "which is inside the contract (less than 1 unit)"
+    } else {
+        "which is outside the contract (less than 1 unit)"
+    };
+    let proven = format!("{}; this is what it is made of:", backing.sentence());
+    if contract.highlight().is_none() {
+        return format!(
+            "An output differs from the formula in f64, unrounded, at the quantised operands, by at most {:.3} units, \
+             {verdict}. A unit is the last place of the output. {proven}",
+            bound.units
+        );
+    }
+    format!(
+        "An output differs from K·f by at most {:.3} units, {verdict}. K is the integer of its colour operand, f the \
+         formula in f64, unrounded, at the quantised operands. The word f itself is off by at most {:.2e}. {proven}",
+        bound.units, bound.f
+    )
+}
+
+/// Returns the sentence on the domain of an exhaustive check.
+pub fn proof(inputs: &PageInputs) -> String {
+    let sweep = inputs.contract.sweep();
+    let axes: Vec<String> = sweep
+        .axes
+        .iter()
+        .map(|axis| match &axis.values {
+            Values::Range(low, high) => format!("{} = {low} … {high}", code(&axis.name)),
+            Values::List(values) => format!("{} settings of {}", values.len(), code(&axis.name)),
+        })
+        .collect();
+    let omits = match sweep.omits.as_str() {
+        "" => String::new(),
+        omits => format!(" Not covered: {omits}."),
+    };
+    let (axes, checked) =
+        (axes.join(", "), format!("`{Program} cosim {} --exhaustive`", inputs.path));
+    if inputs.contract.highlight().is_none() {
+        return format!("{checked} checks it: the outputs at every {axes} (integers).{omits}");
+    }
+    format!(
+        "{checked} checks it: every word f with every colour, and f at every combination of {axes} (integers, as on \
+         the ports).{omits}"
+    )
+}
+
+fn number(number: Option<u16>) -> String {
+    number.map_or_else(String::new, |number| number.to_string())
+}
+
+/// The ports; a strobe stands with its operand.
+pub fn ports(design: &Design) -> Table {
+    let mut table = Table::of("port | no.: | direction | role | format | written by | what it is");
+    let ports = facts::ports(design);
+    // A strobe stands with its operand.
+    for port in ports.iter().filter(|port| port.role != "strobe") {
+        let strobe = ports.iter().find(|strobe| port.strobe == Some(strobe.name));
+        let written = strobe.map_or_else(String::new, |strobe| match strobe.block {
+            None => code(strobe.name),
+            Some(number) => format!("{} ({number})", code(strobe.name)),
+        });
+        let format = match (port.width, &port.format) {
+            (1, _) => "1 bit".to_owned(),
+            (_, Some(format)) => format.clone(),
+            (width, None) => format!("{width} bits"),
+        };
+        let doc = match port.role {
+            "clock" => "everything happens on its rising edge",
+            _ => port.doc,
+        };
+        table.row([
+            code(port.name),
+            number(port.block),
+            port.direction.to_owned(),
+            port.role.to_owned(),
+            format,
+            written,
+            doc.to_owned(),
+        ]);
+    }
+    table.without_empty(NUMBER).without_empty("written by")
+}
+
+/// The ROMs, that of the microprogram among them.
+pub fn roms(design: &Design, config: &Config) -> Table {
+    let naming = Naming::new(design).styled(Surroundings::new(config, None).style);
+    let mut table = Table::of("ROM | no.: | words × bits: | bits: | reads | file | an entry");
+    for rom in facts::roms(design, &naming) {
+        let reads = if rom.synchronous { "on the clock" } else { "at once" };
+        table.row([
+            code(rom.name),
+            number(rom.block),
+            format!("{} × {}", rom.depth, rom.width),
+            rom.bits.to_string(),
+            reads.to_owned(),
+            rom.file.map_or_else(|| "in the Verilog".to_owned(), code),
+            rom.doc.join(" "),
+        ]);
+    }
+    table.without_empty(NUMBER)
+}
+
+/// The lines of a field as the source numbers them.
+fn lines(lines: &[u16]) -> String {
+    let lines: Vec<String> = lines.iter().map(u16::to_string).collect();
+    lines.join(" ")
+}
+
+/// The fields of the control word.
+pub fn fields(design: &Design) -> Table {
+    let mut table = Table::of("field | lines | bits | controls");
+    for field in facts::fields(design) {
+        let width = field.width as usize;
+        let controls = match field.kind {
+            "select" => {
+                let choices: Vec<String> = (0..)
+                    .zip(field.choices)
+                    .map(|(value, choice): (u64, _)| format!("{value:0width$b} {}", code(choice)))
+                    .collect();
+                format!("selects: {}", choices.join(", "))
+            }
+            "enable" => "loads a register or moves a counter".to_owned(),
+            "flag" => "is an output of the device".to_owned(),
+            _ => "tells the sequencer where to go".to_owned(),
+        };
+        let bits = match width {
+            1 => field.low.to_string(),
+            _ => format!("{}:{}", field.low + field.width - 1, field.low),
+        };
+        table.row([code(field.name), lines(field.lines), bits, controls]);
+    }
+    table.without_empty("lines")
+}
+
+/// The microprogram as the patents print theirs: a row for each microinstruction, a column for each line.
+pub fn microprogram(design: &Design) -> Table {
+    let fields = facts::fields(design);
+    let headings: Vec<String> = fields
+        .iter()
+        .map(|field| match field.lines {
+            [] => code(field.name),
+            numbers => lines(numbers),
+        })
+        .collect();
+    let mut columns = vec![("address", Align::Right)];
+    columns.extend(headings.iter().map(|heading| (heading.as_str(), Align::Left)));
+    columns.extend([("what it does", Align::Left), ("then", Align::Left)]);
+    let mut table = Table::new(&columns);
+    for microinstruction in facts::microprogram(design) {
+        let mut cells = vec![microinstruction.address.to_string()];
+        for (field, (_, value)) in fields.iter().zip(&microinstruction.fields) {
+            let width = field.width as usize;
+            let bits: Vec<String> = format!("{value:0width$b}").chars().map(String::from).collect();
+            cells.push(bits.join(" "));
+        }
+        cells.push(microinstruction.name.to_owned());
+        cells.push(match microinstruction.sequence {
+            Sequence::Plain("next") => String::new(),
+            Sequence::Plain(what) => what.to_owned(),
+            Sequence::Loop { loop_to, condition } => {
+                format!("to {loop_to} while {}", code(condition))
+            }
+            Sequence::Jump { jump_to, condition } => {
+                format!("to {jump_to} if {}", code(condition))
+            }
+        });
+        table.row(cells);
+    }
+    table
+}
+
+/// When what happens after `start`.
+pub fn clocks(timing: &Timing, line: Option<&LineClocks>) -> Table {
+    let mut table = Table::of("event | clock:");
+    let mut row = |event: &str, clock: Option<u32>, of_line: Option<Linear>| {
+        let formula = || line.zip(of_line).map(|(line, clocks)| clocks.text(&code(&line.length)));
+        let clock = clock.map(|clock| clock.to_string()).or_else(formula);
+        table
+            .row([event.to_owned(), clock.unwrap_or_else(|| "depends on the operands".to_owned())]);
+    };
+    row("`valid` is high, first", timing.start_to_valid, None);
+    if let Some(line) = line {
+        row("`valid` is high, last", None, Some(line.last_valid));
+    }
+    row("`done` is high", timing.start_to_done, line.map(|line| line.done));
+    row("the next `start` is taken", timing.start_to_start, line.map(|line| line.next_start));
+    table
+}
+
+/// How points enter and leave a pipeline, in sentences.
+pub fn handshake(pipeline: &Pipeline) -> &'static str {
+    if pipeline.stall {
+        "A point is taken in each clock in which `in_valid` and `in_ready` are high: the operands of that clock are its \
+             own. Its results are taken in the clock in which `out_valid` and `out_ready` are high. While `out_valid` is high \
+             and `out_ready` low, no point moves, and `in_ready` is low."
+    } else {
+        "A point is taken in each clock in which `in_valid` is high: the operands of that clock are its own. Its results \
+             are on the outputs for one clock, that in which `out_valid` is high."
+    }
+}
+
+/// When what happens after a pipeline takes a point.
+pub fn pipeline_clocks(pipeline: &Pipeline) -> Table {
+    let mut table = Table::of("event | clock:");
+    table.row(["the next point is taken".to_owned(), "1".to_owned()]);
+    let latency = pipeline.stages.len().to_string();
+    table.row(["the results are on the outputs".to_owned(), latency]);
+    table
+}
+
+/// The terms of a bound.
+pub fn terms(bound: &Bound) -> Table {
+    let mut table = Table::of("key | units: | what rounds or approximates");
+    for term in &bound.terms {
+        table.row([code(term.key), format!("{:.3}", term.units), term.what.to_owned()]);
+    }
+    table
+}
+
+/// The operands, and for which values of them the contract is stated.
+pub fn domain(design: &Design, contract: &dyn Contract) -> Table {
+    let mut table = Table::of("operand | format | from: | to: | what it is");
+    for operand in contract.operands() {
+        let value = |raw: i64| short(operand.format.to_f64(i128::from(raw)));
+        table.row([
+            code(&operand.name),
+            format_text(operand.format),
+            value(operand.domain.0),
+            value(operand.domain.1),
+            // Where the contract does not say what it is, the description does.
+            match (operand.doc.as_str(), design.find(&operand.name)) {
+                ("", Some(port)) => design.net(port).doc.clone(),
+                (doc, _) => doc.to_owned(),
+            },
+        ]);
+    }
+    table
+}
+
+/// The worked example beside the formula.
+pub fn example(contract: &dyn Contract, example: &WorkedExample) -> Table {
+    let mut table = Table::of("port | integer: | value: | formula in f64:");
+    let mut row = |quantity: &Quantity, formula: String, of: String| {
+        let name = code(&quantity.name) + &of;
+        table.row([name, quantity.raw.to_string(), short(quantity.value), formula]);
+    };
+    let operands: Vec<i64> = example.operands.iter().map(|it| it.raw as i64).collect();
+    for quantity in &example.operands {
+        row(quantity, String::new(), String::new());
+    }
+    let mut exact = Vec::new();
+    for (index, outputs) in (0..).zip(&example.results) {
+        exact.clear();
+        contract.exact(&operands, index, &mut exact);
+        for (output, [exact, _]) in outputs.iter().zip(&exact) {
+            let of = match example.results.len() {
+                1 => String::new(),
+                _ => format!(", point {index}"),
+            };
+            row(output, short(*exact), of);
+        }
+    }
+    table
+}
+
+/// The keys of the device, and those that every device shares where they are not at their defaults.
+pub fn keys(schema: &Schema, config: &Config) -> Table {
+    let mut table = Table::of("key | value | accepts | what it governs");
+    let changed = |key: &&Key| *config.value(key.name) != key.default;
+    for key in schema.keys.iter().chain(shared_keys().iter().filter(changed)) {
+        let [now, default] = [config.value(key.name), &key.default].map(|it| shortened(it.toml()));
+        let value = match config.applies(schema, key.name) {
+            false => "–".to_owned(),
+            true if now == default => code(&now),
+            true => format!("{} (default {})", code(&now), code(&default)),
+        };
+        let only = key.only_when.map_or_else(String::new, |(other, value)| {
+            let value = match config.value(other) {
+                Value::Text(_) => Value::Text(value.to_owned()).toml(),
+                _ => value.to_owned(),
+            };
+            format!(" Only with {}.", code(&format!("{other} = {value}")))
+        });
+        table.row([code(key.name), value, key.accepts(), format!("{}{only}", key.doc)]);
+    }
+    table
+}
+
+/// A text of at most so many characters as a cell has room for.
+fn shortened(text: String) -> String {
+    const ROOM: usize = 520;
+    match text.char_indices().nth(ROOM) {
+        None => text,
+        Some((end, _)) => format!("{} … ({} characters)", &text[..end], text.chars().count()),
+    }
+}
+
+/// A value in six decimals, without the zeros at their end.
+pub fn short(value: f64) -> String {
+    let text = format!("{value:.6}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_short() {
+        assert_eq!(short(1.0), "1");
+        assert_eq!(short(0.866_025_924_682_617_2), "0.866026");
+        assert_eq!(short(1000.0), "1000");
+        assert_eq!(short(-0.25), "-0.25");
+    }
+}

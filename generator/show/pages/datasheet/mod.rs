@@ -1,0 +1,153 @@
+//! A configuration as a vendor's product guide would present it: one HTML page that needs nothing but itself.
+//!
+//! Everything on it comes from the design, the golden model and simulation; nothing knows a device by name.
+
+mod measured;
+mod microprogram;
+mod page;
+mod table;
+mod timing;
+mod waves;
+
+use anyhow::Result;
+
+use crate::evidence::chart::Chart;
+use crate::evidence::curves::{self, DeviceCurves};
+use crate::evidence::domain;
+use crate::evidence::hardware::{self, FamilyUsage, Synthesis};
+use crate::figures;
+use crate::render::{self, BACKGROUND, BuiltIn, Light, Material, Scene, Settings, View};
+use glint_base::target::FAMILIES;
+use glint_core::core::Core;
+use glint_core::cosim::batch::Golden;
+use glint_core::cosim::exhaustive::{Backing, Record};
+use glint_core::package::{LineClocks, Timing, WorkedExample};
+use waves::Waves;
+
+/// A side of the picture of a highlight, in pixels.
+const SIDE: u32 = 260;
+
+/// Samples along each side of a pixel.
+const SAMPLES: u32 = 2;
+
+/// The subject of a datasheet.
+pub struct Subject<'a> {
+    /// The configuration.
+    pub core: &'a Core,
+    /// The configuration as the command line names it; the page has its label.
+    pub path: &'a str,
+    /// The evidence for its contract's bound.
+    pub backing: Backing,
+    /// The record of its exhaustive check, where there is one.
+    pub proof: Option<Record>,
+    /// The measurements of `glint synth`, where there is a record.
+    pub figures: Option<figures::Record>,
+    /// The tool that synthesises it where there is none; without it the page says how to.
+    pub synthesis: Option<&'a dyn Synthesis>,
+}
+
+/// A datasheet that was written.
+pub struct Datasheet {
+    /// The page, whose last line vouches for those above; see [`glint_core::package::is_sealed`].
+    pub page: String,
+    /// The timing diagram for WaveDrom.
+    pub wavedrom: String,
+}
+
+/// The results of a page that take work.
+struct Measured {
+    timing: Timing,
+    example: WorkedExample,
+    line: Option<LineClocks>,
+    waves: Waves,
+    curves: DeviceCurves,
+    /// The charts of a function of one operand over its domain.
+    over_domain: Vec<Chart>,
+    /// None of a device that a picture has not the operands for.
+    highlight: Option<Highlight>,
+    synthesis: Option<(String, Vec<FamilyUsage>)>,
+}
+
+/// A picture through the golden model, beside Blinn's in f64 and their difference.
+struct Highlight {
+    /// Through the device, beside Blinn's function, and the difference.
+    png: Vec<u8>,
+    /// Through the device alone.
+    ball: Vec<u8>,
+    exponent: u32,
+    /// In dB; none for the same picture.
+    psnr: Option<f64>,
+    /// The largest error, of 255.
+    largest: u8,
+    gain: u8,
+}
+
+/// The steps of work that [`datasheet`] reports as done.
+pub fn steps(synthesis: bool) -> usize {
+    curves::STEPS + 1 + if synthesis { FAMILIES.len() } else { 0 }
+}
+
+/// Makes the page of a configuration.
+///
+/// # Errors
+/// The device never ends, or synthesis fails.
+pub fn datasheet(subject: &Subject, done: &(dyn Fn() + Sync)) -> Result<Datasheet> {
+    let core = subject.core;
+    let contract = core.contract.as_ref();
+    let synthesis = || -> Result<_> {
+        let Some(synthesis) = subject.synthesis.filter(|_| subject.figures.is_none()) else {
+            return Ok(None);
+        };
+        let usage = hardware::usage(core, synthesis, done)?;
+        Ok(Some((synthesis.version()?, usage)))
+    };
+    let pictures = || -> Result<_> {
+        let highlight = render::draws(core).then(|| highlight(core)).transpose()?;
+        done();
+        Ok((highlight, curves::configuration(&core.device, contract, done)))
+    };
+    let (synthesis, pictures) = rayon::join(synthesis, pictures);
+    let (highlight, curves) = pictures?;
+    let measured = Measured {
+        timing: core.timing()?,
+        example: core.example()?,
+        line: core.line()?,
+        waves: Waves::record(core)?,
+        curves,
+        over_domain: domain::charts(contract),
+        highlight,
+        synthesis: synthesis?,
+    };
+    Ok(Datasheet { page: page::page(subject, &measured)?, wavedrom: measured.waves.wavedrom()? })
+}
+
+/// A ball in the light that pictures have by default.
+fn highlight(core: &Core) -> Result<Highlight> {
+    let contract = core.contract.as_ref();
+    let exponent = render::usual_exponent(contract);
+    let settings = Settings {
+        size: (SIDE, SIDE),
+        samples: SAMPLES,
+        view: View { eye: None, target: None, field: 30.0 },
+        material: Material::usual(exponent),
+        background: BACKGROUND,
+        compare: true,
+        operands: Vec::new(),
+    };
+    let scene = Scene {
+        objects: Scene::built_in(BuiltIn::Sphere, None, render::walks_lines(contract))?,
+        lights: Light::usual(),
+        relief: None,
+    };
+    let mut engine = Golden(core.contract.as_ref());
+    let rendered = render::render(core, &mut engine, &scene, &settings, &mut |_| ())?;
+    let difference = rendered.comparison.as_ref().map(|comparison| &comparison.difference);
+    Ok(Highlight {
+        png: rendered.whole(core.device.name).png()?,
+        ball: rendered.picture.png()?,
+        exponent,
+        psnr: difference.and_then(|difference| difference.psnr),
+        largest: difference.map_or(0, |difference| difference.largest),
+        gain: difference.map_or(1, |difference| difference.gain),
+    })
+}

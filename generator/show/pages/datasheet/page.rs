@@ -1,0 +1,334 @@
+//! The page: everything that is known of a configuration, as views that the template prints.
+
+use anyhow::Result;
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use glint_base::template::Template;
+
+use super::measured::{self, RecordView};
+use super::microprogram::Microprogram;
+use super::table::TableView;
+use super::{Measured, Subject, timing};
+use crate::evidence::advice;
+use crate::evidence::chart::Chart;
+use crate::evidence::comparison::{self, Multiplier};
+use crate::evidence::hardware::FamilyUsage;
+use crate::pages::account::{self, PageInputs, blocks, short};
+use crate::pages::diagram;
+use crate::pages::figure::{Figure, figures};
+use crate::pages::formula;
+use crate::pages::markup::html;
+use crate::pages::stages;
+use glint_base::{input, text};
+use glint_core::package::{self, Seal, Timing};
+use glint_rtl::netlist::Design;
+
+#[glint_base::template::template("datasheet.html")]
+struct Page<'a> {
+    version: &'static str,
+    design: &'a Design,
+    path: &'a str,
+    title: String,
+    formula: String,
+    source: String,
+    notes: Vec<String>,
+    glance: Vec<(&'static str, String)>,
+    diagram: String,
+    formats: String,
+    ports: TableView,
+    domain: TableView,
+    example: TableView,
+    program: Program,
+    roms: Option<TableView>,
+    clocks: TableView,
+    throughput: String,
+    timing: String,
+    wavedrom: String,
+    wavedrom_link: String,
+    accuracy: String,
+    terms: TableView,
+    limit: String,
+    sweep: String,
+    proof: Option<ProofView>,
+    remarks: Vec<String>,
+    figures: Vec<Figure<'a>>,
+    over_domain: bool,
+    highlight: Option<HighlightView>,
+    record: Option<RecordView>,
+    synthesis: Option<&'a (String, Vec<FamilyUsage>)>,
+    instance: String,
+    keys: TableView,
+    toml: String,
+}
+
+/// The control of a computation.
+enum Program {
+    Microprogram {
+        microprogram: Microprogram,
+        fields: TableView,
+        numbering: &'static str,
+        blocks: TableView,
+    },
+    Pipeline {
+        stages: TableView,
+        handshake: String,
+    },
+}
+
+impl Program {
+    fn new(design: &Design) -> Self {
+        match &design.pipeline {
+            None => Self::Microprogram {
+                microprogram: Microprogram::new(design),
+                fields: TableView::new("Fields of the control word", &account::fields(design)),
+                numbering: account::numbering(design),
+                blocks: TableView::new("Blocks", &blocks::table(design)),
+            },
+            Some(pipeline) => Self::Pipeline {
+                stages: TableView::new("Stages", &stages::table(design, pipeline)),
+                handshake: html(account::handshake(pipeline)),
+            },
+        }
+    }
+}
+
+struct ProofView {
+    holds: bool,
+    evaluations: String,
+    /// None where nothing multiplies colours.
+    products: Option<String>,
+    /// The largest errors.
+    found: String,
+}
+
+struct HighlightView {
+    data: String,
+    ball: String,
+    exponent: u32,
+    likeness: String,
+    gain: u8,
+}
+
+/// The page.
+///
+/// # Errors
+/// A chart that cannot be plotted, or a template that fails to print.
+pub fn page(subject: &Subject, measured: &Measured) -> Result<String> {
+    let core = subject.core;
+    let path = &input::label(subject.path);
+    let design = &core.design;
+    let about = &design.about;
+    let contract = core.contract.as_ref();
+    let schema = (core.device.schema)();
+    let bound = contract.bound();
+    let inputs = PageInputs {
+        path,
+        config: &core.config,
+        schema: &schema,
+        contract,
+        backing: &subject.backing,
+        advice: advice::of(core),
+        timing: &measured.timing,
+        example: &measured.example,
+        line: measured.line.as_ref(),
+    };
+    let charts = measured.curves.charts.iter().chain(&measured.over_domain);
+    let charts: Vec<(&Chart, &str)> = charts.map(|it| (it, "")).collect();
+    let wavedrom = measured.waves.wavedrom()?;
+    let page = Page {
+        version: env!("CARGO_PKG_VERSION"),
+        design,
+        path,
+        title: html(&about.title),
+        formula: formula::typeset(&about.formula),
+        source: html(&about.source),
+        notes: about.paragraphs().map(html).collect(),
+        glance: glance(subject, measured),
+        diagram: diagram::drawing(design).svg()?,
+        formats: html(account::FORMATS),
+        ports: TableView::new("Ports", &account::ports(design)),
+        domain: TableView::new("Domain of the operands", &account::domain(design, contract)),
+        example: TableView::new("A worked example", &account::example(contract, &measured.example)),
+        program: Program::new(design),
+        roms: (!design.roms.is_empty())
+            .then(|| TableView::new("ROMs", &account::roms(design, &core.config))),
+        clocks: TableView::new(
+            "Clocks",
+            &match &design.pipeline {
+                None => account::clocks(&measured.timing, measured.line.as_ref()),
+                Some(pipeline) => account::pipeline_clocks(pipeline),
+            },
+        ),
+        throughput: throughput(subject, &measured.timing),
+        timing: timing::drawing(&measured.waves, described(design, measured)).svg()?,
+        wavedrom_link: format!("data:application/json;base64,{}", STANDARD.encode(&wavedrom)),
+        wavedrom,
+        accuracy: html(&account::accuracy(contract, &subject.backing)),
+        terms: TableView::new("Terms of the bound", &account::terms(&bound)),
+        limit: html(&account::limit(&inputs)),
+        sweep: html(&account::proof(&inputs)),
+        proof: subject.proof.as_ref().map(|proof| ProofView {
+            holds: proof.holds,
+            evaluations: grouped(proof.evaluations),
+            products: (proof.colour_products > 0).then(|| grouped(proof.colour_products)),
+            found: proof.words(contract),
+        }),
+        remarks: contract.remarks().iter().map(|it| html(it)).collect(),
+        figures: figures(&charts)?,
+        over_domain: !measured.over_domain.is_empty(),
+        highlight: measured.highlight.as_ref().map(|highlight| HighlightView {
+            data: STANDARD.encode(&highlight.png),
+            ball: STANDARD.encode(&highlight.ball),
+            exponent: highlight.exponent,
+            likeness: match highlight.psnr {
+                Some(psnr) => format!(
+                    "The largest difference is {} of 255, PSNR {psnr:.1} dB over what is lit",
+                    highlight.largest
+                ),
+                None => "The two are the same".to_owned(),
+            },
+            gain: highlight.gain,
+        }),
+        record: subject.figures.as_ref().map(RecordView::new),
+        synthesis: measured.synthesis.as_ref(),
+        instance: package::instance(design),
+        keys: TableView::new("Keys of the configuration", &account::keys(&schema, &core.config)),
+        toml: core.config.to_toml(&schema),
+    };
+    let mut text = page.render()?;
+    text.push('\n');
+    Ok(package::sealed(text, Seal::Markup))
+}
+
+/// Returns the figures at a glance.
+fn glance(subject: &Subject, measured: &Measured) -> Vec<(&'static str, String)> {
+    let design = &subject.core.design;
+    let contract = subject.core.contract.as_ref();
+    let clocks = |clocks: Option<u32>| clocks.map_or("by data".to_owned(), |it| it.to_string());
+    let timing = &measured.timing;
+    let outputs = contract.outputs().len();
+    let registers = design.registers.iter();
+    let flip_flops: u32 = registers.map(|register| design.width(register.q)).sum();
+    let delayed: u32 = match &design.pipeline {
+        None => 0,
+        Some(pipeline) => pipeline.stages.iter().map(|stage| stage.delayed_bits).sum(),
+    };
+    let register_bits = match delayed {
+        0 => flip_flops.to_string(),
+        _ => format!("{}, and {delayed} in delay lines", flip_flops - delayed),
+    };
+    let bound = contract.bound();
+    let error = if bound.is_stated() {
+        format!("{:.3} units, {}", bound.units, subject.backing)
+    } else {
+        "no bound is stated".to_owned()
+    };
+    let mut glance = vec![
+        ("Largest error of an output", error),
+        ("Outputs", outputs.to_string()),
+        match &design.pipeline {
+            None => ("Clocks, start to valid", clocks(timing.start_to_valid)),
+            Some(pipeline) => ("Latency in clocks", pipeline.stages.len().to_string()),
+        },
+        ("Clocks a point", clocks(timing.clocks_per_point())),
+        match &design.pipeline {
+            None => ("Microinstructions", design.control.microprogram.len().to_string()),
+            Some(pipeline) => {
+                let clock = format!("{} MHz on {}", short(pipeline.clock_mhz), pipeline.target);
+                ("Stages made for", clock)
+            }
+        },
+        ("ROM", format!("{} bits", grouped(design.rom_bits()))),
+        ("Register bits", register_bits),
+        ("Multipliers", multipliers(design)),
+    ];
+    if let Some(highlight) = contract.highlight() {
+        glance.insert(1, ("Word f", highlight.f_format().to_string()));
+    }
+    if let Some(rate) = rate(subject) {
+        glance.push(("Points a second", rate));
+    }
+    if let Some((_, usage)) = &measured.synthesis
+        && let Some(usage) = usage.first()
+    {
+        glance.push((
+            "LUTs, DSPs, block RAMs",
+            format!("{}, {}, {} ({})", usage.luts, usage.dsps, usage.block_rams, usage.family),
+        ));
+    }
+    glance
+}
+
+/// How many there are of each size, the largest first.
+fn multipliers(design: &Design) -> String {
+    let mut sizes: Vec<(Multiplier, usize)> = Vec::new();
+    for multiplier in comparison::multipliers(design) {
+        match sizes.last_mut() {
+            Some((size, count)) if *size == multiplier => *count += 1,
+            _ => sizes.push((multiplier, 1)),
+        }
+    }
+    let sizes = sizes.iter().map(|(size, count)| {
+        let (first, second) = (size.first, size.second);
+        match count {
+            1 => format!("{first}\u{a0}×\u{a0}{second}"),
+            _ => format!("{count}\u{a0}of {first}\u{a0}×\u{a0}{second}"),
+        }
+    });
+    match sizes.collect::<Vec<_>>()[..] {
+        [] => "none".to_owned(),
+        ref sizes => sizes.join(", "),
+    }
+}
+
+/// The rate at the clock that was measured, where one was.
+fn rate(subject: &Subject) -> Option<String> {
+    let (figures, frequency, rate) = measured::fastest(subject.figures.as_ref()?)?;
+    Some(format!("{:.1} million at {:.1} MHz ({})", rate.points, frequency.median, figures.device))
+}
+
+/// How often a point can be computed, in a sentence.
+fn throughput(subject: &Subject, timing: &Timing) -> String {
+    let often = match timing.clocks_per_point() {
+        Some(1) => "A point takes a clock".to_owned(),
+        Some(clocks) => format!("Back to back a point takes {clocks} clocks"),
+        None => return "How many clocks a point takes depends on its operands.".to_owned(),
+    };
+    let made = subject.core.design.pipeline.as_ref().map(|pipeline| short(pipeline.clock_mhz));
+    match (rate(subject), made) {
+        (Some(rate), Some(made)) => {
+            format!(
+                "{often}. The stages are made for {made} MHz; points a second, as measured below: {rate}."
+            )
+        }
+        (Some(rate), None) => format!("{often}; points a second, as measured below: {rate}."),
+        (None, Some(made)) => format!(
+            "{often}: {made} million a second at {made} MHz, which the stages are made for."
+        ),
+        (None, None) => format!("{often}."),
+    }
+}
+
+/// Describes the timing diagram in words, for those who do not see it.
+fn described(design: &Design, measured: &Measured) -> String {
+    if design.pipeline.is_some() {
+        return format!(
+            "Points through the pipeline, simulated: the first is taken in clock 0, its results are on the outputs from clock {} \
+             on. One clock has no point; where the pipeline can be held back, the first results wait.",
+            measured.waves.first("out_valid").map_or("some".to_owned(), |clock| clock.to_string())
+        );
+    }
+    let at = |clock: Option<u32>| clock.map_or("some".to_owned(), |clock| clock.to_string());
+    format!(
+        "One computation in {} clocks, simulated: start is high in clock 0, valid first in clock {}, done in clock {}. \
+         Below the handshake are the microinstruction, registers and results with their values.",
+        measured.waves.clocks.last().map_or(0, |last| last + 1),
+        at(measured.waves.first("valid")),
+        at(measured.waves.first("done")),
+    )
+}
+
+/// With a narrow space between thousands, which no line ends at.
+fn grouped(number: u64) -> String {
+    text::grouped(number).replace(' ', "\u{202f}")
+}

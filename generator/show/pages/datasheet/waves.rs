@@ -1,0 +1,334 @@
+//! The waveform of one computation, or of points through a pipeline, from the built-in simulator: lanes of values, and WaveDrom's JSON of them.
+
+use anyhow::Result;
+use serde_json::{Value, json};
+
+use crate::pages::account::short;
+use glint_base::fixed::Format;
+use glint_core::core::Core;
+use glint_core::cosim::trial;
+use glint_core::package::sealed_json;
+use glint_rtl::netlist::{Design, Driver, Handshake, NetId, RegisterKind, Role};
+
+/// Clocks that are shown at most; of longer computations the middle is left out.
+const MOST: usize = 40;
+
+/// Clocks that are shown of the beginning of a long computation.
+const HEAD: usize = 24;
+
+/// Clocks that are shown of its end.
+const TAIL: usize = 8;
+
+/// The name of the lane that says which microinstruction is executed.
+pub const MICROINSTRUCTION: &str = "microinstruction";
+
+/// A recording, clock by clock.
+pub struct Waves {
+    /// The name of the module.
+    pub name: String,
+    /// A caption in some words.
+    pub what: &'static str,
+    /// The clocks that are shown, from 0; a number that is not one more than that before follows a gap.
+    pub clocks: Vec<usize>,
+    /// One below the other.
+    pub lanes: Vec<Lane>,
+}
+
+/// The waveform of one signal.
+pub struct Lane {
+    /// The signal.
+    pub name: String,
+    /// The number of its block in the source's figure.
+    pub number: Option<u16>,
+    /// How it is drawn.
+    pub shape: LaneStyle,
+    /// In each clock that is shown; `None` where the value means nothing yet.
+    pub values: Vec<Option<String>>,
+}
+
+/// How a lane is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LaneStyle {
+    /// A rising edge begins each clock.
+    Clock,
+    /// High or low.
+    Bit,
+    /// A value in a frame.
+    Bus,
+}
+
+/// The source of a lane's waveform.
+struct Probe {
+    net: NetId,
+    kind: Meaning,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Meaning {
+    /// Known from the start.
+    Control,
+    /// Not known before it first changes.
+    Register,
+    /// Not known before the first `valid`.
+    Result,
+}
+
+impl Waves {
+    /// Simulates the worked example; of a pipeline, points behind one another, the first of them that of the example.
+    ///
+    /// # Errors
+    /// A device that never ends.
+    pub fn record(core: &Core) -> Result<Self> {
+        match core.design.pipeline {
+            None => Self::computation(core),
+            Some(_) => Self::points(core),
+        }
+    }
+
+    /// The handshake of a pipeline, operands while they are offered, results while they are shown.
+    fn points(core: &Core) -> Result<Self> {
+        let design = &core.design;
+        let of = |wanted: &[Role]| {
+            let ports = design.ports.iter().filter(|port| wanted.contains(&port.role));
+            ports.map(|port| port.net).collect::<Vec<_>>()
+        };
+        let (offer, shown) = (of(&[Role::InValid]), of(&[Role::Valid]));
+        let input = [offer.clone(), of(&[Role::InReady]), of(&[Role::Point])].concat();
+        let output =
+            [shown.clone(), of(&[Role::OutReady]), of(&[Role::Result, Role::Status])].concat();
+        let nets = [input, output].concat();
+        let clocks = trial::record_points(design, core.contract.as_ref(), &nets)?;
+        let column = |net: NetId| nets.iter().position(|&other| other == net);
+        let mut lanes = vec![clock_lane(clocks.len())];
+        for (at, &net) in nets.iter().enumerate() {
+            let port = design.ports.iter().find(|port| port.net == net);
+            // Data mean something with their valid bit alone.
+            let valid = match port.map(|port| port.role) {
+                Some(Role::Point) => column(offer[0]),
+                Some(Role::Result | Role::Status) => column(shown[0]),
+                _ => None,
+            };
+            let format = design.net(net).format;
+            let value = |clock: &Vec<u64>| {
+                valid.is_none_or(|valid| clock[valid] == 1).then(|| text(format, clock[at]))
+            };
+            lanes.push(Lane {
+                name: design.net(net).name.clone(),
+                number: design.net(net).block,
+                shape: shape(format),
+                values: clocks.iter().map(value).collect(),
+            });
+        }
+        Ok(Self::cut(design, "points through the pipeline", clocks.len(), lanes))
+    }
+
+    fn computation(core: &Core) -> Result<Self> {
+        let design = &core.design;
+        let Handshake { start, busy, valid, done, .. } = design.handshake()?;
+        let address = design.register(design.control.address).q;
+        let probes = probes(design, [start, busy, valid, done]);
+        let mut nets: Vec<NetId> = probes.iter().map(|probe| probe.net).collect();
+        nets.extend([address, busy, valid]);
+        let clocks = trial::record(design, core.contract.as_ref(), &nets)?;
+        let column = |at: usize| -> Vec<u64> { clocks.iter().map(|values| values[at]).collect() };
+        let [addresses, busy, valid] = [0, 1, 2].map(|at| column(probes.len() + at));
+
+        let mut lanes = vec![clock_lane(clocks.len())];
+        let known = valid.iter().position(|&valid| valid == 1).unwrap_or(0);
+        for (at, probe) in probes.iter().enumerate() {
+            if at == 4 {
+                lanes.push(microprogram_lane(design, &addresses, &busy));
+            }
+            if let Some(lane) = lane(design, probe, &column(at), known) {
+                lanes.push(lane);
+            }
+        }
+        Ok(Self::cut(design, "one computation", clocks.len(), lanes))
+    }
+
+    /// The clocks that are shown of so many.
+    fn cut(design: &Design, what: &'static str, clocks: usize, mut lanes: Vec<Lane>) -> Self {
+        let shown = shown(clocks);
+        for lane in &mut lanes {
+            lane.values = shown.iter().map(|&at| lane.values[at].take()).collect();
+        }
+        Self { name: design.name.clone(), what, clocks: shown, lanes }
+    }
+
+    /// The first clock in which a signal is 1.
+    pub fn first(&self, name: &str) -> Option<u32> {
+        let lane = self.lanes.iter().find(|lane| lane.name == name)?;
+        let at = lane.values.iter().position(|value| value.as_deref() == Some("1"))?;
+        u32::try_from(self.clocks[at]).ok()
+    }
+
+    /// As WaveDrom's JSON, ending with a newline.
+    ///
+    /// # Errors
+    /// None that a user could cause.
+    pub fn wavedrom(&self) -> Result<String> {
+        let signal: Vec<Value> = self.lanes.iter().map(|lane| self.signal(lane)).collect();
+        sealed_json(json!({
+            "signal": signal,
+            "head": { "text": format!("{}: {}", self.name, self.what), "tick": 0 },
+        }))
+    }
+
+    fn signal(&self, lane: &Lane) -> Value {
+        let (mut wave, mut data) = (String::new(), Vec::new());
+        let mut before: Option<&Option<String>> = None;
+        for (at, value) in lane.values.iter().enumerate() {
+            if at > 0 && self.clocks[at] != self.clocks[at - 1] + 1 {
+                wave.push('|');
+            }
+            wave.push(match (lane.shape, value) {
+                (LaneStyle::Clock, _) if at == 0 => 'p',
+                (LaneStyle::Clock, _) => '.',
+                _ if before == Some(value) => '.',
+                (_, None) => 'x',
+                (LaneStyle::Bit, Some(bit)) if bit == "1" => '1',
+                (LaneStyle::Bit, Some(_)) => '0',
+                (LaneStyle::Bus, Some(text)) => {
+                    data.push(text.clone());
+                    '='
+                }
+            });
+            before = Some(value);
+        }
+        if data.is_empty() {
+            json!({ "name": lane.name, "wave": wave })
+        } else {
+            json!({ "name": lane.name, "wave": wave, "data": data })
+        }
+    }
+}
+
+/// The handshake, the registers of the source's datapath, and the results.
+fn probes(design: &Design, handshake: [NetId; 4]) -> Vec<Probe> {
+    let control = handshake.into_iter().map(|net| (net, Meaning::Control));
+    let registers = design.registers.iter();
+    let registers = registers.filter(|register| register.kind == RegisterKind::Architectural);
+    let results = design.outputs().filter(|port| port.role == Role::Result);
+    control
+        .chain(registers.map(|register| (register.q, Meaning::Register)))
+        .chain(results.map(|port| (port.net, Meaning::Result)))
+        .map(|(net, kind)| Probe { net, kind })
+        .collect()
+}
+
+fn clock_lane(clocks: usize) -> Lane {
+    Lane {
+        name: "clk".to_owned(),
+        number: None,
+        shape: LaneStyle::Clock,
+        values: vec![None; clocks],
+    }
+}
+
+fn shape(format: Format) -> LaneStyle {
+    if format.width() == 1 { LaneStyle::Bit } else { LaneStyle::Bus }
+}
+
+/// The lane of a probe; none for a register that the computation leaves alone.
+fn lane(design: &Design, probe: &Probe, bits: &[u64], valid: usize) -> Option<Lane> {
+    let net = design.net(probe.net);
+    let known = match probe.kind {
+        Meaning::Control => 0,
+        Meaning::Result => valid,
+        Meaning::Register => {
+            let resets = match net.driver {
+                Driver::Register(register) => design.register(register).reset.is_some(),
+                _ => false,
+            };
+            let change = bits.windows(2).position(|pair| pair[0] != pair[1])?;
+            if resets { 0 } else { change + 1 }
+        }
+    };
+    let format = net.format;
+    let value = |(clock, &bits): (usize, &u64)| (clock >= known).then(|| text(format, bits));
+    Some(Lane {
+        name: net.name.clone(),
+        number: net.block,
+        shape: shape(format),
+        values: bits.iter().enumerate().map(value).collect(),
+    })
+}
+
+/// The microinstruction that is executed, by its name.
+fn microprogram_lane(design: &Design, addresses: &[u64], busy: &[u64]) -> Lane {
+    let name = |address: u64| match design.control.microprogram.get(address as usize) {
+        Some(found) => format!("{address} {}", found.name),
+        None => address.to_string(),
+    };
+    Lane {
+        name: MICROINSTRUCTION.to_owned(),
+        number: None,
+        shape: LaneStyle::Bus,
+        values: addresses
+            .iter()
+            .zip(busy)
+            .map(|(&address, &busy)| {
+                Some(match (address, busy) {
+                    (0, 0) => "idle".to_owned(),
+                    _ => name(address),
+                })
+            })
+            .collect(),
+    }
+}
+
+/// A value in few digits.
+fn text(format: Format, bits: u64) -> String {
+    let value = format.to_f64(format.raw(bits));
+    match format.frac {
+        ..=0 => short(value),
+        _ => short((value * 1e5).round() / 1e5),
+    }
+}
+
+/// The clocks that are shown of a computation of `clocks` clocks.
+fn shown(clocks: usize) -> Vec<usize> {
+    match clocks {
+        0..=MOST => (0..clocks).collect(),
+        _ => (0..HEAD).chain(clocks - TAIL..clocks).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_computations_are_cut_in_the_middle() {
+        assert_eq!(shown(3), [0, 1, 2]);
+        assert_eq!(shown(MOST).len(), MOST);
+        let cut = shown(100);
+        assert_eq!(cut.len(), HEAD + TAIL);
+        assert_eq!((cut[HEAD - 1], cut[HEAD], cut.last()), (23, 92, Some(&99)));
+    }
+
+    #[test]
+    fn wavedrom_repeats_with_dots() {
+        let lane = |name: &str, shape, values: [Option<&str>; 4]| Lane {
+            name: name.to_owned(),
+            number: None,
+            shape,
+            values: values.map(|value| value.map(str::to_owned)).to_vec(),
+        };
+        let waves = Waves {
+            name: "core".to_owned(),
+            what: "one computation",
+            clocks: vec![0, 1, 7, 8],
+            lanes: vec![
+                lane("clk", LaneStyle::Clock, [None; 4]),
+                lane("busy", LaneStyle::Bit, ["0", "1", "1", "0"].map(Some)),
+                lane("r", LaneStyle::Bus, [None, None, Some("5"), Some("6")]),
+            ],
+        };
+        let text = waves.wavedrom().expect("JSON");
+        let value: Value = serde_json::from_str(&text).expect("JSON");
+        let wave = |at: usize| value["signal"][at]["wave"].clone();
+        assert_eq!([wave(0), wave(1), wave(2)], ["p.|..", "01|.0", "x.|=="]);
+        assert_eq!(value["signal"][2]["data"], json!(["5", "6"]));
+    }
+}

@@ -1,0 +1,305 @@
+//! The nodes and wires of a block diagram: ports, blocks and the control unit.
+
+use std::collections::HashMap;
+
+use crate::pages::account::blocks::{Block, BlockKind, Blocks};
+use crate::pages::account::format_text;
+use glint_rtl::netlist::{Design, Driver, FieldId, NetId, Role, Sequence};
+
+/// Boxes and the wires between them.
+pub struct Graph {
+    /// Ports, blocks, and the control unit.
+    pub boxes: Vec<Node>,
+    /// From the output of a box to another's input, one for each input.
+    pub wires: Vec<Wire>,
+    /// How many stages there are; none without a pipeline.
+    pub stages: usize,
+}
+
+/// A box of the diagram.
+pub struct Node {
+    /// How it is drawn.
+    pub form: BoxForm,
+    /// In the source's figure.
+    pub number: Option<u16>,
+    /// Its name.
+    pub name: String,
+    /// Its kind and format.
+    pub caption: String,
+    /// The other names of its output.
+    pub aliases: Vec<String>,
+    /// The lines that control it, by number or name; may be empty.
+    pub control: String,
+    /// Its tooltip.
+    pub title: String,
+    /// In a pipeline, the stage that it is in; none of a port.
+    pub stage: Option<usize>,
+}
+
+/// How a box is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BoxForm {
+    /// A port at the top.
+    Input,
+    /// A port at the bottom.
+    Output,
+    /// The control unit.
+    Control,
+    /// A block of the datapath.
+    Block(BlockKind),
+    /// Nothing: a stage in which values only pass.
+    Empty,
+}
+
+/// A wire.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Wire {
+    /// The box that drives it.
+    pub from: usize,
+    /// The box that takes it.
+    pub to: usize,
+}
+
+impl Graph {
+    /// The graph of a design.
+    pub fn new(design: &Design) -> Self {
+        let stages = design.pipeline.as_ref().map_or(0, |pipeline| pipeline.stages.len());
+        let mut builder = Builder {
+            design,
+            blocks: Blocks::new(design, true),
+            graph: Self { boxes: Vec::new(), wires: Vec::new(), stages },
+            driver: HashMap::new(),
+        };
+        builder.inputs();
+        let control = design.pipeline.is_none().then(|| builder.control());
+        let blocks = builder.all();
+        control.into_iter().for_each(|control| builder.conditions(control));
+        for (at, block) in blocks {
+            let selected = block.selected_by.iter();
+            let selected = selected.filter(|&&net| !is_field(design, net));
+            for &net in block.inputs.iter().chain(selected) {
+                builder.takes(net, at);
+            }
+        }
+        builder.outputs(control);
+        builder.fill();
+        builder.graph
+    }
+}
+
+fn is_field(design: &Design, net: NetId) -> bool {
+    matches!(design.net(net).driver, Driver::Field(_))
+}
+
+struct Builder<'a> {
+    design: &'a Design,
+    blocks: Blocks<'a>,
+    graph: Graph,
+    /// The box whose output a net is.
+    driver: HashMap<NetId, usize>,
+}
+
+impl<'a> Builder<'a> {
+    fn add(&mut self, added: Node) -> usize {
+        self.graph.boxes.push(added);
+        self.graph.boxes.len() - 1
+    }
+
+    fn wire(&mut self, net: NetId, to: usize) {
+        if let Some(&from) = self.driver.get(&net) {
+            self.graph.wires.push(Wire { from, to });
+        }
+    }
+
+    /// A wire to an input of a block; a constant stands beside what takes it.
+    fn takes(&mut self, net: NetId, to: usize) {
+        if self.driver.contains_key(&net)
+            || !matches!(self.design.net(net).driver, Driver::Constant(_))
+        {
+            return self.wire(net, to);
+        }
+        let (format, name) = (format_text(self.design.net(net).format), self.blocks.name(net));
+        let from = self.add(Node {
+            form: BoxForm::Block(BlockKind::Constant),
+            number: None,
+            title: titled(&format!("the constant {name}"), &format, &self.design.net(net).doc),
+            name,
+            caption: String::new(),
+            aliases: Vec::new(),
+            control: String::new(),
+            stage: self.graph.boxes[to].stage,
+        });
+        self.graph.wires.push(Wire { from, to });
+    }
+
+    /// Stages without a block have a place too.
+    fn fill(&mut self) {
+        for stage in 0..self.graph.stages {
+            if self.graph.boxes.iter().all(|it| it.stage != Some(stage)) {
+                let text = String::new;
+                self.add(Node {
+                    form: BoxForm::Empty,
+                    number: None,
+                    name: text(),
+                    caption: text(),
+                    aliases: Vec::new(),
+                    control: text(),
+                    title: text(),
+                    stage: Some(stage),
+                });
+            }
+        }
+    }
+
+    fn port(&mut self, net: NetId, form: BoxForm) -> usize {
+        let found = self.design.net(net);
+        let format = format_text(found.format);
+        self.add(Node {
+            form,
+            number: found.block,
+            name: found.name.clone(),
+            title: titled(&found.name, &format, &found.doc),
+            caption: self.held(format, net, 0),
+            aliases: Vec::new(),
+            control: String::new(),
+            stage: None,
+        })
+    }
+
+    /// A caption with the clocks for which registers hold a value that a stage makes, where they are several.
+    fn held(&self, caption: String, net: NetId, stage: usize) -> String {
+        let Some(pipeline) = &self.design.pipeline else { return caption };
+        let held = self.blocks.held(net);
+        let last = held.into_iter().map(|it| pipeline.clock_of(it)).max();
+        match last.unwrap_or(0).saturating_sub(stage) {
+            0 | 1 => caption,
+            clocks => format!("{caption} · held {clocks} clocks"),
+        }
+    }
+
+    /// Operands, `start`, and what goes with a point; strobes stand at the registers that they write.
+    fn inputs(&mut self) {
+        for port in self.design.inputs() {
+            if matches!(
+                port.role,
+                Role::Operand { .. } | Role::Start | Role::Point | Role::InValid | Role::SideIn
+            ) {
+                let at = self.port(port.net, BoxForm::Input);
+                self.driver.insert(port.net, at);
+            }
+        }
+    }
+
+    /// Results, and the handshake; that all points wait together is no flow of data.
+    fn outputs(&mut self, control: Option<usize>) {
+        for port in self.design.outputs().filter(|port| port.role != Role::InReady) {
+            let at = self.port(port.net, BoxForm::Output);
+            let source = match control {
+                Some(_) if port.role.is_status() => None,
+                _ => self.blocks.driver(port.net),
+            };
+            match (source, control) {
+                (Some(net), _) => self.wire(net, at),
+                (None, Some(control)) => self.graph.wires.push(Wire { from: control, to: at }),
+                (None, None) => {}
+            }
+        }
+    }
+
+    fn control(&mut self) -> usize {
+        let control = &self.design.control;
+        let rom = self.design.rom(control.rom);
+        let (words, width) = (control.microprogram.len(), self.design.width(rom.data));
+        let at = self.add(Node {
+            form: BoxForm::Control,
+            number: rom.block,
+            name: "control unit".to_owned(),
+            caption: format!("{words} words × {width} bits"),
+            aliases: Vec::new(),
+            control: String::new(),
+            stage: None,
+            title: "Control unit: sequencer and control ROM; its lines control the blocks"
+                .to_owned(),
+        });
+        let start = self.design.port(|role| role == Role::Start);
+        if let Some(start) = start {
+            self.wire(start.net, at);
+        }
+        at
+    }
+
+    /// Adds the conditions that the sequencer reads.
+    fn conditions(&mut self, control: usize) {
+        for microinstruction in &self.design.control.microprogram {
+            if let Sequence::LoopWhile { condition, .. } = microinstruction.sequence {
+                for net in self.blocks.behind(condition).to_vec() {
+                    self.wire(net, control);
+                }
+            }
+        }
+    }
+
+    fn all(&mut self) -> Vec<(usize, Block)> {
+        let mut added = Vec::new();
+        for block in self.blocks.all() {
+            let kind = block.kind.to_string();
+            let (first, last) = self.blocks.stages(&block);
+            let caption = match last - first {
+                0 => caption(&block),
+                _ => format!("{} · stages {first}–{last}", caption(&block)),
+            };
+            let caption = self.held(caption, block.output, last);
+            let mut doc = block.doc.clone();
+            if let [_, _, ..] = block.aliases[..] {
+                doc = format!("{doc} ({})", block.aliases.join(", "));
+            }
+            let at = self.add(Node {
+                form: BoxForm::Block(block.kind),
+                number: block.number,
+                name: block.name.clone(),
+                caption,
+                aliases: block.aliases.iter().take(1).cloned().collect(),
+                control: self.turned_by(&block),
+                title: titled(&format!("{} ({kind})", block.name), &block.format, &doc),
+                stage: self.design.pipeline.as_ref().map(|_| last),
+            });
+            self.driver.insert(block.output, at);
+            added.push((at, block));
+        }
+        added
+    }
+
+    /// The numbers or names of the lines that control a block, and of the port that writes an operand.
+    fn turned_by(&self, block: &Block) -> String {
+        let (fields, strobes) = self.blocks.controls(block);
+        let mut lines: Vec<String> = fields.into_iter().map(|field| self.lines(field)).collect();
+        lines.extend(strobes.into_iter().map(|strobe| {
+            let net = self.design.net(strobe);
+            let number = net.block.map(|number| number.to_string());
+            number.unwrap_or_else(|| net.name.clone())
+        }));
+        lines.join(" ")
+    }
+
+    fn lines(&self, field: FieldId) -> String {
+        let field = &self.design.control.fields[field.index()];
+        let lines: Vec<String> = field.lines.iter().map(u16::to_string).collect();
+        if lines.is_empty() { field.name.clone() } else { lines.join(" ") }
+    }
+}
+
+/// Returns a block's kind and format; the port above a register shows that it takes an operand.
+fn caption(block: &Block) -> String {
+    match block.kind {
+        BlockKind::Operand => format!("{} · {}", BlockKind::Register, block.format),
+        kind => format!("{kind} · {}", block.format),
+    }
+}
+
+/// The tooltip of a box.
+fn titled(name: &str, format: &str, doc: &str) -> String {
+    match doc {
+        "" => format!("{name}, {format}"),
+        _ => format!("{name}, {format}: {doc}"),
+    }
+}

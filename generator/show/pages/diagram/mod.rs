@@ -1,0 +1,338 @@
+//! The block diagram: the blocks of the netlist, laid out in ranks from the inputs to the outputs; of a pipeline with a
+//! band for each stage, and a mark where a wire goes through a register from one to the next.
+//!
+//! `place` and `route` lay it out from left to right. The page shows it turned, from top to bottom: a datapath has more
+//! ranks than blocks in one, so that this is the form that fits a page, on a screen and on paper.
+
+mod graph;
+mod place;
+mod route;
+mod tracks;
+
+use anyhow::Result;
+use glint_base::template::Template;
+
+use crate::pages::account::blocks::BlockKind;
+use crate::pages::drawing::{Drawing, Item, text_width};
+use glint_rtl::netlist::{Design, Pipeline, Stage};
+use graph::{BoxForm, Graph, Node};
+use place::Placement;
+use route::{Body, LANE, Net, Routes};
+
+/// The size of the type.
+const SIZE: f64 = 11.0;
+
+/// The height of a line of text in a box.
+const LINE: i32 = 14;
+
+/// Above and below the text in a box.
+const PADDING: i32 = 6;
+
+/// A caption that is longer, in characters, takes two lines.
+const LONG: usize = 17;
+
+/// The least distance of pins.
+const PIN: f64 = 9.0;
+
+/// The arrow of the control lines beside a box.
+const STUB: f64 = 14.0;
+
+/// Beside the text in a box.
+const MARGIN: i32 = 10;
+
+/// The point of a port.
+const NECK: i32 = 8;
+
+/// Around the drawing.
+const BORDER: i32 = 12;
+
+/// The width of the notes beside a stage.
+const ASIDE: i32 = 140;
+
+/// From the boxes of a stage to the registers at its end.
+const REGISTERS: f64 = 7.0;
+
+/// Draws the blocks of a design.
+pub fn drawing(design: &Design) -> Drawing {
+    let graph = Graph::new(design);
+    let back = place::back(&graph);
+    let lanes = route::lanes(&graph, &back);
+    let sizes: Vec<Sizes> =
+        (0..graph.boxes.len()).map(|at| Sizes::new(&graph, at, lanes[at].len())).collect();
+    let heights: Vec<f64> = sizes.iter().map(Sizes::all).collect();
+    let placement = Placement::new(&graph, &heights, &back);
+    let mut bodies: Vec<Body> =
+        sizes.iter().zip(&placement.middle).map(|(sizes, middle)| sizes.body(*middle)).collect();
+    let mut routes = route::routes(&graph, &placement, &bodies, &lanes);
+    // Wires around the topmost box run above it.
+    let above = routes.top().min(0.0);
+    routes.lower(-above);
+    bodies.iter_mut().for_each(|body| body.lower(-above));
+    let mut items = Vec::new();
+    let mut page = Page { left: 0, items: &mut items };
+    if let Some(pipeline) = &design.pipeline {
+        page.left = ASIDE;
+        page.stages(pipeline, &graph, &placement, &routes);
+    }
+    for (at, net) in routes.nets.iter().enumerate() {
+        page.net(net, &graph.boxes[at]);
+    }
+    for (at, one) in graph.boxes.iter().enumerate() {
+        page.block(one, routes.left[at], &bodies[at]);
+    }
+    let left = page.left;
+    let count = |wanted: fn(BoxForm) -> bool| {
+        let boxes = graph.boxes.iter();
+        boxes.filter(|one| wanted(one.form)).count()
+    };
+    let blocks = count(|form| matches!(form, BoxForm::Block(kind) if kind != BlockKind::Constant));
+    let between = match &design.pipeline {
+        None => format!("{blocks} blocks and the control unit"),
+        Some(pipeline) => format!("{} stages with {blocks} blocks", pipeline.stages.len()),
+    };
+    Drawing {
+        id: "block-diagram".to_owned(),
+        title: format!("Blocks of {}", design.name),
+        description: format!(
+            "{between} between {} inputs at the top and {} outputs at the bottom. A table below says the same in words.",
+            count(|form| form == BoxForm::Input),
+            count(|form| form == BoxForm::Output),
+        ),
+        width: left + coordinate(bottom(&bodies, &routes)) + BORDER,
+        height: coordinate(routes.width) + BORDER,
+        items,
+    }
+}
+
+#[glint_base::template::template("standalone.svg")]
+struct Standalone<'a> {
+    drawing: &'a str,
+    width: i32,
+    height: i32,
+}
+
+/// The drawing as a file of its own, ending with a newline.
+///
+/// # Errors
+/// A template that fails to print.
+pub fn svg(design: &Design) -> Result<String> {
+    let drawing = drawing(design);
+    let (width, height) = (drawing.width, drawing.height);
+    Ok(Standalone { drawing: &drawing.svg()?, width, height }.render()? + "\n")
+}
+
+/// The size of a box in the layout, which sees the page turned: its height there is the width on the page.
+struct Sizes {
+    lanes: f64,
+    stub: f64,
+    height: f64,
+    width: f64,
+}
+
+impl Sizes {
+    fn new(graph: &Graph, at: usize, lanes: usize) -> Self {
+        let one = &graph.boxes[at];
+        let pins = graph.wires.iter().filter(|wire| wire.to == at).count();
+        if one.form == BoxForm::Empty {
+            return Self { lanes: 0.0, stub: 0.0, height: 1.0, width: f64::from(2 * LINE) };
+        }
+        let lines = lines(one);
+        let widest = lines.iter().map(|(_, text)| text_width(text, SIZE)).max();
+        let neck = if is_port(one) { NECK } else { 0 };
+        Self {
+            lanes: LANE * lanes as f64,
+            stub: if one.control.is_empty() { 0.0 } else { STUB },
+            height: f64::from(widest.unwrap_or(0) + 2 * MARGIN).max(PIN * (pins + 1) as f64),
+            width: f64::from(LINE * lines.len() as i32 + 2 * PADDING + neck),
+        }
+    }
+
+    fn all(&self) -> f64 {
+        self.lanes + self.stub + self.height
+    }
+
+    fn body(&self, middle: f64) -> Body {
+        let top = (middle - self.all() / 2.0).round();
+        let upper = top + self.lanes + self.stub;
+        Body { top, upper, lower: upper + self.height, width: self.width }
+    }
+}
+
+fn is_port(one: &Node) -> bool {
+    matches!(one.form, BoxForm::Input | BoxForm::Output)
+}
+
+/// The text of a box, with the class of each line; the lines that control it are the last.
+fn lines(one: &Node) -> Vec<(&'static str, String)> {
+    let head = match one.number {
+        Some(number) => format!("{number} {}", one.name),
+        None => one.name.clone(),
+    };
+    let class = if is_port(one) { "tick" } else { "tick name" };
+    let mut lines = vec![(class, head)];
+    lines.extend(one.aliases.iter().map(|alias| ("tick small", alias.clone())));
+    let small = |line: &str| ("tick small", line.to_owned());
+    match one.caption.chars().count() {
+        0 => {}
+        1..=LONG => lines.push(small(&one.caption)),
+        _ => lines.extend(one.caption.split(" · ").map(small)),
+    }
+    if !one.control.is_empty() {
+        lines.push(("control-lines", one.control.clone()));
+    }
+    lines
+}
+
+fn bottom(bodies: &[Body], routes: &Routes) -> f64 {
+    bodies.iter().map(|body| body.lower).fold(routes.bottom(), f64::max)
+}
+
+/// On whole units, with the border.
+fn coordinate(value: f64) -> i32 {
+    value.round() as i32 + BORDER
+}
+
+/// The area of the drawing, to the right of the notes on stages.
+struct Page<'a> {
+    left: i32,
+    items: &'a mut Vec<Item>,
+}
+
+impl Page<'_> {
+    /// A place of the layout on the page, which shows it turned.
+    fn point(&self, (x, y): (f64, f64)) -> String {
+        format!("{} {}", self.left + coordinate(y), coordinate(x))
+    }
+
+    /// The stages, with the registers that end each.
+    fn stages(&mut self, pipeline: &Pipeline, graph: &Graph, place: &Placement, routes: &Routes) {
+        let columns = |stage: usize| {
+            let boxes = graph.boxes.iter().zip(&place.column);
+            let columns = boxes.filter(move |(one, _)| one.stage == Some(stage));
+            columns.map(|(_, column)| routes.columns[*column])
+        };
+        let end =
+            |stage: usize| columns(stage).map(|column| column.1).fold(0.0, f64::max) + REGISTERS;
+        let first = columns(0).map(|column| column.0).fold(f64::MAX, f64::min);
+        let mut top = first - 2.0 * REGISTERS;
+        for (number, stage) in pipeline.stages.iter().enumerate() {
+            let bottom = end(number);
+            self.stage(number, stage, 1000.0 / pipeline.clock_mhz, [top, bottom], routes);
+            top = bottom;
+        }
+    }
+
+    fn stage(
+        &mut self,
+        number: usize,
+        stage: &Stage,
+        period: f64,
+        ends: [f64; 2],
+        routes: &Routes,
+    ) {
+        let [top, bottom] = ends.map(coordinate);
+        let time = period - stage.slack_ns;
+        let mut said = vec![
+            ("name", format!("stage {number}")),
+            ("small", format!("{time:.2} of {period:.2} ns")),
+            ("small", format!("{} register bits", stage.register_bits)),
+        ];
+        if stage.delayed_bits > 0 {
+            said.push(("small", format!("{} in delay lines", stage.delayed_bits)));
+        }
+        self.items.push(Item::Open { class: "stage", title: stage.microinstructions.join("; ") });
+        let right = self.left + coordinate(routes.bottom());
+        self.items.push(Item::path("grid", format!("M{BORDER} {bottom}H{right}")));
+        for (at, (class, line)) in (1..).zip(said) {
+            self.items.push(Item::text(class, BORDER, top + 13 * at, line));
+        }
+        let crossing = |net: &Net| {
+            let pieces = net.pieces.clone().into_iter();
+            pieces.filter(|it| it.from.1 == it.to.1 && it.from.0 < ends[1] && ends[1] < it.to.0)
+        };
+        let mut places: Vec<i32> =
+            routes.nets.iter().flat_map(crossing).map(|it| coordinate(it.from.1)).collect();
+        places.sort_unstable();
+        places.dedup();
+        let marks = places.iter().map(|x| format!("M{} {}h8v4h-8Z", self.left + x - 4, bottom - 2));
+        self.items.push(Item::path("arrow", marks.collect::<String>()));
+        self.items.push(Item::Close);
+    }
+
+    fn net(&mut self, net: &Net, driver: &Node) {
+        if net.pieces.is_empty() {
+            return;
+        }
+        self.items.push(Item::Open { class: "net", title: driver.title.clone() });
+        let pieces = net.pieces.iter();
+        let lines = pieces.map(|it| format!("M{}L{}", self.point(it.from), self.point(it.to)));
+        let lines: String = lines.collect();
+        self.items.push(Item::path("wire", lines));
+        let arrows = net.pins.iter().map(|&pin| format!("M{}l-3 -6h6Z", self.point(pin)));
+        let arrows: String = arrows.collect();
+        self.items.push(Item::path("arrow", arrows));
+        if !net.junctions.is_empty() {
+            let dots = net.junctions.iter();
+            let dots =
+                dots.map(|&at| format!("M{}m-2 0a2 2 0 1 0 4 0a2 2 0 1 0 -4 0Z", self.point(at)));
+            let dots: String = dots.collect();
+            self.items.push(Item::path("arrow", dots));
+        }
+        self.items.push(Item::Close);
+    }
+
+    fn block(&mut self, one: &Node, left: f64, body: &Body) {
+        if one.form == BoxForm::Empty {
+            return;
+        }
+        let (x, y) = (self.left + coordinate(body.upper), coordinate(left));
+        let (width, height) = ((body.lower - body.upper).round() as i32, body.width.round() as i32);
+        let items = &mut *self.items;
+        items.push(Item::Open { class: "block", title: one.title.clone() });
+        items.push(Item::path(class(one.form), outline(one.form, x, y, width, height)));
+        if matches!(one.form, BoxForm::Block(BlockKind::Register | BlockKind::Operand)) {
+            // The mark of the clock.
+            let (right, edge) = (x + width, y + height);
+            items.push(Item::path("notch", format!("M{right} {}l-6 -4l6 -4", edge - 3)));
+        }
+        let mut base = y + PADDING - 3;
+        for (class, text) in lines(one) {
+            base += LINE;
+            if class == "control-lines" {
+                let (middle, stub) = (base - 4, STUB as i32);
+                items.push(Item::path("control wire", format!("M{} {middle}h{stub}", x - stub)));
+                items.push(Item::path("control arrow", format!("M{x} {middle}l-6 -3v6Z")));
+            }
+            items.push(Item::text(class, x + width / 2, base, text));
+        }
+        items.push(Item::Close);
+    }
+}
+
+/// The class of a box, which gives it its colour; its caption says the same.
+fn class(form: BoxForm) -> &'static str {
+    match form {
+        BoxForm::Input | BoxForm::Output => "box port",
+        BoxForm::Control => "box control",
+        BoxForm::Block(BlockKind::Register | BlockKind::Operand) => "box register",
+        BoxForm::Block(BlockKind::Rom | BlockKind::Constant) => "box memory",
+        BoxForm::Block(BlockKind::Mux(_)) => "box mux",
+        BoxForm::Block(_) | BoxForm::Empty => "box",
+    }
+}
+
+/// Ports point in the direction of the signal, down the page; muxes narrow toward their output.
+fn outline(form: BoxForm, x: i32, y: i32, width: i32, height: i32) -> String {
+    let (right, bottom, middle) = (x + width, y + height, x + width / 2);
+    match form {
+        BoxForm::Input | BoxForm::Output => {
+            let neck = bottom - NECK;
+            format!("M{x} {y}H{right}V{neck}L{middle} {bottom}L{x} {neck}Z")
+        }
+        BoxForm::Block(BlockKind::Mux(_)) => {
+            let (left, right, wide) = (x + 6, right - 6, right);
+            format!("M{x} {y}H{wide}L{right} {bottom}H{left}Z")
+        }
+        _ => format!("M{x} {y}H{right}V{bottom}H{x}Z"),
+    }
+}

@@ -1,0 +1,81 @@
+//! Drawings as data: lines, boxes and text, in colours that the page's style sheet decides.
+
+use anyhow::Result;
+use glint_base::template::Template;
+
+/// A drawing; units are those of the page at full size.
+#[derive(Clone, Debug)]
+#[glint_base::template::template("drawing.svg")]
+pub struct Drawing {
+    /// Unique on the page.
+    pub id: String,
+    /// The title.
+    pub title: String,
+    /// The description, which a screen reader says.
+    pub description: String,
+    /// From left to right.
+    pub width: i32,
+    /// From top to bottom.
+    pub height: i32,
+    /// In order of drawing.
+    pub items: Vec<Item>,
+}
+
+/// A part of a drawing. Its classes are the style sheet's.
+#[derive(Clone, Debug)]
+pub enum Item {
+    /// Lines, by SVG's path syntax.
+    Path {
+        /// Class.
+        class: &'static str,
+        /// The attribute `d`.
+        d: String,
+    },
+    /// A line of text.
+    Text {
+        /// Class.
+        class: &'static str,
+        /// Where it starts, is centred or ends, as the class says.
+        x: i32,
+        /// The base line.
+        y: i32,
+        /// The text.
+        text: String,
+    },
+    /// The items up to [`Item::Close`] belong together, and this is their tooltip.
+    Open {
+        /// Class.
+        class: &'static str,
+        /// In a sentence.
+        title: String,
+    },
+    /// Ends what [`Item::Open`] began.
+    Close,
+}
+
+impl Item {
+    /// Text.
+    pub fn text(class: &'static str, x: i32, y: i32, text: impl Into<String>) -> Self {
+        Self::Text { class, x, y, text: text.into() }
+    }
+
+    /// Lines.
+    pub fn path(class: &'static str, d: impl Into<String>) -> Self {
+        Self::Path { class, d: d.into() }
+    }
+}
+
+impl Drawing {
+    /// As an `svg` element.
+    ///
+    /// # Errors
+    /// A template that fails to print.
+    pub fn svg(&self) -> Result<String> {
+        Ok(self.render()?)
+    }
+}
+
+/// About how wide a text is in the type of a drawing, which is `size` high.
+pub fn text_width(text: &str, size: f64) -> i32 {
+    (text.chars().count() as f64 * size * 0.6).ceil() as i32
+}

@@ -1,0 +1,359 @@
+//! A formula as plain text, set as MathML.
+//!
+//! Descriptions write formulas as programs do, `out = colour * (n/2 * (c - 1) + 1)^2`. What this reader does not
+//! understand stays plain text.
+
+use super::markup::html;
+
+/// Functions whose names may carry a power, and whose parentheses may go around a single name.
+const FUNCTIONS: [&str; 4] = ["cos", "sin", "tan", "log"];
+
+/// Words between formulas.
+const PROSE: [&str; 10] =
+    ["by", "where", "stretched", "if", "for", "with", "when", "and", "or", "otherwise"];
+
+/// Letters by their names.
+const GREEK: [(&str, &str); 12] = [
+    ("alpha", "α"),
+    ("beta", "β"),
+    ("gamma", "γ"),
+    ("delta", "δ"),
+    ("zeta", "ζ"),
+    ("eta", "η"),
+    ("theta", "θ"),
+    ("pi", "π"),
+    ("rho", "ρ"),
+    ("sigma", "σ"),
+    ("phi", "φ"),
+    ("psi", "ψ"),
+];
+
+/// `math` elements with the signs between them, between which a line may end; `None` for a text that is not understood.
+pub fn mathml(text: &str) -> Option<String> {
+    let mut reader = Reader { tokens: tokens(text)?, at: 0 };
+    let mut clauses = String::new();
+    loop {
+        let clause = reader.clause()?;
+        clauses += &format!("<math displaystyle=\"true\"><mrow>{clause}</mrow></math>");
+        match reader.next() {
+            None => return Some(clauses),
+            Some(sign @ ("," | ";")) => clauses += &format!("<span>{sign} </span>"),
+            Some(_) => return None,
+        }
+    }
+}
+
+/// Typesets a formula, or returns the plain text as code.
+pub fn typeset(text: &str) -> String {
+    match mathml(text) {
+        Some(formula) => format!("<div class=\"formula\">{formula}</div>"),
+        None => format!("<pre class=\"formula\">{}</pre>", html(text)),
+    }
+}
+
+/// Names, numbers and signs.
+fn tokens(text: &str) -> Option<Vec<&str>> {
+    let mut tokens = Vec::new();
+    let mut rest = text.trim_start();
+    while let Some(first) = rest.chars().next() {
+        let run = |belongs: fn(char) -> bool| {
+            rest.find(|sign: char| !belongs(sign)).unwrap_or(rest.len())
+        };
+        let length = match first {
+            'a'..='z' | 'A'..='Z' => run(|sign| sign.is_ascii_alphanumeric() || sign == '_'),
+            '0'..='9' => run(|sign| sign.is_ascii_digit() || sign == '.'),
+            _ if ["+-", "<=", ">="].iter().any(|two| rest.starts_with(two)) => 2,
+            '+' | '-' | '*' | '/' | '^' | '(' | ')' | ',' | ';' | '=' | '<' | '>' => 1,
+            _ => return None,
+        };
+        let (token, after) = rest.split_at(length);
+        tokens.push(token);
+        rest = after.trim_start();
+    }
+    Some(tokens)
+}
+
+/// A part of a formula: its MathML, and the same without the parentheses around it, where it has some.
+struct Part {
+    mathml: String,
+    inside: Option<String>,
+}
+
+impl Part {
+    fn new(mathml: String) -> Self {
+        Self { mathml, inside: None }
+    }
+
+    /// As a numerator, a denominator, an exponent or under a root, which need no parentheses.
+    fn bare(self) -> String {
+        format!("<mrow>{}</mrow>", self.inside.unwrap_or(self.mathml))
+    }
+}
+
+struct Reader<'a> {
+    tokens: Vec<&'a str>,
+    at: usize,
+}
+
+impl<'a> Reader<'a> {
+    fn peek(&self) -> Option<&'a str> {
+        self.tokens.get(self.at).copied()
+    }
+
+    fn next(&mut self) -> Option<&'a str> {
+        let token = self.peek()?;
+        self.at += 1;
+        Some(token)
+    }
+
+    /// Goes over one of some signs.
+    fn sign(&mut self, signs: &[&str]) -> Option<&'a str> {
+        let found = self.peek().filter(|token| signs.contains(token))?;
+        self.at += 1;
+        Some(found)
+    }
+
+    /// Relations with words between them.
+    fn clause(&mut self) -> Option<String> {
+        let mut clause = String::new();
+        let mut after_relation = false;
+        loop {
+            match self.peek() {
+                None | Some("," | ";") => break,
+                Some(word) if PROSE.contains(&word) => {
+                    self.at += 1;
+                    clause += &format!("<mtext>&#xa0;{word}&#xa0;</mtext>");
+                    after_relation = false;
+                }
+                Some(_) if after_relation => return None,
+                Some(_) => {
+                    clause += &self.relation()?;
+                    after_relation = true;
+                }
+            }
+        }
+        (!clause.is_empty()).then_some(clause)
+    }
+
+    fn relation(&mut self) -> Option<String> {
+        let mut relation = self.sum()?;
+        while let Some(sign) = self.sign(&["=", "<", ">", "<=", ">="]) {
+            let sign = match sign {
+                "<" => "&lt;",
+                ">" => "&gt;",
+                "<=" => "≤",
+                ">=" => "≥",
+                other => other,
+            };
+            relation += &format!("<mo>{sign}</mo>{}", self.sum()?);
+        }
+        Some(relation)
+    }
+
+    fn sum(&mut self) -> Option<String> {
+        let mut sum = match self.sign(&["-"]) {
+            Some(_) => "<mo>−</mo>".to_owned(),
+            None => String::new(),
+        };
+        sum += &self.product()?;
+        while let Some(sign) = self.sign(&["+", "-", "+-"]) {
+            let sign = match sign {
+                "-" => "−",
+                "+-" => "±",
+                other => other,
+            };
+            sum += &format!("<mo>{sign}</mo>{}", self.product()?);
+        }
+        Some(sum)
+    }
+
+    /// Products and quotients from the left; all that stands before a `/` is the numerator.
+    fn product(&mut self) -> Option<String> {
+        let mut product = self.power()?;
+        while let Some(sign) = self.sign(&["*", "/"]) {
+            let factor = self.power()?;
+            product = Part::new(match sign {
+                "*" => format!("{}<mo>⋅</mo>{}", product.mathml, factor.mathml),
+                _ => format!("<mfrac>{}{}</mfrac>", product.bare(), factor.bare()),
+            });
+        }
+        Some(product.mathml)
+    }
+
+    fn power(&mut self) -> Option<Part> {
+        let name = self.peek().filter(|name| FUNCTIONS.contains(name));
+        let Some(name) = name else {
+            let base = self.atom()?;
+            return Some(match self.sign(&["^"]) {
+                Some(_) => {
+                    let exponent = self.atom()?.bare();
+                    Part::new(format!("<msup><mrow>{}</mrow>{exponent}</msup>", base.mathml))
+                }
+                None => base,
+            });
+        };
+        // cos^2(x) and cos(x)^2 are the same.
+        self.at += 1;
+        let mut exponent = None;
+        if self.sign(&["^"]).is_some() {
+            // What follows in parentheses is the cosine's.
+            exponent = Some(match self.peek()? {
+                "(" => self.parentheses()?.bare(),
+                _ => self.single()?.bare(),
+            });
+        }
+        let single = self.tokens.get(self.at + 2) == Some(&")");
+        let argument = self.parentheses()?;
+        if exponent.is_none() && self.sign(&["^"]).is_some() {
+            exponent = Some(self.atom()?.bare());
+        }
+        let name = match exponent {
+            Some(exponent) => format!("<msup><mi>{name}</mi>{exponent}</msup>"),
+            None => format!("<mi>{name}</mi>"),
+        };
+        let argument = match argument {
+            Part { inside: Some(inside), .. } if single => {
+                format!("<mspace width=\"0.17em\"/>{inside}")
+            }
+            part => part.mathml,
+        };
+        Some(Part::new(format!("{name}<mo>&#x2061;</mo>{argument}")))
+    }
+
+    fn atom(&mut self) -> Option<Part> {
+        let token = self.peek()?;
+        if token == "(" {
+            return self.parentheses();
+        }
+        let single = self.single()?;
+        if self.peek() != Some("(") {
+            return Some(single);
+        }
+        let argument = self.parentheses()?;
+        Some(Part::new(match token {
+            "sqrt" => format!("<msqrt>{}</msqrt>", argument.bare()),
+            _ => format!("{}<mo>&#x2061;</mo>{}", single.mathml, argument.mathml),
+        }))
+    }
+
+    /// A number or a name.
+    fn single(&mut self) -> Option<Part> {
+        let token = self.next()?;
+        let first = token.chars().next()?;
+        if first.is_ascii_digit() {
+            return Some(Part::new(format!("<mn>{token}</mn>")));
+        }
+        let is_name = first.is_ascii_alphabetic() && !PROSE.contains(&token);
+        is_name.then(|| Part::new(name(token)))
+    }
+
+    /// One expression in parentheses, or several with commas between.
+    fn parentheses(&mut self) -> Option<Part> {
+        self.sign(&["("])?;
+        let mut inside = self.sum()?;
+        while self.sign(&[","]).is_some() {
+            inside += &format!("<mo separator=\"true\">,</mo>{}", self.sum()?);
+        }
+        self.sign(&[")"])?;
+        // Around a fraction they are as high as it is, by their size: few fonts have what a browser would stretch.
+        let around = |sign: &str| match inside.contains("<mfrac>") {
+            true => format!(
+                "<mpadded voffset=\"-0.35em\"><mo class=\"tall\" stretchy=\"false\">{sign}</mo></mpadded>"
+            ),
+            false => format!("<mo>{sign}</mo>"),
+        };
+        let mathml = format!("<mrow>{}{inside}{}</mrow>", around("("), around(")"));
+        Some(Part { mathml, inside: Some(inside) })
+    }
+}
+
+/// A name: Greek letters by their names, `delta_x` as a difference, what follows `_` or is a number as a subscript.
+fn name(token: &str) -> String {
+    if let Some(of) = token.strip_prefix("delta_") {
+        return format!("<mrow><mi mathvariant=\"normal\">Δ</mi>{}</mrow>", name(of));
+    }
+    let digits = token.len() - token.trim_end_matches(|sign: char| sign.is_ascii_digit()).len();
+    let split = match token.split_once('_') {
+        Some(split) => Some(split),
+        None => (digits > 0).then(|| token.split_at(token.len() - digits)),
+    };
+    if let Some((base, index)) = split {
+        let index = index.replace('_', " ");
+        return format!("<msub>{}<mtext>{index}</mtext></msub>", name(base));
+    }
+    let letter = |name: &str| GREEK.iter().find(|(other, _)| *other == name).map(|it| it.1);
+    match (letter(token), token.strip_prefix('d').and_then(letter)) {
+        (Some(letter), _) => format!("<mi>{letter}</mi>"),
+        (None, Some(letter)) => {
+            format!("<mrow><mi mathvariant=\"normal\">d</mi><mi>{letter}</mi></mrow>")
+        }
+        (None, None) => format!("<mi>{token}</mi>"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glint_core::registry::Registry;
+
+    /// Returns a formula's text without markup.
+    fn plain(text: &str) -> Option<String> {
+        let mut plain = String::new();
+        let mut markup = false;
+        for sign in mathml(text)?.chars() {
+            match sign {
+                '<' => markup = true,
+                '>' => markup = false,
+                _ if !markup => plain.push(sign),
+                _ => {}
+            }
+        }
+        Some(plain.replace("&#x2061;", ""))
+    }
+
+    #[test]
+    fn parts_are_set_as_books_do() {
+        let set = |text: &str| mathml(text).unwrap_or_else(|| panic!("{text}"));
+        assert!(
+            set("n/2").contains("<mfrac><mrow><mi>n</mi></mrow><mrow><mn>2</mn></mrow></mfrac>")
+        );
+        // The parentheses of a denominator go, those of a base stay.
+        let quotient = set("c / (n + c)");
+        assert!(!quotient.contains("<mo>(</mo>"), "{quotient}");
+        assert_eq!(set("(a + b)^2").matches("<mo>(</mo>").count(), 1);
+        // Everything before the stroke is the numerator.
+        assert!(set("a * b / c").contains("<mfrac><mrow><mi>a</mi><mo>⋅</mo><mi>b</mi></mrow>"));
+        assert!(set("a / b * c").starts_with("<math displaystyle=\"true\"><mrow><mfrac>"));
+        assert_eq!(set("cos(gamma)^n"), set("cos^n(gamma)"));
+        // They are higher around a fraction.
+        let factor = set("(n/2 + (c - 1))^2");
+        assert_eq!((factor.matches("tall").count(), factor.matches("<mo>(</mo>").count()), (2, 1));
+        assert!(set("sqrt(n/k)").contains("<msqrt><mrow><mfrac>"));
+        assert!(set("zeta_start").contains("<msub><mi>ζ</mi><mtext>start</mtext></msub>"));
+        assert!(set("f0").contains("<msub><mi>f</mi><mtext>0</mtext></msub>"));
+        assert_eq!(plain("-a +- dgamma").as_deref(), Some("−a±dγ"));
+        assert_eq!(plain("0 where f < ROM(n)").as_deref(), Some("0&#xa0;where&#xa0;f&lt;ROM(n)"));
+        assert_eq!(plain("k = 1, 2; i <= n").as_deref(), Some("k=1, 2; i≤n"));
+    }
+
+    #[test]
+    fn what_is_not_understood_stays_text() {
+        for text in
+            ["", "a b", "f(", "(a", "a +", "a ^", "|x|", "x²", "a = , b", "sum over all i", "a)"]
+        {
+            assert_eq!(mathml(text), None, "{text}");
+        }
+        assert_eq!(typeset("a < b c"), "<pre class=\"formula\">a &lt; b c</pre>");
+    }
+
+    #[test]
+    fn the_formulas_of_all_devices_are_understood() {
+        let registry = Registry::catalogue();
+        for device in registry.devices() {
+            let config = glint_config::Config::defaults(&(device.schema)(), "core");
+            let core = glint_core::core::Core::new(*device, config).expect("the defaults work");
+            let formula = &core.design.about.formula;
+            assert!(mathml(formula).is_some(), "{}: {formula}", device.name);
+        }
+    }
+}

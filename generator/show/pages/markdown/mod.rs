@@ -1,0 +1,111 @@
+//! The page of a configuration: what the device is, for people, in Markdown.
+
+mod prose;
+
+use anyhow::Result;
+
+use super::account::{self, PageInputs};
+use super::stages;
+use glint_core::package::seal::{Seal, sealed};
+use glint_rtl::netlist::Design;
+use prose::{prose, table};
+
+#[glint_base::template::template("page.md")]
+struct Page<'a> {
+    title: String,
+    device: &'a str,
+    name: &'a str,
+    formula: &'a str,
+    source: String,
+    notes: Vec<String>,
+    ports: String,
+    numbering: &'static str,
+    program: Program,
+    roms: String,
+    clocks: String,
+    accuracy: String,
+    terms: String,
+    limit: String,
+    proof: String,
+    domain: String,
+    remarks: Vec<String>,
+    example: String,
+    keys: String,
+    config: &'a str,
+}
+
+/// The control of a computation, as tables.
+enum Program {
+    /// With what happens to writes while it is busy.
+    Microprogram {
+        blocks: String,
+        fields: String,
+        microprogram: String,
+        writes: &'static str,
+    },
+    Pipeline {
+        stages: String,
+        handshake: &'static str,
+    },
+}
+
+impl Program {
+    fn new(design: &Design) -> Self {
+        match &design.pipeline {
+            None => Self::Microprogram {
+                blocks: table(&account::blocks::table(design)),
+                fields: table(&account::fields(design)),
+                microprogram: table(&account::microprogram(design)),
+                writes: if design.control.overlaps { "for the next one" } else { "ignored" },
+            },
+            Some(pipeline) => Self::Pipeline {
+                stages: table(&stages::table(design, pipeline)),
+                handshake: account::handshake(pipeline),
+            },
+        }
+    }
+}
+
+/// The page of a design, ending with a newline.
+///
+/// # Errors
+/// A template that fails to print.
+pub fn page(design: &Design, inputs: &PageInputs) -> Result<String> {
+    let about = &design.about;
+    let bound = inputs.contract.bound();
+    let text = glint_base::template::render(&Page {
+        title: prose(&about.title),
+        device: &about.device,
+        name: &design.name,
+        formula: &about.formula,
+        source: prose(&about.source),
+        notes: about.paragraphs().map(prose).collect(),
+        ports: table(&account::ports(design)),
+        numbering: account::numbering(design),
+        program: Program::new(design),
+        roms: if design.roms.is_empty() {
+            String::new()
+        } else {
+            table(&account::roms(design, inputs.config))
+        },
+        clocks: table(&match &design.pipeline {
+            None => account::clocks(inputs.timing, inputs.line),
+            Some(pipeline) => account::pipeline_clocks(pipeline),
+        }),
+        accuracy: account::accuracy(inputs.contract, inputs.backing),
+        terms: table(&account::terms(&bound)),
+        limit: prose(&account::limit(inputs)),
+        proof: prose(&account::proof(inputs)),
+        domain: table(&account::domain(design, inputs.contract)),
+        remarks: inputs
+            .contract
+            .remarks()
+            .iter()
+            .map(|remark| format!("Remark: {}.", prose(remark)))
+            .collect(),
+        example: table(&account::example(inputs.contract, inputs.example)),
+        keys: table(&account::keys(inputs.schema, inputs.config)),
+        config: inputs.path,
+    })?;
+    Ok(sealed(text, Seal::Markup))
+}

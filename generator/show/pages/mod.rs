@@ -1,0 +1,44 @@
+//! Pages for people: the page of a device, its datasheet, the report.
+
+pub mod account;
+pub mod datasheet;
+pub mod diagram;
+pub mod drawing;
+pub mod figure;
+mod formula;
+mod markdown;
+mod markup;
+pub mod plots;
+pub mod report;
+pub mod stages;
+
+pub use account::PageInputs;
+pub use markdown::page;
+
+use std::path::Path;
+
+use anyhow::Result;
+
+use crate::evidence::advice;
+use glint_base::input;
+use glint_core::core::Core;
+
+/// Returns the page of a configuration, which the command line knows as `config`, a path; `proofs` is the directory of records.
+///
+/// # Errors
+/// A device that does not end; a record that cannot be read.
+pub fn of(core: &Core, config: &str, proofs: &Path) -> Result<String> {
+    let line = core.line()?;
+    let inputs = PageInputs {
+        path: &input::label(config),
+        config: &core.config,
+        schema: &(core.device.schema)(),
+        contract: core.contract.as_ref(),
+        backing: &core.backing(proofs)?,
+        advice: advice::of(core),
+        timing: &core.timing()?,
+        example: &core.example()?,
+        line: line.as_ref(),
+    };
+    page(&core.design, &inputs)
+}

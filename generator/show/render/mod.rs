@@ -1,0 +1,364 @@
+//! Pictures whose highlights a device computes, bit by bit.
+//!
+//! The host computes visibility, normals, half vectors, and the ambient and diffuse light in f64; an [`Engine`] computes the specular
+//! term of every sample and light, along lines for devices that walk lines. The same picture has the same bytes on every machine: it
+//! depends neither on the engine nor on the number of threads, and transcendental functions are those of `libm`.
+
+mod camera;
+mod height;
+mod mesh;
+pub mod obj;
+mod operands;
+mod picture;
+mod scene;
+pub mod setup;
+mod shade;
+mod shapes;
+mod vector;
+mod visibility;
+
+use anyhow::{Result, ensure};
+use rayon::prelude::*;
+
+pub use camera::View;
+pub use height::Relief;
+pub use mesh::{CREASE, Mesh};
+pub use operands::{Feed, Point, exponents, walks_lines};
+pub use picture::{Difference, Picture};
+pub use scene::{BACKGROUND, BuiltIn, COLOUR, Light, Object, Scene, Shape};
+pub use shade::{Material, point};
+pub use vector::Vector;
+
+use camera::Camera;
+use glint_core::core::Core;
+use glint_core::cosim::batch::{Engine, Points};
+use glint_golden::{Contract, nearer};
+use shade::{Shaded, Shader};
+use visibility::{Raster, Visibility};
+
+/// The most pixels along a side.
+pub const LARGEST_SIDE: u32 = 8192;
+
+/// The most samples along a side of a pixel.
+pub const MOST_SAMPLES: u32 = 8;
+
+/// The most samples of a picture.
+pub const LARGEST: u64 = 1 << 28;
+
+/// The most lights.
+pub const MOST_LIGHTS: usize = 16;
+
+/// n by default, where the device takes so much.
+const EXPONENT: i64 = 80;
+
+/// Points, about, that are handed to the device at once.
+const PORTION: usize = 1 << 18;
+
+/// The settings of a picture.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// Width and height in pixels.
+    pub size: (u32, u32),
+    /// Samples along each side of a pixel, which is their mean.
+    pub samples: u32,
+    /// From where.
+    pub view: View,
+    /// How things reflect.
+    pub material: Material,
+    /// The colour where nothing is hit, 0 … 1.
+    pub background: Vector,
+    /// Whether the picture of Blinn's function in f64 is wanted too.
+    pub compare: bool,
+    /// Values of operands that a picture does not have, or that are to stay the same, by name.
+    pub operands: Vec<(String, f64)>,
+}
+
+/// A picture and what there is to say of it.
+#[derive(Clone, Debug)]
+pub struct Rendered {
+    /// Through the device.
+    pub picture: Picture,
+    /// Computations of the device.
+    pub points: u64,
+    /// The points among these whose dγ was beyond the domain of the device, and was shortened to it.
+    pub beyond: u64,
+    /// Beside Blinn's function, if that was wanted.
+    pub comparison: Option<Comparison>,
+}
+
+impl Rendered {
+    /// The picture; where Blinn's was wanted, it and their difference stand beside it, each with its caption.
+    pub fn whole(&self, device: &str) -> Picture {
+        let Some(comparison) = &self.comparison else {
+            return self.picture.clone();
+        };
+        let difference = &comparison.difference;
+        Picture::beside(&[
+            &self.picture.captioned(device),
+            &comparison.exact.captioned("Blinn in f64"),
+            &difference.picture.captioned(&format!("difference × {}", difference.gain)),
+        ])
+    }
+}
+
+/// The device against formulas in f64.
+#[derive(Clone, Debug)]
+pub struct Comparison {
+    /// The picture with cosⁿγ.
+    pub exact: Picture,
+    /// Between the two.
+    pub difference: Difference,
+    /// The largest error of an output against the device's own formula, in output units.
+    pub units: f64,
+}
+
+/// The exponent at which a picture is rendered by default: one that the device takes.
+pub fn usual_exponent(contract: &dyn Contract) -> u32 {
+    let (least, most) = exponents(contract).unwrap_or((0, i64::MAX));
+    EXPONENT.clamp(least, most).max(0) as u32
+}
+
+/// Whether a picture has the operands of a device.
+pub fn draws(core: &Core) -> bool {
+    let contract = core.contract.as_ref();
+    Feed::new(core.device.name, contract).is_ok()
+}
+
+/// Checks what is to be rendered.
+///
+/// # Errors
+/// A setting is wrong; the sentence says which.
+pub fn check(settings: &Settings, scene: &Scene) -> Result<()> {
+    let (width, height) = settings.size;
+    let sides = 1..=LARGEST_SIDE;
+    ensure!(
+        sides.contains(&width) && sides.contains(&height),
+        "a picture of {width}x{height} pixels: 1x1 to {LARGEST_SIDE}x{LARGEST_SIDE} are possible"
+    );
+    let samples = settings.samples;
+    ensure!(
+        (1..=MOST_SAMPLES).contains(&samples),
+        "{samples} samples along a pixel: 1 to {MOST_SAMPLES} are possible"
+    );
+    let all = u64::from(width) * u64::from(height) * u64::from(samples) * u64::from(samples);
+    ensure!(
+        all <= LARGEST,
+        "{width}x{height} pixels of {samples}x{samples} samples are {all} samples; at most {LARGEST} are possible"
+    );
+    let lights = scene.lights.len();
+    ensure!(
+        (1..=MOST_LIGHTS).contains(&lights),
+        "there are {lights} lights; 1 to {MOST_LIGHTS} are possible"
+    );
+    if scene.relief.is_some() {
+        for object in &scene.objects {
+            ensure!(
+                !matches!(&object.shape, Shape::Mesh(mesh) if !mesh.is_textured()),
+                "a height map needs texture coordinates (`vt`) at every corner of the mesh"
+            );
+        }
+    }
+    Ok(())
+}
+
+/// Renders a scene; `progress` is called with the number of rows so far.
+///
+/// # Errors
+/// As of [`check`]; a camera that sees nowhere; operands that a picture cannot supply; and those of the
+/// engine.
+pub fn render(
+    core: &Core,
+    engine: &mut dyn Engine,
+    scene: &Scene,
+    settings: &Settings,
+    progress: &mut dyn FnMut(u64),
+) -> Result<Rendered> {
+    check(settings, scene)?;
+    let (width, height) = settings.size;
+    let samples = settings.samples as usize;
+    let (middle, radius) = scene.extent();
+    let aspect = f64::from(width) / f64::from(height);
+    let camera = Camera::new(&settings.view, aspect, middle, scene.balls())?;
+    let contract = core.contract.as_ref();
+    let feed = Feed::with(core.device.name, contract, &settings.operands)?;
+    ensure!(
+        feed.longest().is_none() || scene.relief.is_none(),
+        "the device `{}` walks lines of points, which a height map cannot perturb",
+        core.device.name
+    );
+    let raster = Raster::new(width as usize * samples, height as usize * samples, &camera);
+    let visibility = Visibility::new(scene, &camera, raster, radius);
+    let shader = Shader {
+        scene,
+        camera: &camera,
+        material: settings.material,
+        background: settings.background * 255.0,
+        feed: &feed,
+        compare: settings.compare,
+    };
+    let mut result = Portions {
+        core,
+        feed: &feed,
+        engine,
+        samples,
+        width: width as usize,
+        picture: Picture::new(width),
+        exact: Picture::new(width),
+        shown: Vec::new(),
+        points: 0,
+        beyond: 0,
+        units: 0.0,
+    };
+    let line = raster.columns * samples * scene.lights.len();
+    let rows_at_once = (PORTION / line).max(1);
+    let mut row = 0;
+    while row < height as usize {
+        let end = (row + rows_at_once).min(height as usize);
+        let (first, last) = (row * samples, end * samples);
+        let hits = visibility.rows(first, last);
+        let shaded: Vec<Shaded> = hits
+            .par_chunks(raster.columns)
+            .enumerate()
+            .map(|(at, hits)| shader.shade(hits, |column| raster.ray(column, first + at)))
+            .collect::<Result<_>>()?;
+        result.add(&shaded, settings.compare)?;
+        row = end;
+        progress(row as u64);
+    }
+    Ok(result.finish(settings.compare))
+}
+
+/// A picture in progress, with the engine that computes the rest.
+struct Portions<'a> {
+    core: &'a Core,
+    feed: &'a Feed,
+    engine: &'a mut dyn Engine,
+    /// Along each side of a pixel.
+    samples: usize,
+    width: usize,
+    picture: Picture,
+    exact: Picture,
+    /// Whether there is a thing in the pixel.
+    shown: Vec<bool>,
+    points: u64,
+    beyond: u64,
+    units: f64,
+}
+
+impl Portions<'_> {
+    /// Some rows of pixels, given by rows of samples.
+    fn add(&mut self, rows: &[Shaded], compare: bool) -> Result<()> {
+        let mut points = Points::new(self.feed.operand_count());
+        for row in rows {
+            points.append(&row.points);
+            self.beyond += row.beyond as u64;
+        }
+        self.points += points.len() as u64;
+        let outputs = self.engine.compute(&points)?;
+        let specular = self.specular(rows, &outputs);
+        let device = self.pixels(rows, specular);
+        self.picture.pixels.extend(device);
+        if compare {
+            self.units = self.units.max(self.error(&points, &outputs));
+            let exact = rows.iter().flat_map(|row| row.exact.iter().copied());
+            let exact = self.pixels(rows, exact.collect());
+            self.exact.pixels.extend(exact);
+            let samples = self.samples;
+            let lines = rows.chunks(samples);
+            let shown = lines.flat_map(|lines| {
+                (0..self.width).map(move |pixel| {
+                    let of = |row: &Shaded| {
+                        let samples = &row.samples[pixel * samples..(pixel + 1) * samples];
+                        samples.iter().any(|(_, lights)| *lights > 0)
+                    };
+                    lines.iter().any(of)
+                })
+            });
+            self.shown.extend(shown);
+        }
+        Ok(())
+    }
+
+    /// Returns the colour of each sample, summed over its lights.
+    fn specular(&self, rows: &[Shaded], outputs: &[i64]) -> Vec<Vector> {
+        let width = self.core.contract.outputs().len();
+        let result = |at: usize| &outputs[at * width..(at + 1) * width];
+        let mut all = Vec::new();
+        let mut first = 0;
+        for row in rows {
+            let count = row.points.result_count();
+            match &row.places {
+                None => {
+                    all.extend((first..first + count).map(|at| self.feed.colour(|_| result(at))))
+                }
+                Some(places) => all.extend(
+                    places
+                        .iter()
+                        .map(|places| self.feed.colour(|channel| result(first + places[channel]))),
+                ),
+            }
+            first += count;
+        }
+        all
+    }
+
+    /// The mean of the samples of each pixel: each with the specular light that was computed for it, and
+    /// saturated, as a frame buffer of samples would be.
+    fn pixels(&self, rows: &[Shaded], specular: Vec<Vector>) -> Vec<[u8; 3]> {
+        let mut sums = Vec::with_capacity(self.width * rows.len() / self.samples);
+        let mut specular = specular.into_iter();
+        let share = 1.0 / (self.samples * self.samples) as f64;
+        for lines in rows.chunks(self.samples) {
+            let mut line = vec![Vector::default(); self.width];
+            for row in lines {
+                for (at, (base, lights)) in row.samples.iter().enumerate() {
+                    let mut colour = *base;
+                    for light in specular.by_ref().take(*lights as usize) {
+                        colour = colour + light;
+                    }
+                    let colour = Vector(colour.0.map(|value| value.min(255.0)));
+                    let sum = &mut line[at / self.samples];
+                    *sum = *sum + colour;
+                }
+            }
+            sums.extend(line.into_iter().map(|sum| picture::pixel(sum * share)));
+        }
+        sums
+    }
+
+    /// The largest error of an output against the device's own formula, in output units.
+    fn error(&self, points: &Points, outputs: &[i64]) -> f64 {
+        let contract = self.core.contract.as_ref();
+        let width = contract.outputs().len();
+        let units: Vec<f64> = contract.outputs().iter().map(|it| it.format.to_f64(1)).collect();
+        let starts: Vec<usize> = (0..points.len())
+            .scan(0, |next, at| {
+                let first = *next;
+                *next += points.results(at);
+                Some(first)
+            })
+            .collect();
+        let errors = starts.par_iter().enumerate().map(|(at, first)| {
+            let (mut worst, mut exact) = (0.0f64, Vec::new());
+            for index in 0..points.results(at) {
+                exact.clear();
+                contract.exact(points.operands(at), index as u64, &mut exact);
+                let outputs = &outputs[(first + index) * width..];
+                for ((&out, right), unit) in outputs.iter().zip(&exact).zip(&units) {
+                    worst = worst.max(nearer(out as f64, right.map(|right| right / unit)));
+                }
+            }
+            worst
+        });
+        errors.reduce(|| 0.0, f64::max)
+    }
+
+    fn finish(self, compare: bool) -> Rendered {
+        let comparison = compare.then(|| Comparison {
+            difference: Difference::new(&self.picture, &self.exact, &self.shown),
+            exact: self.exact,
+            units: self.units,
+        });
+        Rendered { picture: self.picture, points: self.points, beyond: self.beyond, comparison }
+    }
+}

@@ -1,0 +1,425 @@
+//! How a device is fed: which of its operands mean what.
+//!
+//! Nothing here knows a device; its contract names its operands, and those names are what it is known by.
+
+use std::f64::consts::FRAC_PI_2;
+
+use anyhow::{Result, bail, ensure};
+
+use super::setup::Line;
+use super::vector::Vector;
+use glint_base::fixed::{Format, Overflow, Rounding, exp2};
+use glint_base::program::Program;
+use glint_golden::{Contract, Operand};
+
+/// A point that a light shines on.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Point {
+    /// N·H of the smooth surface.
+    pub cos_gamma: f64,
+    /// The cosine of dγ, the difference between the angle of H with the perturbed normal and γ.
+    pub cos_dgamma: f64,
+    /// dγ is negative: the perturbed normal is nearer to H.
+    pub dgamma_negative: bool,
+    /// N − H of the normal that is shaded.
+    pub difference: Vector,
+    /// N·H of the normal that is shaded.
+    pub cos_shaded: f64,
+    /// The colour of the light times the specular coefficient, 0 … 1.
+    pub colour: Vector,
+    /// The surface, for a device that computes all of the light.
+    pub surface: Surface,
+}
+
+/// A surface under one light.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Surface {
+    /// The normal as it was interpolated, of any length.
+    pub normal: Vector,
+    /// The unit vector to the light.
+    pub light: Vector,
+    /// The unit half vector.
+    pub half: Vector,
+    /// The ambient light that it gives back, 0 … 1.
+    pub ambient: Vector,
+    /// The share of the light that it scatters, 0 … 1.
+    pub diffuse: Vector,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Quantity {
+    CosGamma,
+    CosDgamma,
+    DgammaNegative,
+    Exponent,
+    /// The exponent's logarithm to base 2, rounded.
+    Shift,
+    Difference(usize),
+    Colour(usize),
+    ZetaStart,
+    DeltaZeta,
+    Length,
+    Amplitude,
+    Normal(usize),
+    Light(usize),
+    Half(usize),
+    Ambient(usize),
+    Diffuse(usize),
+    Specular(usize),
+    /// A constant for every point.
+    Given(f64),
+}
+
+impl Quantity {
+    fn is_colour(self) -> bool {
+        matches!(self, Self::Colour(_) | Self::Amplitude)
+    }
+}
+
+/// Every name that is understood of a device that computes a point.
+const OF_POINTS: [(&str, Quantity); 11] = [
+    ("cos_gamma", Quantity::CosGamma),
+    ("exponent", Quantity::Exponent),
+    ("shift", Quantity::Shift),
+    ("cos_dgamma", Quantity::CosDgamma),
+    ("dgamma_negative", Quantity::DgammaNegative),
+    ("dx", Quantity::Difference(0)),
+    ("dy", Quantity::Difference(1)),
+    ("dz", Quantity::Difference(2)),
+    ("red", Quantity::Colour(0)),
+    ("green", Quantity::Colour(1)),
+    ("blue", Quantity::Colour(2)),
+];
+
+/// And of one that computes all of the light.
+const OF_SURFACES: [(&str, Quantity); 19] = [
+    ("nx", Quantity::Normal(0)),
+    ("ny", Quantity::Normal(1)),
+    ("nz", Quantity::Normal(2)),
+    ("lx", Quantity::Light(0)),
+    ("ly", Quantity::Light(1)),
+    ("lz", Quantity::Light(2)),
+    ("hx", Quantity::Half(0)),
+    ("hy", Quantity::Half(1)),
+    ("hz", Quantity::Half(2)),
+    ("exponent", Quantity::Exponent),
+    ("ambient_red", Quantity::Ambient(0)),
+    ("ambient_green", Quantity::Ambient(1)),
+    ("ambient_blue", Quantity::Ambient(2)),
+    ("diffuse_red", Quantity::Diffuse(0)),
+    ("diffuse_green", Quantity::Diffuse(1)),
+    ("diffuse_blue", Quantity::Diffuse(2)),
+    ("specular_red", Quantity::Specular(0)),
+    ("specular_green", Quantity::Specular(1)),
+    ("specular_blue", Quantity::Specular(2)),
+];
+
+/// And of one that walks a line of points, for a colour at a time.
+const OF_LINES: [(&str, Quantity); 5] = [
+    ("zeta_start", Quantity::ZetaStart),
+    ("delta_zeta", Quantity::DeltaZeta),
+    ("exponent", Quantity::Exponent),
+    ("length", Quantity::Length),
+    ("amplitude", Quantity::Amplitude),
+];
+
+/// The operands of a device, each with what it takes.
+#[derive(Clone, Debug)]
+pub struct Feed {
+    operands: Vec<(Quantity, Format, (i64, i64))>,
+    /// For red, green and blue the place of its output.
+    channels: [usize; 3],
+    /// For red, green and blue what an output is to be multiplied with, for 255 at full colour.
+    scales: [f64; 3],
+    /// The most intervals of a line, if it computes lines.
+    longest: Option<usize>,
+    /// It computes all of the light.
+    surfaces: bool,
+}
+
+/// The exponents that a device takes, if it takes any.
+pub fn exponents(contract: &dyn Contract) -> Option<(i64, i64)> {
+    let mut operands = contract.operands().iter();
+    let exponent = operands.find(|operand| operand.name == "exponent")?;
+    Some(exponent.domain)
+}
+
+/// Whether a device walks a line of points from one start.
+pub fn walks_lines(contract: &dyn Contract) -> bool {
+    contract.length().is_some()
+}
+
+impl Feed {
+    /// For a device of that name.
+    ///
+    /// # Errors
+    /// It has operands that are not understood, or not the colours.
+    pub fn new(device: &str, contract: &dyn Contract) -> Result<Self> {
+        Self::with(device, contract, &[])
+    }
+
+    /// For a device of that name, some of whose operands are `given` and the same at every point.
+    ///
+    /// # Errors
+    /// As of [`Feed::new`]; an operand that the device does not have, or a value beyond its domain.
+    pub fn with(device: &str, contract: &dyn Contract, given: &[(String, f64)]) -> Result<Self> {
+        let surfaces = contract.operands().iter().any(|it| it.name == OF_SURFACES[10].0);
+        let names: &[(&str, Quantity)] = match (walks_lines(contract), surfaces) {
+            (true, _) => &OF_LINES,
+            (false, true) => &OF_SURFACES,
+            (false, false) => &OF_POINTS,
+        };
+        let mut unknown = Vec::new();
+        let mut operands = Vec::new();
+        for operand in contract.operands() {
+            let quantity = match given.iter().find(|(name, _)| *name == operand.name) {
+                Some(&(_, value)) => Some(fixed(operand, value)?),
+                None => quantity(operand, names),
+            };
+            match quantity {
+                Some(quantity) => operands.push((quantity, operand.format, operand.domain)),
+                None if operand.doc.is_empty() => unknown.push(format!("`{}`", operand.name)),
+                None => unknown.push(format!("`{}` ({})", operand.name, operand.doc)),
+            }
+        }
+        if !unknown.is_empty() {
+            let known: Vec<&str> = names.iter().map(|(name, _)| *name).collect();
+            bail!(
+                "a host cannot supply {} of the device `{device}`; it supplies {}; `{Program} render --operand NAME=VALUE` gives \
+                 an operand that stays the same",
+                unknown.join(", "),
+                known.join(", ")
+            );
+        }
+        for (name, _) in given {
+            ensure!(
+                contract.operands().iter().any(|operand| operand.name == *name),
+                "--operand {name}: the device `{device}` has no such operand"
+            );
+        }
+        let mut feed =
+            Self { operands, channels: [0; 3], scales: [0.0; 3], longest: None, surfaces };
+        if walks_lines(contract) {
+            for (name, quantity) in OF_LINES {
+                ensure!(
+                    quantity == Quantity::Exponent || feed.find(quantity).is_some(),
+                    "the device `{device}` walks a line, but has no operand `{name}`"
+                );
+            }
+            let length = feed.find(Quantity::Length).map(|(_, _, (_, most))| most);
+            feed.longest = length.map(|most| usize::try_from(most).unwrap_or(0));
+        }
+        let control = contract.operands().iter().filter(|operand| !operand.colour);
+        let control = control.count();
+        for (channel, name) in ["red", "green", "blue"].into_iter().enumerate() {
+            if surfaces {
+                let outputs = contract.outputs();
+                let output = outputs.iter().position(|it| it.name == format!("{name}_out"));
+                let Some(output) = output else {
+                    bail!("the device `{device}` has no output `{name}_out`");
+                };
+                feed.channels[channel] = output;
+                feed.scales[channel] = 255.0 / outputs[output].format.max_raw() as f64;
+                continue;
+            }
+            let wanted = match feed.longest {
+                None => Quantity::Colour(channel),
+                Some(_) => Quantity::Amplitude,
+            };
+            let mut places = feed.operands.iter();
+            let at = places.position(|(quantity, ..)| *quantity == wanted);
+            // Each output is of the colour operand of the same position.
+            let output = at.and_then(|at| at.checked_sub(control));
+            let format = output.and_then(|at| contract.outputs().get(at)).map(|it| it.format);
+            let (Some(at), Some(output), Some(format)) = (at, output, format) else {
+                bail!("the device `{device}` has no colour operand `{name}` with an output");
+            };
+            let (_, colour, (_, most)) = feed.operands[at];
+            feed.channels[channel] = output;
+            feed.scales[channel] = 255.0 * format.to_f64(1) / colour.to_f64(i128::from(most));
+        }
+        Ok(feed)
+    }
+
+    /// The number of operands.
+    pub fn operand_count(&self) -> usize {
+        self.operands.len()
+    }
+
+    /// Whether the device computes all of the light, and not the highlight alone.
+    pub fn shades(&self) -> bool {
+        self.surfaces
+    }
+
+    /// Whether the device takes dγ, and so the smooth normal's angle.
+    pub fn takes_deviation(&self) -> bool {
+        self.takes(Quantity::CosDgamma)
+    }
+
+    /// Whether n, or its logarithm, is an operand.
+    pub fn takes_exponent(&self) -> bool {
+        self.takes(Quantity::Exponent) || self.takes(Quantity::Shift)
+    }
+
+    /// The first of some operands, not yet quantised, that is beyond its domain. The cosine of a surface that faces away
+    /// is the least that there is, and angles of lines are taken modulo a turn.
+    pub fn outside(&self, values: &[f64]) -> Option<usize> {
+        let mut operands = self.operands.iter().zip(values);
+        operands.position(|(&(quantity, format, domain), &value)| match quantity {
+            Quantity::CosGamma | Quantity::ZetaStart | Quantity::DeltaZeta => false,
+            _ => {
+                (format.to_f64(i128::from(number(value, format, domain))) - value).abs()
+                    >= format.to_f64(1)
+            }
+        })
+    }
+
+    /// The most intervals of a line, if the device computes lines.
+    pub fn longest(&self) -> Option<usize> {
+        self.longest
+    }
+
+    fn takes(&self, quantity: Quantity) -> bool {
+        self.find(quantity).is_some()
+    }
+
+    fn find(&self, wanted: Quantity) -> Option<(Quantity, Format, (i64, i64))> {
+        let mut operands = self.operands.iter();
+        operands.find(|operand| operand.0 == wanted).copied()
+    }
+
+    /// The operands of a point before they are quantised, each in its own unit.
+    pub fn values<'a>(&'a self, point: &'a Point, exponent: u32) -> impl Iterator<Item = f64> + 'a {
+        let split = self.takes_deviation();
+        self.operands.iter().map(move |&(quantity, format, (_, high))| match quantity {
+            Quantity::CosGamma if split => point.cos_gamma,
+            Quantity::CosGamma => point.cos_shaded,
+            Quantity::CosDgamma => point.cos_dgamma,
+            Quantity::DgammaNegative => f64::from(u8::from(point.dgamma_negative)),
+            Quantity::Exponent => f64::from(exponent),
+            Quantity::Shift => libm::log2(f64::from(exponent)).round(),
+            Quantity::Difference(axis) => point.difference.0[axis],
+            // From 0 to the largest, which is full colour.
+            Quantity::Colour(channel) => point.colour.0[channel] * format.to_f64(i128::from(high)),
+            Quantity::Normal(axis) => point.surface.normal.0[axis],
+            Quantity::Light(axis) => point.surface.light.0[axis],
+            Quantity::Half(axis) => point.surface.half.0[axis],
+            Quantity::Ambient(at) => point.surface.ambient.0[at] * format.to_f64(high.into()),
+            Quantity::Diffuse(at) => point.surface.diffuse.0[at] * format.to_f64(high.into()),
+            Quantity::Specular(at) => point.colour.0[at] * format.to_f64(high.into()),
+            Quantity::Given(value) => value,
+            // Not of a point.
+            Quantity::Amplitude | Quantity::ZetaStart | Quantity::DeltaZeta | Quantity::Length => {
+                0.0
+            }
+        })
+    }
+
+    /// The raw operands of a point, and whether dγ was beyond the device's domain.
+    pub fn raw<'a>(
+        &'a self,
+        point: &'a Point,
+        exponent: u32,
+    ) -> (impl Iterator<Item = i64> + 'a, bool) {
+        let raw = self
+            .operands
+            .iter()
+            .zip(self.values(point, exponent))
+            .map(|(&(_, format, domain), value)| number(value, format, domain));
+        let beyond = self.operands.iter().any(|(quantity, format, (low, _))| {
+            *quantity == Quantity::CosDgamma && format.quantise(point.cos_dgamma) < i128::from(*low)
+        });
+        (raw, beyond)
+    }
+
+    /// The amplitude of full light.
+    pub fn full(&self) -> f64 {
+        let full = self.find(Quantity::Amplitude);
+        full.map_or(0.0, |(_, format, (_, most))| format.to_f64(i128::from(most)))
+    }
+
+    /// By what the device takes the angles of a line: √(n/2), unless it has an exponent.
+    fn stretch(&self, line: &Line) -> f64 {
+        if self.takes(Quantity::Exponent) { 1.0 } else { line.stretch() }
+    }
+
+    /// The operands of a line before they are quantised, each in its own unit.
+    pub fn line_values<'a>(&'a self, line: &'a Line) -> impl Iterator<Item = f64> + 'a {
+        let stretch = self.stretch(line);
+        self.operands.iter().map(move |(quantity, ..)| match quantity {
+            Quantity::ZetaStart => line.zeta_start * stretch / FRAC_PI_2,
+            Quantity::DeltaZeta => line.delta_zeta * stretch / FRAC_PI_2,
+            Quantity::Exponent => f64::from(line.exponent),
+            Quantity::Length => f64::from(line.length),
+            Quantity::Amplitude => line.amplitude,
+            Quantity::Given(value) => *value,
+            // Not of a line.
+            _ => 0.0,
+        })
+    }
+
+    /// The raw operands of a line. Angles are taken modulo a turn.
+    ///
+    /// # Errors
+    /// An angle times √(n/2) that a device without an exponent has no room for.
+    pub fn line(&self, line: &Line) -> Result<Vec<i64>> {
+        if let Some((_, format, _)) = self.find(Quantity::ZetaStart)
+            && !self.takes(Quantity::Exponent)
+        {
+            // A right angle is kept for what rounding may add along the line.
+            let room = exp2(format.int) - 1.0;
+            let ends = [line.zeta_start, line.zeta(line.length)];
+            let mut ends = ends.map(|zeta| self.stretch(line) * zeta / FRAC_PI_2).into_iter();
+            if let Some(right_angles) = ends.find(|right_angles| right_angles.abs() > room) {
+                bail!(
+                    "an angle of the line, times the root of n/2, is {right_angles:.1} right angles, for which the \
+                     device has no room; a smaller exponent helps, or a larger `angle.integer`"
+                );
+            }
+        }
+        let raw = |(&(quantity, format, domain), value)| match quantity {
+            Quantity::ZetaStart | Quantity::DeltaZeta => raw_angle(value, format),
+            _ => number(value, format, domain),
+        };
+        Ok(self.operands.iter().zip(self.line_values(line)).map(raw).collect())
+    }
+
+    /// The results of a point as a colour, 255 at full colour: `outputs` gives those in which red, green and
+    /// blue are.
+    #[inline]
+    pub fn colour<'a>(&self, outputs: impl Fn(usize) -> &'a [i64]) -> Vector {
+        let of = |channel: usize| outputs(channel)[self.channels[channel]] as f64;
+        Vector::new(of(0), of(1), of(2)).times(Vector(self.scales))
+    }
+}
+
+/// The raw value nearest to a number, in the domain.
+fn number(value: f64, format: Format, (low, high): (i64, i64)) -> i64 {
+    format.quantise(value).clamp(i128::from(low), i128::from(high)) as i64
+}
+
+/// The raw angle nearest to right angles, modulo a turn: what an angle without room for more means.
+fn raw_angle(right_angles: f64, format: Format) -> i64 {
+    let scaled = (right_angles * exp2(format.frac) + 0.5).floor() as i128;
+    format.narrow(scaled, format.frac, Rounding::Truncate, Overflow::Wrap) as i64
+}
+
+/// An operand that is the same at every point.
+fn fixed(operand: &Operand, value: f64) -> Result<Quantity> {
+    let name = &operand.name;
+    let [low, high] =
+        [operand.domain.0, operand.domain.1].map(|raw| operand.format.to_f64(i128::from(raw)));
+    ensure!(!operand.colour, "--operand {name}: it is a colour, which the light gives");
+    ensure!(
+        (low..=high).contains(&value),
+        "--operand {name}={value}: its domain is {low} to {high}"
+    );
+    Ok(Quantity::Given(value))
+}
+
+fn quantity(operand: &Operand, names: &[(&str, Quantity)]) -> Option<Quantity> {
+    let found = names
+        .iter()
+        .find(|(name, quantity)| operand.name == *name && operand.colour == quantity.is_colour());
+    found.map(|(_, quantity)| *quantity)
+}

@@ -1,0 +1,376 @@
+//! The host's part of shading: what a point is, its ambient and diffuse light, and what the device is to
+//! compute for it.
+//!
+//! All of it is f64. Most devices compute the specular term alone; one that takes normals computes the rest too.
+
+use std::f64::consts::{PI, TAU};
+
+use anyhow::Result;
+
+use super::camera::Camera;
+use super::operands::{self, Feed, Point};
+use super::scene::{Light, Object, Scene, Shape};
+use super::vector::Vector;
+use super::visibility::Hit;
+use crate::render::setup::Arc;
+use glint_core::cosim::batch::Points;
+
+/// How surfaces reflect; everything is a share of the light.
+#[derive(Clone, Copy, Debug)]
+pub struct Material {
+    /// The share of the ambient light, which is white and has the strength of one light.
+    pub ambient: f64,
+    /// The share of each light, times the cosine of its angle.
+    pub diffuse: f64,
+    /// k_s: of each light, times the reflectance f that the device computes.
+    pub specular: f64,
+    /// n.
+    pub exponent: u32,
+}
+
+impl Material {
+    /// How things reflect by default.
+    pub const fn usual(exponent: u32) -> Self {
+        Self { ambient: 0.12, diffuse: 0.75, specular: 0.7, exponent }
+    }
+}
+
+/// The inputs of shading.
+pub struct Shader<'a> {
+    /// Things and lights.
+    pub scene: &'a Scene,
+    /// From where it is seen.
+    pub camera: &'a Camera,
+    /// The material of all things.
+    pub material: Material,
+    /// The colour where nothing is hit, 0 … 255.
+    pub background: Vector,
+    /// The device's operands.
+    pub feed: &'a Feed,
+    /// Whether Blinn's function is wanted too.
+    pub compare: bool,
+}
+
+/// Some samples of a row, shaded but for what the device computes.
+pub struct Shaded {
+    /// Ambient and diffuse light or the background, 0 … 255, of each sample, and the number of lights for
+    /// which the device computes a result.
+    pub samples: Vec<(Vector, u32)>,
+    /// The points that it computes.
+    pub points: Points,
+    /// For each sample and each of its lights the numbers of the results with its red, green and blue.
+    /// `None` where every computation has one result, with all three, and they come in this order.
+    pub places: Option<Vec<[usize; 3]>>,
+    /// For each sample and each of its lights Blinn's cosⁿγ times the light's colour, 0 … 255; empty unless
+    /// it is wanted.
+    pub exact: Vec<Vector>,
+    /// Points whose dγ is beyond the device's domain.
+    pub beyond: usize,
+}
+
+/// A point of a surface.
+struct Surface {
+    colour: Vector,
+    smooth: Vector,
+    perturbed: Vector,
+    /// The normal of the shaded surface, of any length.
+    interpolated: Vector,
+    toward_eye: Vector,
+}
+
+impl Surface {
+    /// Whether a light falls on it. The device knows nothing of what lies in its own shadow.
+    fn is_lit(&self, light: &Light) -> bool {
+        self.smooth.dot(light.direction) > 0.0
+    }
+
+    /// H.
+    fn half(&self, light: &Light) -> Vector {
+        let sum = light.direction + self.toward_eye;
+        sum.unit().unwrap_or(self.smooth)
+    }
+}
+
+impl Shader<'_> {
+    /// Returns the points that a device computes for a row of samples; `ray` gives the ray of each.
+    ///
+    /// # Errors
+    /// A line that the device cannot take.
+    pub fn shade(&self, hits: &[Hit], ray: impl Fn(usize) -> Vector) -> Result<Shaded> {
+        let mut shaded = Shaded {
+            samples: Vec::with_capacity(hits.len()),
+            points: Points::new(self.feed.operand_count()),
+            places: self.feed.longest().map(|_| Vec::new()),
+            exact: Vec::new(),
+            beyond: 0,
+        };
+        let same = |a: &Hit, b: &Hit| (a.object, a.triangle) == (b.object, b.triangle);
+        let mut column = 0;
+        for run in hits.chunk_by(same) {
+            if run[0].is_something() {
+                // A line has a point more than intervals.
+                let most = self.feed.longest().map_or(run.len(), |longest| longest + 1);
+                for part in run.chunks(most) {
+                    let surfaces: Vec<Surface> = (column..)
+                        .zip(part)
+                        .map(|(column, hit)| self.surface(hit, ray(column)))
+                        .collect();
+                    self.surfaces(&surfaces, &mut shaded)?;
+                    column += part.len();
+                }
+            } else {
+                let background = run.iter().map(|_| (self.background, 0));
+                shaded.samples.extend(background);
+                column += run.len();
+            }
+        }
+        Ok(shaded)
+    }
+
+    /// Samples beside each other on one triangle or ball.
+    fn surfaces(&self, surfaces: &[Surface], shaded: &mut Shaded) -> Result<()> {
+        let lines = match self.feed.longest() {
+            None => Vec::new(),
+            Some(_) => self.lines(surfaces, &mut shaded.points)?,
+        };
+        for (at, surface) in surfaces.iter().enumerate() {
+            let material = &self.material;
+            let white = Vector::new(1.0, 1.0, 1.0);
+            let (mut ambient, mut light_sum) = (white * material.ambient, Vector::default());
+            if !self.feed.shades() {
+                std::mem::swap(&mut ambient, &mut light_sum);
+            }
+            let mut computed = 0;
+            for (number, light) in self.scene.lights.iter().enumerate() {
+                let facing = surface.perturbed.dot(light.direction).max(0.0);
+                let scattered = light.colour * material.diffuse;
+                if !self.feed.shades() {
+                    light_sum = light_sum + scattered * facing;
+                }
+                if !surface.is_lit(light) {
+                    continue;
+                }
+                let specular = light.colour * material.specular;
+                let half = surface.half(light);
+                let mut point = point(surface.smooth, surface.perturbed, half, specular);
+                if self.feed.shades() {
+                    point.surface = operands::Surface {
+                        normal: surface.interpolated,
+                        light: light.direction,
+                        half,
+                        // It is computed with the first light.
+                        ambient: surface.colour.times(std::mem::take(&mut ambient)),
+                        diffuse: surface.colour.times(scattered),
+                    };
+                }
+                match &mut shaded.places {
+                    None => {
+                        let (raw, beyond) = self.feed.raw(&point, material.exponent);
+                        shaded.points.push(raw, 1);
+                        shaded.beyond += usize::from(beyond);
+                    }
+                    Some(places) => places.push(lines[number].map(|first| first + at)),
+                }
+                computed += 1;
+                if self.compare {
+                    let f = glint_golden::formulas::blinn(
+                        point.cos_shaded,
+                        f64::from(material.exponent),
+                    );
+                    let it = &point.surface;
+                    let rest = it.ambient + it.diffuse * facing;
+                    shaded.exact.push(rest * 255.0 + point.colour * (f * 255.0));
+                }
+            }
+            let base = surface.colour.times(light_sum + ambient) * 255.0;
+            shaded.samples.push((base, computed));
+        }
+        Ok(())
+    }
+
+    /// The lines along some samples: for each light the numbers of the first result of red, green and blue. A
+    /// light that falls on none of them has no line.
+    ///
+    /// The host's set-up is that of seed 000, from normals and half vectors at both ends.
+    fn lines(&self, surfaces: &[Surface], points: &mut Points) -> Result<Vec<[usize; 3]>> {
+        let (Some(first), Some(last)) = (surfaces.first(), surfaces.last()) else {
+            return Ok(Vec::new());
+        };
+        let count = surfaces.len();
+        let mut firsts = Vec::with_capacity(self.scene.lights.len());
+        for light in &self.scene.lights {
+            let mut numbers = [0; 3];
+            if surfaces.iter().any(|surface| surface.is_lit(light)) {
+                let (half_1, half_2) = (first.half(light), last.half(light));
+                let arc = Arc::new(first.smooth, half_1, last.smooth, half_2)?;
+                let strengths = light.colour * self.material.specular;
+                for (number, strength) in numbers.iter_mut().zip(strengths.0) {
+                    *number = points.result_count();
+                    let light = self.feed.full() * strength;
+                    let line = arc.line(light, self.material.exponent, count as u32 - 1);
+                    points.push(self.feed.line(&line)?, count);
+                }
+            }
+            firsts.push(numbers);
+        }
+        Ok(firsts)
+    }
+
+    fn surface(&self, hit: &Hit, ray: Vector) -> Surface {
+        let object = &self.scene.objects[hit.object as usize];
+        let along = self.camera.outward(ray);
+        let place = self.camera.eye() + along * hit.depth;
+        let toward_eye = (-along).unit().unwrap_or_default();
+        let [smooth, perturbed, interpolated] = self.normals(object, hit, place, toward_eye);
+        Surface { colour: object.colour, smooth, perturbed, interpolated, toward_eye }
+    }
+
+    /// The normals of the smooth and of the perturbed surface, both toward the eye, and the latter as it was interpolated.
+    fn normals(
+        &self,
+        object: &Object,
+        hit: &Hit,
+        place: Vector,
+        toward_eye: Vector,
+    ) -> [Vector; 3] {
+        // The surface's own side, for the interpolated normal may lean away from the eye.
+        let (normal, mixed, side) = match &object.shape {
+            Shape::Ball { middle, .. } => {
+                let normal = (place - *middle).unit().unwrap_or(toward_eye);
+                (normal, normal, normal)
+            }
+            Shape::Mesh(mesh) => {
+                let [a, b, c] = mesh.triangles[hit.triangle as usize]
+                    .map(|corner| mesh.normals[corner.normal as usize]);
+                let [second, third] = hit.weights;
+                let mixed = a * (1.0 - second - third) + b * second + c * third;
+                let [p, q, r] = mesh.corners(hit.triangle as usize);
+                let side = (q - p).cross(r - p).unit().unwrap_or(toward_eye);
+                (mixed.unit().unwrap_or(side), mixed, side)
+            }
+        };
+        let side = if side.dot(toward_eye) < 0.0 { -side } else { side };
+        let sign = if normal.dot(side) < 0.0 { -1.0 } else { 1.0 };
+        let (perturbed, mixed) = match &self.scene.relief {
+            None => (normal, mixed),
+            Some(relief) => {
+                let (texture, gradients) = texture(object, hit, normal);
+                let [along_u, along_v] = relief.rise(texture[0], texture[1]);
+                let slope = gradients[0] * along_u + gradients[1] * along_v;
+                let perturbed = (normal - slope).unit().unwrap_or(normal);
+                (perturbed, perturbed)
+            }
+        };
+        [normal, perturbed, mixed].map(|it| it * sign)
+    }
+}
+
+/// Returns the values of a point from which operands are made.
+///
+/// As the patent has it, roughness changes the angle γ between normal and half vector by dγ. With N′ the
+/// perturbed normal and γ′ its angle with H, dγ = γ′ − γ: cos dγ = cos γ·cos γ′ + sin γ·sin γ′, and dγ is
+/// negative when N′ is nearer to H.
+pub fn point(smooth: Vector, perturbed: Vector, half: Vector, colour: Vector) -> Point {
+    let cosine = |normal: Vector| normal.dot(half).clamp(-1.0, 1.0);
+    let (cos_gamma, cos_shaded) = (cosine(smooth), cosine(perturbed));
+    let sine = |cosine: f64| (1.0 - cosine * cosine).sqrt();
+    let cos_dgamma = if smooth == perturbed {
+        1.0
+    } else {
+        (cos_gamma * cos_shaded + sine(cos_gamma) * sine(cos_shaded)).min(1.0)
+    };
+    Point {
+        cos_gamma,
+        cos_dgamma,
+        dgamma_negative: cos_shaded > cos_gamma,
+        difference: perturbed - half,
+        cos_shaded,
+        colour,
+        ..Point::default()
+    }
+}
+
+/// Texture coordinates, and how each grows on the surface.
+fn texture(object: &Object, hit: &Hit, normal: Vector) -> ([f64; 2], [Vector; 2]) {
+    match &object.shape {
+        Shape::Ball { radius, .. } => {
+            let [x, y, z] = normal.0;
+            // Longitude, twice around, and latitude from pole to pole: both in the same scale at the
+            // equator. Toward the poles the meridians come together; a height map must not.
+            let sine = (1.0 - y * y).max(0.02).sqrt();
+            let u = libm::atan2(x, z) / PI;
+            let v = 1.0 - libm::acos(y.clamp(-1.0, 1.0)) / PI;
+            let east = Vector::new(z, 0.0, -x) * (1.0 / sine);
+            let north = (Vector::new(0.0, 1.0, 0.0) - normal * y) * (1.0 / sine);
+            ([u, v], [east * (2.0 / (TAU * radius * sine)), north * (1.0 / (PI * radius))])
+        }
+        Shape::Mesh(mesh) => {
+            let corners = mesh.triangles[hit.triangle as usize];
+            let [a, b, c] = corners.map(|corner| {
+                let at = corner.texture.map(|at| mesh.textures[at as usize]);
+                at.unwrap_or_default()
+            });
+            let [second, third] = hit.weights;
+            let [p, q, r] = mesh.corners(hit.triangle as usize);
+            let (first_edge, second_edge) = (q - p, r - p);
+            let area = first_edge.cross(second_edge);
+            let scale = 1.0 / area.dot(area);
+            // In the triangle's plane, across each edge.
+            let across = [second_edge.cross(area), area.cross(first_edge)];
+            let along = |axis: usize| {
+                let (to_b, to_c) = (b[axis] - a[axis], c[axis] - a[axis]);
+                let at = a[axis] + to_b * second + to_c * third;
+                let gradient = (across[0] * to_b + across[1] * to_c) * scale;
+                let finite = if gradient.finite() { gradient } else { Vector::default() };
+                (at, finite)
+            };
+            let (u, v) = (along(0), along(1));
+            ([u.0, v.0], [u.1, v.1])
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::mesh::{Mesh, RawCorner};
+    use glint_golden::formulas::turned_cosine;
+
+    #[test]
+    fn the_deviation_turns_the_smooth_angle_into_the_perturbed_one() {
+        let unit = |x, y, z| Vector::new(x, y, z).unit().unwrap();
+        let half = unit(0.1, 0.2, 1.0);
+        for (smooth, perturbed) in [
+            (unit(0.5, 0.1, 1.0), unit(0.3, 0.1, 1.0)),
+            (unit(0.3, 0.1, 1.0), unit(0.5, 0.4, 1.0)),
+            (unit(0.3, 0.1, 1.0), unit(0.3, 0.1, 1.0)),
+        ] {
+            let it = point(smooth, perturbed, half, Vector::default());
+            let turned = turned_cosine(it.cos_gamma, it.cos_dgamma, it.dgamma_negative);
+            assert!((turned - perturbed.dot(half)).abs() < 1e-12);
+            assert!((it.cos_shaded - perturbed.dot(half)).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn texture_gradients_of_a_triangle() {
+        // In the plane z = 0: u = x/2, v = x/4 + y/3.
+        let v = Vector::new;
+        let corners =
+            [0, 1, 2].map(|at| RawCorner { position: at, normal: None, texture: Some(at) });
+        let mesh = Mesh::new(
+            vec![v(0.0, 0.0, 0.0), v(2.0, 0.0, 0.0), v(0.0, 3.0, 0.0)],
+            Vec::new(),
+            vec![[0.0, 0.0], [1.0, 0.5], [0.0, 1.0]],
+            vec![corners],
+            crate::render::mesh::CREASE,
+        )
+        .unwrap();
+        let object = Object { shape: Shape::Mesh(mesh), colour: Vector::default() };
+        let hit = Hit { depth: 1.0, object: 0, triangle: 0, weights: [0.5, 0.25] };
+        let (at, [along_u, along_v]) = texture(&object, &hit, v(0.0, 0.0, 1.0));
+        assert_eq!(at, [0.5, 0.5]);
+        assert!((along_u - v(0.5, 0.0, 0.0)).length() < 1e-15, "{along_u:?}");
+        assert!((along_v - v(0.25, 1.0 / 3.0, 0.0)).length() < 1e-15, "{along_v:?}");
+    }
+}

