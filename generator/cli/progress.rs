@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::time::Duration;
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle, WeakProgressBar};
 
 use super::Output;
 
@@ -21,7 +21,10 @@ const BESIDE_WIDE: usize = 76;
 /// Where nothing says how wide the terminal is.
 const USUAL: u16 = 80;
 
-/// A bar over `total` steps; hidden when output is for scripts, on request, or without a terminal.
+/// Between two lines about progress where there is no terminal, as in a log.
+const EVERY: Duration = Duration::from_secs(60);
+
+/// A bar over `total` steps; hidden when output is for scripts or on request, and a line a minute without a terminal.
 pub fn bar(output: Output, total: u64, what: &str) -> ProgressBar {
     let target = if output.json || output.quiet {
         ProgressDrawTarget::hidden()
@@ -29,8 +32,26 @@ pub fn bar(output: Output, total: u64, what: &str) -> ProgressBar {
         // Draws nothing when standard error is not a terminal.
         ProgressDrawTarget::stderr()
     };
+    let without = !output.json && !output.quiet && !console::Term::stderr().is_term();
     let width = console::Term::stderr().size_checked().map_or(USUAL, |(_, width)| width);
-    styled(ProgressBar::with_draw_target(Some(total), target), usize::from(width), what)
+    let bar = styled(ProgressBar::with_draw_target(Some(total), target), usize::from(width), what);
+    if without {
+        let (watched, what) = (bar.downgrade(), what.to_owned());
+        std::thread::spawn(move || told(&watched, &what));
+    }
+    bar
+}
+
+/// Writes a line a minute about a bar that nothing draws, until it is finished or dropped.
+fn told(bar: &WeakProgressBar, what: &str) {
+    loop {
+        std::thread::sleep(EVERY);
+        let Some(bar) = bar.upgrade().filter(|bar| !bar.is_finished()) else { return };
+        let (done, all) = (bar.position(), bar.length().unwrap_or(0));
+        let left = remaining(bar.elapsed(), done, all);
+        let left = left.map_or_else(String::new, |left| format!(", about {left} left"));
+        eprintln!("{what}: {done} of {all}{left}");
+    }
 }
 
 /// The bar with a line that fits into `width`.

@@ -145,7 +145,7 @@ fn sources() -> Vec<(String, String)> {
         let code = text.split("#[cfg(test)]\nmod tests {").next().unwrap_or("");
         (name, comment.replace_all(code, "").into_owned())
     });
-    let apart = |name: &str| name == "lib.rs" || name == "main.rs" || name.contains("tests");
+    let apart = |name: &str| name == "lib.rs" || name == "main.rs" || name.ends_with("build.rs") || name.contains("tests");
     let mut files: Vec<_> = files.filter(|(name, _)| !apart(name)).collect();
     files.sort();
     files

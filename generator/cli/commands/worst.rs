@@ -18,7 +18,8 @@ use glint_core::registry::Registry;
 
 /// Search for the largest error of an output
 ///
-/// From points that the stimulus draws the operands are moved as long as the error grows. What is found is a lower
+/// From points that the stimulus draws the operands are moved as long as the error grows; then a number of values around the
+/// highest places is looked at. What is found is a lower
 /// limit of the largest error there is, as the bound of the contract is an upper one. The same seed finds the same.
 /// The exit code is 0 if the bound holds.
 #[derive(Args)]
@@ -78,7 +79,7 @@ struct Report {
 pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     let records = loaded.iter().map(|one| record(one, arguments)).collect::<Result<Vec<_>>>()?;
-    let total = arguments.starts.saturating_mul(loaded.len() as u64);
+    let total = search::steps(arguments.starts).saturating_mul(loaded.len() as u64);
     let bar = progress::bar(output, total, "climbs");
     let mut reports = Vec::new();
     for (one, record) in loaded.iter().zip(records) {

@@ -23,6 +23,10 @@ const MOST_BITS: u32 = 24;
 const HIGHEST: usize = 16;
 const AROUND: u64 = 1 << 18;
 
+/// How many values are looked at around a place, all pairs together, where each goes through a model clock by clock: a device
+/// without a highlight, mostly one of many operands.
+const MOST_AROUND: u64 = 1 << 16;
+
 /// How many starts are climbed from before only the highest places are kept: memory does not grow with the starts.
 const BATCH: u64 = 1 << 10;
 
@@ -63,8 +67,13 @@ fn larger(a: Reached, b: Reached) -> Reached {
     if b.units > a.units { b } else { a }
 }
 
+/// Returns how often [`worst`] calls `progress`.
+pub fn steps(starts: u64) -> u64 {
+    starts.saturating_add(starts.min(HIGHEST as u64))
+}
+
 /// The largest error that is reached from `starts` starts, drawn by a seed: the same on any number of threads. `progress`
-/// is called after each. `None` for no start.
+/// is called after each, and after each place that is looked around. `None` for no start.
 pub fn worst(
     contract: &dyn Contract,
     starts: u64,
@@ -92,8 +101,12 @@ pub fn worst(
         highest.truncate(HIGHEST);
         first = next;
     }
-    let around: Vec<Vec<i64>> =
-        highest.par_iter().map(|end| climber.look_around(end.highest.clone())).collect();
+    let look = |end: &End| {
+        let found = climber.look_around(end.highest.clone());
+        progress();
+        found
+    };
+    let around: Vec<Vec<i64>> = highest.par_iter().map(look).collect();
     let found = around.into_iter().filter_map(|operands| Reached::at(contract, operands));
     Some(found.fold(climbed?, larger))
 }
@@ -175,7 +188,9 @@ impl<'a> Climber<'a> {
             None => self.contract.largest_error(operands),
         };
         let pairs = operands.len() * operands.len().saturating_sub(1) / 2;
-        let far = (AROUND / pairs.max(1) as u64).isqrt() as i64 / 2;
+        let all = if highlight.is_some() { AROUND } else { MOST_AROUND };
+        let far = (all / pairs.max(1) as u64).isqrt() as i64 / 2;
+        let mut left = if highlight.is_some() { u64::MAX } else { MOST_AROUND };
         let near = |at: usize, value: i64| {
             let (low, high) = self.domains[at];
             (value - far).max(low)..=(value + far).min(high)
@@ -185,11 +200,15 @@ impl<'a> Climber<'a> {
             let before = height;
             for (a, b) in (0..operands.len()).flat_map(|b| (0..b).map(move |a| (a, b))) {
                 let mut next = operands.clone();
+                if left == 0 {
+                    break;
+                }
                 for (one, other) in near(a, operands[a])
                     .flat_map(|one| near(b, operands[b]).map(move |other| (one, other)))
                     .collect::<Vec<_>>()
                 {
                     (next[a], next[b]) = (one, other);
+                    left = left.saturating_sub(1);
                     let there = error(&next, height);
                     if there > height {
                         (height, operands) = (there, next.clone());

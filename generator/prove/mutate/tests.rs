@@ -1,6 +1,6 @@
 //! Proofs against the simulation: what is noticed is never proved equivalent.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
@@ -22,9 +22,14 @@ const EVERY: usize = if cfg!(feature = "outside-tools") { 29 } else { 211 };
 /// Points in which most faults show.
 const POINTS: u64 = 200;
 
+/// A file of the repository.
+fn at(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(path)
+}
+
 fn core(path: &str) -> Core {
     let registry = Registry::catalogue();
-    let config = config::read(Path::new(path), &registry.schemas()).unwrap();
+    let config = config::read(&at(path), &registry.schemas()).unwrap();
     Core::new(*registry.device(&config.device).unwrap(), config).unwrap()
 }
 
@@ -35,7 +40,7 @@ fn no_proof_of_what_shows() {
     let names = devices.devices().iter().map(|device| device.name.replace('-', "_"));
     let paths =
         names.flat_map(|name| ["", "_pipelined"].map(|it| format!("configs/{name}{it}.toml")));
-    for path in paths.filter(|path| Path::new(path).exists()) {
+    for path in paths.filter(|path| at(path).exists()) {
         let core = core(&path);
         let prover = Prover::new(&core.design).unwrap();
         let sound = plant::bare(&core.design);
