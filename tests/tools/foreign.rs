@@ -80,14 +80,14 @@ fn a_program_made_of_the_packages_generates_and_simulates() {
     let foreign = Foreign::with_devices("glint-hdl = \"0.1\"");
     let manifest = fs::read_to_string(foreign.0.path().join("Cargo.toml")).expect("read");
     foreign.write("Cargo.toml", &format!("{manifest}[patch.crates-io]\n{packages}"));
-    for device in ["fresnel", "function", "root"] {
+    for (device, name) in [("fresnel", "fresnel"), ("function", "my_function"), ("root", "root")] {
         let run =
             |arguments: &[&str]| foreign.cargo(&[&["run", "--quiet", "--"], arguments].concat());
         foreign.write("core.toml", &run(&["new", device]));
         run(&["generate", "core.toml", "--out", "out", "--quiet"]);
-        let core = foreign.0.path().join("out/rtl_out").join(device).join(format!("{device}.v"));
+        let core = foreign.0.path().join("out/rtl_out").join(name).join(format!("{name}.v"));
         let core = fs::read_to_string(core).expect("a core");
-        assert!(core.contains(&format!("module {device} (")), "{core}");
+        assert!(core.contains(&format!("module {name}")), "{core}");
         let cosim = run(&["cosim", "core.toml", "--points", "200", "--quiet", "--json"]);
         let cosim: serde_json::Value = serde_json::from_str(&cosim).expect("JSON");
         assert_eq!(cosim["configurations"][0]["verdict"], "holds", "{cosim}");
