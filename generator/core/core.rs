@@ -202,14 +202,22 @@ impl Core {
     /// # Errors
     /// As of [`Core::vectors`].
     pub fn shipped_vectors(&self) -> Result<Vectors> {
+        self.shipped_vectors_of(&directed::Known::default())
+    }
+
+    /// As [`Core::shipped_vectors`], with computations that were chosen for other cores.
+    ///
+    /// # Errors
+    /// As of [`Core::vectors`].
+    pub fn shipped_vectors_of(&self, known: &directed::Known) -> Result<Vectors> {
         let contract = self.contract.as_ref();
         if self.design.pipeline.is_some() {
             // A pipeline has the datapath of the microprogram that it was made of.
             let sequential = self.device.sequential(&self.config)?;
-            let directed = directed::computations(&sequential, contract)?;
+            let directed = known.computations(&sequential, contract, &self.contract_digest())?;
             return self.lockstep(BENCH_SEED)?.record(PIPELINE_POINTS, &directed);
         }
-        let directed = directed::computations(&self.design, contract)?;
+        let directed = known.computations(&self.design, contract, &self.contract_digest())?;
         let lockstep = self.lockstep(BENCH_SEED)?.with_lines_of(BENCH_LINE);
         let results = if self.contract.length().is_some() { BENCH_LINE as u64 } else { 1 };
         lockstep.record(BENCH_POINTS * results, &directed)

@@ -10,6 +10,7 @@ use serde_json::json;
 use super::{Loaded, load};
 use crate::store::{self, Written};
 use crate::{Configs, Output, progress, say, tables};
+use glint_core::cosim::directed::Known;
 use glint_core::package::{self, OutputFile, Seal};
 use glint_core::registry::Registry;
 
@@ -73,10 +74,11 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
 /// Every file of each configuration, made in parallel.
 pub fn all_files(output: Output, loaded: &[Loaded]) -> Result<Vec<Vec<OutputFile>>> {
     let bar = progress::bar(output, loaded.len() as u64, "generating");
+    let known = Known::default();
     let made: Result<_> = loaded
         .par_iter()
         .map(|one| {
-            let files = files(one);
+            let files = files(one, &known);
             bar.inc(1);
             files
         })
@@ -89,8 +91,8 @@ pub fn all_files(output: Output, loaded: &[Loaded]) -> Result<Vec<Vec<OutputFile
 }
 
 /// Every file of a configuration, with its bench.
-fn files(one: &Loaded) -> Result<Vec<OutputFile>> {
-    let vectors = one.core.shipped_vectors();
+fn files(one: &Loaded, known: &Known) -> Result<Vec<OutputFile>> {
+    let vectors = one.core.shipped_vectors_of(known);
     let vectors = vectors.with_context(|| format!("`{}`", one.path))?;
     one.files(vectors)
 }

@@ -19,8 +19,8 @@ mod pool;
 mod side_by_side;
 mod words;
 
-use std::collections::{BinaryHeap, HashSet};
-use std::sync::Arc;
+use std::collections::{BinaryHeap, HashMap, HashSet};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use anyhow::Result;
 
@@ -46,6 +46,40 @@ struct Candidate {
     features: Vec<u32>,
     /// The words that it reads, numbered through all ROMs.
     read: Vec<u32>,
+}
+
+/// Computations that were chosen already: a core and the pipeline that is made of it have the same.
+#[derive(Default)]
+pub struct Known(Mutex<HashMap<String, Arc<Mutex<Option<Computations>>>>>);
+
+/// Raw operands, in the order of the contract.
+type Computations = Vec<Vec<i64>>;
+
+impl Known {
+    /// Returns [`computations`], which are looked for once for each design, whatever its name. `contract_digest` tells the
+    /// contract from others.
+    ///
+    /// # Errors
+    /// As of [`computations`].
+    pub fn computations(
+        &self,
+        design: &Design,
+        contract: &dyn Contract,
+        contract_digest: &str,
+    ) -> Result<Computations> {
+        let unnamed = Design { name: String::new(), ..design.clone() };
+        let key = format!("{contract_digest} {unnamed}");
+        let slot = {
+            let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+            known.entry(key).or_default().clone()
+        };
+        // Whoever wants the same waits here.
+        let mut slot = slot.lock().unwrap_or_else(PoisonError::into_inner);
+        if slot.is_none() {
+            *slot = Some(computations(design, contract)?);
+        }
+        Ok(slot.clone().unwrap_or_default())
+    }
 }
 
 /// The raw operands of the computations, in the order of the contract.
