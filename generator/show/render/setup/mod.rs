@@ -9,7 +9,7 @@
 //! `templates/setup.c` and `templates/setup.py` compute the same, in the same order.
 //!
 //! ```
-//! use glint::render::{Vector, setup::Arc};
+//! use glint_show::render::{Vector, setup::Arc};
 //!
 //! let v = Vector::new;
 //! let arc = Arc::new(v(0.0, 0.0, 1.0), v(0.3, 0.0, 1.0), v(0.1, 0.0, 1.0), v(-0.2, 0.1, 1.0)).unwrap();
