@@ -25,7 +25,7 @@ mod bench;
 mod bus;
 mod cocotb;
 pub mod facts;
-pub mod formal;
+mod formal;
 mod formal_pipeline;
 mod fusesoc;
 mod instance;
