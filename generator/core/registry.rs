@@ -37,7 +37,7 @@ pub struct Device {
     /// Its accuracy contract.
     pub contract: fn(&Config) -> Box<dyn Contract>,
     /// Whether the bound of the contract is proved, beside the golden model, for every configuration; otherwise it is what the
-    /// author states.
+    /// author states. Who takes a device with another contract, `Device { contract, proved: false, ..own }`, states it anew.
     pub proved: bool,
 }
 
