@@ -1,4 +1,4 @@
-//! What Glint proves and finds about a core, mostly by outside tools: faults, error bounds, equality, area and frequency,
+//! Proofs and searches about a core, mostly by outside tools: faults, error bounds, equality, area and frequency,
 //! the smallest widths.
 
 pub mod batch;

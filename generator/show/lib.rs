@@ -1,4 +1,4 @@
-//! What Glint shows of a core: pages, datasheets, charts, pictures, and what is measured for them.
+//! Pages, datasheets, charts and pictures of a core, and the measurements that they show.
 //!
 //! No process, thread of its own or signal is in this crate or below it: it works where there is no operating system.
 
