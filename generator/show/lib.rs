@@ -1,6 +1,6 @@
 //! Pages, datasheets, charts and pictures of a core, and the measurements that they show.
 //!
-//! No process, thread of its own or signal is in this crate or below it: it works where there is no operating system.
+//! No process, thread of its own or signal is in this crate or below it (`tests/quick/rooms.rs`).
 
 pub mod evidence;
 pub mod figures;

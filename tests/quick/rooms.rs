@@ -16,7 +16,7 @@ const ROOMS: [(&str, &[&str]); 4] = [
     ("prove", &["batch", "synth", "equality", "certify", "mutate", "tune", "verify"]),
 ];
 
-/// The crates that work without an operating system: no thread of their own, no process, no signal.
+/// The crates without a thread of their own, a process or a signal.
 const EVERYWHERE: [&str; 10] = [
     "base",
     "formula",
@@ -58,7 +58,7 @@ fn rooms_of_a_crate_import_only_what_stands_below_them() {
 }
 
 #[test]
-fn what_is_shown_needs_no_operating_system() {
+fn what_is_shown_starts_no_thread_and_no_process() {
     let system = Regex::new(
         r"std::(thread|process::\w*Command|os)\b|process::Command|signal_hook|rustix|glint_tools",
     )
