@@ -25,7 +25,7 @@ use glint_prove::verify::{
 /// out, was run to its end and holds: a tool that is missing, a solver that answers unknown or a time limit that is reached
 /// leaves the verification incomplete. So does a proof of the accuracy
 /// contract that takes more than some seconds, unless --full makes it or its record is in --proofs: that is found
-/// by the configuration's digest and checked again in part.
+/// by the configuration's digest and checked again in part. Of the faults in a netlist 2048 are planted, or all with --full.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:

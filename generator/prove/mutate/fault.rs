@@ -101,6 +101,16 @@ impl Faults {
         faults
     }
 
+    /// Keeps so many, spread evenly, if there are more.
+    pub fn thin(&mut self, most: usize) {
+        let all = self.0.len();
+        let mut at = 0;
+        self.0.retain(|_| {
+            at += 1;
+            all <= most || (at - 1) * most / all != at * most / all
+        });
+    }
+
     /// In an order that stays the same.
     pub fn iter(&self) -> impl Iterator<Item = &Fault> {
         self.0.iter()

@@ -150,7 +150,8 @@ impl Search<'_> {
                 probe = bit;
                 kept = vec![(1, tried[at].clone())];
             } else {
-                let shown = self.run(&operands, word, probe)?;
+                // The same fault shows the same.
+                let shown = if probe == bit { shown } else { self.run(&operands, word, probe)? };
                 let shows = fault_free.iter().zip(&shown).map(|(right, it)| it.differs(right));
                 kept.extend(shows.zip(tried));
                 kept.sort_by_key(|(shows, _)| Reverse(*shows));
