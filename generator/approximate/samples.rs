@@ -1,4 +1,7 @@
-//! Measured points in place of a formula.
+//! Measured points in place of a formula, and the curve through them.
+//!
+//! Between points the curve is Steffen's cubic (Astronomy and Astrophysics 239, 443, 1990): with one derivative, and as monotone as
+//! the points are. Its slopes at the points are the numbers of f64 that his formula gives.
 
 use super::Refusal;
 use glint_base::fixed::exp2;
@@ -10,9 +13,9 @@ const GAP: i64 = 4;
 /// The key that has them.
 const KEY: &str = "function.samples";
 
-/// Points with rising operands.
+/// Points with rising operands, each with the slope of the curve there, a place of the operand the unit.
 #[derive(Clone, Debug)]
-pub struct Samples(Vec<(i64, Enclosure)>);
+pub struct Samples(Vec<(i64, Enclosure, f64)>);
 
 impl Samples {
     /// Reads points as a configuration has them, `x,y x,y`, for a domain of raw operands.
@@ -65,38 +68,60 @@ impl Samples {
                 return refused(message, "add samples there, or make two functions of it");
             }
         }
-        Ok(Self(points))
+        let slopes = slopes(&points);
+        Ok(Self(
+            points
+                .into_iter()
+                .zip(slopes)
+                .map(|((raw, value), slope)| (raw, value, slope))
+                .collect(),
+        ))
     }
 
-    /// The raw operands.
-    pub fn operands(&self) -> impl ExactSizeIterator<Item = i64> {
-        self.0.iter().map(|point| point.0)
+    /// Returns how many there are.
+    pub fn count(&self) -> usize {
+        self.0.len()
     }
 
-    /// Whether there is a sample at a raw operand.
-    pub fn has(&self, raw: i64) -> bool {
-        self.0.binary_search_by_key(&raw, |point| point.0).is_ok()
-    }
-
-    /// The value of a sample, and of other operands that on the line between both beside it.
+    /// Returns the value of the curve at a raw operand.
     pub fn limits(&self, raw: i64) -> Enclosure {
         let at = self.0.partition_point(|point| point.0 < raw).min(self.0.len() - 1);
-        let (to, above) = self.0[at];
+        let (to, above, last) = self.0[at];
         if to == raw || at == 0 {
             return above;
         }
-        let (from, below) = self.0[at - 1];
-        let part = |a: i64, b: i64| Enclosure::exactly((a - b) as f64);
-        below + (above - below) * part(raw, from) / part(to, from)
+        let (from, below, first) = self.0[at - 1];
+        let [way, length, first, last] =
+            [(raw - from) as f64, (to - from) as f64, first, last].map(Enclosure::exactly);
+        let chord = (above - below) / length;
+        let two = Enclosure::exactly(2.0);
+        let square = (chord + chord + (chord - first) - first - last) / length;
+        let cube = (first + last - two * chord) / (length * length);
+        below + way * (first + way * (square + way * cube))
     }
+}
 
-    /// How far the samples beside an operand, two on either side, are from each other.
-    pub fn spread(&self, raw: i64) -> f64 {
-        let at = self.0.partition_point(|point| point.0 < raw);
-        let beside = &self.0[at.saturating_sub(2)..(at + 2).min(self.0.len())];
-        let all = beside.iter().map(|point| point.1).reduce(Enclosure::hull);
-        all.map_or(0.0, |all| all.high - all.low)
-    }
+/// Returns the slopes of Steffen's curve at points.
+fn slopes(points: &[(i64, Enclosure)]) -> Vec<f64> {
+    let chord = |pair: &[(i64, Enclosure)]| {
+        let length = (pair[1].0 - pair[0].0) as f64;
+        (length, (pair[1].1.middle() - pair[0].1.middle()) / length)
+    };
+    let chords: Vec<(f64, f64)> = points.windows(2).map(chord).collect();
+    let within = |(h, s): (f64, f64), (k, t): (f64, f64)| {
+        let parabola = (s * k + t * h) / (h + k);
+        let least = s.abs().min(t.abs()).min(parabola.abs() / 2.0);
+        if s * t > 0.0 { 2.0 * least.copysign(s) } else { 0.0 }
+    };
+    // The parabola through the last three points, as far as it goes the way of the last chord.
+    let end = |(h, s): (f64, f64), beside: Option<&(f64, f64)>| {
+        let parabola = beside.map_or(s, |(k, t)| s + (s - t) * h / (h + k));
+        if parabola * s <= 0.0 { 0.0 } else { parabola.abs().min(2.0 * s.abs()).copysign(s) }
+    };
+    let first = chords.first().map(|it| end(*it, chords.get(1)));
+    let last = chords.last().map(|it| end(*it, chords.len().checked_sub(2).map(|at| &chords[at])));
+    let middle = chords.windows(2).map(|pair| within(pair[0], pair[1]));
+    first.into_iter().chain(middle).chain(last).collect()
 }
 
 fn number(text: &str) -> Option<Enclosure> {
@@ -109,12 +134,26 @@ mod tests {
     use super::*;
 
     #[test]
+    fn the_curve_is_of_one_derivative_and_monotone() {
+        // By hand: chords 1, 1, 4, 0. Slopes: at the first end 1 + (1 − 1)/2 = 1; between 1 and 1: 2·min(1, 1, 1/2) = 1; between
+        // 1 and 4: parabola 5/2, 2·min(1, 4, 5/4) = 2; between 4 and 0: 0; at the last end the chord is 0.
+        let curve = Samples::read("0,0 2,2 4,4 6,12 8,12", 0, (0, 8)).unwrap();
+        assert_eq!(curve.0.iter().map(|it| it.2).collect::<Vec<_>>(), [1.0, 1.0, 2.0, 0.0, 0.0]);
+        // Halfway of 4 … 6 a cubic of Hermite: (4 + 12)/2 + 2·(2 − 0)/8 = 8.5; of 2 … 4: 3 + 2·(1 − 2)/8 = 2.75.
+        let at = [1, 3, 5, 7].map(|raw| curve.limits(raw));
+        assert!(
+            at.iter().zip([1.0, 2.75, 8.5, 12.0]).all(|(limits, value)| limits.holds(value)),
+            "{at:?}"
+        );
+    }
+
+    #[test]
     fn samples_are_points_of_the_domain_without_gaps() {
         let samples = Samples::read("0,0 3,-0.5 1,1e-1 2,0.25", 0, (0, 3)).unwrap();
         assert_eq!(samples.limits(2), Enclosure::exactly(0.25));
         assert!(samples.limits(1).holds(0.1) && samples.limits(1).low < samples.limits(1).high);
         let halves = Samples::read("0,0 1,1", 1, (0, 2)).unwrap();
-        assert!(halves.limits(1).holds(0.5) && !halves.has(1) && halves.has(2));
+        assert!(halves.limits(1).holds(0.5) && halves.count() == 2);
         for (text, message) in [
             ("0,0 1,1 3,x", "the sample `3,x` is no pair of numbers"),
             ("0,0 1 3,1", "the sample `1` is no pair of numbers"),

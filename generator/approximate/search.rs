@@ -3,7 +3,9 @@
 use super::reduction::KEY;
 use super::seen::Seen;
 use super::table::{Table, Widths};
-use super::{Function, Identity, Layout, MOST_BITS, Piecewise, Reduction, Refusal, Segments};
+use super::{
+    Curve, Function, Identity, Layout, MOST_BITS, Piecewise, Reduction, Refusal, Segments,
+};
 use glint_base::fixed::MAX_WIDTH;
 
 /// The choices that a user makes of an approximation; the search makes the others.
@@ -32,8 +34,9 @@ const WIDENING: usize = 1 << 20;
 /// The most bits of an operand's number.
 const WIDEST: u32 = 46;
 
-/// By how much the search is stricter where it does not look at every operand: the next of these where a proof fails.
-const STRICTER: [f64; 4] = [0.01, 0.05, 0.12, 0.25];
+/// By how much the search is stricter where it does not look at every operand, as a part of what the error leaves beside the
+/// rounding of the result: the next of these where a proof fails.
+const STRICTER: [f64; 5] = [0.02, 0.1, 0.25, 0.5, 0.75];
 
 /// The cost of a step of Horner's rule beside the table, in look-up tables: a sum, and a multiplier's wiring.
 const STEP: f64 = 50.0;
@@ -59,13 +62,21 @@ pub(super) fn search(function: &Function, wish: Wish) -> Result<Piecewise, Refus
             format!("at most {}", function.operand.frac - (bits - WIDEST) as i32),
         ));
     }
+    if matches!(function.curve, Curve::Samples(_)) && function.is_wide() {
+        return Err(Refusal::new(
+            "operand.fraction",
+            format!("of samples every operand is computed, and there are more than 2^{MOST_BITS}"),
+            "fewer operand.fraction bits",
+        ));
+    }
     if let Some(found) = attempt(function, wish)? {
         return Ok(found);
     }
-    let larger = NEAREST.into_iter().filter(|&error| error > function.error);
-    let reached = larger.into_iter().find(|&error| {
-        matches!(attempt(&Function { error, ..function.clone() }, wish), Ok(Some(_)))
-    });
+    let misses = |error: &f64| {
+        let larger = Function { error: *error, ..function.clone() };
+        *error <= function.error || !matches!(attempt(&larger, wish), Ok(Some(_)))
+    };
+    let reached = NEAREST.get(NEAREST.partition_point(misses));
     let keeps = match wish.degree {
         Some(degree) => format!("degree {degree} does not keep"),
         None => format!("no degree up to {DEGREES} keeps"),
@@ -91,6 +102,7 @@ fn attempt(function: &Function, wish: Wish) -> Result<Option<Piecewise>, Refusal
     }
     let mut unproved = None;
     for stricter in STRICTER {
+        let stricter = stricter * (function.error - 0.5);
         let Some(seen) = Seen::new(function, stricter)? else { break };
         let Some(found) = cheapest(&seen, wish) else { break };
         match found.prove(function) {
@@ -172,11 +184,14 @@ fn cuts(seen: &Seen, degree: u32, layout: Option<Layout>, most: usize) -> Vec<Se
         cut.words() <= most.min(1 << ADDRESS)
             && cut.octaves + cut.prefix + u32::from(degree > 0) <= seen.bits
     };
-    let fits = |cut: &Segments| Table::new(seen, *cut).may_fit(degree);
-    let finest = |layout: Layout, octaves: u32| {
+    let mut worst = None;
+    let mut finest = |layout: Layout, octaves: u32| {
         let cut = |prefix| Segments { bits: seen.bits, layout, octaves, prefix };
         let least = u32::from(octaves == 0);
-        (least..=ADDRESS).map(cut).take_while(possible).find(fits)
+        (least..=ADDRESS)
+            .map(cut)
+            .take_while(possible)
+            .find(|cut| Table::may_fit(seen, *cut, degree, &mut worst))
     };
     let mut cuts: Vec<Segments> = Vec::new();
     let wanted = |own: Layout| layout.is_none_or(|layout| layout == own);

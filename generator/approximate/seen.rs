@@ -66,7 +66,7 @@ impl Function {
             let remedy = "fewer fraction bits, or another domain";
             return Err(Refusal::new("result.fraction", message, remedy));
         }
-        let error = self.allowed(raw) - stricter;
+        let error = self.error - stricter;
         let nearest = (limits.middle() + 0.5).floor() as i64;
         // Nearer than the error, whatever the exact value is.
         let low = (limits.high - error).floor() as i64 + 1;

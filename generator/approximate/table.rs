@@ -92,15 +92,21 @@ pub(super) type Words = Vec<Option<Vec<i64>>>;
 
 impl<'s> Table<'s> {
     pub(super) fn new(seen: &'s Seen<'s>, cut: Segments) -> Self {
-        let (first, last) = seen.function.domain;
-        let ends = [first, last].map(|raw| cut.place(seen.number(raw)).word);
-        let words = 0..ends[0].max(ends[1]) + 1;
-        let pieces = words.into_par_iter().map(|word| Self::piece(seen, cut, word)).collect();
-        Self { seen, cut, pieces }
+        let mut table = Self { seen, cut, pieces: Vec::new() };
+        table.pieces = table.words().map(|word| table.piece(word)).collect();
+        table
+    }
+
+    /// The words that operands of the domain read, and those before them.
+    fn words(&self) -> impl IndexedParallelIterator<Item = usize> {
+        let (first, last) = self.seen.function.domain;
+        let ends = [first, last].map(|raw| self.cut.place(self.seen.number(raw)).word);
+        (0..ends[0].max(ends[1]) + 1).into_par_iter()
     }
 
     /// The samples in the segment of a word; none without an operand of the domain.
-    fn piece(seen: &Seen, cut: Segments, word: usize) -> Option<Piece> {
+    fn piece(&self, word: usize) -> Option<Piece> {
+        let Self { seen, cut, .. } = self;
         let (first, last) = seen.function.domain;
         let (from, count) = cut.numbers(word);
         let low = (seen.origin + from as i64).max(first);
@@ -129,33 +135,45 @@ impl<'s> Table<'s> {
         })
     }
 
-    /// Whether polynomials of unlimited precision are so near to the function that a rounding to the nearest may be.
-    pub(super) fn may_fit(&self, degree: u32) -> bool {
+    /// Whether polynomials of unlimited precision are so near to the function that a rounding to the nearest may be. The segment
+    /// of the operand `worst` is looked at first, and one that is too long leaves an operand there: where one cut is too coarse, others
+    /// mostly are.
+    pub(super) fn may_fit(
+        seen: &'s Seen<'s>,
+        cut: Segments,
+        degree: u32,
+        worst: &mut Option<i64>,
+    ) -> bool {
+        let table = Self { seen, cut, pieces: Vec::new() };
         let fits = |piece: &Piece| match degree {
-            0 => self.constant(piece, &[], &[], 0).is_some(),
-            _ => {
-                minimax(&piece.at, &piece.values, degree as usize).1
-                    < self.seen.function.error - 0.5
-            }
+            0 => table.constant(piece, &[], &[], 0).is_some(),
+            _ => minimax(&piece.at, &piece.values, degree as usize).1 < seen.function.error - 0.5,
         };
-        self.pieces.par_iter().flatten().all(fits)
+        let is_too_long = |word: &usize| table.piece(*word).is_some_and(|piece| !fits(&piece));
+        let first = worst.map(|raw| cut.place(seen.number(raw)).word).filter(is_too_long);
+        let found = first.or_else(|| table.words().find_any(is_too_long));
+        if let Some(word) = found.filter(|_| first.is_none()) {
+            let (first, last) = seen.function.domain;
+            *worst = Some((seen.origin + cut.numbers(word).0 as i64).clamp(first, last));
+        }
+        found.is_none()
     }
 
     /// The narrowest coefficients and offsets, if any are right.
     pub(super) fn narrowest(&self, degree: usize) -> Option<(Widths, Words)> {
         let generous = self.generous(degree);
-        let mut words = self.words(&generous)?;
+        let mut words = self.fitted(&generous)?;
         // How far each can go alone; together they need about a bit more.
         let mut widths = generous.clone();
         for at in 0..generous.count() {
             let mut alone = generous.clone();
-            while let Some(lower) = alone.with(at, -1).filter(|it| self.words(it).is_some()) {
+            while let Some(lower) = alone.with(at, -1).filter(|it| self.fitted(it).is_some()) {
                 alone = lower;
                 widths = widths.with(at, -1)?;
             }
         }
         loop {
-            if let Some(found) = self.words(&widths) {
+            if let Some(found) = self.fitted(&widths) {
                 words = found;
                 break;
             }
@@ -171,7 +189,7 @@ impl<'s> Table<'s> {
             changed = false;
             for at in (0..generous.count()).rev() {
                 let Some(lower) = widths.with(at, -1) else { continue };
-                if let Some(found) = self.words(&lower) {
+                if let Some(found) = self.fitted(&lower) {
                     (widths, words, changed) = (lower, found, true);
                 }
             }
@@ -195,7 +213,7 @@ impl<'s> Table<'s> {
         loop {
             let one_wider = (0..generous.count()).filter_map(|at| wider(&widths, at));
             for some in [widths.clone()].into_iter().chain(one_wider) {
-                if let Some(words) = self.words(&some) {
+                if let Some(words) = self.fitted(&some) {
                     return Some((some, words));
                 }
             }
@@ -210,7 +228,7 @@ impl<'s> Table<'s> {
     }
 
     /// The words of a table with these widths, if there are such with which every operand that is looked at is right.
-    fn words(&self, widths: &Widths) -> Option<Words> {
+    fn fitted(&self, widths: &Widths) -> Option<Words> {
         let steps = widths.steps()?;
         let fit = |piece: &Option<Piece>| match piece {
             None => Some(None),

@@ -113,7 +113,7 @@ impl Piecewise {
                     continue;
                 }
                 match self.error_between(function, word, (low, high), walk.lag) {
-                    Some(whole) if whole <= function.error => bound = bound.max(whole),
+                    Some(whole) if whole < function.error => bound = bound.max(whole),
                     _ => {
                         let middle = low + (high - low) / 2;
                         open.extend([(low, middle), (middle + 1, high)]);

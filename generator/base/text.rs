@@ -19,6 +19,17 @@ pub fn counted(number: usize, thing: &str) -> String {
     format!("{} {thing}{plural}", grouped(number as u64))
 }
 
+/// Returns a limit with so many places, rounded up, so that it stays one.
+pub fn rounded_up(limit: f64, places: usize) -> String {
+    let text = format!("{limit:.places$}");
+    match text.parse::<f64>() {
+        Ok(nearest) if nearest < limit => {
+            format!("{:.places$}", limit + 10f64.powi(-(places as i32)))
+        }
+        _ => text,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -6,6 +6,7 @@ use std::ops::Range;
 
 use glint_approximate::{Layout, Outside, Piecewise};
 use glint_base::fixed::{Format, MAX_WIDTH, Overflow, Rounding};
+use glint_base::text;
 use glint_config::{Config, Shared};
 use glint_keys::function::{Keys, found};
 use glint_rtl::dsl::{Designer, Signal, end, step, valid};
@@ -275,8 +276,8 @@ fn about(keys: &Keys, proof: &str, it: &Piecewise) -> About {
         notes: vec![
             format!("The domain is x from {from} to {to}, {ends}.").into(),
             format!(
-                "{reduced}{shape}. {proof}: no result is further off than {:.4} units of the last place.",
-                it.bound
+                "{reduced}{shape}. {proof}: no result is further off than {} units of the last place.",
+                text::rounded_up(it.bound, 4)
             )
             .into(),
         ],

@@ -4,7 +4,7 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, anyhow};
+use anyhow::{Context, Result, anyhow, bail};
 
 use glint_tools::transient::Directory;
 
@@ -60,6 +60,20 @@ impl Destination {
         Ok(Self { path, sink })
     }
 
+    /// Opens a file that is not there yet, as [`Destination::open`] does, or one that may be replaced by `force`.
+    ///
+    /// # Errors
+    /// It is there; as of [`Destination::open`].
+    pub fn fresh(path: &Path, force: bool) -> Result<Self> {
+        if path.is_file() && !force {
+            bail!(
+                "`{}` is there already; move it away, name another file, or add --force to replace it",
+                path.display()
+            );
+        }
+        Self::open(path)
+    }
+
     /// The file to write.
     ///
     /// # Errors
@@ -72,6 +86,11 @@ impl Destination {
             }
         };
         file.with_context(|| cannot(&self.path))
+    }
+
+    /// Where the file will be.
+    pub fn path(&self) -> &Path {
+        &self.path
     }
 
     /// Moves the file into its place.

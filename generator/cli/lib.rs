@@ -86,6 +86,13 @@ commands! {
     List list; New new; Schema schema;
 }
 
+#[derive(Args, Clone, Copy)]
+struct Force {
+    /// Replace a file that is there already
+    #[arg(long)]
+    force: bool,
+}
+
 #[derive(Args)]
 struct Configs {
     /// Configurations [default: all in configs/]

@@ -1,7 +1,7 @@
 //! Measured points from a CSV file.
 
-use std::fs;
 use std::path::Path;
+use std::{fs, io};
 
 /// Reads the points of a file as `x,y x,y`. Two numbers a line, with a comma, a semicolon, blanks or a tab between them; a
 /// first line of words is a heading, and what follows `#` a comment.
@@ -10,10 +10,12 @@ use std::path::Path;
 /// The file cannot be read, or a line is not two numbers: a message and a remedy.
 pub(super) fn read(path: &Path) -> Result<String, (String, String)> {
     let name = path.display();
-    let text = fs::read_to_string(path).map_err(|error| {
+    let text = text(path).map_err(|error| {
         let remedy = "give the path of a CSV file, from the configuration's directory".to_owned();
         (format!("`{name}` cannot be read: {error}"), remedy)
     })?;
+    // What some spreadsheets write first.
+    let text = text.trim_start_matches('\u{feff}');
     let mut points: Vec<String> = Vec::new();
     for (at, line) in text.lines().enumerate() {
         let line = line.split('#').next().unwrap_or_default().trim();
@@ -39,6 +41,14 @@ pub(super) fn read(path: &Path) -> Result<String, (String, String)> {
     Ok(points.join(" "))
 }
 
+/// Reads a file; a pipe, which may never end, is none.
+fn text(path: &Path) -> io::Result<String> {
+    if !fs::metadata(path)?.is_file() {
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, "it is no regular file"));
+    }
+    fs::read_to_string(path)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -52,6 +62,8 @@ mod tests {
             read(&path).map_err(|(message, _)| message.replace(&*path.to_string_lossy(), "it"))
         };
         assert_eq!(of("x,y\n0,0\n\n1; -0.5 # low\n2\t1e-3\r\n").unwrap(), "0,0 1,-0.5 2,1e-3");
+        assert_eq!(of("\u{feff}0,0\n1,1\n").unwrap(), "0,0 1,1");
+        assert!(read(dir.path()).unwrap_err().0.ends_with("it is no regular file"));
         for (text, message) in [
             ("0,0\n1,\n", "line 2 of `it` is not two numbers: `1,`"),
             ("0,0\nx,y\n", "line 2 of `it` is not two numbers: `x,y`"),

@@ -19,6 +19,8 @@ pub struct Problems {
     list: Vec<Problem>,
     /// Problems beyond the limit, which are counted only.
     further: usize,
+    /// Whether the file has others than these.
+    refused: bool,
 }
 
 /// The name of standard input in problems.
@@ -100,7 +102,12 @@ impl Problems {
 
     /// Returns the file and locations without problems: for a trial run of a check.
     pub(super) fn cleared(&self) -> Self {
-        Problems { list: Vec::new(), further: 0, ..self.clone() }
+        Problems { list: Vec::new(), further: 0, refused: self.is_refused(), ..self.clone() }
+    }
+
+    /// Whether the file is refused whatever else a check finds: what takes long is then not worth it.
+    pub fn is_refused(&self) -> bool {
+        self.refused || !self.is_empty()
     }
 
     /// Adds problems found elsewhere, as they are.

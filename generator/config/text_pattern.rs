@@ -42,7 +42,7 @@ impl TextPattern {
             TextPattern::Name => first("") && more(".-_"),
             TextPattern::Licence => first("(") && more(" .-+()"),
             TextPattern::Formula => {
-                let good = |c: char| c.is_ascii_alphanumeric() || " ._+-*/%^(),<>=−·×".contains(c);
+                let good = |c: char| c.is_ascii_alphanumeric() || " ._+-*/%^(),<>=−·×π".contains(c);
                 !text.is_empty()
                     && text.chars().count() <= LONGEST_FORMULA
                     && text.chars().all(good)
@@ -63,7 +63,7 @@ impl TextPattern {
         match self {
             TextPattern::Name => "^[A-Za-z][A-Za-z0-9._-]{0,59}$",
             TextPattern::Licence => "^[A-Za-z(][A-Za-z0-9 .+()-]{0,59}$",
-            TextPattern::Formula => "^[A-Za-z0-9 ._+*/%^(),<>=−·×-]{1,500}$",
+            TextPattern::Formula => "^[A-Za-z0-9 ._+*/%^(),<>=−·×π-]{1,500}$",
             TextPattern::Samples => "^([0-9 .,+eE-]*|.+[.]csv)$",
             TextPattern::Version => "^(0|[1-9][0-9]{0,3})(\\.(0|[1-9][0-9]{0,3})){2}$",
         }

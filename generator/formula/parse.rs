@@ -23,19 +23,40 @@ pub const FUNCTIONS: [(&str, Function); 13] = [
 ];
 
 /// Functions that are combinations of others, of a number u.
-const DEFINED: [(&str, &str); 7] = [
+const DEFINED: [(&str, &str); 14] = [
     ("reciprocal", "1 / u"),
     ("rsqrt", "1 / sqrt(u)"),
     ("sigmoid", "1 / (1 + exp(-u))"),
     ("gelu", "u / 2 * (1 + erf(u / sqrt(2)))"),
     ("silu", "u / (1 + exp(-u))"),
     ("softplus", "ln(1 + exp(u))"),
-    // Of an operand that is an integer.
-    ("int", "u"),
+    ("sinh", "(exp(u) - exp(-u)) / 2"),
+    ("cosh", "(exp(u) + exp(-u)) / 2"),
+    ("asin", "2 * atan(u / (1 + sqrt((1 - u) * (1 + u))))"),
+    ("acos", "pi / 2 - 2 * atan(u / (1 + sqrt((1 - u) * (1 + u))))"),
+    ("log10", "ln(u) / ln(10)"),
+    ("cbrt", "if(u < 0, -(-u) ^ (1 / 3), u ^ (1 / 3))"),
+    ("floor", "u - u % 1"),
+    // As Python has it, toward 0.
+    ("int", "if(u < 0, u + -u % 1, u - u % 1)"),
+];
+
+/// What some functions that are missing here are in those that are not.
+const INSTEAD: [(&str, &str); 7] = [
+    ("ceil", "-floor(-x)"),
+    ("round", "floor(x + 0.5)"),
+    ("trunc", "int(x)"),
+    ("pow", "x ^ y"),
+    ("hypot", "sqrt(x^2 + y^2)"),
+    ("expm1", "exp(x) - 1"),
+    ("log1p", "ln(1 + x)"),
 ];
 
 /// Constants and the largest f64 that is not above them.
 const CONSTANTS: [(&str, f64); 2] = [("pi", std::f64::consts::PI), ("e", std::f64::consts::E)];
+
+/// The sign of the first of them.
+const PI: &str = "π";
 
 /// The most parts within each other: as many calls of the parser stand on the stack.
 const DEEPEST: usize = 200;
@@ -50,7 +71,12 @@ pub fn parse(text: &str) -> Result<Formula, Fault> {
     let formula = parser.choice()?;
     match parser.tokens.get(parser.at) {
         None => Ok(formula),
-        Some(rest) => Err(Fault::new(rest.clone(), "this does not belong here")),
+        Some(rest) => {
+            let begins = |c: char| c.is_ascii_alphanumeric() || matches!(c, '(' | '_');
+            let factor = text[rest.clone()].starts_with(begins);
+            let remedy = if factor { ": a product has a sign, `2*x`" } else { "" };
+            Err(Fault::new(rest.clone(), format!("this does not belong here{remedy}")))
+        }
     }
 }
 
@@ -67,14 +93,19 @@ fn tokens(text: &str) -> Result<Vec<Range<usize>>, Fault> {
             '0'..='9' | '.' => number(rest),
             _ if ["**", "<=", ">="].iter().any(|two| rest.starts_with(two)) => 2,
             '+' | '-' | '*' | '/' | '%' | '^' | '(' | ')' | '[' | ']' | ',' | '<' | '>' => 1,
-            '−' | '·' | '×' => first.len_utf8(),
+            '−' | '·' | '×' | 'π' => first.len_utf8(),
             _ if first.is_whitespace() => {
                 at += first.len_utf8();
                 continue;
             }
             _ => {
                 let span = at..at + first.len_utf8();
-                return Err(Fault::new(span, format!("`{first}` is no part of a formula")));
+                let remedy = if matches!(first, '=' | '!') {
+                    ": `<`, `>`, `<=` and `>=` compare"
+                } else {
+                    ""
+                };
+                return Err(Fault::new(span, format!("`{first}` is no part of a formula{remedy}")));
             }
         };
         tokens.push(at..at + length);
@@ -232,11 +263,16 @@ impl Parser<'_> {
             self.at += 1;
             return Ok(self.made(from, Kind::Number(value, is_exact(&token, value))));
         }
+        if self.taken(&[PI]) {
+            return Ok(self.made(from, Kind::Constant(CONSTANTS[0].0, CONSTANTS[0].1)));
+        }
         if !token.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_') {
             return self.fault("a number, an operand or a function is missing before this");
         }
         self.at += 1;
         if self.taken(&["["]) {
+            // What numbers a word is an integer, which Python wants to be told.
+            self.taken(&["int"]);
             let place = Box::new(self.choice()?);
             self.expect("]")?;
             return Ok(self.made(from, Kind::Word(token, place)));
@@ -270,7 +306,11 @@ impl Parser<'_> {
         if two.is_none() && one.is_none() && defined.is_none() {
             let all = FUNCTIONS.iter().map(|it| it.0).chain(DEFINED.iter().map(|it| it.0));
             let all: Vec<&str> = all.chain(["min", "max", "if"]).collect();
-            let message = format!("there is no function `{name}`; there are {}", all.join(", "));
+            let instead = INSTEAD.iter().find(|(own, _)| *own == name);
+            let message = match instead {
+                Some((_, text)) => format!("there is no function `{name}`: write {text}"),
+                None => format!("there is no function `{name}`; there are {}", all.join(", ")),
+            };
             return Err(Fault::new(self.tokens[from].clone(), message));
         }
         let first = self.choice()?;

@@ -41,6 +41,15 @@ fn enclosures_hold_known_values() {
         ("x^-2", 4.0, 0.0625),
         ("0.1 + 0.2", 0.0, 0.3),
         ("1e-3 * 1.5E3", 0.0, 1.5),
+        ("floor(x) + 10 * int(x)", -1.5, -12.0),
+        ("floor(x) + 10 * int(x)", 1.5, 11.0),
+        ("floor(x) + int(x)", -2.0, -4.0),
+        ("asin(x)", 1.0, 1.570_796_326_794_896_619_2),
+        ("acos(x) - π", -1.0, 0.0),
+        ("sinh(x)", 1.0, 1.175_201_193_643_801_456_9),
+        ("cosh(x)", 1.0, 1.543_080_634_815_243_778_5),
+        ("log10(x)", 1000.0, 3.0),
+        ("cbrt(x) + cbrt(-x) + cbrt(8)", 27.0, 2.0),
     ] {
         let limits = value(text, x);
         assert!(limits.holds(known) && limits.high - limits.low < 1e-13, "{text}: {limits:?}");
@@ -94,6 +103,9 @@ fn mistakes_are_shown_under_their_places() {
         ("(x + 1", "      ^ `)` is missing"),
         ("1.2.3", "^^^^^ this is no number"),
         ("if(x, 1, 2)", "    ^ `<`, `>`, `<=` or `>=` is missing"),
+        ("2x", " ^ this does not belong here: a product has a sign, `2*x`"),
+        ("if(x == 2, 1, 2)", "     ^ `=` is no part of a formula: `<`, `>`, `<=` and `>=` compare"),
+        ("1 + hypot(3, x)", "    ^^^^^ there is no function `hypot`: write sqrt(x^2 + y^2)"),
         ("2 * y", "    ^ there is no `y`: the operand is `x`"),
         ("3 + 1 / x", "    ^^^^^ a pole: the divisor is from -1 to 2"),
         ("2 · sqrt(x)", "    ^^^^^^^ the root of a negative number, from -1 to 2"),

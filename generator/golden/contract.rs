@@ -59,7 +59,8 @@ pub fn bound(
             Rounding::Nearest => 0.5,
         },
     });
-    Bound { f: sum * cap, units: terms.iter().map(|term| term.units).sum(), terms }
+    let f = if sum.is_nan() { f64::INFINITY } else { sum * cap };
+    Bound { f, ..Bound::of(terms) }
 }
 
 /// An expression of Python, 0 where it would be negative.

@@ -120,6 +120,11 @@ pub trait Formula: Send + Sync {
         Vec::new()
     }
 
+    /// As [`Bound::limit`].
+    fn limit(&self) -> f64 {
+        1.0
+    }
+
     /// As [`Contract::expressions`].
     fn expressions(&self) -> Vec<String> {
         Vec::new()
@@ -206,6 +211,14 @@ impl<F: Formula> Contract for OfModel<F> {
         let ends: [fn(&Operand) -> i64; 2] = [|it| it.domain.0, |it| it.domain.1];
         for end in ends {
             let operands: Vec<i64> = self.device.operands.iter().map(end).collect();
+            let mut exact = Vec::new();
+            self.exact(&operands, 0, &mut exact);
+            let (stated, outputs) = (exact.len(), self.device.outputs.len());
+            if stated != outputs {
+                return Err(format!(
+                    "the formula gives {stated} values for {outputs} outputs: one for each, in the order of `shows`"
+                ));
+            }
             if self.shown(&operands, 0).is_none() {
                 return Err(format!(
                     "the golden model shows no result within {LONGEST} clocks for the operands {operands:?}: one of its \
@@ -223,7 +236,7 @@ impl<F: Formula> Contract for OfModel<F> {
     }
 
     fn bound(&self) -> Bound {
-        Bound::of(self.formula.terms())
+        Bound { limit: self.formula.limit(), ..Bound::of(self.formula.terms()) }
     }
 
     fn expressions(&self) -> Vec<String> {

@@ -74,11 +74,10 @@ struct Stated {
 }
 
 impl Formula for Stated {
-    /// No number where nothing is stated.
+    /// No number where the formula has no value.
     fn exact(&self, operands: &[f64]) -> Vec<f64> {
         let raw = (operands[0] * exp2(self.function.operand.frac)) as i64;
-        let limits = self.function.limits(raw).ok().filter(|_| self.function.is_stated(raw));
-        let value = limits.map_or(f64::NAN, |limits| limits.middle());
+        let value = self.function.limits(raw).map_or(f64::NAN, |limits| limits.middle());
         vec![value * exp2(-(self.function.fraction as i32))]
     }
 
@@ -88,13 +87,14 @@ impl Formula for Stated {
             Term { key: "result.fraction", what: "rounding of the result", units: rounding },
             Term {
                 key: "result.error",
-                what: match self.function.curve {
-                    Curve::Formula(_) => "the polynomials and their roundings, at every operand",
-                    Curve::Samples(_) => "the polynomials and their roundings, at every sample",
-                },
+                what: "the polynomials and their roundings, at every operand",
                 units: self.bound - rounding,
             },
         ]
+    }
+
+    fn limit(&self) -> f64 {
+        self.function.error
     }
 
     fn expressions(&self) -> Vec<String> {
@@ -104,20 +104,20 @@ impl Formula for Stated {
         }
     }
 
-    /// A sample.
-    fn hint(&self, unit: &mut dyn FnMut() -> f64) -> Option<Vec<i64>> {
-        let Curve::Samples(samples) = &self.function.curve else { return None };
-        let number = (unit() * samples.operands().len() as f64) as usize;
-        samples.operands().nth(number).map(|raw| vec![raw])
-    }
-
     fn remarks(&self) -> Vec<String> {
-        match &self.function.curve {
-            Curve::Formula(_) => Vec::new(),
-            Curve::Samples(samples) => vec![format!(
-                "The bound is proved at the {} samples; of the operands between them nothing is stated.",
-                samples.operands().len()
-            )],
-        }
+        let of_samples = match &self.function.curve {
+            Curve::Formula(_) => None,
+            Curve::Samples(samples) => Some(format!(
+                "The bound is proved at every operand, against the monotone cubic through the {} samples.",
+                samples.count()
+            )),
+        };
+        let of_pole = self.function.pole().map(|(from, to)| {
+            format!(
+                "between x = {from} and {to} the formula has a pole or comes near one: the results of both are right, and no \
+                 operand is between them"
+            )
+        });
+        of_samples.into_iter().chain(of_pole).collect()
     }
 }

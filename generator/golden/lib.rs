@@ -37,6 +37,7 @@ use std::fmt;
 pub use highlight::Highlight;
 
 use glint_base::fixed::{Format, exp2};
+use glint_base::text;
 
 /// A clock-by-clock model of a device.
 ///
@@ -223,10 +224,13 @@ pub trait Contract: Send + Sync {
     }
 }
 
-/// The distance of `value` from the nearer of two values that are right.
+/// Returns the distance of `value` from the nearer of two values that are right; infinite where either is no finite number,
+/// since a formula without a value vouches for no result.
 #[inline]
 pub fn nearer(value: f64, right: [f64; 2]) -> f64 {
-    (value - right[0]).abs().min((value - right[1]).abs())
+    let [a, b] = right.map(|right| (value - right).abs());
+    // What is not finite differs from itself by NaN.
+    if a - a == b - b { a.min(b) } else { f64::INFINITY }
 }
 
 /// The places that an exhaustive check visits: the product of its axes.
@@ -317,6 +321,8 @@ pub struct Bound {
     pub f: f64,
     /// On the error of an output, in its units; of a highlight, for the largest colour operand.
     pub units: f64,
+    /// The error, in units, below which the accuracy contract wants it: 1, or what a configuration asks for.
+    pub limit: f64,
     /// The contributions, in output units, each with the configuration key that governs it. They
     /// add up to `units`.
     pub terms: Vec<Term>,
@@ -336,17 +342,20 @@ pub struct Term {
 impl Bound {
     /// The sum of its terms, of a device that is no highlight; infinite without any.
     pub fn of(terms: Vec<Term>) -> Self {
-        let units = if terms.is_empty() {
-            f64::INFINITY
-        } else {
-            terms.iter().map(|term| term.units).sum()
-        };
-        Self { f: units, units, terms }
+        let sum: f64 = terms.iter().map(|term| term.units).sum();
+        // What is no number limits nothing.
+        let units = if terms.is_empty() || sum.is_nan() { f64::INFINITY } else { sum };
+        Self { f: units, units, limit: 1.0, terms }
     }
 
     /// It in units, or that there is none.
     pub fn words(&self) -> String {
-        if self.is_stated() { format!("{:.3}", self.units) } else { "not stated".to_owned() }
+        if self.is_stated() { text::rounded_up(self.units, 3) } else { "not stated".to_owned() }
+    }
+
+    /// Whether the accuracy contract is kept.
+    pub fn keeps(&self) -> bool {
+        self.units < self.limit
     }
 
     /// Whether its author has stated one.

@@ -16,7 +16,7 @@ glint_config::keys! {
             "The function of the operand x."),
         samples: String = Key::text("function.samples", "", TextPattern::Samples,
             "Measured points in place of a formula: the path of a CSV file with x and the result in each line, or the points \
-             themselves. The error is against the points; between them nothing is stated.")
+             themselves. The error is against the curve through them, a monotone cubic between each two.")
             .joined_later(),
         from: String = Key::text("function.from", "1", TextPattern::Formula,
             "The smallest operand of the domain."),
@@ -61,7 +61,11 @@ fn check(config: &Config, problems: &mut Problems) {
         let message = format!("there are both `{formula}` and `{samples}`");
         return problems.push(formula, message, "keep one of the two");
     }
-    if let Err(refusal) = found(config) {
+    let refusal = match problems.is_refused() {
+        true => function(&Keys::of(config)).err(),
+        false => found(config).err(),
+    };
+    if let Some(refusal) = refusal {
         problems.push_within(refusal.key, refusal.place, refusal.message, refusal.remedy);
     }
 }

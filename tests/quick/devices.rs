@@ -1,17 +1,20 @@
 //! Devices that are no highlights: unit vectors, their cosines, and the colours that are made of both.
 
 use std::ops::ControlFlow;
+use std::path::Path;
+use std::time::Duration;
 
 use glint::config::{Config, Problems, Schema, parse, sample};
 use glint::core::Core;
-use glint::cosim::exhaustive::{Clocks, Proof, Shard, State};
-use glint::cosim::trial;
+use glint::cosim::exhaustive::{Clocks, Peak, Places, Proof, Shard, State};
+use glint::cosim::{search, trial};
 use glint::dsl::{Designer, end, step, valid};
 use glint::fixed::Format;
-use glint::golden::Contract;
 use glint::golden::device::{self, Formula};
 use glint::golden::frame::{Frame, idle, step as execute};
+use glint::golden::{Bound, Contract, Term};
 use glint::registry::{Device, Registry};
+use glint::verify::{CHECKS, Effort, Subject, Verdict};
 
 const NAMES: [&str; 3] = ["dot-product", "normaliser", "shading"];
 
@@ -244,4 +247,100 @@ fn results_that_depend_on_the_past_and_results_that_never_come_are_refused() {
         let text = format!("{error:#}");
         assert!(text.contains(expected), "{text}");
     }
+}
+
+/// A formula that has this value from x = 5 on, and the operand below.
+struct Missing(f64);
+
+impl Formula for Missing {
+    fn exact(&self, x: &[f64]) -> Vec<f64> {
+        vec![if x[0] < 5.0 { x[0] } else { self.0 }]
+    }
+
+    fn terms(&self) -> Vec<Term> {
+        vec![Term { key: "width", what: "nothing", units: 0.0 }]
+    }
+}
+
+/// A formula with more values than there are outputs.
+struct Two;
+
+impl Formula for Two {
+    fn exact(&self, x: &[f64]) -> Vec<f64> {
+        vec![x[0]; 2]
+    }
+}
+
+fn copying() -> device::Device {
+    let mut frame = Frame::default();
+    let x = frame.operand("x", Format::unsigned(4, 0));
+    let copy = frame.register("copy", Format::unsigned(4, 0));
+    frame.shows("copy_out", copy);
+    frame.device([idle(), execute(move |s| s[copy] = s[x]), idle().valid().end()])
+}
+
+/// No comparison of an error takes a reference that is no finite number for one that is met.
+#[test]
+fn a_reference_without_a_value_is_a_failure_everywhere() {
+    let of_nan = Device {
+        name: "copy",
+        summary: "",
+        schema: || Schema {
+            device: "copy",
+            keys: vec![],
+            check: |_: &Config, _: &mut Problems| {},
+        },
+        describe: |d: &Designer, _| {
+            let x = d.operand("x", Format::unsigned(4, 0)).q();
+            let copy = d.register("copy", Format::unsigned(4, 0));
+            copy.takes(x);
+            d.output("copy_out", copy.q());
+            let load = step("load", [copy.load()]);
+            d.microprogram([step("idle", []), load, step("result", [valid(), end()])]);
+        },
+        model: |_| copying().model(),
+        contract: |_| copying().contract(Missing(f64::NAN)),
+        proved: true,
+    };
+    let infinite = Device { contract: |_| copying().contract(Missing(f64::INFINITY)), ..of_nan };
+    let config = || Config::defaults(&(of_nan.schema)(), "copy");
+    for device in [of_nan, infinite] {
+        let core = Core::new(device, config()).expect("a device");
+        let contract = core.contract.as_ref();
+        assert_eq!(contract.largest_error(&[3]), 0.0);
+        assert_eq!(contract.largest_error(&[5]), f64::INFINITY);
+
+        let outcome = core.lockstep(1).and_then(|it| it.run(500, &|_| ())).expect("a run");
+        for bound in [contract.bound(), Bound::of(Vec::new())] {
+            let failures = outcome.failures(&bound).concat();
+            let expected = "the formula has no finite value for `copy_out` at x = ";
+            assert!(failures.starts_with(expected), "{failures}");
+        }
+
+        let places = Places::of_f(contract);
+        let peak = places.check(0..places.blocks(), &|_| ());
+        let proof = Proof::new(contract, peak, Peak::NONE);
+        assert_eq!(proof.failures, ["the formula has no finite value at x = 5 (raw)"]);
+        assert_eq!(proof.verdict(contract, places.sweep()), "FAILS");
+        // JSON has no infinite number.
+        let kept = serde_json::to_string(&peak).expect("JSON");
+        assert_eq!(serde_json::from_str::<Peak>(&kept).expect("a peak"), peak);
+
+        let worst = search::worst(contract, 4, 1, &|| ()).expect("starts");
+        assert_eq!((worst.units, worst.operands[0] >= 5), (f64::INFINITY, true));
+
+        let effort =
+            Effort { full: false, without_tools: true, time_limit: Duration::from_secs(60) };
+        let subject = Subject::new("copy.toml", &core, effort, Path::new("none"));
+        for id in ["lockstep", "contract"] {
+            let check = CHECKS.iter().find(|it| it.id == id).expect("a check");
+            assert_eq!(check.run(&subject, &|_| ()).finding.verdict, Verdict::Failed, "{id}");
+        }
+    }
+    let two = Device { contract: |_| copying().contract(Two), ..of_nan };
+    let error = Core::new(two, config()).err().expect("a value too many");
+    assert!(format!("{error:#}").contains("2 values for 1 outputs"), "{error:#}");
+    // A bound that is no number limits nothing.
+    let term = |units| Term { key: "width", what: "it", units };
+    assert!(!Bound::of(vec![term(1.0), term(f64::NAN)]).is_stated());
 }

@@ -116,8 +116,8 @@ impl Contract for Foreign {
     }
 
     fn bound(&self) -> Bound {
-        let Bound { f, units, terms } = self.0.bound();
-        Bound { f: f * self.1, units: units * self.1, terms }
+        let bound = self.0.bound();
+        Bound { f: bound.f * self.1, units: bound.units * self.1, ..bound }
     }
 
     fn highlight(&self) -> Option<&Highlight> {

@@ -14,8 +14,9 @@ use serde_json::{Value, json};
 
 use super::mismatch::{self, Reproducer};
 use super::{Loaded, load, verdict};
+use crate::destination::Destination;
 use crate::failure::WrongUsage;
-use crate::{Configs, Output, TimeLimit, count, progress, say, tables, wrong_usage};
+use crate::{Configs, Force, Output, TimeLimit, count, progress, say, tables, wrong_usage};
 use benches::benches;
 use glint_base::text;
 use glint_core::core::{TEST_POINTS, TEST_SEED};
@@ -63,6 +64,8 @@ pub struct Arguments {
     /// Write a waveform (VCD) of one configuration (built-in simulator only)
     #[arg(long, value_name = "FILE")]
     vcd: Option<PathBuf>,
+    #[command(flatten)]
+    force: Force,
     #[command(flatten)]
     time_limit: TimeLimit,
 }
@@ -185,7 +188,8 @@ fn outcome(
     let Some(path) = &arguments.vcd else {
         return lockstep.run(points, progress);
     };
-    mismatch::traced(&lockstep, path, points, 0)
+    let destination = Destination::fresh(path, arguments.force.force)?;
+    mismatch::traced(&lockstep, destination, points, 0)
 }
 
 /// The operands of the largest error, as values.

@@ -2,7 +2,7 @@
 
 use std::fs::File;
 use std::io::BufWriter;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use anyhow::{Context, Result};
 use serde_json::{Value, json};
@@ -34,7 +34,7 @@ impl Reproducer {
     pub fn of_run(one: &Loaded, mismatch: &Mismatch) -> Result<Self> {
         let (vcd, from) = window(one, mismatch);
         let lockstep = one.core.lockstep(mismatch.seed)?;
-        let outcome = traced(&lockstep, &vcd, u64::MAX, from)?;
+        let outcome = traced(&lockstep, Destination::open(&vcd)?, u64::MAX, from)?;
         Ok(Self {
             vcd,
             from,
@@ -57,7 +57,7 @@ impl Reproducer {
         difference: &Difference,
     ) -> Result<Self> {
         let (vcd, from) = window(one, &difference.mismatch);
-        write(&vcd, |file| clocks.trace(difference.place, from, file))?;
+        write(Destination::open(&vcd)?, |file| clocks.trace(difference.place, from, file))?;
         Ok(Self { vcd, from, command: format!("{Program} cosim {} --exhaustive", one.path) })
     }
 
@@ -113,15 +113,22 @@ pub fn first_clock(clock: u64) -> u64 {
 ///
 /// # Errors
 /// As of [`Lockstep::trace`]; the file cannot be written.
-pub fn traced(lockstep: &Lockstep<'_>, path: &Path, points: u64, from: u64) -> Result<Outcome> {
-    write(path, |file| lockstep.trace(points, from, file))
+pub fn traced(
+    lockstep: &Lockstep<'_>,
+    destination: Destination,
+    points: u64,
+    from: u64,
+) -> Result<Outcome> {
+    write(destination, |file| lockstep.trace(points, from, file))
 }
 
 /// Has a waveform written beside its place, and moves it there when it is whole.
-fn write<T>(path: &Path, trace: impl FnOnce(BufWriter<File>) -> Result<T>) -> Result<T> {
-    let destination = Destination::open(path)?;
+fn write<T>(
+    destination: Destination,
+    trace: impl FnOnce(BufWriter<File>) -> Result<T>,
+) -> Result<T> {
     let outcome = trace(BufWriter::new(destination.file()?))
-        .with_context(|| format!("cannot write the waveform `{}`", path.display()))?;
+        .with_context(|| format!("cannot write the waveform `{}`", destination.path().display()))?;
     destination.commit()?;
     Ok(outcome)
 }

@@ -182,7 +182,7 @@ const FAILS: &str = "FAILS";
 
 /// Returns the verdict on a configuration with this bound, and these failures.
 fn verdict(bound: &Bound, failures: &[String]) -> &'static str {
-    match (failures.is_empty(), bound.units < 1.0) {
+    match (failures.is_empty(), bound.keeps()) {
         (true, _) if !bound.is_stated() => UNSTATED,
         (true, true) => HOLDS,
         (true, false) => OUTSIDE,
@@ -229,7 +229,7 @@ impl Loaded {
                 bail!("{message}; `strict = true` refuses that");
             }
             failure::warn(&message);
-        } else if bound.units >= 1.0 {
+        } else if !bound.keeps() {
             let limit = bound.limiting().map_or_else(String::new, |term| {
                 format!("; most of it, {:.3}, is of `{}` ({})", term.units, term.key, term.what)
             });
@@ -248,8 +248,8 @@ impl Loaded {
                 None => "; no single key that it depends on brings it down".to_owned(),
             };
             let message = format!(
-                "{}: outside the accuracy contract: the error bound is {:.3} units, not below 1{limit}{advice}",
-                self.path, bound.units
+                "{}: outside the accuracy contract: the error bound is {:.3} units, not below {}{limit}{advice}",
+                self.path, bound.units, bound.limit
             );
             if self.core.config.strict {
                 bail!("{message}; `strict = true` refuses that");

@@ -10,6 +10,7 @@ use serde_json::{Value, json};
 
 use super::mismatch::{self, first_clock, traced};
 use super::{Loaded, load};
+use crate::destination::Destination;
 use crate::own_file::OwnFile;
 use crate::{Configs, Output, TimeLimit, progress, say, tables, wrong_usage};
 use glint_base::program::Program;
@@ -199,7 +200,7 @@ fn only(output: Output, one: &Loaded, id: &str) -> Result<bool> {
         let lockstep = lockstep.holding(held);
         let path = PathBuf::from(format!("{}_mutant.vcd", one.core.config.name));
         let from = first_clock(mismatch.clock);
-        traced(&lockstep, &path, u64::MAX, from)?;
+        traced(&lockstep, Destination::open(&path)?, u64::MAX, from)?;
         waveform = Some((path, from, mismatch.clock));
     }
     if output.json {

@@ -10,7 +10,7 @@ use serde_json::json;
 use super::load_one;
 use crate::destination::Destination;
 use crate::failure::{self, WrongUsage};
-use crate::{Output, TimeLimit, number, progress, say, tables, wrong_usage};
+use crate::{Force, Output, TimeLimit, number, progress, say, tables, wrong_usage};
 use glint_base::{input, text};
 use glint_core::core::Core;
 use glint_core::cosim::batch::{Engine, Golden, RustHdl};
@@ -45,6 +45,8 @@ pub struct Arguments {
     /// The PNG file to write
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
+    #[command(flatten)]
+    force: Force,
     /// The engine that computes the specular term
     #[arg(long, value_enum, default_value_t = Through::Golden)]
     through: Through,
@@ -144,7 +146,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     }
     let scene = scene(arguments, render::walks_lines(core.contract.as_ref()))?;
     render::check(&settings, &scene).map_err(|error| WrongUsage(error.to_string()))?;
-    let destination = Destination::open(&arguments.out)?;
+    let destination = Destination::fresh(&arguments.out, arguments.force.force)?;
     let bar = progress::bar(output, u64::from(settings.size.1), "rows rendered");
     bar.tick();
     let contract = core.contract.as_ref();

@@ -2,7 +2,7 @@
 
 mod plot;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use anyhow::{Result, bail};
 use clap::Args;
@@ -11,7 +11,7 @@ use serde_json::{Value as Json, json};
 
 use crate::destination::Destination;
 use crate::tables;
-use crate::{Output, failure, number, progress, say, wrong_usage};
+use crate::{Force, Output, failure, number, progress, say, wrong_usage};
 use glint_base::program::Program;
 use glint_config::{self as config, Config, Value};
 use glint_core::registry::{Device, Registry};
@@ -61,6 +61,8 @@ pub struct Arguments {
     /// Write the configuration to a new file
     #[arg(long, value_name = "FILE.toml")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    force: Force,
     /// Plot area over error into a new file
     #[arg(long, value_name = "FILE.svg")]
     plot: Option<PathBuf>,
@@ -94,8 +96,9 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
         wrong_usage!("--out and --plot both name `{}`", out.display());
     }
     let (device, base, fixed) = base(registry, arguments)?;
-    let file = arguments.out.as_deref().map(fresh).transpose()?;
-    let drawing = arguments.plot.as_deref().map(fresh).transpose()?;
+    let fresh = |path: &PathBuf| Destination::fresh(path, arguments.force.force);
+    let file = arguments.out.as_ref().map(fresh).transpose()?;
+    let drawing = arguments.plot.as_ref().map(fresh).transpose()?;
     let goal = Goal {
         error: arguments.error,
         unit: arguments.unit,
@@ -131,14 +134,6 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
         failure::warn(&format!("{}: by the estimate {excess}", arguments.device));
     }
     Ok(true)
-}
-
-/// A file to be, which is not there yet.
-fn fresh(path: &Path) -> Result<Destination> {
-    if path.exists() {
-        bail!("`{}` is there already; move it away, or name another file", path.display());
-    }
-    Destination::open(path)
 }
 
 /// The device, the configuration to start from, and the keys that are part of the goal.

@@ -87,7 +87,8 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
         let found = search::worst(contract, arguments.starts, arguments.seed, &|| bar.inc(1));
         let found = found.with_context(|| format!("`{}` has no output", one.path))?;
         let bound = contract.bound().units;
-        let (holds, found) = (found.units <= bound, known(one, arguments, &found));
+        let holds = found.units <= bound && found.units.is_finite();
+        let (holds, found) = (holds, known(one, arguments, &found));
         let mut recorded = None;
         if let Some((file, before)) = record {
             match before.filter(|before| before.units >= found.units) {

@@ -60,7 +60,14 @@ impl Outcome {
                 mismatch.seed, mismatch.clock
             ));
         }
-        if let Some(worst) = &self.worst
+        if let Some(worst) = self.worst.as_ref().filter(|worst| worst.units.is_infinite()) {
+            let operands = worst.operands.iter().map(|(name, raw)| format!("{name} = {raw}"));
+            failures.push(format!(
+                "the formula has no finite value for `{}` at {} (raw)",
+                worst.output,
+                operands.collect::<Vec<_>>().join(", ")
+            ));
+        } else if let Some(worst) = &self.worst
             && worst.units > bound.units
         {
             failures.push(format!(
@@ -75,7 +82,7 @@ impl Outcome {
 /// The largest error against the formula, and where.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Worst {
-    /// In output units.
+    /// In output units; infinite where the formula has no value.
     pub units: f64,
     /// The output.
     pub output: String,

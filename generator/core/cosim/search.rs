@@ -33,7 +33,7 @@ const BATCH: u64 = 1 << 10;
 /// An error of an output, and where.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reached {
-    /// In output units.
+    /// In output units; infinite where the formula has no value.
     pub units: f64,
     /// The raw operands, in the order of the contract.
     pub operands: Vec<i64>,
@@ -55,8 +55,9 @@ impl Reached {
             let unit = exp2(-it.format.frac);
             let exact = exact.map(|value| value / unit);
             let near = |value: f64| (raw as f64 - value).abs();
+            let units = nearer(raw as f64, exact);
             let exact = if near(exact[1]) < near(exact[0]) { exact[1] } else { exact[0] };
-            Self { units: near(exact), operands: operands.clone(), output, raw, exact }
+            Self { units, operands: operands.clone(), output, raw, exact }
         });
         errors.reduce(larger)
     }

@@ -45,18 +45,19 @@ pub const DESIGN: Check = Check {
                 counted(design.roms.len(), "ROM"),
                 counted(design.control.microprogram.len(), "microinstruction"),
                 if bound.is_stated() {
-                    format!("The stated bound on an output is {:.3} units.", bound.units)
+                    format!("The stated bound on an output is {} units.", bound.words())
                 } else {
                     "No bound on an output is stated.".to_owned()
                 },
             ),
         );
-        Ok(if bound.units < 1.0 {
+        Ok(if bound.keeps() {
             finding
         } else {
-            finding.open(
-                "The bound is not below one unit: the configuration is outside the accuracy contract.",
-            )
+            finding.open(format!(
+                "The bound is not below {}: the configuration is outside the accuracy contract.",
+                bound.limit
+            ))
         })
     },
 };
@@ -161,7 +162,7 @@ fn contract(subject: &Subject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Result<Fi
     Ok(Finding::new(
         of_sweep(job.f.sweep()),
         domain(&job),
-        format!("The stated bound is {:.3} units; {}.", contract.bound().units, proof.words("")),
+        format!("The stated bound is {} units; {}.", contract.bound().words(), proof.words("")),
     )
     .failures(proof.failures)
     .open(job.f.sweep().omits.clone()))
@@ -185,9 +186,9 @@ fn recorded(
     let (again, failures) = record.recheck(contract, AGAIN, progress);
     let path = record.path.display().to_string().replace('\\', "/");
     let words = format!(
-        "The stated bound is {:.3} units; by the record `{path}` {}. Of it, {} evaluations, spread evenly, and the one with the \
+        "The stated bound is {} units; by the record `{path}` {}. Of it, {} evaluations, spread evenly, and the one with the \
          largest error{} were made again.",
-        contract.bound().units,
+        contract.bound().words(),
         record.words(contract),
         grouped(again),
         if job.colours.count() > 0 { ", and all colour products," } else { "" },

@@ -46,12 +46,12 @@ pub fn of(core: &Core) -> Option<Advice> {
     let (device, bound) = (&core.device, core.contract.bound());
     let first = better(device, &core.config, &bound)?;
     let single = advice(device, &core.config, &first);
-    if bound.units < 1.0 {
+    if bound.keeps() {
         return Some(single);
     }
     let next = |it: &Better| better(device, &it.config, &it.bound);
     let mut walk = std::iter::successors(Some(first), next).take(MOST);
-    let kept = walk.find(|it| it.bound.units < 1.0);
+    let kept = walk.find(|it| it.bound.keeps());
     Some(kept.map_or(single, |it| advice(device, &core.config, &needed(device, &core.config, it))))
 }
 
@@ -78,7 +78,7 @@ fn needed(device: &Device, config: &Config, kept: Better) -> Better {
     changed.into_iter().fold(kept, |kept, (key, ..)| {
         let without = with(&schema, &kept.config, key, config.value(key));
         let bound = without.map(|config| ((device.contract)(&config).bound(), config));
-        match bound.filter(|(bound, _)| bound.units < 1.0) {
+        match bound.filter(|(bound, _)| bound.keeps()) {
             Some((bound, config)) => Better { config, bound },
             None => kept,
         }

@@ -36,7 +36,7 @@ pub fn charts(contract: &dyn Contract) -> Vec<Chart> {
         errors.push(worst.fold(0.0, f64::max));
     }
     let bound = contract.bound();
-    let top = errors.iter().copied().fold(bound.units, f64::max) * 1.1;
+    let top = errors.iter().copied().filter(|it| it.is_finite()).fold(bound.units, f64::max) * 1.1;
     let least = values.iter().copied().fold(f64::INFINITY, f64::min);
     let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let margin = (most - least).max(1e-9) * 0.05;

@@ -68,7 +68,10 @@ fn a_full_disk_costs_nothing() {
 fn a_waveform_that_does_not_fit() {
     let dir = Workspace::with("core.toml", COSINE_POWER);
     dir.write("wave.vcd", "the last one");
-    let run = limited(&dir, 8, "cosim core.toml --points 100 --vcd wave.vcd");
+    let args = "cosim core.toml --points 100 --vcd wave.vcd";
+    let run = limited(&dir, 8, args);
+    run.refused(1, &["`wave.vcd` is there already", "--force"]);
+    let run = limited(&dir, 8, &format!("{args} --force"));
     run.refused(1, &["cannot write the waveform `wave.vcd`"]);
     assert_eq!(dir.read("wave.vcd"), "the last one");
     dir.assert_no_staging();

@@ -13,7 +13,7 @@ use crate::workspace::{COSINE_POWER, Workspace};
 /// Every line of the documentation's list of pictures that is a command.
 const PICTURES: &str = "docs/images/README.md";
 
-const SMALL: [&str; 4] = ["--size", "48x36", "--out", "out.png"];
+const SMALL: [&str; 5] = ["--size", "48x36", "--out", "out.png", "--force"];
 
 fn render<'a>(arguments: &[&'a str]) -> Vec<&'a str> {
     let command = ["render"].into_iter().chain(SMALL);

@@ -54,6 +54,13 @@ impl Proof {
         let bound = contract.bound();
         let of_f = contract.highlight().is_some();
         let mut proof = Self { of_f, f, f_units: f.error * largest, colours, failures: Vec::new() };
+        if f.error.is_infinite() {
+            proof.failures.push(format!(
+                "the formula has no finite value at {} (raw)",
+                Places::of_f(contract).words(f.place)
+            ));
+            return proof;
+        }
         if f.error > bound.f + F64 / largest {
             let what = if of_f { "f is" } else { "an output is, in units," };
             proof.failures.push(format!(
@@ -78,7 +85,7 @@ impl Proof {
             "FAILS"
         } else if !contract.bound().is_stated() {
             "no bound is stated"
-        } else if contract.bound().units >= 1.0 {
+        } else if !contract.bound().keeps() {
             "within its bound, outside the contract"
         } else if sweep.omits.is_empty() {
             "proved"

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
 use glint_golden::{Axis, Contract, Sweep, Values};
 
@@ -17,10 +17,16 @@ const SAMPLE: u64 = 4096;
 /// The largest error of some places, and the first of them at which it occurs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Peak {
-    /// Absolute.
+    /// Absolute; infinite where the formula has no value.
+    #[serde(deserialize_with = "or_infinite")]
     pub error: f64,
     /// The number of the place.
     pub place: u64,
+}
+
+/// Reads a number, or the `null` that JSON has for an infinite one.
+fn or_infinite<'de, D: Deserializer<'de>>(number: D) -> Result<f64, D::Error> {
+    Ok(Option::deserialize(number)?.unwrap_or(f64::INFINITY))
 }
 
 impl Peak {
@@ -113,6 +119,14 @@ impl<'a> Places<'a> {
         values
     }
 
+    /// The names and values of place `number`, in words.
+    pub fn words(&self, number: u64) -> String {
+        let pairs = self.sweep.axes.iter().zip(self.place(number));
+        let words: Vec<String> =
+            pairs.map(|(axis, raw)| format!("{} = {raw}", axis.name)).collect();
+        words.join(", ")
+    }
+
     /// The error at place `number`.
     pub fn error(&self, number: u64) -> f64 {
         self.error_at(&self.place(number))
@@ -126,13 +140,14 @@ impl<'a> Places<'a> {
 
     #[inline]
     fn error_at(&self, place: &[i64]) -> f64 {
-        match self.measure {
+        let error = match self.measure {
             Measure::F => self.contract.sweep_error(place),
             Measure::Colour => self.contract.highlight().map_or(0.0, |highlight| {
                 let exact = (place[0] * place[1]) as f64 * highlight.f_format().to_f64(1);
                 (highlight.colour(place[0], place[1]) as f64 - exact).abs()
             }),
-        }
+        };
+        if error.is_nan() { f64::INFINITY } else { error }
     }
 
     /// The block that has a place.

@@ -18,7 +18,7 @@ impl Contract for Counting {
     fn results(&self, _: &[i64], _: u64, _: &mut Vec<i64>) {}
     fn exact(&self, _: &[i64], _: u64, _: &mut Vec<[f64; 2]>) {}
     fn bound(&self) -> Bound {
-        Bound { f: 1.0, units: 1.0, terms: Vec::new() }
+        Bound { f: 1.0, units: 1.0, limit: 1.0, terms: Vec::new() }
     }
     fn sweep(&self) -> Sweep {
         let axis = |values| Axis { name: String::new(), values };

@@ -79,23 +79,22 @@ pub fn accuracy(contract: &dyn Contract, backing: &Backing) -> String {
             "The contract states no bound of the error; `{Program} certify` finds one where it can."
         );
     }
-    let verdict = if bound.units < 1.0 {
-        "which is inside the contract (less than 1 unit)"
-    } else {
-        "which is outside the contract (less than 1 unit)"
-    };
+    let side = if bound.keeps() { "inside" } else { "outside" };
+    let unit = if bound.limit == 1.0 { "unit" } else { "units" };
+    let verdict = format!("which is {side} the contract (less than {} {unit})", bound.limit);
     let proven = format!("{}; this is what it is made of:", backing.sentence());
     if contract.highlight().is_none() {
         return format!(
-            "An output differs from the formula in f64, unrounded, at the quantised operands, by at most {:.3} units, \
+            "An output differs from the formula in f64, unrounded, at the quantised operands, by at most {} units, \
              {verdict}. A unit is the last place of the output. {proven}",
-            bound.units
+            bound.words()
         );
     }
     format!(
-        "An output differs from K·f by at most {:.3} units, {verdict}. K is the integer of its colour operand, f the \
+        "An output differs from K·f by at most {} units, {verdict}. K is the integer of its colour operand, f the \
          formula in f64, unrounded, at the quantised operands. The word f itself is off by at most {:.2e}. {proven}",
-        bound.units, bound.f
+        bound.words(),
+        bound.f
     )
 }
 

@@ -219,7 +219,7 @@ fn glance(subject: &Subject, measured: &Measured) -> Vec<(&'static str, String)>
     };
     let bound = contract.bound();
     let error = if bound.is_stated() {
-        format!("{:.3} units, {}", bound.units, subject.backing)
+        format!("{} units, {}", bound.words(), subject.backing)
     } else {
         "no bound is stated".to_owned()
     };
