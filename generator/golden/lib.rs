@@ -230,7 +230,7 @@ pub trait Contract: Send + Sync {
 pub fn nearer(value: f64, right: [f64; 2]) -> f64 {
     let [a, b] = right.map(|right| (value - right).abs());
     // What is not finite differs from itself by NaN.
-    if a - a == b - b { a.min(b) } else { f64::INFINITY }
+    if a.is_finite() && b.is_finite() { a.min(b) } else { f64::INFINITY }
 }
 
 /// The places that an exhaustive check visits: the product of its axes.

@@ -107,11 +107,11 @@ impl Keys {
     ///
     /// # Errors
     /// The part that refuses its configuration, and why.
-    pub fn parts(&self) -> Result<Parts, (&'static str, Problems)> {
+    pub fn parts(&self) -> Result<Parts, (&'static str, Box<Problems>)> {
         let make = |schema: Schema, keys: &[(&str, i64)]| {
             let value = |&(key, value): &(&str, i64)| (key.to_owned(), Value::Integer(value));
             Config::from_values(&schema, "part", keys.iter().map(value).collect())
-                .map_err(|why| (schema.device, why))
+                .map_err(|why| (schema.device, Box::new(why)))
         };
         let [normal, light, cosine, exponent, colour] = [
             self.normal,
