@@ -10,6 +10,7 @@ pub mod function;
 pub mod gauss;
 pub mod lyon;
 pub mod normaliser;
+pub mod piecewise;
 pub mod quad_cosine;
 pub mod quadratic;
 pub mod rough;

@@ -1,0 +1,205 @@
+//! A function of one operand by a piecewise polynomial, as a part of a description: a table of coefficients, and Horner's
+//! rule, of which each step is one product and one sum.
+//!
+//! The number of the operand within the domain addresses the table. The description makes the products: with a multiplier for
+//! this alone, or with one that has other work too.
+
+use std::ops::Range;
+
+use glint_approximate::{Layout, Piecewise};
+use glint_base::fixed::{Format, MAX_WIDTH, Overflow, Rounding};
+use glint_rtl::dsl::{Designer, Register, Setting, Signal};
+
+/// A piecewise polynomial in a datapath.
+///
+/// The table is read on a clock edge: the number stands for a clock before the first sum is loaded, and until the last.
+pub struct Polynomial<'d, 'p> {
+    d: &'d Designer,
+    it: &'p Piecewise,
+    prefix: String,
+    /// The coefficients of the segment, the constant first.
+    coefficients: Vec<Signal<'d>>,
+    /// The offset from the middle of the segment, as far as each step multiplies it.
+    offsets: Vec<Signal<'d>>,
+    /// The sums from each coefficient on, the polynomial first.
+    registers: Vec<Register<'d>>,
+}
+
+impl<'d, 'p> Polynomial<'d, 'p> {
+    /// Makes the table and the registers of the sums, which have these names, the polynomial's first. `number` is the operand's
+    /// number within the domain, an integer of as many bits as [`glint_approximate::Segments::bits`] says. The coefficients are
+    /// in tables of their own where these are `split`; names of other nets begin with `prefix`.
+    pub fn new(
+        d: &'d Designer,
+        prefix: &str,
+        registers: &[&str],
+        number: Signal<'d>,
+        it: &'p Piecewise,
+        split: bool,
+    ) -> Self {
+        let (address, offset) = place(d, prefix, number, it);
+        let coefficients = table(d, prefix, address, it, split);
+        let cut = |step: &glint_approximate::Step| {
+            let offset = offset.expect("a polynomial has an offset");
+            let width = step.offset as i32;
+            offset.bits(it.segments.rest() - step.offset, Format::signed(-1, width))
+        };
+        let offsets = it.steps.iter().map(cut).collect();
+        let registers = registers.iter().zip(&it.sums).take(it.degree().max(1));
+        let registers = registers.map(|(name, format)| d.register(name, *format)).collect();
+        Self { d, it, prefix: prefix.to_owned(), coefficients, offsets, registers }
+    }
+
+    /// The steps, in the order in which they are carried out; the last is number 0.
+    pub fn steps(&self) -> impl Iterator<Item = usize> + use<> {
+        (0..self.registers.len()).rev()
+    }
+
+    /// The factors of the product that a step adds to its coefficient: the sum of the step before, and the offset. A table of
+    /// results has none.
+    pub fn factors(&self, step: usize) -> Option<[Signal<'d>; 2]> {
+        let offset = *self.offsets.get(step)?;
+        let above = self.registers.get(step + 1).map(|register| register.q());
+        Some([above.unwrap_or(self.coefficients[step + 1]), offset])
+    }
+
+    /// Lets the register of a step take the sum with its product, and returns the setting that loads it.
+    pub fn add(&self, step: usize, product: Option<Signal<'d>>) -> Setting {
+        let Self { d, it, prefix, .. } = self;
+        let coefficient = self.coefficients[step];
+        let sum = product.map_or(coefficient, |product| {
+            let dropped = it.steps[step].dropped;
+            let (low, high) = product.range();
+            let kept = Format::holding(low >> dropped, high >> dropped, it.coefficients[step].frac);
+            let name = format!("{prefix}product{step}");
+            let cut = d.narrow(&name, product, kept, Rounding::Truncate, Overflow::Wrap);
+            d.add(&format!("{prefix}added{step}"), coefficient, cut)
+        });
+        let name = format!("{prefix}kept{step}");
+        let register = self.registers[step];
+        register.takes(d.narrow(&name, sum, it.sums[step], Rounding::Truncate, Overflow::Wrap));
+        register.load()
+    }
+
+    /// The polynomial, once all steps are carried out.
+    pub fn q(&self) -> Signal<'d> {
+        self.registers[0].q()
+    }
+}
+
+/// The bits of a word with the top one inverted, in a format of the same width: a sign added or taken away.
+pub(super) fn flipped<'d>(
+    d: &'d Designer,
+    name: &str,
+    word: Signal<'d>,
+    format: Format,
+) -> Signal<'d> {
+    let low = word.format().width() - 1;
+    let top = d.not(&format!("{name}_top"), word.bit(low));
+    if low == 0 {
+        return top.read_as(format);
+    }
+    d.join(name, &[top, word.bits(0, Format::unsigned(low as i32, 0))], format)
+}
+
+/// The word of the table, and the offset from the middle of the segment, on which a polynomial depends.
+fn place<'d>(
+    d: &'d Designer,
+    prefix: &str,
+    number: Signal<'d>,
+    it: &Piecewise,
+) -> (Signal<'d>, Option<Signal<'d>>) {
+    let cut = it.segments;
+    let integer = |bits: u32| Format::unsigned(bits as i32, 0);
+    let number = match cut.layout {
+        Layout::Halving => d.not(&format!("{prefix}mirrored"), number),
+        _ => number,
+    };
+    let words = usize::BITS - (cut.words() - 1).leading_zeros();
+    // Word and rest of the operands of a block, the rest beginning with the bits that every block has.
+    let arm = |block: u32| {
+        let rest = cut.rest_of(block);
+        let base = d.raw_constant("block", i128::from(block) << cut.prefix, integer(words));
+        let word = if cut.prefix == 0 {
+            base
+        } else {
+            d.beside(base, number.bits(rest, integer(cut.prefix)), integer(words))
+        };
+        let way = (it.degree() > 0).then(|| {
+            if rest == 0 {
+                return d.raw_constant("no_rest", 0, integer(cut.rest()));
+            }
+            let places = (cut.rest() - rest) as i32;
+            number.bits(0, integer(rest)).with_fraction(places).shift_left(places)
+        });
+        (word, way)
+    };
+    let (mut word, mut way) = arm(0);
+    for block in 1..=cut.octaves {
+        let low = cut.bits - cut.octaves + block - 1;
+        let above = number.bits(low, integer(cut.bits - low));
+        let here = d.any(&format!("{prefix}octave{block}"), above);
+        let (own, own_way) = arm(block);
+        word = d.choose(&format!("{prefix}word{block}"), here, [word, own]);
+        way = way
+            .zip(own_way)
+            .map(|(below, own)| d.choose(&format!("{prefix}way{block}"), here, [below, own]));
+    }
+    let offset = way.map(|way| {
+        flipped(d, &format!("{prefix}offset"), way, Format::signed(-1, cut.rest() as i32))
+    });
+    (word, offset)
+}
+
+/// The coefficients of the segment, the constant first, which come a clock after the address. They are in tables of their own
+/// where these are `split`, or stand side by side in words of as many bits as a net may have.
+fn table<'d>(
+    d: &'d Designer,
+    prefix: &str,
+    address: Signal<'d>,
+    it: &Piecewise,
+    split: bool,
+) -> Vec<Signal<'d>> {
+    let mut parts: Vec<Range<usize>> = Vec::new();
+    let width = |part: &Range<usize>| -> u32 {
+        it.coefficients[part.clone()].iter().map(|format| format.width()).sum()
+    };
+    for k in 0..it.coefficients.len() {
+        match parts.last_mut() {
+            Some(part) if !split && width(&(part.start..k + 1)) <= MAX_WIDTH => part.end = k + 1,
+            _ => parts.push(k..k + 1),
+        }
+    }
+    let last = it.words.len() - 1;
+    let reached = usize::try_from(address.range().1).unwrap_or(last);
+    let mut signals = Vec::new();
+    for part in &parts {
+        let formats = &it.coefficients[part.clone()];
+        let packed = |word: usize| {
+            let words = it.words[word.min(last)][part.clone()].iter().zip(formats);
+            words.fold(0i128, |all, (&word, format)| {
+                all << format.width() | i128::from(format.bits(word.into()))
+            })
+        };
+        let words: Vec<i128> = (0..=reached).map(packed).collect();
+        let mut below = width(part);
+        let format = Format::unsigned(below as i32, 0);
+        let name = if part.start == 0 {
+            format!("{prefix}coefficients")
+        } else {
+            format!("{prefix}coefficients{}", part.start)
+        };
+        let doc = match part.len() {
+            1 => "coefficient of the segment's polynomial",
+            _ => {
+                "coefficients of the segment's polynomial, that of the lowest power in the top bits"
+            }
+        };
+        let rom = d.rom(&name, address, format, &words, true).doc(doc);
+        for (k, format) in part.clone().zip(formats) {
+            below -= format.width();
+            signals.push(rom.out().bits(below, *format).named(&format!("{prefix}c{k}")));
+        }
+    }
+    signals
+}
