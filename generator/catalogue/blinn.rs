@@ -1,17 +1,17 @@
 //! `blinn` — cⁿ itself for run-time n (seeds 000–002: the function that all the others approximate).
 //!
-//! The seeds give no circuit. This is the one that a table logarithm, a product and a table exponential
-//! make: cⁿ = 2^(−n·decay) with the decay −log₂ c, an octave number before what the table holds.
+//! The seeds give no circuit. This is the one that a logarithm, a product and an exponential make: cⁿ = 2^(−n·decay) with the
+//! decay −log₂ c, an octave number before that of a mantissa.
 
-use glint_base::fixed::{Format, exp2};
+use glint_base::fixed::Format;
 use glint_config::Config;
-use glint_keys::blinn::Keys;
+use glint_keys::decay::{Decay, Keys};
 use glint_rtl::blocks::shift;
 use glint_rtl::dsl::Designer;
 use glint_rtl::netlist::About;
 
 use super::common;
-use super::decay::{self, Curve};
+use super::decay::{self, Distance};
 
 /// The device.
 pub fn describe(d: &Designer, config: &Config) {
@@ -21,25 +21,14 @@ pub fn describe(d: &Designer, config: &Config) {
     let bits = keys.operands.cosine.fraction;
     let fraction = cos_gamma.bits(0, Format::unsigned(0, bits as i32));
     let normalised = shift::normalise(d, "octave", fraction);
-    let octave = normalised.zeros.named("octave").doc("leading zeros of cos gamma");
+    // The normaliser is slow: what follows waits for it once.
+    let octave = d.pipeline("octave", normalised.zeros).doc("leading zeros of cos gamma");
     let mantissa = normalised.word.bits(0, Format::unsigned(bits as i32 - 1, 0));
+    let u = d.not("distance_next", mantissa);
     let u = d
-        .not("distance", mantissa)
+        .pipeline("distance", u)
         .doc("1.0 - cos gamma * 2^octave, less an ulp, from 0 to one half");
-    let table = move |u: f64| -libm::log2(1.0 - (u + 1.0) * exp2(-(bits as i32)));
-    decay::describe(
-        d,
-        &keys,
-        cos_gamma,
-        &Curve {
-            u,
-            operand_bits: bits - 1,
-            table: &table,
-            octave: Some(octave),
-            scale: 0,
-            doc: "-log2(cos gamma * 2^octave)",
-        },
-    );
+    decay::describe(d, config, cos_gamma, Decay::Logarithm, Distance { u, octave: Some(octave) });
 }
 
 fn about(keys: &Keys) -> About {

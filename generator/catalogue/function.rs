@@ -10,7 +10,7 @@ use glint_keys::function::{Keys, found};
 use glint_rtl::dsl::{Designer, Signal, end, step, valid};
 use glint_rtl::netlist::About;
 
-use crate::piecewise::{Polynomial, flipped};
+use crate::piecewise::{Multiplier, Polynomial, Tables, flipped};
 
 /// The device.
 ///
@@ -35,33 +35,18 @@ pub fn describe(d: &Designer, config: &Config) {
             (number, Some(restoring))
         }
     };
-    let polynomial = Polynomial::new(d, "", &it.registers(), number, &it, is_split(config, &it));
-    let degree = it.degree();
-    let shared = (degree > 1).then(|| {
-        let choices: Vec<String> = (0..degree).rev().map(|k| format!("x{}", k + 1)).collect();
-        let choices: Vec<&str> = choices.iter().map(String::as_str).collect();
-        let select = d.select("factors_select", &choices);
-        let pairs = || polynomial.steps().filter_map(|step| polynomial.factors(step));
-        let sums = d.bus("factor", select, pairs().map(|it| it[0]));
-        let offsets = d.bus("offset_of_step", select, pairs().map(|it| it[1]));
-        let product = d.shared_mul("product", &sums, &offsets);
-        (sums, product)
-    });
+    let tables = Tables { split: is_split(config, &it), synchronous: true };
+    let polynomial = Polynomial::new(d, "", &it.registers(), number, &it, tables);
+    let names = ["factors_select", "factor", "offset_of_step", "product"];
+    let multiplier = Multiplier::new(d, names, &[&polynomial]);
     let mut steps = vec![step("operand; table addressed", [])];
     for k in polynomial.steps() {
-        let factors = polynomial.factors(k);
-        let product = factors.map(|[sum, offset]| match &shared {
-            Some((_, product)) => product.of(sum, offset),
-            None => d.mul("product", sum, offset),
-        });
-        let load = polynomial.add(k, product);
         let name = match k {
             0 if it.reduction.is_some() => "polynomial <- all coefficients".to_owned(),
             0 => "result <- the polynomial".to_owned(),
             _ => format!("sum{k} <- coefficients from {k} on"),
         };
-        let pick = shared.as_ref().zip(factors).map(|((sums, _), [sum, _])| sums.pick(sum));
-        steps.push(step(&name, pick.into_iter().chain([load])));
+        steps.push(step(&name, multiplier.step(&polynomial, k)));
     }
     let mut result = polynomial.q();
     if let Some(restoring) = restoring {

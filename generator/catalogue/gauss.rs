@@ -1,18 +1,16 @@
 //! `gauss` — exp(−n·γ²/2), γ = arccos c: the fourth function that seed 002 weighs.
 //!
 //! The seed gives no circuit, and prints the angle as ∠(H,L); its own formulas use ∠(N,H), which is taken
-//! here. exp(−n·γ²/2) = 2^(−n·decay) with the decay γ²/(2 ln 2), a smooth function of 1 − c.
+//! here. exp(−n·γ²/2) = 2^(−n·decay) with the decay γ²/(2 ln 2), 1 − c times a smooth function of it.
 
-use std::f64::consts::LN_2;
-
-use glint_base::fixed::{Format, exp2};
+use glint_base::fixed::Format;
 use glint_config::Config;
-use glint_keys::gauss::Keys;
+use glint_keys::decay::{Decay, Keys};
 use glint_rtl::dsl::Designer;
 use glint_rtl::netlist::About;
 
 use super::common;
-use super::decay::{self, Curve};
+use super::decay::{self, Distance};
 
 /// The device.
 pub fn describe(d: &Designer, config: &Config) {
@@ -22,24 +20,7 @@ pub fn describe(d: &Designer, config: &Config) {
     let bits = keys.operands.cosine.fraction;
     let fraction = cos_gamma.bits(0, Format::unsigned(bits as i32, 0));
     let u = d.not("distance", fraction).doc("1.0 - cos gamma, less an ulp");
-    let table = move |u: f64| {
-        let gamma = libm::acos(1.0 - (u + 1.0) * exp2(-(bits as i32)));
-        gamma * gamma / (4.0 * LN_2)
-    };
-    decay::describe(
-        d,
-        &keys,
-        cos_gamma,
-        &Curve {
-            u,
-            operand_bits: bits,
-            table: &table,
-            octave: None,
-            // At cos γ = 0 the decay is 1.78: the table holds half of it.
-            scale: 1,
-            doc: "gamma^2/(4 ln 2), half the decay",
-        },
-    );
+    decay::describe(d, config, cos_gamma, Decay::Angle, Distance { u, octave: None });
 }
 
 fn about(keys: &Keys) -> About {

@@ -1,18 +1,68 @@
 //! A function of one operand by a piecewise polynomial, as a part of a description: a table of coefficients, and Horner's
 //! rule, of which each step is one product and one sum.
 //!
-//! The number of the operand within the domain addresses the table. The description makes the products: with a multiplier for
-//! this alone, or with one that has other work too.
+//! The number of the operand within the domain addresses the table. One multiplier serves all polynomials of a description.
 
 use std::ops::Range;
 
-use glint_approximate::{Layout, Piecewise};
+use glint_approximate::{Layout, Piecewise, Step};
 use glint_base::fixed::{Format, MAX_WIDTH, Overflow, Rounding};
-use glint_rtl::dsl::{Designer, Register, Setting, Signal};
+use glint_rtl::dsl::{Designer, OperandMux, Register, Setting, SharedProduct, Signal};
+
+/// The multiplier of the steps of polynomials, each of which it carries out in a microinstruction of its own.
+pub struct Multiplier<'d> {
+    d: &'d Designer,
+    name: &'d str,
+    /// The mux of the sums and the product, where there is more than one step.
+    shared: Option<(OperandMux<'d>, SharedProduct<'d>)>,
+}
+
+impl<'d> Multiplier<'d> {
+    /// Makes a multiplier with names for its select lines, its two operands and its product.
+    pub fn new(
+        d: &'d Designer,
+        [select, sums, offsets, product]: [&'d str; 4],
+        polynomials: &[&Polynomial<'d, '_>],
+    ) -> Self {
+        let factors = |it: &Polynomial<'d, '_>| {
+            let factors = |k| Some((format!("{}x{}", it.prefix, k + 1), it.factors(k)?));
+            it.steps().filter_map(factors).collect::<Vec<_>>()
+        };
+        let all: Vec<_> = polynomials.iter().flat_map(|it| factors(it)).collect();
+        let shared = (all.len() > 1).then(|| {
+            let choices: Vec<&str> = all.iter().map(|(name, _)| name.as_str()).collect();
+            let select = d.select(select, &choices);
+            let sums = d.bus(sums, select, all.iter().map(|(_, [sum, _])| *sum));
+            let offsets = d.bus(offsets, select, all.iter().map(|(_, [_, offset])| *offset));
+            let product = d.shared_mul(product, &sums, &offsets);
+            (sums, product)
+        });
+        Self { d, name: product, shared }
+    }
+
+    /// Returns the settings of a step of one of the polynomials, which is carried out once.
+    pub fn step(&self, polynomial: &Polynomial<'d, '_>, step: usize) -> Vec<Setting> {
+        let factors = polynomial.factors(step);
+        let product = factors.map(|[sum, offset]| match &self.shared {
+            Some((_, product)) => product.of(sum, offset),
+            None => self.d.mul(self.name, sum, offset),
+        });
+        let load = polynomial.add(step, product);
+        let pick = self.shared.as_ref().zip(factors).map(|((sums, _), [sum, _])| sums.pick(sum));
+        pick.into_iter().chain([load]).collect()
+    }
+}
+
+/// How the coefficients are kept.
+#[derive(Clone, Copy, Debug)]
+pub struct Tables {
+    /// Each coefficient has a table of its own; else they stand side by side in words of as many bits as a net may have.
+    pub split: bool,
+    /// They are read on the clock edge, and come a clock after the number.
+    pub synchronous: bool,
+}
 
 /// A piecewise polynomial in a datapath.
-///
-/// The table is read on a clock edge: the number stands for a clock before the first sum is loaded, and until the last.
 pub struct Polynomial<'d, 'p> {
     d: &'d Designer,
     it: &'p Piecewise,
@@ -27,19 +77,19 @@ pub struct Polynomial<'d, 'p> {
 
 impl<'d, 'p> Polynomial<'d, 'p> {
     /// Makes the table and the registers of the sums, which have these names, the polynomial's first. `number` is the operand's
-    /// number within the domain, an integer of as many bits as [`glint_approximate::Segments::bits`] says. The coefficients are
-    /// in tables of their own where these are `split`; names of other nets begin with `prefix`.
+    /// number within the domain, an integer of as many bits as [`glint_approximate::Segments::bits`] says; it stands while the sums
+    /// are loaded, and for a clock before where the table is read on the clock edge. Names of other nets begin with `prefix`.
     pub fn new(
         d: &'d Designer,
         prefix: &str,
         registers: &[&str],
         number: Signal<'d>,
         it: &'p Piecewise,
-        split: bool,
+        tables: Tables,
     ) -> Self {
         let (address, offset) = place(d, prefix, number, it);
-        let coefficients = table(d, prefix, address, it, split);
-        let cut = |step: &glint_approximate::Step| {
+        let coefficients = table(d, prefix, address, it, tables);
+        let cut = |step: &Step| {
             let offset = offset.expect("a polynomial has an offset");
             let width = step.offset as i32;
             offset.bits(it.segments.rest() - step.offset, Format::signed(-1, width))
@@ -57,14 +107,14 @@ impl<'d, 'p> Polynomial<'d, 'p> {
 
     /// The factors of the product that a step adds to its coefficient: the sum of the step before, and the offset. A table of
     /// results has none.
-    pub fn factors(&self, step: usize) -> Option<[Signal<'d>; 2]> {
+    fn factors(&self, step: usize) -> Option<[Signal<'d>; 2]> {
         let offset = *self.offsets.get(step)?;
         let above = self.registers.get(step + 1).map(|register| register.q());
         Some([above.unwrap_or(self.coefficients[step + 1]), offset])
     }
 
     /// Lets the register of a step take the sum with its product, and returns the setting that loads it.
-    pub fn add(&self, step: usize, product: Option<Signal<'d>>) -> Setting {
+    fn add(&self, step: usize, product: Option<Signal<'d>>) -> Setting {
         let Self { d, it, prefix, .. } = self;
         let coefficient = self.coefficients[step];
         let sum = product.map_or(coefficient, |product| {
@@ -145,20 +195,17 @@ fn place<'d>(
             .zip(own_way)
             .map(|(below, own)| d.choose(&format!("{prefix}way{block}"), here, [below, own]));
     }
-    let offset = way.map(|way| {
-        flipped(d, &format!("{prefix}offset"), way, Format::signed(-1, cut.rest() as i32))
-    });
-    (word, offset)
+    let format = Format::signed(-1, cut.rest() as i32);
+    (word, way.map(|way| flipped(d, &format!("{prefix}offset"), way, format)))
 }
 
-/// The coefficients of the segment, the constant first, which come a clock after the address. They are in tables of their own
-/// where these are `split`, or stand side by side in words of as many bits as a net may have.
+/// The coefficients of the segment, the constant first.
 fn table<'d>(
     d: &'d Designer,
     prefix: &str,
     address: Signal<'d>,
     it: &Piecewise,
-    split: bool,
+    tables: Tables,
 ) -> Vec<Signal<'d>> {
     let mut parts: Vec<Range<usize>> = Vec::new();
     let width = |part: &Range<usize>| -> u32 {
@@ -166,7 +213,9 @@ fn table<'d>(
     };
     for k in 0..it.coefficients.len() {
         match parts.last_mut() {
-            Some(part) if !split && width(&(part.start..k + 1)) <= MAX_WIDTH => part.end = k + 1,
+            Some(part) if !tables.split && width(&(part.start..k + 1)) <= MAX_WIDTH => {
+                part.end = k + 1
+            }
             _ => parts.push(k..k + 1),
         }
     }
@@ -195,7 +244,7 @@ fn table<'d>(
                 "coefficients of the segment's polynomial, that of the lowest power in the top bits"
             }
         };
-        let rom = d.rom(&name, address, format, &words, true).doc(doc);
+        let rom = d.rom(&name, address, format, &words, tables.synchronous).doc(doc);
         for (k, format) in part.clone().zip(formats) {
             below -= format.width();
             signals.push(rom.out().bits(below, *format).named(&format!("{prefix}c{k}")));

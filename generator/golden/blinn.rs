@@ -1,15 +1,16 @@
 //! `blinn`: cⁿ itself (seeds 000–002), by formula: 2^(−n·decay) with the decay −log₂ c.
 
-use super::decay::{self, Function};
+use super::decay;
 use super::{Contract, Model};
 use glint_config::Config;
+use glint_keys::decay::Decay;
 
 /// The golden model.
 pub fn model(config: &Config) -> Box<dyn Model> {
-    decay::model(config, Function::Logarithm)
+    decay::model(config, Decay::Logarithm)
 }
 
 /// The accuracy contract.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
-    decay::contract(config, Function::Logarithm)
+    decay::contract(config, Decay::Logarithm)
 }

@@ -1,4 +1,4 @@
-//! An increasing function by straight segments, computed afresh.
+//! An increasing, concave function by straight segments, computed afresh.
 //!
 //! The operand u is an integer of C bits. Ranges, each a quarter of the one before, are cut uniformly,
 //! and so is the tail below them; a value is a raw u0.S.
@@ -18,18 +18,6 @@ pub struct Params {
     pub segments: Vec<u32>,
     /// log₂ of the number of segments of the tail.
     pub tail: u32,
-}
-
-/// Segments of up to this many operands are looked at operand by operand for their errors.
-const SHORT: u64 = 64;
-
-/// How the function bends.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Bend {
-    /// Its slope grows.
-    Convex,
-    /// Its slope falls.
-    Concave,
 }
 
 /// A segment, with what is stored for it.
@@ -68,7 +56,7 @@ pub struct Curve {
 
 impl Curve {
     /// The table of `function`, of u as an integer: increasing from 0 to 1.
-    pub fn new(params: &Params, bend: Bend, function: impl Fn(f64) -> f64) -> Self {
+    pub fn new(params: &Params, function: impl Fn(f64) -> f64) -> Self {
         let mut curve = Self {
             params: params.clone(),
             ranges: Vec::new(),
@@ -83,7 +71,7 @@ impl Curve {
         }
         curve.cut(bits - params.tail, 0, 1 << params.tail);
         for at in 0..curve.segments.len() {
-            curve.fit(at, bend, &function);
+            curve.fit(at, &function);
         }
         curve
     }
@@ -102,11 +90,10 @@ impl Curve {
 
     /// Base and slope of a segment, and its errors.
     ///
-    /// The slope is the chord's, rounded. Relative to it a convex function falls and then rises, so its
-    /// extremes are the ends and the point from which on it rises more, from one operand to the next, than
-    /// the line; a concave one rises and then falls. The base halves the extremes. Of a convex function it makes up for
-    /// half an ulp that the truncated rise loses; where a segment has one operand there is no rise.
-    fn fit(&mut self, at: usize, bend: Bend, function: &impl Fn(f64) -> f64) {
+    /// The slope is the chord's, rounded. Relative to it a concave function rises and then falls, so its
+    /// extremes are the ends and the point from which on it rises less, from one operand to the next, than
+    /// the line. The base halves the extremes; where a segment has one operand there is no rise.
+    fn fit(&mut self, at: usize, function: &impl Fn(f64) -> f64) {
         let Segment { start, log_length, .. } = self.segments[at];
         let steps = 1u64 << log_length;
         let scale = exp2(self.params.fraction as i32);
@@ -119,48 +106,32 @@ impl Curve {
             let slope = ((value(steps) - first) * slope_scale + 0.5).floor();
             let rise = slope / slope_scale / steps as f64;
             let above = |step: u64| value(step) - rise * step as f64;
-            let turned = |step: u64| match bend {
-                Bend::Convex => value(step + 1) - value(step) > rise,
-                Bend::Concave => above(step + 1) <= above(step),
-            };
             // The first step at which the function has turned.
             let (mut from, mut to) = (0, steps - 1);
             while from < to {
                 let middle = (from + to) / 2;
-                if turned(middle) {
+                if above(middle + 1) <= above(middle) {
                     to = middle;
                 } else {
                     from = middle + 1;
                 }
             }
-            let ends = [above(0), above(steps - 1)];
-            match bend {
-                Bend::Convex => (slope as i64, from, above(from), ends[0].max(ends[1])),
-                Bend::Concave => (slope as i64, from, ends[0].min(ends[1]), above(from)),
-            }
+            (slope as i64, from, above(0).min(above(steps - 1)), above(from))
         };
-        let half = if steps == 1 || bend == Bend::Concave { 0.0 } else { 0.5 };
-        let base = ((low + high) / 2.0 * scale + half + 0.5).floor() as i64;
+        let base = ((low + high) / 2.0 * scale + 0.5).floor() as i64;
         let segment = &mut self.segments[at];
         segment.base = base.clamp(0, self.largest);
         segment.slope = slope;
 
-        // The line is off by the most at its extremes; the truncated rise takes less than an ulp.
+        // The line is off by the most at its extremes; the truncated rise takes less than an ulp, and saturation to 1 − ulp is off
+        // by up to one.
         let line = segment.base as f64 / scale;
-        let each = |step| (self.at((start + step) as i64) as f64 / scale - value(step)).abs();
-        let error = match bend {
-            _ if steps == 1 => each(0),
-            Bend::Convex if steps <= SHORT => (0..steps).map(each).fold(0.0, f64::max),
-            Bend::Convex => (line - low).max(high - line + 1.0 / scale),
-            // Saturation to 1 − ulp is off by up to an ulp.
-            Bend::Concave => (high + 1.0 / scale - line).max(line - low).max(1.0 / scale),
-        };
-        let shape = match bend {
-            Bend::Convex => (high - low) / 2.0,
-            Bend::Concave => {
-                let chord = first + (value(steps) - first) * turn as f64 / steps as f64;
-                if steps == 1 { 0.0 } else { (value(turn) - chord) / 2.0 }
-            }
+        let (error, shape) = if steps == 1 {
+            ((self.at(start as i64) as f64 / scale - first).abs(), 0.0)
+        } else {
+            let chord = first + (value(steps) - first) * turn as f64 / steps as f64;
+            let error = (high + 1.0 / scale - line).max(line - low).max(1.0 / scale);
+            (error, (value(turn) - chord) / 2.0)
         };
         self.pieces.push(Piece { start, last: start + steps - 1, error, shape });
     }
@@ -194,7 +165,12 @@ impl Curve {
 mod tests {
     use super::*;
 
-    /// C = 4 and the parabola (u/16)²·¾: one range, 4 … 15, in prefixes of four operands; a tail of one segment.
+    /// Three quarters of x·(2 − x) at x = u/16.
+    fn lobe(u: f64) -> f64 {
+        0.75 * (u / 16.0) * (2.0 - u / 16.0)
+    }
+
+    /// C = 4 and the parabola: one range, 4 … 15, in prefixes of four operands; a tail of one segment.
     fn parabola(segments: &[u32], tail: u32) -> Curve {
         let params = Params {
             operand_bits: 4,
@@ -203,21 +179,19 @@ mod tests {
             segments: segments.to_vec(),
             tail,
         };
-        Curve::new(&params, Bend::Convex, |u| 0.75 * u * u / 256.0)
+        Curve::new(&params, lobe)
     }
 
     #[test]
     fn by_hand() {
-        // In units of 1/256 the function is 0.75·u².
+        // In units of 1/256 the function is 24·u − 0.75·u².
         let curve = parabola(&[2], 0);
-        // Tail, u = 0 … 3 (to 4): slope 12 over the segment, 3 a step. Above the line: 0, −2.25, −3,
-        // −2.25; from −3 to 0: base −1.5 + 0.5, which no word holds: 0.
-        assert_eq!([0, 1, 2, 3].map(|u| curve.at(u)), [0, 3, 6, 9]);
-        // u = 4 … 7: 12 … 36.75, to 48: slope 36, 9 a step; above: 12, 9.75, 9, 9.75: base 10.5 + 0.5 = 11.
-        assert_eq!([4, 5, 6, 7].map(|u| curve.at(u)), [11, 20, 29, 38]);
-        // The last of four segments, 12 … 15: 108, 126.75, 147, 168.75, to 192: slope 84, 21 a step;
-        // above: 108, 105.75, 105, 105.75: base 106.5 + 0.5 = 107.
-        assert_eq!([12, 15].map(|u| curve.at(u)), [107, 170]);
+        // Tail, u = 0 … 3 (to 4): slope 84 over the segment, 21 a step. Above the line: 0, 2.25, 3, 2.25: base 1.5 + 0.5.
+        assert_eq!([0, 1, 2, 3].map(|u| curve.at(u)), [2, 23, 44, 65]);
+        // u = 4 … 7: 84 … 131.25, to 144: slope 60, 15 a step; above: 84, 86.25, 87, 86.25: base 85.5 + 0.5.
+        assert_eq!([4, 5, 6, 7].map(|u| curve.at(u)), [86, 101, 116, 131]);
+        // The last of four segments, 12 … 15: 180 … 191.25, to 192: slope 12, 3 a step; above: 180, 182.25, 183, 182.25.
+        assert_eq!([12, 15].map(|u| curve.at(u)), [182, 191]);
     }
 
     #[test]
@@ -227,7 +201,7 @@ mod tests {
             for u in 0..16i64 {
                 let holds = |piece: &&Piece| (piece.start..=piece.last).contains(&(u as u64));
                 let piece = curve.pieces().iter().find(holds).expect("a piece");
-                let error = (curve.at(u) as f64 - 0.75 * (u * u) as f64).abs() / 256.0;
+                let error = (curve.at(u) as f64 / 256.0 - lobe(u as f64)).abs();
                 assert!(error <= piece.error, "{u}: {error} > {piece:?}");
             }
         }

@@ -1,11 +1,10 @@
-//! `function`: a formula of one operand by Horner's rule in integers, on the coefficients of its table.
-//!
-//! The table is data: what vouches for it is that every operand was computed and set against the formula.
+//! `function`: a formula of one operand by a piecewise polynomial.
 
 use std::sync::Arc;
 
 use super::device::{self, Formula};
-use super::frame::{Frame, idle, step_by};
+use super::frame::{Frame, idle, step, step_by};
+use super::polynomial::Polynomial;
 use super::{Contract, Model, Term};
 use glint_approximate::{Curve, Function, Outside, Piecewise};
 use glint_base::fixed::exp2;
@@ -16,29 +15,16 @@ use glint_keys::function::found;
 /// result comes.
 fn device(it: &Arc<Piecewise>) -> device::Device {
     let (first, last) = it.domain;
-    let top = it.degree();
     let mut frame = Frame::default();
     let x = match it.outside {
         Outside::Clamp => frame.clamped("x", it.operand, first, last),
         Outside::Wrap | Outside::Anything => frame.operand("x", it.operand),
     };
-    let names = it.registers();
-    let registers = names.iter().zip(&it.sums).take(top.max(1));
-    let sums: Vec<_> = registers.map(|(name, format)| frame.register(name, *format)).collect();
-    let polynomial = sums[0];
+    let sums = Polynomial::new(&mut frame, &it.registers(), it);
+    let polynomial = sums.q();
     let restored = it.reduction.is_some().then(|| frame.register("result", it.result));
     frame.shows("result_out", restored.unwrap_or(polynomial));
-    let add = |k: usize| {
-        let (own, above) = (sums[k], sums.get(k + 1).copied());
-        step_by(it, move |it, s| {
-            let place = it.place(s[x]);
-            // The highest coefficient is a word of the table and no register.
-            let above = above.map_or(it.words[place.word][top], |above| s[above]);
-            let sum = it.sum(k, place, above) >> if k == 0 { it.guard() } else { 0 };
-            s[own] = it.sums[k].raw(it.sums[k].bits(sum.into())) as i64;
-        })
-    };
-    let adds = (0..top.max(1)).rev().map(add);
+    let adds = sums.steps(move |s| s[x]).map(step);
     let restores = restored.map(|own| {
         step_by(it, move |it, s| {
             let result = it.restored(s[x], s[polynomial]);

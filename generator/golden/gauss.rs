@@ -1,15 +1,16 @@
 //! `gauss`: exp(−n·γ²/2) (seed 002), by formula: 2^(−n·decay) with the decay γ²/(2 ln 2).
 
-use super::decay::{self, Function};
+use super::decay;
 use super::{Contract, Model};
 use glint_config::Config;
+use glint_keys::decay::Decay;
 
 /// The golden model.
 pub fn model(config: &Config) -> Box<dyn Model> {
-    decay::model(config, Function::Angle)
+    decay::model(config, Decay::Angle)
 }
 
 /// The accuracy contract.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
-    decay::contract(config, Function::Angle)
+    decay::contract(config, Decay::Angle)
 }

@@ -2,7 +2,7 @@
 //!
 //! Operands are raw values with C fraction bits, 0 … 2^C; a sine is a raw u0.S.
 
-use super::curve::{self, Bend, Curve};
+use super::curve::{self, Curve};
 use glint_base::fixed::exp2;
 
 /// How the table is organised.
@@ -86,10 +86,7 @@ impl Sine {
                     tail,
                 };
                 let sine = |u: f64| sine_of(operand, u as i64);
-                Table::Segmented {
-                    curve: Curve::new(&params, Bend::Concave, sine),
-                    rest: 1 << tail,
-                }
+                Table::Segmented { curve: Curve::new(&params, sine), rest: 1 << tail }
             }
         };
         Self { operand_fraction: operand, fraction, table }

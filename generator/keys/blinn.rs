@@ -2,11 +2,10 @@
 
 pub use super::decay::Keys;
 
-use super::decay;
+use super::decay::{self, Decay};
 use glint_config::Schema;
 
 /// The keys of the device.
 pub fn schema() -> Schema {
-    // Normalised, the top bit of the cosine is known.
-    decay::schema("blinn", 19, |config, problems| decay::check(config, 1, problems))
+    decay::schema("blinn", |config, problems| decay::check(config, Decay::Logarithm, problems))
 }

@@ -1,124 +1,185 @@
-//! The keys of `blinn` and `gauss`.
+//! The keys of `blinn` and `gauss`, and the tables that they state.
+
+use std::sync::Arc;
 
 use super::common::{self, Domain, Intensity, Operands};
+use glint_approximate::{Curve, Function, Outside, Piecewise, Refusal, Wish, find};
+use glint_base::fixed::Format;
 use glint_config::{Config, Key, Problems, Schema, Value};
+use glint_formula::parse;
 
 glint_config::keys! {
     /// The keys of a configuration.
     pub struct Keys {
         operands: Operands = Operands::keys(),
-        decay_fraction: u32 = Key::integer("decay.fraction", 26, 12..=28,
+        ratio_fraction: u32 = Key::integer("ratio.fraction", 16, 5..=20,
+            "Fraction bits of the decay over 1 - cos, which a table of polynomials gives.").drawn(5, 12),
+        ratio_degree: String = degree("ratio.degree"),
+        decay_fraction: u32 = Key::integer("decay.fraction", 26, 12..=30,
             "Fraction bits of the decay: f = 2^(-n*decay)."),
-        segments: Vec<u32> = Key::integers("decay.segments", &[6, 5, 4, 3, 2], 2..=10, 1..=11,
-            "log2 of the straight segments for each factor of four of 1 - cos, from the top."),
-        tail: u32 = Key::integer("decay.tail", 1, 0..=6,
-            "log2 of the segments into which what lies below the last of these is cut."),
-        slope_fraction: u32 = Key::integer("decay.slope_fraction", 24, 8..=28,
-            "Fraction bits of the rise over a segment."),
-        coarse_fraction: u32 = Key::integer("decay.coarse_fraction", 19, 8..=28,
+        coarse_fraction: u32 = Key::integer("decay.coarse_fraction", 18, 8..=30,
             "Fraction bits with which a decay that is not small is multiplied by n; a small one keeps all."),
-        address: u32 = Key::integer("exponential.address", 7, 3..=10,
-            "Leading bits of the fraction of n*decay that address the table of 2^-x."),
-        offset_bits: Vec<u32> = Key::integers("exponential.offset_bits", &[2, 3, 4], 2..=5, 1..=3,
-            "Bits of the fields below them, each with a table of offsets."),
-        offset_address: Vec<u32> = Key::integers("exponential.offset_address", &[6, 5, 3], 0..=10, 1..=3,
-            "Leading bits that choose the slope of each of these tables."),
-        fraction: u32 = Key::integer("exponential.fraction", 19, 8..=24,
-            "Fraction bits of the tables of 2^-x."),
-        synchronous: bool = Key::flag("tables.synchronous", true,
-            "The tables read on the clock edge (block RAM) instead of at once (logic)."),
+        argument: u32 = Key::integer("exponential.argument", 18, 4..=20,
+            "Fraction bits of n*decay, of which a table of polynomials gives 2^-x.").drawn(4, 12),
+        fraction: u32 = Key::integer("exponential.fraction", 18, 5..=24, "Fraction bits of 2^-x.").drawn(5, 12),
+        degree: String = degree("exponential.degree"),
         f: Intensity = Intensity::keys(),
         domain: Domain = Domain::keys(),
     }
 }
 
-impl Keys {
-    /// The fields of the fraction of n·decay below the address, from the top: bits, and leading bits that choose a slope.
-    pub fn offsets(&self) -> impl Iterator<Item = (u32, u32)> {
-        self.offset_bits.iter().copied().zip(self.offset_address.iter().copied())
+/// The degree of a table's polynomials.
+fn degree(name: &'static str) -> Key {
+    Key::choice(
+        name,
+        "auto",
+        &["auto", "1", "2", "3"],
+        "The degree of the polynomials; by default that of the least cost.",
+    )
+}
+
+/// The decay as a function of c = cos γ.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Decay {
+    /// `blinn`: −log₂ c, of a cosine from one half on; octaves below it add as many whole numbers.
+    Logarithm,
+    /// `gauss`: γ²/(2 ln 2).
+    Angle,
+}
+
+impl Decay {
+    /// The decay over the distance v = 1 − c, a formula of a v.
+    fn over_distance(self, v: &str) -> String {
+        match self {
+            Self::Logarithm => format!("-log2(1 - {v}) / {v}"),
+            Self::Angle => format!("acos(1 - {v})^2 / (2 * ln(2) * {v})"),
+        }
+    }
+
+    /// The most that the decay over the distance rises for a rise of the distance: its slope at the last distance, since it is
+    /// convex. That is 1/(ln 2·(1 − v)·v) + log₂(1 − v)/v² at v = ½, and (π − π²/4)/(2 ln 2) at 1.
+    pub fn steepest(self) -> f64 {
+        match self {
+            Self::Logarithm => 1.771,
+            Self::Angle => 0.487,
+        }
+    }
+
+    /// Bits of the distance of which the first is always 0.
+    fn known(self) -> u32 {
+        u32::from(self == Self::Logarithm)
     }
 }
 
-/// The keys of one of the devices, which has so many coarse fraction bits by default.
-pub(super) fn schema(
-    device: &'static str,
-    coarse_fraction: i64,
-    check: fn(&Config, &mut Problems),
-) -> Schema {
+impl Keys {
+    /// Bits of u, the distance 1 − c less an ulp of the cosine.
+    pub fn distance(&self, decay: Decay) -> u32 {
+        self.operands.cosine.fraction - decay.known()
+    }
+
+    /// The format of the decay, or of what octaves add to: below 2.0.
+    pub fn decay_format(&self) -> Format {
+        Format::unsigned(1, self.decay_fraction as i32)
+    }
+
+    /// Bits of the integer of a decay: of the number of an octave, and one more.
+    fn whole_bits(&self, decay: Decay) -> u32 {
+        let octave = (self.operands.cosine.fraction - 1).ilog2() + 1;
+        1 + octave * decay.known()
+    }
+
+    /// Bits of a decay as a factor: of a small one, below ¼, all that are not 0, of others the integer and the coarse fraction.
+    pub fn factor_bits(&self, decay: Decay) -> u32 {
+        (self.decay_fraction - 2).max(self.whole_bits(decay) + self.coarse_fraction)
+    }
+
+    /// The format of n·decay.
+    pub fn halvings(&self, decay: Decay) -> Format {
+        let whole = self.operands.exponent_bits + self.whole_bits(decay);
+        Format::unsigned(whole as i32, self.argument as i32)
+    }
+
+    /// Low bits of u that the table of the ratio does not see: of 1 − c it takes a bit more than the ratio has.
+    pub fn unseen(&self) -> u32 {
+        self.operands.cosine.fraction.saturating_sub(self.ratio_fraction + 1)
+    }
+
+    /// The table of the decay over the distance, whose operand is u without the bits that are not seen: a value for the middle
+    /// of the distances that it stands for.
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub fn ratio(&self, decay: Decay) -> Result<Arc<Piecewise>, Refusal> {
+        let unseen = self.unseen();
+        let fraction = self.operands.cosine.fraction - unseen;
+        let middle = format!("(x + 1/2^{} + 1/2^{})", fraction + 1, fraction + unseen + 1);
+        let bits = self.distance(decay) - unseen;
+        let last = (1 << bits) - 1;
+        let formula = decay.over_distance(&middle);
+        let of = (bits as i32 - fraction as i32, fraction as i32);
+        table(&formula, (last, of), self.ratio_fraction, &self.ratio_degree, "ratio.fraction")
+    }
+
+    /// The table of 2^−x of the fraction x of n·decay: a value for the middle of what is cut to x.
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub fn power(&self) -> Result<Arc<Piecewise>, Refusal> {
+        let formula = format!("exp2(-x - 1/2^{})", self.argument + 1);
+        let (last, of) = ((1 << self.argument) - 1, (0, self.argument as i32));
+        table(&formula, (last, of), self.fraction, &self.degree, "exponential.fraction")
+    }
+}
+
+/// The approximation of a formula over operands from 0 to the last, of so many bits before and behind the point.
+fn table(
+    formula: &str,
+    (last, (int, frac)): (i64, (i32, i32)),
+    fraction: u32,
+    degree: &str,
+    key: &'static str,
+) -> Result<Arc<Piecewise>, Refusal> {
+    let function = Function {
+        curve: Curve::Formula(parse(formula).expect("a formula of ours")),
+        domain: (0, last),
+        operand: Format::unsigned(int, frac),
+        outside: Outside::Anything,
+        fraction,
+        error: 1.0,
+    };
+    let wish = Wish { degree: degree.parse().ok(), ..Wish::default() };
+    find(&function, wish).map_err(|refusal| Refusal { key, place: None, ..refusal })
+}
+
+/// The keys of one of the devices.
+pub(super) fn schema(device: &'static str, check: fn(&Config, &mut Problems)) -> Schema {
     let mut keys = Keys::keys();
     for key in &mut keys {
-        match key.name {
-            "decay.coarse_fraction" => key.default = Value::Integer(coarse_fraction),
-            "intensity.rounding" => key.default = Value::Text("nearest".to_owned()),
-            _ => {}
+        if key.name == "intensity.rounding" {
+            key.default = Value::Text("nearest".to_owned());
         }
     }
     Schema { device, keys, check }
 }
 
-/// The most bits of a fraction of n·decay.
-const MOST_EXPONENT_BITS: u32 = 20;
-
-/// The conditions between keys; the table's operand has so many bits fewer than the cosine.
-pub(super) fn check(config: &Config, known: u32, problems: &mut Problems) {
+/// The conditions between keys.
+pub(super) fn check(config: &Config, decay: Decay, problems: &mut Problems) {
     let keys = Keys::of(config);
     common::check_exponents(&keys.domain, keys.operands.exponent_bits, problems);
-    check_decay(&keys, keys.operands.cosine.fraction - known, problems);
-    let (address, bits, addresses) = (keys.address, &keys.offset_bits, &keys.offset_address);
-    if addresses.len() != bits.len() {
+    if keys.coarse_fraction > keys.decay_fraction {
         problems.push(
-            "exponential.offset_address",
+            "decay.coarse_fraction",
             format!(
-                "{} entries for the {} fields of exponential.offset_bits",
-                addresses.len(),
-                bits.len()
+                "{} fraction bits of the decay for the product by n do not go with {} of the decay",
+                keys.coarse_fraction, keys.decay_fraction
             ),
-            "one entry for each field".to_owned(),
+            format!("at most {}, or a larger decay.fraction", keys.decay_fraction),
         );
     }
-    if let Some(most) = addresses.iter().find(|&&most| most > address) {
-        problems.push(
-            "exponential.offset_address",
-            format!(
-                "a slope cannot be chosen by {most} of the {address} bits of exponential.address"
-            ),
-            format!("at most {address}, or a larger exponential.address"),
-        );
+    if problems.is_refused() {
+        return;
     }
-    let total = address + bits.iter().sum::<u32>();
-    if total > MOST_EXPONENT_BITS {
-        problems.push(
-            "exponential.offset_bits",
-            format!("with exponential.address the fraction of n*decay would have {total} bits"),
-            format!("fewer or smaller fields, for at most {MOST_EXPONENT_BITS} bits in all"),
-        );
-    }
-}
-
-fn check_decay(keys: &Keys, operand_bits: u32, problems: &mut Problems) {
-    // A factor of four takes two bits; below the last bit there are none.
-    let rest = operand_bits.saturating_sub(2 * keys.segments.len() as u32);
-    if rest < keys.tail {
-        problems.push(
-            "decay.segments",
-            format!(
-                "{rest} of the {operand_bits} bits of 1 - cos would remain for the tail below the last range"
-            ),
-            "fewer ranges, a smaller decay.tail, or a larger cosine.fraction".to_owned(),
-        );
-    }
-    common::check_segments(&keys.segments, "decay.segments", operand_bits, problems);
-    let fraction = keys.decay_fraction;
-    for (key, bits, what) in [
-        ("decay.slope_fraction", keys.slope_fraction, "the rise over a segment"),
-        ("decay.coarse_fraction", keys.coarse_fraction, "the decay for the product by n"),
-    ] {
-        if bits > fraction {
-            problems.push(
-                key,
-                format!("{bits} fraction bits of {what} do not go with {fraction} of the decay"),
-                format!("at most {fraction}, or a larger decay.fraction"),
-            );
-        }
+    for refusal in [keys.ratio(decay).err(), keys.power().err()].into_iter().flatten() {
+        problems.push(refusal.key, refusal.message, refusal.remedy);
     }
 }

@@ -2,10 +2,10 @@
 
 pub use super::decay::Keys;
 
-use super::decay;
+use super::decay::{self, Decay};
 use glint_config::Schema;
 
 /// The keys of the device.
 pub fn schema() -> Schema {
-    decay::schema("gauss", 24, |config, problems| decay::check(config, 0, problems))
+    decay::schema("gauss", |config, problems| decay::check(config, Decay::Angle, problems))
 }

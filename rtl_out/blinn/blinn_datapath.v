@@ -6,64 +6,69 @@
 `default_nettype none
 
 module blinn_datapath #(
-    parameter CURVE_FILE = "blinn_curve.mem",
-    parameter EXP2_BEND_VALUE_FILE = "blinn_exp2_bend_value.mem",
-    parameter EXP2_BEND_OFFSET1_FILE = "blinn_exp2_bend_offset1.mem",
-    parameter EXP2_BEND_OFFSET2_FILE = "blinn_exp2_bend_offset2.mem",
-    parameter EXP2_BEND_OFFSET3_FILE = "blinn_exp2_bend_offset3.mem"
+    parameter RATIO_COEFFICIENTS_FILE = "blinn_ratio_coefficients.mem",
+    parameter RATIO_COEFFICIENTS1_FILE = "blinn_ratio_coefficients1.mem",
+    parameter RATIO_COEFFICIENTS2_FILE = "blinn_ratio_coefficients2.mem",
+    parameter POWER_COEFFICIENTS_FILE = "blinn_power_coefficients.mem",
+    parameter POWER_COEFFICIENTS1_FILE = "blinn_power_coefficients1.mem",
+    parameter POWER_COEFFICIENTS2_FILE = "blinn_power_coefficients2.mem"
 ) (
     input  wire        clk,
     // u1.20: cosine of the angle between normal and half vector
     input  wire [20:0] cos_gamma,
-    input  wire        cos_gamma_write,   // writes cos_gamma
-    input  wire [9:0]  exponent,          // specular exponent n
-    input  wire        exponent_write,    // writes exponent
-    input  wire [7:0]  red,               // intensity of the light times k_s
-    input  wire        red_write,         // writes red
-    input  wire [7:0]  green,             // intensity of the light times k_s
-    input  wire        green_write,       // writes green
-    input  wire [7:0]  blue,              // intensity of the light times k_s
-    input  wire        blue_write,        // writes blue
-    input  wire        idle,              // operands may be written
-    input  wire        operand_select,
-    input  wire        decay_load,
+    input  wire        cos_gamma_write,    // writes cos_gamma
+    input  wire [9:0]  exponent,           // specular exponent n
+    input  wire        exponent_write,     // writes exponent
+    input  wire [7:0]  red,                // intensity of the light times k_s
+    input  wire        red_write,          // writes red
+    input  wire [7:0]  green,              // intensity of the light times k_s
+    input  wire        green_write,        // writes green
+    input  wire [7:0]  blue,               // intensity of the light times k_s
+    input  wire        blue_write,         // writes blue
+    input  wire        idle,               // operands may be written
+    input  wire        ratio_load,
+    input  wire        ratio_sum1_load,
+    input  wire        factor_load,
+    input  wire        decay_small_load,
     input  wire        halvings_load,
+    input  wire        operand_select,
+    input  wire        power_load,
+    input  wire        power_sum1_load,
     input  wire        reflectance_load,
-    output wire [15:0] f_out,             // u0.16: the reflectance, for a user's own multipliers
-    output wire [7:0]  red_out,           // intensity on the output
-    output wire [7:0]  green_out,         // intensity on the output
-    output wire [7:0]  blue_out           // intensity on the output
+    input  wire [1:0]  polynomial_select,
+    output wire [15:0] f_out,              // u0.16: the reflectance, for a user's own multipliers
+    output wire [7:0]  red_out,            // intensity on the output
+    output wire [7:0]  green_out,          // intensity on the output
+    output wire [7:0]  blue_out            // intensity on the output
 );
 
     // Constants
     localparam [20:0] COS_GAMMA_MOST = 21'h100000;  // 1.0 in u1.20
+    localparam [4:0] PLACES_MOST = 5'd31;
+    localparam [1:0] POLYNOMIAL_SELECT_RATIO_X2 = 2'd0;
+    localparam [1:0] POLYNOMIAL_SELECT_RATIO_X1 = 2'd1;
+    localparam [1:0] POLYNOMIAL_SELECT_POWER_X2 = 2'd2;
+    localparam [1:0] POLYNOMIAL_SELECT_POWER_X1 = 2'd3;
 
     // Registers
-    // u1.20: cosine of the angle between normal and half vector
-    reg         [20:0] cos_gamma_reg;
-    reg         [9:0]  exponent_reg;             // specular exponent n
-    reg         [7:0]  red_reg;                  // intensity of the light times k_s
-    reg         [7:0]  green_reg;                // intensity of the light times k_s
-    reg         [7:0]  blue_reg;                 // intensity of the light times k_s
-    reg         [25:0] decay;                    // u0.26: -log2(cos gamma * 2^octave)
-    reg         [20:0] halvings;                 // u5.16: n*decay: how often f is half of 1.0
-    reg         [15:0] reflectance;              // u0.16: f
-    reg         [12:0] curve_rest_held;          // u0.13
-    reg                exp2_bend_offset1_upper;
-    reg                exp2_bend_offset2_upper;
-    reg                exp2_bend_offset3_upper;
-    reg         [15:0] exp2_x;                   // u0.16
-    // octave, delayed by a clock: the operands do not change
-    reg         [4:0]  octave_held;
-    // octave_any, delayed by a clock: the operands do not change
-    reg                octave_any_held;
-    // facing, delayed by a clock: the operands do not change
-    reg                facing_held;
-    reg         [44:0] curve_word;
-    reg         [14:0] exp2_bend_value_word;     // u-4.19
-    reg  signed [9:0]  exp2_bend_offset1_word;   // s-10.19
-    reg  signed [7:0]  exp2_bend_offset2_word;   // s-12.19
-    reg  signed [4:0]  exp2_bend_offset3_word;   // s-15.19
+    reg         [20:0] cos_gamma_reg;  // u1.20: cosine of the angle between normal and half vector
+    reg         [4:0]  octave;         // leading zeros of cos gamma
+    // 1.0 - cos gamma * 2^octave, less an ulp, from 0 to one half
+    reg         [18:0] distance;
+    reg         [9:0]  exponent_reg;   // specular exponent n
+    reg         [7:0]  red_reg;        // intensity of the light times k_s
+    reg         [7:0]  green_reg;      // intensity of the light times k_s
+    reg         [7:0]  blue_reg;       // intensity of the light times k_s
+    reg         [17:0] ratio;          // u2.16: decay over 1 - cos gamma
+    reg         [12:0] ratio_sum1;     // u-4.17
+    reg         [19:0] way;            // u0.20: 1.0 - cos gamma * 2^octave
+    reg         [23:0] factor;         // the decay; its point by decay_small
+    reg                decay_small;    // the decay is below 1/4, and all its bits count
+    reg         [33:0] halvings;       // u16.18: n*decay: how often f is half of 1.0
+    reg         [18:0] power;          // u1.18: 2^-x of the fraction x of halvings
+    reg  signed [15:0] power_sum1;     // s-4.19
+    reg         [15:0] reflectance;    // u0.16: f
+    reg                facing_held;    // facing, delayed by a clock: the operands do not change
 
     wire cos_gamma_over = cos_gamma[20];
     wire [20:0] cos_gamma_at_most = cos_gamma_over ? COS_GAMMA_MOST : cos_gamma;  // u1.20
@@ -83,144 +88,98 @@ module blinn_datapath #(
     wire octave_top1 = octave_by2[19];
     wire [19:0] octave_by1 = octave_top1 ? octave_by2 : {octave_by2[18:0], 1'b0};
     wire octave_free1 = ~octave_top1;
-
-    // leading zeros of cos gamma
-    wire [4:0] octave = {octave_free16, octave_free8, octave_free4, octave_free2, octave_free1};
-
-    // 1.0 - cos gamma * 2^octave, less an ulp, from 0 to one half
-    wire [18:0] distance = ~octave_by1[18:0];
-
+    wire [18:0] distance_next = ~octave_by1[18:0];
     wire exponent_load = exponent_write & idle;
     wire red_load = red_write & idle;
     wire green_load = green_write & idle;
     wire blue_load = blue_write & idle;
-    wire curve_in_range1 = |distance[18:15];  // u is in range 1 or in one above
-    wire [6:0] curve_word1 = curve_in_range1 ? {2'd2, distance[16:12]} : {3'd0, distance[14:11]};
+    wire ratio_offset_top = ~distance[14];
 
-    // u0.13
-    wire [12:0] curve_rest1 = curve_in_range1 ? {distance[11:0], 1'b0} : {distance[10:0], 2'd0};
+    // ROM ratio_coefficients: coefficient of the segment's polynomial
+    reg [18:0] ratio_coefficients_rom [0:15];
+    initial $readmemh(RATIO_COEFFICIENTS_FILE, ratio_coefficients_rom);
+    wire [18:0] ratio_coefficients_word = ratio_coefficients_rom[distance[18:15]];
 
-    wire curve_in_range0 = |distance[18:17];  // u is in range 0 or in one above
-    wire [6:0] curve_word0 = curve_in_range0 ? {1'b0, distance[18:13]} : curve_word1;
-    wire [12:0] curve_rest0 = curve_in_range0 ? distance[12:0] : curve_rest1;  // u0.13
-    wire curve_in_range4 = |distance[18:9];  // u is in range 4 or in one above
-    wire [6:0] curve_word4 = curve_in_range4 ? {5'd0, distance[10:9]} : {6'd32, distance[8]};
+    wire [18:0] ratio_c0 = ratio_coefficients_word;  // u1.18
 
-    // u0.13
-    wire [12:0] curve_rest4 = curve_in_range4 ? {distance[8:0], 4'd0} : {distance[7:0], 5'd0};
+    // ROM ratio_coefficients1: coefficient of the segment's polynomial
+    reg [12:0] ratio_coefficients1_rom [0:15];
+    initial $readmemh(RATIO_COEFFICIENTS1_FILE, ratio_coefficients1_rom);
+    wire [12:0] ratio_coefficients1_word = ratio_coefficients1_rom[distance[18:15]];
 
-    wire curve_in_range3 = |distance[18:11];  // u is in range 3 or in one above
-    wire [6:0] curve_word3 = curve_in_range3 ? {4'd8, distance[12:10]} : curve_word4;
-    wire [12:0] curve_rest3 = curve_in_range3 ? {distance[9:0], 3'd0} : curve_rest4;  // u0.13
-    wire curve_in_range2 = |distance[18:13];  // u is in range 2 or in one above
-    wire [6:0] curve_word2 = curve_in_range2 ? curve_word0 : curve_word3;
-    wire [12:0] curve_rest2 = curve_in_range2 ? curve_rest0 : curve_rest3;  // u0.13
-    wire [25:0] curve_base = curve_word[44:19];  // u0.26
-    wire [18:0] curve_slope = curve_word[18:0];  // u-5.24
-    wire decay_large = |decay[25:24];
-    wire octave_any = |octave;  // cos gamma is below one half
-    wire decay_far = decay_large | octave_any_held;
-    wire decay_small = ~decay_far;  // the decay is below 1/4, and all its bits count
+    wire [12:0] ratio_c1 = ratio_coefficients1_word;  // u-4.17
 
-    // the decay, its point by decay_small
-    wire [23:0] factor = decay_small ? decay[23:0] : {octave_held, decay[25:7]};
+    // ROM ratio_coefficients2: coefficient of the segment's polynomial
+    reg [5:0] ratio_coefficients2_rom [0:15];
+    initial $readmemh(RATIO_COEFFICIENTS2_FILE, ratio_coefficients2_rom);
+    wire [5:0] ratio_coefficients2_word = ratio_coefficients2_rom[distance[18:15]];
 
-    // first operand of the multiplier
-    wire [23:0] first = operand_select ? factor : {5'd0, curve_slope};
+    wire [5:0] ratio_c2 = ratio_coefficients2_word;  // u-8.14
+    wire [19:0] distance_whole = {1'b0, distance} + 20'd1;  // u0.20
+    wire [23:0] first = operand_select ? factor : {4'd0, way};  // first operand of the multiplier
 
     // second operand of the multiplier
-    wire [12:0] second = operand_select ? {3'd0, exponent_reg} : curve_rest_held;
+    wire [17:0] second = operand_select ? {8'd0, exponent_reg} : ratio;
 
-    wire [36:0] product = first * second;  // its point depends on the operands
-    wire [25:0] curve_rise_cut = {5'd0, product[31:11]};  // u0.26
-    wire [26:0] curve_sum = {1'b0, curve_base} + {1'b0, curve_rise_cut};  // u1.26
-    wire [25:0] curve_value = curve_sum[26] ? 26'h3ffffff : curve_sum[25:0];  // u0.26
-    wire [20:0] halvings_coarse = (|product[33:24]) ? 21'h1fffff : product[23:3];  // u5.16
-    wire [20:0] halvings_fine = (|product[33:31]) ? 21'h1fffff : product[30:10];  // u5.16
-    wire [20:0] halvings_next = decay_small ? halvings_fine : halvings_coarse;  // u5.16
-    wire exp2_bend_offset1_mirrored = ~halvings[7];
+    wire [41:0] product = first * second;  // its point depends on the operands
+    wire [26:0] decay = product[36:10];  // u1.26: without the octave
+    wire decay_large = |decay[26:24];
+    wire [5:0] decay_whole = {1'b0, octave} + {5'd0, decay[26]};
+    wire octave_any = |octave;  // cos gamma is below one half
+    wire decay_far = decay_large | octave_any;
+    wire [23:0] factor_next = decay_far ? {decay_whole, decay[25:8]} : decay[23:0];
+    wire decay_small_next = ~decay_far;
+    wire [33:0] halvings_coarse = product[33:0];  // u16.18
+    wire [33:0] halvings_fine = {8'd0, product[33:8]};  // u16.18
+    wire [33:0] halvings_next = decay_small ? halvings_fine : halvings_coarse;  // u16.18
+    wire power_offset_top = ~halvings[13];
 
-    // distance from the middle of the field
-    wire exp2_bend_offset1_distance = halvings[8] ? halvings[7] : exp2_bend_offset1_mirrored;
+    // ROM power_coefficients: coefficient of the segment's polynomial
+    reg [19:0] power_coefficients_rom [0:15];
+    initial $readmemh(POWER_COEFFICIENTS_FILE, power_coefficients_rom);
+    wire [19:0] power_coefficients_word = power_coefficients_rom[halvings[17:14]];
 
-    wire [6:0] exp2_bend_offset1_address = {halvings[15:10], exp2_bend_offset1_distance};
-    wire signed [9:0] exp2_bend_offset1_opposite = ~exp2_bend_offset1_word;  // s-10.19
+    wire [19:0] power_c0 = power_coefficients_word;  // u0.20
 
-    // s-10.19: what the field adds, less half an ulp
-    wire signed [9:0] exp2_bend_offset1_term = exp2_bend_offset1_upper ? exp2_bend_offset1_word :
-            exp2_bend_offset1_opposite;
+    // ROM power_coefficients1: coefficient of the segment's polynomial
+    reg [15:0] power_coefficients1_rom [0:15];
+    initial $readmemh(POWER_COEFFICIENTS1_FILE, power_coefficients1_rom);
+    wire [15:0] power_coefficients1_word = power_coefficients1_rom[halvings[17:14]];
 
-    // s-4.19
-    wire signed [15:0] exp2_bend_offset1_sum = {1'b0, exp2_bend_value_word} +
-            {{6{exp2_bend_offset1_term[9]}}, exp2_bend_offset1_term};
+    wire signed [15:0] power_c1 = power_coefficients1_word;  // s-4.19
 
-    wire [1:0] exp2_bend_offset2_mirrored = ~halvings[5:4];
+    // ROM power_coefficients2: coefficient of the segment's polynomial
+    reg [5:0] power_coefficients2_rom [0:15];
+    initial $readmemh(POWER_COEFFICIENTS2_FILE, power_coefficients2_rom);
+    wire [5:0] power_coefficients2_word = power_coefficients2_rom[halvings[17:14]];
 
-    // distance from the middle of the field
-    wire [1:0] exp2_bend_offset2_distance = halvings[6] ? halvings[5:4] :
-            exp2_bend_offset2_mirrored;
+    wire [5:0] power_c2 = power_coefficients2_word;  // u-10.16
+    wire [4:0] places = (|halvings[33:23]) ? PLACES_MOST : halvings[22:18];
+    wire [17:0] exp2_kept = power[18:1];  // u1.17
+    wire [17:0] exp2_shift_by16 = places[4] ? {16'd0, exp2_kept[17:16]} : exp2_kept;  // u1.17
 
-    wire [6:0] exp2_bend_offset2_address = {halvings[15:11], exp2_bend_offset2_distance};
-    wire signed [7:0] exp2_bend_offset2_opposite = ~exp2_bend_offset2_word;  // s-12.19
+    // u1.17
+    wire [17:0] exp2_shift_by8 = places[3] ? {8'd0, exp2_shift_by16[17:8]} : exp2_shift_by16;
 
-    // s-12.19: what the field adds, less half an ulp
-    wire signed [7:0] exp2_bend_offset2_term = exp2_bend_offset2_upper ? exp2_bend_offset2_word :
-            exp2_bend_offset2_opposite;
+    // u1.17
+    wire [17:0] exp2_shift_by4 = places[2] ? {4'd0, exp2_shift_by8[17:4]} : exp2_shift_by8;
 
-    // s-4.19
-    wire signed [15:0] exp2_bend_offset2_sum = exp2_bend_offset1_sum +
-            {{8{exp2_bend_offset2_term[7]}}, exp2_bend_offset2_term};
+    // u1.17
+    wire [17:0] exp2_shift_by2 = places[1] ? {2'd0, exp2_shift_by4[17:2]} : exp2_shift_by4;
 
-    wire [2:0] exp2_bend_offset3_mirrored = ~halvings[2:0];
+    // u1.17
+    wire [17:0] exp2_shift_by1 = places[0] ? {1'b0, exp2_shift_by2[17:1]} : exp2_shift_by2;
 
-    // distance from the middle of the field
-    wire [2:0] exp2_bend_offset3_distance = halvings[3] ? halvings[2:0] :
-            exp2_bend_offset3_mirrored;
-
-    wire [5:0] exp2_bend_offset3_address = {halvings[15:13], exp2_bend_offset3_distance};
-    wire signed [4:0] exp2_bend_offset3_opposite = ~exp2_bend_offset3_word;  // s-15.19
-
-    // s-15.19: what the field adds, less half an ulp
-    wire signed [4:0] exp2_bend_offset3_term = exp2_bend_offset3_upper ? exp2_bend_offset3_word :
-            exp2_bend_offset3_opposite;
-
-    // s-4.19
-    wire signed [15:0] exp2_bend_offset3_sum = exp2_bend_offset2_sum +
-            {{11{exp2_bend_offset3_term[4]}}, exp2_bend_offset3_term};
-
-    wire [15:0] exp2_inverse = ~exp2_x;  // u0.16
-
-    // u1.19: 2^-x of the fraction x
-    wire [19:0] exp2_mantissa = {2'd1, exp2_inverse, 2'd0} - {{4{exp2_bend_offset3_sum[15]}},
-            exp2_bend_offset3_sum};
-
-    wire [16:0] exp2_kept = exp2_mantissa[19] ? 17'h1ffff : exp2_mantissa[18:2];  // u0.17
-    wire [16:0] exp2_shift_by16 = halvings[20] ? {16'd0, exp2_kept[16]} : exp2_kept;  // u0.17
-
-    // u0.17
-    wire [16:0] exp2_shift_by8 = halvings[19] ? {8'd0, exp2_shift_by16[16:8]} : exp2_shift_by16;
-
-    // u0.17
-    wire [16:0] exp2_shift_by4 = halvings[18] ? {4'd0, exp2_shift_by8[16:4]} : exp2_shift_by8;
-
-    // u0.17
-    wire [16:0] exp2_shift_by2 = halvings[17] ? {2'd0, exp2_shift_by4[16:2]} : exp2_shift_by4;
-
-    // u0.17
-    wire [16:0] exp2_shift_by1 = halvings[16] ? {1'b0, exp2_shift_by2[16:1]} : exp2_shift_by2;
-
-    // u1.16
-    wire [16:0] exp2_rounded_nearest = {1'b0, exp2_shift_by1[16:1]} + {16'd0, exp2_shift_by1[0]};
+    // u2.16
+    wire [17:0] exp2_rounded_nearest = {1'b0, exp2_shift_by1[17:1]} + {17'd0, exp2_shift_by1[0]};
 
     // u0.16
-    wire [15:0] exp2_rounded = exp2_rounded_nearest[16] ? 16'hffff : exp2_rounded_nearest[15:0];
+    wire [15:0] exp2_rounded = (|exp2_rounded_nearest[17:16]) ? 16'hffff :
+            exp2_rounded_nearest[15:0];
 
     wire facing = |cos_gamma_reg;  // the surface faces the half vector
-    wire fades = |halvings;
     wire aligned = cos_gamma_reg[20];  // cos gamma is 1.0
-    wire level = ~fades;
-    wire peak = aligned | level;  // f is 1.0, less an ulp
-    wire [15:0] lit = peak ? 16'hffff : exp2_rounded;  // u0.16
+    wire [15:0] lit = aligned ? 16'hffff : exp2_rounded;  // u0.16
     wire [15:0] reflectance_next = facing_held ? lit : 16'd0;  // u0.16
     assign f_out = reflectance;  // u0.16: the reflectance, for a user's own multipliers
     wire [23:0] red_product = reflectance * red_reg;  // u8.16: an output before it is rounded
@@ -233,43 +192,68 @@ module blinn_datapath #(
     wire [7:0] blue_intensity = blue_product[23:16] + {7'd0, blue_product[15]};
     assign blue_out = blue_intensity;  // intensity on the output
 
-    // ROM curve: value at the start of a segment (u0.26), then its rise over the segment in units
-    // of 2^-24 (19 bits)
-    reg [44:0] curve_rom [0:95];
-    initial $readmemh(CURVE_FILE, curve_rom);
-    always @(posedge clk) curve_word <= curve_rom[curve_word2];
+    // s15.0
+    reg  signed [15:0] factor_of_offset;
+    always @* begin
+        case (polynomial_select)
+            POLYNOMIAL_SELECT_RATIO_X2: factor_of_offset = {10'd0, ratio_c2};
+            POLYNOMIAL_SELECT_RATIO_X1: factor_of_offset = {3'd0, ratio_sum1};
+            POLYNOMIAL_SELECT_POWER_X2: factor_of_offset = {10'd0, power_c2};
+            POLYNOMIAL_SELECT_POWER_X1: factor_of_offset = power_sum1;
+            default: factor_of_offset = power_sum1;
+        endcase
+    end
 
-    // ROM exp2_bend_value: 1 - x/2 - 2^-x at the middle of each of 128 intervals of x, in units of
-    // 2^-19
-    reg [14:0] exp2_bend_value_rom [0:127];
-    initial $readmemh(EXP2_BEND_VALUE_FILE, exp2_bend_value_rom);
-    always @(posedge clk) exp2_bend_value_word <= exp2_bend_value_rom[halvings[15:9]];
+    // s13.0
+    reg  signed [13:0] offset_of_step;
+    always @* begin
+        case (polynomial_select)
+            POLYNOMIAL_SELECT_RATIO_X2: offset_of_step = {{6{ratio_offset_top}}, ratio_offset_top,
+                    distance[13:7]};
+            POLYNOMIAL_SELECT_RATIO_X1: offset_of_step = {{2{ratio_offset_top}}, ratio_offset_top,
+                    distance[13:3]};
+            POLYNOMIAL_SELECT_POWER_X2: offset_of_step = {{6{power_offset_top}}, power_offset_top,
+                    halvings[12:6]};
+            POLYNOMIAL_SELECT_POWER_X1: offset_of_step = {power_offset_top, halvings[12:0]};
+            default: offset_of_step = {power_offset_top, halvings[12:0]};
+        endcase
+    end
 
-    // ROM exp2_bend_offset1: slope of 1 - x/2 - 2^-x over 2^-6 of x, times the distance from the
-    // middle of bits 8 to 7 of x, in units of 2^-19, less a half
-    reg [9:0] exp2_bend_offset1_rom [0:127];
-    initial $readmemh(EXP2_BEND_OFFSET1_FILE, exp2_bend_offset1_rom);
-    always @(posedge clk) exp2_bend_offset1_word <=
-            exp2_bend_offset1_rom[exp2_bend_offset1_address];
+    wire signed [29:0] polynomial_product = factor_of_offset * offset_of_step;  // s29.0
+    wire signed [8:0] ratio_product1 = polynomial_product[13:5];  // s-9.17
+    wire [12:0] ratio_added1 = ratio_c1 + {{4{ratio_product1[8]}}, ratio_product1};  // u-4.17
+    wire [12:0] ratio_kept1 = ratio_added1;  // u-4.17
+    wire signed [13:0] ratio_product0 = polynomial_product[24:11];  // s-5.18
 
-    // ROM exp2_bend_offset2: slope of 1 - x/2 - 2^-x over 2^-5 of x, times the distance from the
-    // middle of bits 6 to 4 of x, in units of 2^-19, less a half
-    reg [7:0] exp2_bend_offset2_rom [0:127];
-    initial $readmemh(EXP2_BEND_OFFSET2_FILE, exp2_bend_offset2_rom);
-    always @(posedge clk) exp2_bend_offset2_word <=
-            exp2_bend_offset2_rom[exp2_bend_offset2_address];
+    // u2.18
+    wire [19:0] ratio_added0 = {1'b0, ratio_c0} + {{6{ratio_product0[13]}}, ratio_product0};
 
-    // ROM exp2_bend_offset3: slope of 1 - x/2 - 2^-x over 2^-3 of x, times the distance from the
-    // middle of bits 3 to 0 of x, in units of 2^-19, less a half
-    reg [4:0] exp2_bend_offset3_rom [0:63];
-    initial $readmemh(EXP2_BEND_OFFSET3_FILE, exp2_bend_offset3_rom);
-    always @(posedge clk) exp2_bend_offset3_word <=
-            exp2_bend_offset3_rom[exp2_bend_offset3_address];
+    wire [17:0] ratio_kept0 = ratio_added0[19:2];  // u2.16
+    wire signed [8:0] power_product1 = polynomial_product[13:5];  // s-11.19
+
+    // s-3.19
+    wire signed [16:0] power_added1 = {power_c1[15], power_c1} + {{8{power_product1[8]}},
+            power_product1};
+
+    wire signed [15:0] power_kept1 = power_added1[15:0];  // s-4.19
+    wire signed [16:0] power_product0 = polynomial_product[29:13];  // s-4.20
+
+    // u1.20
+    wire [20:0] power_added0 = {1'b0, power_c0} + {{4{power_product0[16]}}, power_product0};
+
+    wire [18:0] power_kept0 = power_added0[20:2];  // u1.18
 
     always @(posedge clk) begin
         if (cos_gamma_load) begin
             cos_gamma_reg <= cos_gamma_at_most;
         end
+    end
+
+    always @(posedge clk) begin
+        octave <= {octave_free16, octave_free8, octave_free4, octave_free2, octave_free1};
+        distance <= distance_next;
+        way <= distance_whole;
+        facing_held <= facing;
     end
 
     always @(posedge clk) begin
@@ -297,8 +281,26 @@ module blinn_datapath #(
     end
 
     always @(posedge clk) begin
-        if (decay_load) begin
-            decay <= curve_value;
+        if (ratio_load) begin
+            ratio <= ratio_kept0;
+        end
+    end
+
+    always @(posedge clk) begin
+        if (ratio_sum1_load) begin
+            ratio_sum1 <= ratio_kept1;
+        end
+    end
+
+    always @(posedge clk) begin
+        if (factor_load) begin
+            factor <= factor_next;
+        end
+    end
+
+    always @(posedge clk) begin
+        if (decay_small_load) begin
+            decay_small <= decay_small_next;
         end
     end
 
@@ -309,25 +311,27 @@ module blinn_datapath #(
     end
 
     always @(posedge clk) begin
+        if (power_load) begin
+            power <= power_kept0;
+        end
+    end
+
+    always @(posedge clk) begin
+        if (power_sum1_load) begin
+            power_sum1 <= power_kept1;
+        end
+    end
+
+    always @(posedge clk) begin
         if (reflectance_load) begin
             reflectance <= reflectance_next;
         end
     end
 
-    always @(posedge clk) begin
-        curve_rest_held <= curve_rest2;
-        exp2_bend_offset1_upper <= halvings[8];
-        exp2_bend_offset2_upper <= halvings[6];
-        exp2_bend_offset3_upper <= halvings[3];
-        exp2_x <= halvings[15:0];
-        octave_held <= octave;
-        octave_any_held <= octave_any;
-        facing_held <= facing;
-    end
-
     // Unused bits, among them those that narrowing drops.
-    wire unused = &{1'b0, octave_by1[19], product[2:0], product[36:34], exp2_mantissa[1:0],
-            red_product[14:0], green_product[14:0], blue_product[14:0]};
+    wire unused = &{1'b0, octave_by1[19], product[41:37], power[0], red_product[14:0],
+            green_product[14:0], blue_product[14:0], polynomial_product[4:0], ratio_added0[1:0],
+            power_added1[16], power_added0[1:0]};
 
 `ifdef FORMAL
     reg was_busy = 1'b0;

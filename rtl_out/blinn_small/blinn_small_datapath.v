@@ -6,64 +6,58 @@
 `default_nettype none
 
 module blinn_small_datapath #(
-    parameter CURVE_FILE = "blinn_small_curve.mem",
-    parameter EXP2_BEND_VALUE_FILE = "blinn_small_exp2_bend_value.mem",
-    parameter EXP2_BEND_OFFSET1_FILE = "blinn_small_exp2_bend_offset1.mem",
-    parameter EXP2_BEND_OFFSET2_FILE = "blinn_small_exp2_bend_offset2.mem",
-    parameter EXP2_BEND_OFFSET3_FILE = "blinn_small_exp2_bend_offset3.mem"
+    parameter RATIO_COEFFICIENTS_FILE = "blinn_small_ratio_coefficients.mem",
+    parameter RATIO_COEFFICIENTS1_FILE = "blinn_small_ratio_coefficients1.mem",
+    parameter POWER_COEFFICIENTS_FILE = "blinn_small_power_coefficients.mem",
+    parameter POWER_COEFFICIENTS1_FILE = "blinn_small_power_coefficients1.mem"
 ) (
     input  wire        clk,
     // u1.20: cosine of the angle between normal and half vector
     input  wire [20:0] cos_gamma,
-    input  wire        cos_gamma_write,   // writes cos_gamma
-    input  wire [9:0]  exponent,          // specular exponent n
-    input  wire        exponent_write,    // writes exponent
-    input  wire [7:0]  red,               // intensity of the light times k_s
-    input  wire        red_write,         // writes red
-    input  wire [7:0]  green,             // intensity of the light times k_s
-    input  wire        green_write,       // writes green
-    input  wire [7:0]  blue,              // intensity of the light times k_s
-    input  wire        blue_write,        // writes blue
-    input  wire        idle,              // operands may be written
-    input  wire        operand_select,
-    input  wire        decay_load,
+    input  wire        cos_gamma_write,    // writes cos_gamma
+    input  wire [9:0]  exponent,           // specular exponent n
+    input  wire        exponent_write,     // writes exponent
+    input  wire [7:0]  red,                // intensity of the light times k_s
+    input  wire        red_write,          // writes red
+    input  wire [7:0]  green,              // intensity of the light times k_s
+    input  wire        green_write,        // writes green
+    input  wire [7:0]  blue,               // intensity of the light times k_s
+    input  wire        blue_write,         // writes blue
+    input  wire        idle,               // operands may be written
+    input  wire        ratio_load,
+    input  wire        factor_load,
+    input  wire        decay_small_load,
     input  wire        halvings_load,
+    input  wire        operand_select,
+    input  wire        power_load,
     input  wire        reflectance_load,
-    output wire [13:0] f_out,             // u0.14: the reflectance, for a user's own multipliers
-    output wire [7:0]  red_out,           // intensity on the output
-    output wire [7:0]  green_out,         // intensity on the output
-    output wire [7:0]  blue_out           // intensity on the output
+    input  wire        polynomial_select,
+    output wire [13:0] f_out,              // u0.14: the reflectance, for a user's own multipliers
+    output wire [7:0]  red_out,            // intensity on the output
+    output wire [7:0]  green_out,          // intensity on the output
+    output wire [7:0]  blue_out            // intensity on the output
 );
 
     // Constants
     localparam [20:0] COS_GAMMA_MOST = 21'h100000;  // 1.0 in u1.20
+    localparam [4:0] PLACES_MOST = 5'd31;
 
     // Registers
-    // u1.20: cosine of the angle between normal and half vector
-    reg         [20:0] cos_gamma_reg;
-    reg         [9:0]  exponent_reg;             // specular exponent n
-    reg         [7:0]  red_reg;                  // intensity of the light times k_s
-    reg         [7:0]  green_reg;                // intensity of the light times k_s
-    reg         [7:0]  blue_reg;                 // intensity of the light times k_s
-    reg         [21:0] decay;                    // u0.22: -log2(cos gamma * 2^octave)
-    reg         [17:0] halvings;                 // u5.13: n*decay: how often f is half of 1.0
-    reg         [13:0] reflectance;              // u0.14: f
-    reg         [14:0] curve_rest_held;          // u0.15
-    reg                exp2_bend_offset1_upper;
-    reg                exp2_bend_offset2_upper;
-    reg                exp2_bend_offset3_upper;
-    reg         [12:0] exp2_x;                   // u0.13
-    // octave, delayed by a clock: the operands do not change
-    reg         [4:0]  octave_held;
-    // octave_any, delayed by a clock: the operands do not change
-    reg                octave_any_held;
-    // facing, delayed by a clock: the operands do not change
-    reg                facing_held;
-    reg         [37:0] curve_word;
-    reg         [10:0] exp2_bend_value_word;     // u-4.15
-    reg  signed [6:0]  exp2_bend_offset1_word;   // s-9.15
-    reg  signed [4:0]  exp2_bend_offset2_word;   // s-11.15
-    reg  signed [1:0]  exp2_bend_offset3_word;   // s-14.15
+    reg  [20:0] cos_gamma_reg;  // u1.20: cosine of the angle between normal and half vector
+    reg  [4:0]  octave;         // leading zeros of cos gamma
+    reg  [18:0] distance;       // 1.0 - cos gamma * 2^octave, less an ulp, from 0 to one half
+    reg  [9:0]  exponent_reg;   // specular exponent n
+    reg  [7:0]  red_reg;        // intensity of the light times k_s
+    reg  [7:0]  green_reg;      // intensity of the light times k_s
+    reg  [7:0]  blue_reg;       // intensity of the light times k_s
+    reg  [12:0] ratio;          // u2.11: decay over 1 - cos gamma
+    reg  [19:0] way;            // u0.20: 1.0 - cos gamma * 2^octave
+    reg  [19:0] factor;         // the decay; its point by decay_small
+    reg         decay_small;    // the decay is below 1/4, and all its bits count
+    reg  [27:0] halvings;       // u16.12: n*decay: how often f is half of 1.0
+    reg  [12:0] power;          // u1.12: 2^-x of the fraction x of halvings
+    reg  [13:0] reflectance;    // u0.14: f
+    reg         facing_held;    // facing, delayed by a clock: the operands do not change
 
     wire cos_gamma_over = cos_gamma[20];
     wire [20:0] cos_gamma_at_most = cos_gamma_over ? COS_GAMMA_MOST : cos_gamma;  // u1.20
@@ -83,138 +77,82 @@ module blinn_small_datapath #(
     wire octave_top1 = octave_by2[19];
     wire [19:0] octave_by1 = octave_top1 ? octave_by2 : {octave_by2[18:0], 1'b0};
     wire octave_free1 = ~octave_top1;
-
-    // leading zeros of cos gamma
-    wire [4:0] octave = {octave_free16, octave_free8, octave_free4, octave_free2, octave_free1};
-
-    // 1.0 - cos gamma * 2^octave, less an ulp, from 0 to one half
-    wire [18:0] distance = ~octave_by1[18:0];
-
+    wire [18:0] distance_next = ~octave_by1[18:0];
     wire exponent_load = exponent_write & idle;
     wire red_load = red_write & idle;
     wire green_load = green_write & idle;
     wire blue_load = blue_write & idle;
-    wire curve_in_range0 = |distance[18:17];  // u is in range 0 or in one above
-    wire [4:0] curve_word0 = curve_in_range0 ? {1'b0, distance[18:15]} : {2'd2, distance[16:14]};
-    wire [14:0] curve_rest0 = curve_in_range0 ? distance[14:0] : {distance[13:0], 1'b0};  // u0.15
-    wire curve_in_range3 = |distance[18:11];  // u is in range 3 or in one above
-    wire [4:0] curve_word3 = curve_in_range3 ? {3'd6, distance[12:11]} : {4'd8, distance[10]};
+    wire ratio_offset_top = ~distance[13];
 
-    // u0.15
-    wire [14:0] curve_rest3 = curve_in_range3 ? {distance[10:0], 4'd0} : {distance[9:0], 5'd0};
+    // ROM ratio_coefficients: coefficient of the segment's polynomial
+    reg [12:0] ratio_coefficients_rom [0:31];
+    initial $readmemh(RATIO_COEFFICIENTS_FILE, ratio_coefficients_rom);
+    wire [12:0] ratio_coefficients_word = ratio_coefficients_rom[distance[18:14]];
 
-    wire curve_in_range2 = |distance[18:13];  // u is in range 2 or in one above
-    wire [4:0] curve_word2 = curve_in_range2 ? {3'd0, distance[14:13]} : curve_word3;
-    wire [14:0] curve_rest2 = curve_in_range2 ? {distance[12:0], 2'd0} : curve_rest3;  // u0.15
-    wire curve_in_range1 = |distance[18:15];  // u is in range 1 or in one above
-    wire [4:0] curve_word1 = curve_in_range1 ? curve_word0 : curve_word2;
-    wire [14:0] curve_rest1 = curve_in_range1 ? curve_rest0 : curve_rest2;  // u0.15
-    wire [21:0] curve_base = curve_word[37:16];  // u0.22
-    wire [15:0] curve_slope = curve_word[15:0];  // u-3.19
-    wire decay_large = |decay[21:20];
-    wire octave_any = |octave;  // cos gamma is below one half
-    wire decay_far = decay_large | octave_any_held;
-    wire decay_small = ~decay_far;  // the decay is below 1/4, and all its bits count
+    wire [12:0] ratio_c0 = ratio_coefficients_word;  // u1.12
 
-    // the decay, its point by decay_small
-    wire [20:0] factor = decay_small ? {1'b0, decay[19:0]} : {octave_held, decay[21:6]};
+    // ROM ratio_coefficients1: coefficient of the segment's polynomial
+    reg [5:0] ratio_coefficients1_rom [0:31];
+    initial $readmemh(RATIO_COEFFICIENTS1_FILE, ratio_coefficients1_rom);
+    wire [5:0] ratio_coefficients1_word = ratio_coefficients1_rom[distance[18:14]];
 
-    // first operand of the multiplier
-    wire [20:0] first = operand_select ? factor : {5'd0, curve_slope};
+    wire [5:0] ratio_c1 = ratio_coefficients1_word;  // u-5.11
+    wire [19:0] distance_whole = {1'b0, distance} + 20'd1;  // u0.20
+    wire [19:0] first = operand_select ? factor : way;  // first operand of the multiplier
 
     // second operand of the multiplier
-    wire [14:0] second = operand_select ? {5'd0, exponent_reg} : curve_rest_held;
+    wire [12:0] second = operand_select ? {3'd0, exponent_reg} : ratio;
 
-    wire [35:0] product = first * second;  // its point depends on the operands
-    wire [21:0] curve_rise_cut = {3'd0, product[30:12]};  // u0.22
-    wire [22:0] curve_sum = {1'b0, curve_base} + {1'b0, curve_rise_cut};  // u1.22
-    wire [21:0] curve_value = curve_sum[22] ? 22'h3fffff : curve_sum[21:0];  // u0.22
-    wire [17:0] halvings_coarse = (|product[30:21]) ? 18'h3ffff : product[20:3];  // u5.13
-    wire [17:0] halvings_fine = (|product[30:27]) ? 18'h3ffff : product[26:9];  // u5.13
-    wire [17:0] halvings_next = decay_small ? halvings_fine : halvings_coarse;  // u5.13
-    wire exp2_bend_offset1_mirrored = ~halvings[6];
+    wire [32:0] product = first * second;  // its point depends on the operands
+    wire [22:0] decay = product[31:9];  // u1.22: without the octave
+    wire decay_large = |decay[22:20];
+    wire [5:0] decay_whole = {1'b0, octave} + {5'd0, decay[22]};
+    wire octave_any = |octave;  // cos gamma is below one half
+    wire decay_far = decay_large | octave_any;
+    wire [19:0] factor_next = decay_far ? {decay_whole, decay[21:8]} : decay[19:0];
+    wire decay_small_next = ~decay_far;
+    wire [27:0] halvings_coarse = product[29:2];  // u16.12
+    wire [27:0] halvings_fine = {8'd0, product[29:10]};  // u16.12
+    wire [27:0] halvings_next = decay_small ? halvings_fine : halvings_coarse;  // u16.12
+    wire power_offset_top = ~halvings[7];
 
-    // distance from the middle of the field
-    wire exp2_bend_offset1_distance = halvings[7] ? halvings[6] : exp2_bend_offset1_mirrored;
+    // ROM power_coefficients: coefficient of the segment's polynomial
+    reg [14:0] power_coefficients_rom [0:15];
+    initial $readmemh(POWER_COEFFICIENTS_FILE, power_coefficients_rom);
+    wire [14:0] power_coefficients_word = power_coefficients_rom[halvings[11:8]];
 
-    wire [3:0] exp2_bend_offset1_address = {halvings[12:10], exp2_bend_offset1_distance};
-    wire signed [6:0] exp2_bend_offset1_opposite = ~exp2_bend_offset1_word;  // s-9.15
+    wire [14:0] power_c0 = power_coefficients_word;  // u0.15
 
-    // s-9.15: what the field adds, less half an ulp
-    wire signed [6:0] exp2_bend_offset1_term = exp2_bend_offset1_upper ? exp2_bend_offset1_word :
-            exp2_bend_offset1_opposite;
+    // ROM power_coefficients1: coefficient of the segment's polynomial
+    reg [10:0] power_coefficients1_rom [0:15];
+    initial $readmemh(POWER_COEFFICIENTS1_FILE, power_coefficients1_rom);
+    wire [10:0] power_coefficients1_word = power_coefficients1_rom[halvings[11:8]];
 
-    // s-4.15
-    wire signed [11:0] exp2_bend_offset1_sum = {1'b0, exp2_bend_value_word} +
-            {{5{exp2_bend_offset1_term[6]}}, exp2_bend_offset1_term};
+    wire signed [10:0] power_c1 = power_coefficients1_word;  // s-4.14
+    wire [4:0] places = (|halvings[27:17]) ? PLACES_MOST : halvings[16:12];
+    wire [15:0] exp2_kept = {power, 3'd0};  // u1.15
+    wire [15:0] exp2_shift_by16 = places[4] ? 16'd0 : exp2_kept;  // u1.15
 
-    wire [1:0] exp2_bend_offset2_mirrored = ~halvings[4:3];
+    // u1.15
+    wire [15:0] exp2_shift_by8 = places[3] ? {8'd0, exp2_shift_by16[15:8]} : exp2_shift_by16;
 
-    // distance from the middle of the field
-    wire [1:0] exp2_bend_offset2_distance = halvings[5] ? halvings[4:3] :
-            exp2_bend_offset2_mirrored;
+    // u1.15
+    wire [15:0] exp2_shift_by4 = places[2] ? {4'd0, exp2_shift_by8[15:4]} : exp2_shift_by8;
 
-    wire [3:0] exp2_bend_offset2_address = {halvings[12:11], exp2_bend_offset2_distance};
-    wire signed [4:0] exp2_bend_offset2_opposite = ~exp2_bend_offset2_word;  // s-11.15
+    // u1.15
+    wire [15:0] exp2_shift_by2 = places[1] ? {2'd0, exp2_shift_by4[15:2]} : exp2_shift_by4;
 
-    // s-11.15: what the field adds, less half an ulp
-    wire signed [4:0] exp2_bend_offset2_term = exp2_bend_offset2_upper ? exp2_bend_offset2_word :
-            exp2_bend_offset2_opposite;
+    // u1.15
+    wire [15:0] exp2_shift_by1 = places[0] ? {1'b0, exp2_shift_by2[15:1]} : exp2_shift_by2;
 
-    // s-4.15
-    wire signed [11:0] exp2_bend_offset2_sum = exp2_bend_offset1_sum +
-            {{7{exp2_bend_offset2_term[4]}}, exp2_bend_offset2_term};
-
-    wire [1:0] exp2_bend_offset3_mirrored = ~halvings[1:0];
-
-    // distance from the middle of the field
-    wire [1:0] exp2_bend_offset3_distance = halvings[2] ? halvings[1:0] :
-            exp2_bend_offset3_mirrored;
-
-    wire [2:0] exp2_bend_offset3_address = {halvings[12], exp2_bend_offset3_distance};
-    wire signed [1:0] exp2_bend_offset3_opposite = ~exp2_bend_offset3_word;  // s-14.15
-
-    // s-14.15: what the field adds, less half an ulp
-    wire signed [1:0] exp2_bend_offset3_term = exp2_bend_offset3_upper ? exp2_bend_offset3_word :
-            exp2_bend_offset3_opposite;
-
-    // s-4.15
-    wire signed [11:0] exp2_bend_offset3_sum = exp2_bend_offset2_sum +
-            {{10{exp2_bend_offset3_term[1]}}, exp2_bend_offset3_term};
-
-    wire [12:0] exp2_inverse = ~exp2_x;  // u0.13
-
-    // u1.15: 2^-x of the fraction x
-    wire [15:0] exp2_mantissa = {2'd1, exp2_inverse, 1'b0} - {{4{exp2_bend_offset3_sum[11]}},
-            exp2_bend_offset3_sum};
-
-    wire [14:0] exp2_kept = exp2_mantissa[15] ? 15'h7fff : exp2_mantissa[14:0];  // u0.15
-    wire [14:0] exp2_shift_by16 = halvings[17] ? 15'd0 : exp2_kept;  // u0.15
-
-    // u0.15
-    wire [14:0] exp2_shift_by8 = halvings[16] ? {8'd0, exp2_shift_by16[14:8]} : exp2_shift_by16;
-
-    // u0.15
-    wire [14:0] exp2_shift_by4 = halvings[15] ? {4'd0, exp2_shift_by8[14:4]} : exp2_shift_by8;
-
-    // u0.15
-    wire [14:0] exp2_shift_by2 = halvings[14] ? {2'd0, exp2_shift_by4[14:2]} : exp2_shift_by4;
-
-    // u0.15
-    wire [14:0] exp2_shift_by1 = halvings[13] ? {1'b0, exp2_shift_by2[14:1]} : exp2_shift_by2;
-
-    // u1.14
-    wire [14:0] exp2_rounded_nearest = {1'b0, exp2_shift_by1[14:1]} + {14'd0, exp2_shift_by1[0]};
+    wire [14:0] exp2_rounded_nearest = exp2_shift_by1[15:1] + {14'd0, exp2_shift_by1[0]};  // u1.14
 
     // u0.14
     wire [13:0] exp2_rounded = exp2_rounded_nearest[14] ? 14'h3fff : exp2_rounded_nearest[13:0];
 
     wire facing = |cos_gamma_reg;  // the surface faces the half vector
-    wire fades = |halvings;
     wire aligned = cos_gamma_reg[20];  // cos gamma is 1.0
-    wire level = ~fades;
-    wire peak = aligned | level;  // f is 1.0, less an ulp
-    wire [13:0] lit = peak ? 14'h3fff : exp2_rounded;  // u0.14
+    wire [13:0] lit = aligned ? 14'h3fff : exp2_rounded;  // u0.14
     wire [13:0] reflectance_next = facing_held ? lit : 14'd0;  // u0.14
     assign f_out = reflectance;  // u0.14: the reflectance, for a user's own multipliers
     wire [21:0] red_product = reflectance * red_reg;  // u8.14: an output before it is rounded
@@ -226,44 +164,37 @@ module blinn_small_datapath #(
     wire [21:0] blue_product = reflectance * blue_reg;  // u8.14: an output before it is rounded
     wire [7:0] blue_intensity = blue_product[21:14] + {7'd0, blue_product[13]};
     assign blue_out = blue_intensity;  // intensity on the output
+    wire signed [10:0] factor_of_offset = polynomial_select ? power_c1 : {5'd0, ratio_c1};  // s10.0
 
-    // ROM curve: value at the start of a segment (u0.22), then its rise over the segment in units
-    // of 2^-19 (16 bits)
-    reg [37:0] curve_rom [0:27];
-    initial $readmemh(CURVE_FILE, curve_rom);
-    always @(posedge clk) curve_word <= curve_rom[curve_word1];
+    // s7.0
+    wire signed [7:0] offset_of_step = polynomial_select ? {power_offset_top, halvings[6:0]} :
+            {{2{ratio_offset_top}}, ratio_offset_top, distance[12:8]};
 
-    // ROM exp2_bend_value: 1 - x/2 - 2^-x at the middle of each of 32 intervals of x, in units of
-    // 2^-15
-    reg [10:0] exp2_bend_value_rom [0:31];
-    initial $readmemh(EXP2_BEND_VALUE_FILE, exp2_bend_value_rom);
-    always @(posedge clk) exp2_bend_value_word <= exp2_bend_value_rom[halvings[12:8]];
+    wire signed [18:0] polynomial_product = factor_of_offset * offset_of_step;  // s18.0
+    wire signed [6:0] ratio_product0 = polynomial_product[11:5];  // s-6.12
 
-    // ROM exp2_bend_offset1: slope of 1 - x/2 - 2^-x over 2^-3 of x, times the distance from the
-    // middle of bits 7 to 6 of x, in units of 2^-15, less a half
-    reg [6:0] exp2_bend_offset1_rom [0:15];
-    initial $readmemh(EXP2_BEND_OFFSET1_FILE, exp2_bend_offset1_rom);
-    always @(posedge clk) exp2_bend_offset1_word <=
-            exp2_bend_offset1_rom[exp2_bend_offset1_address];
+    // u2.12
+    wire [13:0] ratio_added0 = {1'b0, ratio_c0} + {{7{ratio_product0[6]}}, ratio_product0};
 
-    // ROM exp2_bend_offset2: slope of 1 - x/2 - 2^-x over 2^-2 of x, times the distance from the
-    // middle of bits 5 to 3 of x, in units of 2^-15, less a half
-    reg [4:0] exp2_bend_offset2_rom [0:15];
-    initial $readmemh(EXP2_BEND_OFFSET2_FILE, exp2_bend_offset2_rom);
-    always @(posedge clk) exp2_bend_offset2_word <=
-            exp2_bend_offset2_rom[exp2_bend_offset2_address];
+    wire [12:0] ratio_kept0 = ratio_added0[13:1];  // u2.11
+    wire signed [11:0] power_product0 = polynomial_product[18:7];  // s-4.15
 
-    // ROM exp2_bend_offset3: slope of 1 - x/2 - 2^-x over 2^-1 of x, times the distance from the
-    // middle of bits 2 to 0 of x, in units of 2^-15, less a half
-    reg [1:0] exp2_bend_offset3_rom [0:7];
-    initial $readmemh(EXP2_BEND_OFFSET3_FILE, exp2_bend_offset3_rom);
-    always @(posedge clk) exp2_bend_offset3_word <=
-            exp2_bend_offset3_rom[exp2_bend_offset3_address];
+    // u1.15
+    wire [15:0] power_added0 = {1'b0, power_c0} + {{4{power_product0[11]}}, power_product0};
+
+    wire [12:0] power_kept0 = power_added0[15:3];  // u1.12
 
     always @(posedge clk) begin
         if (cos_gamma_load) begin
             cos_gamma_reg <= cos_gamma_at_most;
         end
+    end
+
+    always @(posedge clk) begin
+        octave <= {octave_free16, octave_free8, octave_free4, octave_free2, octave_free1};
+        distance <= distance_next;
+        way <= distance_whole;
+        facing_held <= facing;
     end
 
     always @(posedge clk) begin
@@ -291,8 +222,20 @@ module blinn_small_datapath #(
     end
 
     always @(posedge clk) begin
-        if (decay_load) begin
-            decay <= curve_value;
+        if (ratio_load) begin
+            ratio <= ratio_kept0;
+        end
+    end
+
+    always @(posedge clk) begin
+        if (factor_load) begin
+            factor <= factor_next;
+        end
+    end
+
+    always @(posedge clk) begin
+        if (decay_small_load) begin
+            decay_small <= decay_small_next;
         end
     end
 
@@ -303,25 +246,21 @@ module blinn_small_datapath #(
     end
 
     always @(posedge clk) begin
+        if (power_load) begin
+            power <= power_kept0;
+        end
+    end
+
+    always @(posedge clk) begin
         if (reflectance_load) begin
             reflectance <= reflectance_next;
         end
     end
 
-    always @(posedge clk) begin
-        curve_rest_held <= curve_rest1;
-        exp2_bend_offset1_upper <= halvings[7];
-        exp2_bend_offset2_upper <= halvings[5];
-        exp2_bend_offset3_upper <= halvings[2];
-        exp2_x <= halvings[12:0];
-        octave_held <= octave;
-        octave_any_held <= octave_any;
-        facing_held <= facing;
-    end
-
     // Unused bits, among them those that narrowing drops.
-    wire unused = &{1'b0, octave_by1[19], product[2:0], product[35:31], red_product[12:0],
-            green_product[12:0], blue_product[12:0]};
+    wire unused = &{1'b0, octave_by1[19], product[1:0], product[32], red_product[12:0],
+            green_product[12:0], blue_product[12:0], polynomial_product[4:0], ratio_added0[0],
+            power_added0[2:0]};
 
 `ifdef FORMAL
     reg was_busy = 1'b0;

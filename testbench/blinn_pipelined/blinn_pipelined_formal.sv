@@ -52,22 +52,22 @@ module blinn_pipelined_formal (
     always @* if ($initstate) assume (!rst_n);
 
     // Which stage of the pipeline has a point.
-    (* hierconn *) wire [20:1] \dut.valid ;
-    wire [20:1] present = \dut.valid ;
+    (* hierconn *) wire [22:1] \dut.valid ;
+    wire [22:1] present = \dut.valid ;
 
     // The same for a queue beside it: all points in it move together, unless a result waits.
     wire moves = out_ready | ~out_valid;
-    reg  [20:1] queue;
+    reg  [22:1] queue;
     always @(posedge clk) begin
-        if (!rst_n) queue <= 20'd0;
-        else if (moves) queue <= {queue[19:1], in_valid};
+        if (!rst_n) queue <= 22'd0;
+        else if (moves) queue <= {queue[21:1], in_valid};
     end
 
     always @(posedge clk) if (!$initstate) begin
         // No point is lost, none is doubled, and none comes sooner or later than the stages let it:
         // out_valid follows from the points that were taken, whatever out_ready is.
         assert (present == queue);
-        assert (out_valid == queue[20]);
+        assert (out_valid == queue[22]);
         // A point is taken whenever no result waits.
         assert (in_ready == moves);
         // A result that waits stays as it is.

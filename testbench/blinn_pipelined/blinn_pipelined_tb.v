@@ -16,8 +16,8 @@ module blinn_pipelined_tb #(
     parameter STIMULUS_FILE = "blinn_pipelined_stimulus.mem",
     parameter EXPECTED_FILE = "blinn_pipelined_expected.mem"
 );
-    localparam CLOCKS     = 5871;
-    localparam KNOWN_FROM = 23;  // results are compared from this clock on
+    localparam CLOCKS     = 4356;
+    localparam KNOWN_FROM = 25;  // results are compared from this clock on
     localparam REPORTED   = 20;  // differences that are printed
 
     reg [57:0] stimulus [0:CLOCKS-1];

@@ -3,8 +3,8 @@
 // For formal tools alone: every input is free. To prove it, from a directory that holds the files
 // of both folders:
 //   $ yosys -q blinn_small_formal.ys
-//   $ yosys-smtbmc -s z3 -t 9 blinn_small_formal.smt2
-//   $ yosys-smtbmc -s z3 -i -t 9 blinn_small_formal.smt2
+//   $ yosys-smtbmc -s z3 -t 10 blinn_small_formal.smt2
+//   $ yosys-smtbmc -s z3 -i -t 10 blinn_small_formal.smt2
 // or, with SymbiYosys,
 //   $ sby -f blinn_small_formal.sby
 //
@@ -62,8 +62,8 @@ module blinn_small_formal (
     always @* if ($initstate) assume (!rst_n);
 
     // Clocks since start.
-    reg [2:0] age;
-    always @(posedge clk) age <= busy ? age + 3'd1 : 3'd1;
+    reg [3:0] age;
+    always @(posedge clk) age <= busy ? age + 4'd1 : 4'd1;
 
     always @(posedge clk) if (!$initstate) begin
         if (!$past(rst_n)) begin
@@ -80,9 +80,9 @@ module blinn_small_formal (
         if (valid) assert (busy);
         if ($past(rst_n)) begin
             // The clocks that the manifest promises.
-            assert (valid == (busy && age == 3'd6));
-            assert (done == (busy && age == 3'd6));
-            if (busy) assert (age <= 3'd6);
+            assert (valid == (busy && age == 4'd7));
+            assert (done == (busy && age == 4'd7));
+            if (busy) assert (age <= 4'd7);
         end
     end
 endmodule

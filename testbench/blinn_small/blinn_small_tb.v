@@ -16,8 +16,8 @@ module blinn_small_tb #(
     parameter STIMULUS_FILE = "blinn_small_stimulus.mem",
     parameter EXPECTED_FILE = "blinn_small_expected.mem"
 );
-    localparam CLOCKS     = 2394;
-    localparam KNOWN_FROM = 11;  // results are compared from this clock on
+    localparam CLOCKS     = 2284;
+    localparam KNOWN_FROM = 12;  // results are compared from this clock on
     localparam REPORTED   = 20;  // differences that are printed
 
     reg [61:0] stimulus [0:CLOCKS-1];
@@ -79,12 +79,13 @@ module blinn_small_tb #(
         begin
             $write("microinstruction ");
             case (dut.control.word_address)
-                3'd0: $write("0 (segment of the decay addressed by cos gamma)");
-                3'd1: $write("1 (decay <- base + slope * rest)");
-                3'd2: $write("2 (halvings <- n * decay)");
-                3'd3: $write("3 (tables of 2^-x addressed by the fraction)");
-                3'd4: $write("4 (reflectance <- 2^-halvings)");
-                3'd5: $write("5 (result)");
+                3'd0: $write("0 (distance from the cosine)");
+                3'd1: $write("1 (ratio <- all coefficients)");
+                3'd2: $write("2 (factor <- way * ratio)");
+                3'd3: $write("3 (halvings <- n * factor)");
+                3'd4: $write("4 (power <- all coefficients)");
+                3'd5: $write("5 (reflectance <- 2^-halvings)");
+                3'd6: $write("6 (result)");
                 default: $write("unknown");
             endcase
         end

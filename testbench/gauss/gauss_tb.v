@@ -16,8 +16,8 @@ module gauss_tb #(
     parameter STIMULUS_FILE = "gauss_stimulus.mem",
     parameter EXPECTED_FILE = "gauss_expected.mem"
 );
-    localparam CLOCKS     = 7784;
-    localparam KNOWN_FROM = 11;  // results are compared from this clock on
+    localparam CLOCKS     = 2361;
+    localparam KNOWN_FROM = 14;  // results are compared from this clock on
     localparam REPORTED   = 20;  // differences that are printed
 
     reg [61:0] stimulus [0:CLOCKS-1];
@@ -79,12 +79,15 @@ module gauss_tb #(
         begin
             $write("microinstruction ");
             case (dut.control.word_address)
-                3'd0: $write("0 (segment of the decay addressed by cos gamma)");
-                3'd1: $write("1 (decay <- base + slope * rest)");
-                3'd2: $write("2 (halvings <- n * decay)");
-                3'd3: $write("3 (tables of 2^-x addressed by the fraction)");
-                3'd4: $write("4 (reflectance <- 2^-halvings)");
-                3'd5: $write("5 (result)");
+                4'd0: $write("0 (distance from the cosine)");
+                4'd1: $write("1 (ratio <- those from 1 on)");
+                4'd2: $write("2 (ratio <- all coefficients)");
+                4'd3: $write("3 (factor <- way * ratio)");
+                4'd4: $write("4 (halvings <- n * factor)");
+                4'd5: $write("5 (power <- those from 1 on)");
+                4'd6: $write("6 (power <- all coefficients)");
+                4'd7: $write("7 (reflectance <- 2^-halvings)");
+                4'd8: $write("8 (result)");
                 default: $write("unknown");
             endcase
         end

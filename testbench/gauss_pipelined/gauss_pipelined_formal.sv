@@ -52,22 +52,22 @@ module gauss_pipelined_formal (
     always @* if ($initstate) assume (!rst_n);
 
     // Which stage of the pipeline has a point.
-    (* hierconn *) wire [17:1] \dut.valid ;
-    wire [17:1] present = \dut.valid ;
+    (* hierconn *) wire [18:1] \dut.valid ;
+    wire [18:1] present = \dut.valid ;
 
     // The same for a queue beside it: all points in it move together, unless a result waits.
     wire moves = out_ready | ~out_valid;
-    reg  [17:1] queue;
+    reg  [18:1] queue;
     always @(posedge clk) begin
-        if (!rst_n) queue <= 17'd0;
-        else if (moves) queue <= {queue[16:1], in_valid};
+        if (!rst_n) queue <= 18'd0;
+        else if (moves) queue <= {queue[17:1], in_valid};
     end
 
     always @(posedge clk) if (!$initstate) begin
         // No point is lost, none is doubled, and none comes sooner or later than the stages let it:
         // out_valid follows from the points that were taken, whatever out_ready is.
         assert (present == queue);
-        assert (out_valid == queue[17]);
+        assert (out_valid == queue[18]);
         // A point is taken whenever no result waits.
         assert (in_ready == moves);
         // A result that waits stays as it is.

@@ -93,9 +93,9 @@ fn a_domain_with_a_single_shift_has_clocks_for_every_shift() {
 #[test]
 fn shipped_configurations_have_the_clocks_of_their_microprograms() {
     let expected = [
-        ("blinn", Some(7)),
+        ("blinn", Some(10)),
         ("cosine_power", Some(8)),
-        ("gauss", Some(7)),
+        ("gauss", Some(10)),
         ("lyon", None),
         ("quad_cosine", Some(1)),
         ("quadratic", Some(5)),

@@ -481,7 +481,7 @@ fn shipped_benches() -> Vec<Row> {
     rows
 }
 
-/// Shipped benches notice no less than the goals, but for the one that docs/verification.md names.
+/// Shipped benches notice no less than the goals, but for those that docs/verification.md names.
 #[test]
 fn shipped_benches_reach_the_goals() {
     let mut together = [0, 0];
@@ -492,7 +492,8 @@ fn shipped_benches_reach_the_goals() {
         let [_, memory, verilog] = noticed_by_shipped_bench(&record);
         assert!(memory.is_none_or(|it| share(it) >= GOAL_MEMORY), "{name}");
         let verilog = verilog.expect("counts");
-        assert_eq!(share(verilog) >= GOAL_TEXT, name != "blinn", "{name}: {verilog:?}");
+        let short = ["blinn", "gauss"].contains(&name.as_str());
+        assert_eq!(share(verilog) >= GOAL_TEXT, !short, "{name}: {verilog:?}");
         together = [together[0] + verilog[0], together[1] + verilog[1]];
     }
     assert!(share(together) >= GOAL_TEXT, "{together:?}");

@@ -3,7 +3,7 @@
 use super::Formats;
 use glint_base::fixed::{Format, exp2};
 use glint_keys::rough::{Keys, Scheme};
-use glint_rtl::blocks::segmented::{self, Bend, Segment, Segmentation, SegmentedFormats};
+use glint_rtl::blocks::segmented::{self, Segment, Segmentation, SegmentedFormats};
 use glint_rtl::dsl::{Designer, Signal};
 
 /// ROM 18: sin = √(1 − cos²).
@@ -20,12 +20,7 @@ pub(super) fn sine_rom<'d>(
     let one = d.constant("one", 1.0, Format::unsigned(1, fraction as i32));
     let complement = d.sub("complement", one, cosine).doc("1.0 - cos");
     let u = complement.shift_left(fraction as i32);
-    let cut = Segmentation {
-        operand_bits: fraction,
-        segments: keys.segments.clone(),
-        tail: None,
-        packed: false,
-    };
+    let cut = Segmentation { operand_bits: fraction, segments: keys.segments.clone() };
     let shape = SegmentedFormats {
         fraction: formats.sine.frac,
         slope_fraction: keys.slope_fraction as i32,
@@ -35,7 +30,7 @@ pub(super) fn sine_rom<'d>(
         let x = 1.0 - u / exp2(fraction as i32);
         (1.0 - x * x).max(0.0).sqrt()
     };
-    let entry = |segment: Segment| segmented::chord(segment, shape, Bend::Concave, sine);
+    let entry = |segment: Segment| segmented::chord(segment, shape, sine);
     segmented::interpolate(d, "sine", u, &cut, shape, entry, Some(18))
         .doc("sine of the addressed cosine")
 }

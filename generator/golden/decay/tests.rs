@@ -3,56 +3,61 @@
 use super::*;
 use glint_keys::common::{Domain, Intensity, Operands};
 
-/// C = 4, S = 6 with one range and a tail; y with 1 + 2 fraction bits; F = 6.
-fn small(function: Function) -> Arithmetic {
+/// C = 4; the ratio and the decay with 6 fraction bits; y with 1 + 2 fraction bits; F = 6.
+fn small(of: Decay) -> Arithmetic {
     let f = Intensity { fraction: 6, ..Intensity::small() };
+    let degree = || "auto".to_owned();
     let keys = Keys {
         operands: Operands::small(),
+        ratio_fraction: 6,
+        ratio_degree: degree(),
         decay_fraction: 6,
-        segments: vec![2],
-        tail: 0,
-        slope_fraction: 6,
         coarse_fraction: 4,
-        address: 1,
-        offset_bits: vec![2],
-        offset_address: vec![0],
+        argument: 2,
         fraction: 6,
-        synchronous: true,
+        degree: degree(),
         f,
         domain: Domain::small(),
     };
-    Arithmetic::new(Params { function, keys })
+    Arithmetic::new(of, keys)
 }
 
 #[test]
 fn words_by_hand() {
-    let it = small(Function::Logarithm);
-    // c = 14/16: u = 7 − 6 = 1, of three bits. In 1/64 −log₂(1 − (u + 1)/16) for u = 0 … 7 is 5.96, 12.33, 19.17,
-    // 26.56, 34.60, 43.40, 53.13, 64. Tail u = 0, 1 (to 2): slope 13.21 → 13, 6.5 a step; above: 5.96, 5.83:
-    // 5.89 + 0.5 → 6. u = 1: 6 + 6.
-    assert_eq!(it.operand(14), (0, 1));
-    assert_eq!(it.decay(14), 12);
-    // c = 5/16 is 10/16 in octave 1: u = 7 − 2 = 5; segment u = 4, 5 (to 6): slope 18.53 → 19, 9.5 a
-    // step; above: 34.60, 33.90: 34.25 + 0.5 → 35; 35 + 9 = 44.
-    assert_eq!(it.operand(5), (1, 5));
-    assert_eq!(it.decay(5), 44);
-    // Small: 12·3 = 36/64 → 4/8. Not small: octave 1 before 44/64 → 11/16: 27·3/16 → 40/8.
-    assert_eq!(it.halvings(14, 12, 3), 4);
-    assert_eq!(it.halvings(5, 44, 3), 40);
-    // Not small in octave 0: 26 → 6/16; 15 times that 45/8. Saturation at 16 − 1/8.
-    assert_eq!(it.halvings(12, 26, 15), 45);
-    assert_eq!(it.halvings(1, 0, 15), 127);
+    let it = small(Decay::Logarithm);
+    // c = 14/16: u = 7 − 6 = 1, of three bits. c = 5/16 is 10/16 in octave 1: u = 7 − 2 = 5.
+    assert_eq!((it.operand(14), it.operand(5)), ((0, 1), (1, 5)));
+    // −log₂(14/16) is 0.19265, of 2/16 that is 1.5412: 98.6 in 1/64. 2·99/16 = 12 in 1/64, below ¼.
+    assert_eq!(it.factor(0, 2, 99), (12, true));
+    // −log₂(10/16) is 0.67807, of 6/16 that is 1.8082: 115.7. 6·116/16 = 43; octave 1 before 43/64 → 10/16.
+    assert_eq!(it.factor(1, 6, 116), (26, false));
+    // Three times 12/64 → 2/4, three times 26/16 → 19/4.
+    assert_eq!((it.halvings((12, true), 3), it.halvings((26, false), 3)), (2, 19));
+    // 2^−¼ is 53.8 in 1/64; shifted by 2: 13. All is shifted out from y = 7 on.
+    assert_eq!(it.reflectance(14, 2 << 2 | 1, 54), 13);
+    assert_eq!(it.reflectance(14, 7 << 2, 64), 0);
+    // At the ends; what rounds to 1.0 is an ulp below it.
+    assert_eq!([16, 0].map(|cosine| it.reflectance(cosine, 0, 54)), [63, 0]);
+    assert_eq!(it.reflectance(14, 0, 64), 63);
 }
 
 #[test]
-fn gauss_by_hand() {
-    let it = small(Function::Angle);
-    // γ²/(4 ln 2) in 1/64 for u = 0, 1, … is 2.92, 5.90, 8.94, 12.04, 15.21: tail u = 0 … 3 (to 4): slope
-    // 12.29 → 12, 3 a step; above: 2.92, 2.90, 2.94, 3.04: 2.97 + 0.5 → 3.
-    assert_eq!(it.operand(14), (0, 1));
-    assert_eq!(it.decay(14), 6);
-    // Twice 6·5/64 → 7/8.
-    assert_eq!(it.halvings(14, 6, 5), 7);
-    assert_eq!(it.reflectance(16, 0), 63);
-    assert_eq!(it.reflectance(0, 0), 0);
+fn tables_are_near_what_they_stand_for() {
+    for (of, decay) in [
+        (Decay::Logarithm, (|c| -libm::log2(c)) as fn(f64) -> f64),
+        (Decay::Angle, |c| libm::acos(c).powi(2) / (2.0 * LN_2)),
+    ] {
+        let it = small(of);
+        for u in 0..1i64 << it.keys.distance(of) {
+            let v = (u + 1) as f64 / 16.0;
+            let exact = decay(1.0 - v) / v * 64.0;
+            assert!((it.ratio.result(u) as f64 - exact).abs() < 1.0, "{of:?} {u}");
+        }
+    }
+    // For the middle of a quarter: 0.5, 1.5, … eighths.
+    let it = small(Decay::Angle);
+    for x in 0..4 {
+        let exact = libm::exp2(-(x as f64 + 0.5) / 4.0) * 64.0;
+        assert!((it.power.result(x) as f64 - exact).abs() < 1.0, "{x}");
+    }
 }

@@ -5,7 +5,6 @@ pub mod colour;
 pub mod divider;
 pub mod exponential;
 pub mod line;
-pub mod multipartite;
 pub mod quadrant;
 pub mod segmented;
 pub mod shift;

@@ -2,9 +2,8 @@
 //!
 //! The operand u (an integer of C bits, or exactly 2^C) is cut into ranges by factors of four:
 //! range j holds u in [2^(C−2j−2), 2^(C−2j)) and is cut uniformly, by the k_j top bits of the
-//! (C−2j)-bit number. What lies below the last range has one entry a value, or is cut uniformly too. So
-//! the segments are fine where a function such as √u is steep, or where one such as −log₂(1 − u) must
-//! keep its relative accuracy, at a cost of one mux, a tree, and no shifter.
+//! (C−2j)-bit number. What lies below the last range has one entry a value. So the segments are fine where a function such as √u
+//! is steep, at a cost of one mux, a tree, and no shifter.
 
 use crate::dsl::{Designer, Signal};
 use glint_base::fixed::{Format, Overflow, Rounding, exp2};
@@ -16,11 +15,6 @@ pub struct Segmentation {
     pub operand_bits: u32,
     /// k_j: log₂ of the segments into which range j would be cut if it reached down to 0.
     pub segments: Vec<u32>,
-    /// log₂ of the segments into which what lies below the last range is cut; `None`: one entry a value.
-    pub tail: Option<u32>,
-    /// The operand is never 2^C. Then the words of a range's lowest quarter, where ranges below have taken
-    /// over, are addressed by nothing, and the blocks of those ranges stand there.
-    pub packed: bool,
 }
 
 /// A block of entries: a range, or what lies below the last one.
@@ -44,36 +38,17 @@ pub struct Entry {
     pub slope: i128,
 }
 
-/// How a function bends.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Bend {
-    /// Its slope grows.
-    Convex,
-    /// Its slope falls.
-    Concave,
-}
-
-/// The straight line through a segment of a function with the least error: the slope of the chord,
-/// and the base that puts the error of the segment's points symmetrically about 0, of a convex function half an ulp up for
-/// what the truncated rise loses.
-pub fn chord(
-    segment: Segment,
-    shape: SegmentedFormats,
-    bend: Bend,
-    function: impl Fn(f64) -> f64,
-) -> Entry {
+/// The straight line through a segment of a concave function with the least error: the slope of the chord,
+/// and the base that puts the error of the segment's points symmetrically about 0.
+pub fn chord(segment: Segment, shape: SegmentedFormats, function: impl Fn(f64) -> f64) -> Entry {
     let value = Format::unsigned(0, shape.fraction);
     let (from, length) = (segment.from as f64, segment.length as f64);
     if segment.length == 1 {
         return Entry { base: value.quantise(function(from)), slope: 0 };
     }
-    let (sign, lost) = match bend {
-        Bend::Convex => (1.0, exp2(-shape.fraction - 1)),
-        Bend::Concave => (-1.0, 0.0),
-    };
     let scale = exp2(shape.slope_fraction);
     let slope = ((function(from + length) - function(from)) * scale + 0.5).floor();
-    let residual = |at: f64| sign * (function(from + at) - slope / scale * at / length);
+    let residual = |at: f64| slope / scale * at / length - function(from + at);
     // The greatest residual is at an end, the least where the curve is parallel to the line.
     let last = length - 1.0;
     let most = residual(0.0).max(residual(last));
@@ -89,7 +64,7 @@ pub fn chord(
     }
     let middle = ((low + high) / 2.0).floor();
     let least = [low, middle, high].into_iter().map(residual).fold(f64::MAX, f64::min);
-    let base = value.quantise(sign * (least + most) / 2.0 + lost);
+    let base = value.quantise(-(least + most) / 2.0);
     Entry { base, slope: slope as i128 }
 }
 
@@ -122,35 +97,14 @@ impl Segmentation {
         let mut blocks: Vec<Block> = (0u32..)
             .zip(&self.segments)
             .map(|(range, &prefix)| Block { bits: self.operand_bits - 2 * range, prefix, base: 0 })
-            .chain([Block { bits: rest, prefix: self.tail.unwrap_or(rest), base: 0 }])
+            .chain([Block { bits: rest, prefix: rest, base: 0 }])
             .collect();
         let mut order: Vec<usize> = (0..blocks.len()).collect();
         order.sort_by_key(|&at| std::cmp::Reverse(blocks[at].prefix));
-        // Words that nothing addresses: the first, and log2 of how many, to which the first is aligned.
-        let mut holes: Vec<(u32, u32)> = Vec::new();
         let mut next = 0;
         for at in order {
-            let prefix = blocks[at].prefix;
-            let hole = (0..holes.len())
-                .filter(|&hole| holes[hole].1 >= prefix)
-                .min_by_key(|&hole| holes[hole].1);
-            blocks[at].base = match hole {
-                None => {
-                    next += 1 << prefix;
-                    next - (1 << prefix)
-                }
-                Some(hole) => {
-                    let (base, mut size) = holes.swap_remove(hole);
-                    while size > prefix {
-                        size -= 1;
-                        holes.push((base + (1 << size), size));
-                    }
-                    base
-                }
-            };
-            if self.packed && at < self.segments.len() {
-                holes.push((blocks[at].base, prefix - 2));
-            }
+            blocks[at].base = next;
+            next += 1 << blocks[at].prefix;
         }
         blocks
     }
@@ -170,7 +124,7 @@ impl Segmentation {
     }
 
     /// The segment of each word of the table; `None` where no value of u leads. The word that
-    /// u = 2^C leads to, if it may be that, has that one value.
+    /// u = 2^C leads to has that one value.
     pub fn segment_of_words(&self) -> Vec<Option<Segment>> {
         let mut words = vec![None; self.entries()];
         let blocks = self.blocks();
@@ -183,23 +137,10 @@ impl Segmentation {
                     Some(Segment { from: prefix * length, length });
             }
         }
-        if !self.packed {
-            let top = blocks.first().map_or(0, |block| block.base as usize);
-            words[top] = Some(Segment { from: 1 << self.operand_bits, length: 1 });
-        }
+        let top = blocks.first().map_or(0, |block| block.base as usize);
+        words[top] = Some(Segment { from: 1 << self.operand_bits, length: 1 });
         words
     }
-}
-
-/// The straight line of the segment that an operand lies in: `base + slope · rest`.
-#[derive(Clone, Copy)]
-pub struct Line<'d> {
-    /// The value at the start of the segment, `u0.S`.
-    pub base: Signal<'d>,
-    /// The rise over the whole segment, with D fraction bits.
-    pub slope: Signal<'d>,
-    /// Where in the segment the operand lies, a fraction of it.
-    pub rest: Signal<'d>,
 }
 
 /// The table as hardware: `u` is an integer from 0 to 2^C; the result is `u0.S`.
@@ -216,42 +157,6 @@ pub fn interpolate<'d>(
     entry: impl Fn(Segment) -> Entry,
     block: Option<u16>,
 ) -> Signal<'d> {
-    let line = look_up(d, name, u, cut, shape, entry, block);
-    let rise = d.mul(&format!("{name}_rise"), line.slope, line.rest);
-    line.at(d, name, rise)
-}
-
-impl<'d> Line<'d> {
-    /// The value of the line, `u0.S`, where `rise` is the product of slope and rest.
-    #[track_caller]
-    pub fn at(self, d: &'d Designer, name: &str, rise: Signal<'d>) -> Signal<'d> {
-        let value = self.base.format();
-        // The rise over a part of a segment is below the slope, which is below 1.
-        let rise = d.narrow(
-            &format!("{name}_rise_cut"),
-            rise,
-            value,
-            Rounding::Truncate,
-            Overflow::Saturate,
-        );
-        let sum = d.add(&format!("{name}_sum"), self.base, rise);
-        d.narrow(&format!("{name}_value"), sum, value, Rounding::Truncate, Overflow::Saturate)
-    }
-}
-
-/// The table without the multiplication, for a device whose multiplier has other work too.
-///
-/// As [`interpolate`]; [`Line::at`] is the rest of it.
-#[track_caller]
-pub fn look_up<'d>(
-    d: &'d Designer,
-    name: &str,
-    u: Signal<'d>,
-    cut: &Segmentation,
-    shape: SegmentedFormats,
-    entry: impl Fn(Segment) -> Entry,
-    block: Option<u16>,
-) -> Line<'d> {
     let words = cut.segment_of_words();
     let entries: Vec<Entry> =
         words.iter().map(|segment| segment.map_or_else(Entry::default, &entry)).collect();
@@ -290,7 +195,12 @@ pub fn look_up<'d>(
         .out()
         .bits(0, Format::unsigned(slope_bits as i32 - shape.slope_fraction, shape.slope_fraction))
         .named(&format!("{name}_slope"));
-    Line { base, slope, rest }
+    let rise = d.mul(&format!("{name}_rise"), slope, rest);
+    // The rise over a part of a segment is below the slope, which is below 1.
+    let rise =
+        d.narrow(&format!("{name}_rise_cut"), rise, value, Rounding::Truncate, Overflow::Saturate);
+    let sum = d.add(&format!("{name}_sum"), base, rise);
+    d.narrow(&format!("{name}_value"), sum, value, Rounding::Truncate, Overflow::Saturate)
 }
 
 /// The word and the remainder, left-justified, a fraction of the segment.

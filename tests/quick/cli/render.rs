@@ -138,6 +138,7 @@ fn the_pictures_of_the_documentation_are_todays() {
             .args(command.split_whitespace())
             .arg("--out")
             .arg(dir.at("out.png"))
+            .arg("--force")
             .output()
             .expect("the program runs");
         assert!(run.status.success(), "{run:?}");

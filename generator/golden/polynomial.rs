@@ -1,0 +1,50 @@
+//! Horner's rule in integers, on the coefficients of a piecewise polynomial.
+//!
+//! The table is data: what vouches for it is that every operand was computed and set against the formula.
+
+use std::sync::Arc;
+
+use super::frame::{Frame, Slot, State};
+use glint_approximate::Piecewise;
+
+/// The registers of a polynomial's sums.
+pub struct Polynomial {
+    it: Arc<Piecewise>,
+    /// The sums from each coefficient on, the polynomial first.
+    sums: Vec<Slot>,
+}
+
+impl Polynomial {
+    /// Gives a frame the registers, by these names, the polynomial's first.
+    pub fn new(frame: &mut Frame, names: &[&str], it: &Arc<Piecewise>) -> Self {
+        let registers = names.iter().zip(&it.sums).take(it.degree().max(1));
+        let sums = registers.map(|(name, format)| frame.register(name, *format)).collect();
+        Self { it: it.clone(), sums }
+    }
+
+    /// The polynomial's register.
+    pub fn q(&self) -> Slot {
+        self.sums[0]
+    }
+
+    /// Returns what each step does, in their order; `raw` is the raw operand of the table.
+    pub fn steps<R>(
+        &self,
+        raw: R,
+    ) -> impl Iterator<Item = impl Fn(&mut State) + use<R>> + use<'_, R>
+    where
+        R: Fn(&State) -> i64 + Clone + Send + Sync + 'static,
+    {
+        (0..self.sums.len()).rev().map(move |k| {
+            let (it, raw) = (self.it.clone(), raw.clone());
+            let (own, above) = (self.sums[k], self.sums.get(k + 1).copied());
+            move |s: &mut State| {
+                let place = it.place(raw(s));
+                // The highest coefficient is a word of the table and no register.
+                let above = above.map_or(it.words[place.word][it.degree()], |above| s[above]);
+                let sum = it.sum(k, place, above) >> if k == 0 { it.guard() } else { 0 };
+                s[own] = it.sums[k].raw(it.sums[k].bits(sum.into())) as i64;
+            }
+        })
+    }
+}
