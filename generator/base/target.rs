@@ -182,10 +182,10 @@ const PURE_MULTIPLIERS: &str = "synth_ice40 -top {top} -run begin:coarse; opt; w
     select a:mul2dsp; setattr -unset mul2dsp; opt_expr -fine; wreduce; select -clear; \
     chtype -set $mul t:$__soft_mul; ";
 
-// The weights are of the 20 cores in `synthesis/`, sequential and pipelined: on iCE40 by `benches/tune/fit`; on ECP5 by a fit to pipelines that were
-// other netlists; on Xilinx 7 sought near such a fit for the least error in the median. The estimate of half of the cores is within
-// 9 % of the look-up tables on iCE40, 12 % on ECP5, 20 % on Xilinx 7; the worst are `threshold` on iCE40 (33 % too many), `blinn_pipelined` on ECP5
-// (27 % too few), and `schlick_pipelined` on Xilinx 7 (47 % too few: its adders divide, those of other cores go into DSP blocks).
+// The weights are of the 20 cores in `synthesis/`, sequential and pipelined: on iCE40 by `benches/tune/fit`; on ECP5 and Xilinx 7 sought near such a
+// fit for the least error in the median. The estimate of half of the cores is within 9 % of the look-up tables on iCE40, 4 % on ECP5, 10 % on
+// Xilinx 7; the worst are `threshold` on iCE40 (33 % too many), one that is 24 % off on ECP5, and `schlick_pipelined` on Xilinx 7 (51 % too few:
+// its adders divide, those of other cores go into DSP blocks).
 
 /// Lattice iCE40 UP5K.
 pub const ICE40: Family = Family {
@@ -263,7 +263,7 @@ pub const ECP5: Family = Family {
         Chip { name: "LFE5U-85F", options: "--85k --package CABGA756", has: [83_640, 156, 208] },
     ],
     estimate: Estimate {
-        weights: [1.48, 0.46, 0.41, 2.09, 0.46, 27.92],
+        weights: [1.50, 0.41, 0.58, 3.44, 0.58, 22.86],
         scale: 0.95,
         sign: 0,
         least_product: 9,
@@ -301,7 +301,7 @@ pub const XILINX7: Family = Family {
     flip_flops: &[("FDRE", 1), ("FDSE", 1)],
     chips: &[Chip { name: "XC7A35T", options: "", has: [20_800, 90, 100] }],
     estimate: Estimate {
-        weights: [0.48, 0.33, 1.18, 0.64, 0.0, 8.48],
+        weights: [0.45, 0.29, 0.71, 2.55, 0.0, 21.57],
         scale: 1.0,
         sign: 1,
         least_product: 9,

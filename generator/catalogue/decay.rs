@@ -14,7 +14,7 @@ use glint_rtl::dsl::{Designer, Note, Signal, Topic, step};
 use super::common;
 use super::piecewise::{Multiplier, Polynomial, Tables};
 
-/// What the two devices make of cos γ.
+/// The distance of cos γ from 1, as each of the two devices has it.
 pub struct Distance<'d> {
     /// 1 − cos γ less an ulp, an integer.
     pub u: Signal<'d>,

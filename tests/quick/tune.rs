@@ -231,7 +231,7 @@ fn estimates_are_as_near_to_synthesis_as_is_said() {
     let cores: Vec<_> =
         cores.into_iter().filter(|(core, _)| core.contract.highlight().is_some()).collect();
     let stated =
-        [(Target::Ice40, 0.09, 0.35), (Target::Ecp5, 0.115, 0.27), (Target::Xilinx7, 0.2, 0.51)];
+        [(Target::Ice40, 0.09, 0.35), (Target::Ecp5, 0.095, 0.25), (Target::Xilinx7, 0.105, 0.51)];
     for (target, usual, most) in stated {
         let (mut off, mut clocks) = (Vec::new(), Vec::new());
         for (core, record) in &cores {
