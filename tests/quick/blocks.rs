@@ -65,24 +65,11 @@ fn check(path: &str, design: &Design) {
         let inside = found.binary_search(&id).is_ok();
         assert!(inside || !hardware && operator(design, id).is_none(), "{path}: `{}`", net.name);
     }
-    // Where a statement masks bits by others: rows of a product, or a mux of which one input is 0 there.
-    let masked = design.iter().filter(|(_, net)| match &net.driver {
-        Driver::Op(op) => op.mnemonic() == "and",
-        _ => false,
-    });
-    let masked: Vec<_> = masked.map(|(_, net)| net.location).collect();
     for block in &all {
         let operators = block.cells.iter().filter_map(|&it| operator(design, it));
         let operators: Vec<&Op> = operators.collect();
         let wanted = match (&operators[..], block.kind) {
             (_, BlockKind::Limiter | BlockKind::Rounding | BlockKind::RoundingLimiter) => 1,
-            // The masks are inputs too.
-            ([_], _)
-                if block.cells.iter().any(|it| masked.contains(&design.net(*it).location))
-                    && design.pipeline.is_some() =>
-            {
-                block.inputs.len().max(2)
-            }
             ([Op::Mux { inputs, .. }], _) => inputs.len(),
             ([op], _) => op.operands().len(),
             (all, _) if all.iter().any(|it| matches!(it, Op::Mul(..))) => 2,

@@ -6,7 +6,7 @@
 use std::collections::BTreeSet;
 
 use super::kind::{MULTIPLIER, MUX, operator};
-use glint_rtl::netlist::{Design, Driver, NetId, Partition, Role, RomId};
+use glint_rtl::netlist::{Design, Driver, NetId, Op, Partition, Role, RomId};
 
 /// The groups of a design's nets, and the sources of each.
 pub struct Groups<'a> {
@@ -131,9 +131,22 @@ impl<'a> Groups<'a> {
             (_, MUX) => !(shown(from) || named(from) && named(to) && design.pipeline.is_none()),
             _ if design.pipeline.is_none() => !(named(from) && named(to) || shown(from)),
             _ => {
-                let all = self.operators(to);
                 let one =
                     |it: &NetId| std::ptr::eq(design.net(*it).location, design.net(to).location);
+                // Rows of a product are gates of its statement.
+                let row = |it: &NetId| {
+                    let mut at = *it;
+                    while !self.cell[at.index()] {
+                        match (&design.net(at).driver, &self.operands(at)[..]) {
+                            (Driver::Op(Op::And(..)), _) => return one(&at),
+                            (_, [only]) => at = *only,
+                            _ => return false,
+                        }
+                    }
+                    false
+                };
+                let whole = self.operands(to).into_iter().filter(|it| !row(it));
+                let all = self.through(whole.collect());
                 !self.rounds(to) && all.iter().all(|it| kind(*it).is_some() && one(it))
             }
         }
@@ -147,8 +160,12 @@ impl<'a> Groups<'a> {
 
     /// The operators, registers and tables that a net takes, through wires and gates, and in a pipeline through registers.
     pub fn operators(&self, id: NetId) -> Vec<NetId> {
+        self.through(self.operands(id))
+    }
+
+    /// The operators, registers and tables that these nets are or take.
+    fn through(&self, mut pending: Vec<NetId>) -> Vec<NetId> {
         let (mut found, mut seen) = (Vec::new(), BTreeSet::new());
-        let mut pending = self.operands(id);
         while let Some(id) = pending.pop() {
             if seen.insert(id) {
                 match self.cell[id.index()] {

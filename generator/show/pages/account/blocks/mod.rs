@@ -99,6 +99,9 @@ impl<'a> Blocks<'a> {
         // Operators first: bits that go around them come from the same signals.
         let (own, around): (Vec<NetId>, Vec<NetId>) =
             inside.iter().partition(|it| self.groups.cell[it.index()]);
+        // Of a mux that is alone they are its inputs, masked by what selects where one input is 0.
+        let is_mux = |it: &NetId| matches!(design.net(*it).driver, Driver::Op(Op::Mux { .. }));
+        let around = if matches!(&own[..], [only] if is_mux(only)) { Vec::new() } else { around };
         for id in own.into_iter().chain(around) {
             let operands = self.groups.operands(id).into_iter().enumerate();
             let select = matches!(design.net(id).driver, Driver::Op(Op::Mux { .. }));
