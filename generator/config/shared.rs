@@ -80,6 +80,10 @@ keys! {
             .only_when("architecture", "sequential"),
         software: bool = Key::flag("package.software", false,
             "Write software/<name>/: a bit-accurate model of the core in C."),
+        recomputation: bool = Key::flag("package.recomputation", false,
+            "Write software/<name>/<name>_recompute.c: a program with MPFR that recomputes every operand from formula and memories, and \
+             prints the largest error. Of devices whose contract is a formula of one operand.")
+            .only_when("package.software", "true"),
         memories: String = Key::choice("package.memories", "files", &["files", "inline", "case"],
             "Whether ROM contents are .mem files, or stand in the Verilog, for flows that do not find files: as initial values, or as \
              the choices of a case, for flows that drop those."),

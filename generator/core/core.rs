@@ -223,16 +223,34 @@ impl Core {
         lockstep.record(BENCH_POINTS * results, &directed)
     }
 
+    /// Returns the program that recomputes every operand, the model that it includes, and the memories.
+    ///
+    /// # Errors
+    /// A contract that is no formula of one operand.
+    pub fn recomputation(&self) -> Result<Vec<OutputFile>> {
+        let asked = Surroundings { software: true, recomputation: true, ..Surroundings::default() };
+        let inputs = EmitInputs {
+            accuracy: Some(ContractFacts::new(self.contract.as_ref())),
+            around: asked,
+            sequential: self.microprogram(true)?,
+            ..EmitInputs::default()
+        };
+        package::emit(&self.design, &inputs)
+    }
+
+    /// Of a pipeline the design with the microprogram, if it is wanted.
+    fn microprogram(&self, is_wanted: bool) -> Result<Option<Design>> {
+        let wanted = is_wanted && self.design.pipeline.is_some();
+        Ok(wanted.then(|| self.device.sequential(&self.config)).transpose()?)
+    }
+
     /// Every file of the configuration, which the command line knows as `config`, a path.
     ///
     /// # Errors
     /// Golden model and simulation do not agree, or the design cannot be written as Verilog.
     pub fn files(&self, config: &str, vectors: Vectors) -> Result<Vec<OutputFile>> {
         let around = Surroundings::new(&self.config, self.design.pipeline.as_ref());
-        let sequential = match &self.design.pipeline {
-            Some(_) if around.software => Some(self.device.sequential(&self.config)?),
-            _ => None,
-        };
+        let sequential = self.microprogram(around.software)?;
         let inputs = EmitInputs {
             regenerate: format!("{Program} generate {}", input::label(config)),
             configuration: self.digest(),

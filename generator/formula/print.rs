@@ -1,4 +1,4 @@
-//! A formula as text that Python evaluates.
+//! A formula as text of other languages.
 
 use super::{Comparison, Formula, Function, Kind, Operator};
 
@@ -13,6 +13,46 @@ impl Formula {
     /// The text as [`super::parse()`] reads it, and Python with `from math import *`.
     pub fn python(&self) -> String {
         python(self).0
+    }
+}
+
+impl Formula {
+    /// The calls of the functions of `templates/recompute.c`, which take and give limits.
+    pub fn c(&self) -> String {
+        let call = |name: &str, parts: &[&Self]| {
+            let parts: Vec<String> = parts.iter().map(|it| it.c()).collect();
+            format!("{name}({})", parts.join(", "))
+        };
+        match &self.kind {
+            Kind::Number(value, _) => format!("number(\"{value:?}\")"),
+            Kind::Constant("pi", _) => "constant(mpfr_const_pi)".to_owned(),
+            Kind::Constant(..) => "rising(mpfr_exp, number(\"1\"))".to_owned(),
+            Kind::Operand(name) | Kind::Word(name, _) => name.clone(),
+            Kind::Unary(Function::Negate, a) => call("negate", &[a]),
+            Kind::Unary(Function::Abs, a) => call("absolute", &[a]),
+            Kind::Unary(Function::Tan, a) => call("tangent", &[a]),
+            Kind::Unary(function @ (Function::Sin | Function::Cos), a) => {
+                format!("wave(mpfr_{}, {})", function.name(), a.c())
+            }
+            Kind::Unary(function, a) => format!("rising(mpfr_{}, {})", function.name(), a.c()),
+            Kind::Binary(operator, a, b) => {
+                let name = match operator {
+                    Operator::Add => "add",
+                    Operator::Sub => "subtract",
+                    Operator::Mul => "multiply",
+                    Operator::Div => "divide",
+                    Operator::Mod => "remainder_of",
+                    Operator::Power => "power",
+                    Operator::Min => "minimum",
+                    Operator::Max => "maximum",
+                };
+                call(name, &[a, b])
+            }
+            Kind::If(Comparison { left, right, or_equal }, yes, no) => {
+                let [left, right] = [left.c(), right.c()];
+                format!("choose({left}, {right}, {}, {}, {})", u8::from(*or_equal), yes.c(), no.c())
+            }
+        }
     }
 }
 

@@ -249,6 +249,7 @@ fn limit_memory(_process: u32, _bytes: u64) {}
 fn remedy(name: &str) -> String {
     let package = match name {
         "vvp" => "iverilog",
+        "cc" => "gcc",
         "yosys-smtbmc" => "yosys",
         "icetime" => "fpga-icestorm fpga-icestorm-chipdb",
         "sta" => "opensta",

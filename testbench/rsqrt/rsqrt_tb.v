@@ -16,7 +16,7 @@ module rsqrt_tb #(
     parameter STIMULUS_FILE = "rsqrt_stimulus.mem",
     parameter EXPECTED_FILE = "rsqrt_expected.mem"
 );
-    localparam CLOCKS     = 557;
+    localparam CLOCKS     = 564;
     localparam KNOWN_FROM = 8;  // results are compared from this clock on
     localparam REPORTED   = 20;  // differences that are printed
 

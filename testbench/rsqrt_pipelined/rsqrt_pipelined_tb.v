@@ -16,7 +16,7 @@ module rsqrt_pipelined_tb #(
     parameter STIMULUS_FILE = "rsqrt_pipelined_stimulus.mem",
     parameter EXPECTED_FILE = "rsqrt_pipelined_expected.mem"
 );
-    localparam CLOCKS     = 4221;
+    localparam CLOCKS     = 4104;
     localparam KNOWN_FROM = 9;  // results are compared from this clock on
     localparam REPORTED   = 20;  // differences that are printed
 

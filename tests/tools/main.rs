@@ -24,6 +24,7 @@ mod multipliers;
 mod mutants;
 mod random_configurations;
 mod random_netlists;
+mod recompute;
 mod schema;
 mod shipped_bench;
 mod slurm;

@@ -175,11 +175,18 @@ impl<'a> Points<'a> {
         low.wrapping_add(lengths[0].min(lengths[1]) as i64)
     }
 
-    /// A raw value for one operand: half of the time any bit pattern of its format.
+    /// A raw value for one operand: half of the time any bit pattern of its format, else one that is drawn on its own or, of a
+    /// device that is no highlight, often one that is just outside the domain, where a core may saturate.
     pub fn any(&self, random: &mut Random, at: usize) -> i64 {
-        let format = self.operands[at].format;
+        let Operand { format, domain: (low, high), .. } = self.operands[at];
+        let (least, most) = (format.min_raw() as i64, format.max_raw() as i64);
         if random.once_in(2) {
-            random.within(format.min_raw() as i64, format.max_raw() as i64)
+            random.within(least, most)
+        } else if self.highlight.is_none() && (least, most) != (low, high) && random.once_in(2) {
+            let is_below = low > least && (high == most || random.once_in(2));
+            let room = if is_below { low.abs_diff(least) } else { most.abs_diff(high) };
+            let away = random.magnitude(room - 1) as i64 + 1;
+            if is_below { low - away } else { high + away }
         } else {
             self.one(random, at)
         }

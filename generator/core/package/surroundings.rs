@@ -70,6 +70,8 @@ pub struct Surroundings {
     pub registers: Option<&'static Bus>,
     /// A model in C, in `software/<name>/`.
     pub software: bool,
+    /// A program beside it that recomputes every operand.
+    pub recomputation: bool,
     /// How memories and registers are written.
     pub style: Style,
     /// A module for LiteX.
@@ -107,6 +109,7 @@ impl Surroundings {
             user_bits: keys.user_bits,
             registers: BUSES.iter().find(|bus| bus.key == keys.registers),
             software: keys.software,
+            recomputation: keys.recomputation,
             style: Style {
                 inline: keys.memories != "files",
                 case: keys.memories == "case",

@@ -200,13 +200,14 @@ pub struct Check {
 }
 
 /// All checks: first those that need nothing but Glint.
-pub const CHECKS: [&Check; 15] = [
+pub const CHECKS: [&Check; 16] = [
     &inside::DESIGN,
     &inside::LOCKSTEP,
     &inside::CLOCKS,
     &inside::CONTRACT,
     &inside::MUTATION,
     &outside::CERTIFICATE,
+    &outside::RECOMPUTATION,
     &outside::EQUALITY,
     &outside::TEXT,
     &outside::LINT,

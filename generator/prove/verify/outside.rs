@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use rayon::prelude::*;
 
 use super::{Check, Finding, Subject, Verdict};
@@ -16,12 +16,12 @@ use glint_base::program::Program;
 use glint_base::target::{FAMILIES, Family};
 use glint_base::text::{counted, grouped};
 use glint_core::core::{BENCH_SEED, Core};
-use glint_core::package;
+use glint_core::package::{self, OutputFile};
 use glint_tools::gates;
 use glint_tools::gates::cells::{LIBERTY, Start};
 use glint_tools::synthesis::synthesise;
 use glint_tools::transient::Directory;
-use glint_tools::{Limits, PROOF_LIMITS, Simulator, elaborate, lint, prove, run_bench};
+use glint_tools::{Limits, PROOF_LIMITS, Simulator, Tool, elaborate, lint, prove, run_bench};
 
 /// Results of a bench, and with full effort.
 const POINTS: [u64; 2] = [200, 20_000];
@@ -99,6 +99,49 @@ pub const CERTIFICATE: Check = Check {
             ),
         )
         .open("The words of tables are taken as they are."))
+    },
+};
+
+/// The bound of the contract, by a program that shares nothing with Glint but the formula.
+pub const RECOMPUTATION: Check = Check {
+    id: "recomputation",
+    title: "Every operand recomputed with MPFR",
+    question: "Does a program outside Glint find no larger error than the bound, with the formula in MPFR and the memories as they are?",
+    reads: "the memory files, the model in C, and the program that `package.recomputation` writes",
+    tools: &["cc"],
+    steps: |_| 1,
+    run: |subject, tools, _| {
+        let files = match subject.core.recomputation() {
+            Ok(files) => files,
+            Err(error) if error.is::<package::Unfit>() => {
+                let why = "It is asked of contracts that are a formula of one operand.";
+                return Ok(Finding::without(Verdict::NotApplicable, why));
+            }
+            Err(error) => return Err(error),
+        };
+        let (dir, limit) = (directory_of(&files)?, subject.effort.time_limit);
+        let name = &subject.core.config.name;
+        let source = format!("software/{name}/{name}_recompute.c");
+        let compile = ["-std=c99", "-O2", "-o", "recompute", &source, "-lmpfr", "-lgmp"];
+        let compiled = tools[0].run(compile, dir.path(), limit)?;
+        if !compiled.status.success() && compiled.output.contains("mpfr") {
+            let why = "MPFR is not installed for the C compiler: package libmpfr-dev, say";
+            return Ok(Finding::without(Verdict::NotRun, why));
+        }
+        ensure!(compiled.status.success(), "`{source}`: {}", compiled.output.trim());
+        let program = Tool::find_in("recompute", dir.path().as_os_str())?;
+        let run = program.run([format!("rtl_out/{name}")], dir.path(), limit)?;
+        let said = run.output.lines().last().unwrap_or_default().to_owned();
+        let holds = run.status.success() && said.ends_with(" holds");
+        let failures = if holds { Vec::new() } else { vec![said.clone()] };
+        let operand = &subject.core.contract.operands()[0];
+        let domain = format!(
+            "every operand: {} = {} to {}",
+            operand.name, operand.domain.0, operand.domain.1
+        );
+        Ok(Finding::new(Verdict::Proved, domain, format!("{said}.")).failures(failures).open(
+            "The model in C is made of the netlist, which other checks compare with the Verilog.",
+        ))
     },
 };
 
@@ -413,8 +456,12 @@ pub const COCOTB: Check = Check {
 
 /// Everything that is emitted, in a directory of its own.
 fn written(subject: &Subject<'_>) -> Result<Directory> {
+    directory_of(subject.files()?.iter().chain([&package::driver()]))
+}
+
+fn directory_of<'f>(files: impl IntoIterator<Item = &'f OutputFile>) -> Result<Directory> {
     let dir = Directory::new().context("cannot make a directory for what is emitted")?;
-    for file in subject.files()?.iter().chain([&package::driver()]) {
+    for file in files {
         let path = dir.path().join(&file.path);
         path.parent()
             .map_or(Ok(()), fs::create_dir_all)

@@ -6,6 +6,7 @@
 mod litex;
 mod model;
 mod print;
+mod recompute;
 mod registers;
 mod setup;
 
@@ -20,7 +21,10 @@ use super::tops::Top;
 /// A core that does not fit.
 pub fn files(job: &Job, tops: &[Top], files: &mut Artifacts) -> Result<()> {
     if job.inputs.around.software {
-        model::files(job, files)?;
+        let read = model::files(job, files)?;
+        if job.inputs.around.recomputation {
+            recompute::file(job, &read, files)?;
+        }
         setup::files(job, files)?;
     }
     if let Some((bus, map)) = &job.registers {

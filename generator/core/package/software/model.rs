@@ -108,12 +108,12 @@ impl Field {
     }
 }
 
-/// Adds the model. It is made of the design with the microprogram.
+/// Adds the model, and returns the ROMs that it reads. It is made of the design with the microprogram.
 ///
 /// # Errors
 /// A core of which no function can be made: one that waits for `start` in the middle, has a loop without a bound, or
 /// whose results depend on what it did before.
-pub fn files(job: &Job, files: &mut Artifacts) -> Result<()> {
+pub fn files(job: &Job, files: &mut Artifacts) -> Result<Vec<RomId>> {
     let (name, inputs, line) = (job.name(), job.inputs, job.is_line());
     let design = inputs.sequential.as_ref().unwrap_or(job.design);
     let about = &design.about;
@@ -168,7 +168,7 @@ pub fn files(job: &Job, files: &mut Artifacts) -> Result<()> {
         })?;
         files.add(Kind::Software, format!("{name}_model.py"), python);
     }
-    Ok(())
+    Ok(read)
 }
 
 /// The worked example's raw operands in the order of the ports, which need not be its own.
@@ -341,7 +341,7 @@ fn roms(graph: &Graph, wanted: &[NodeId]) -> Vec<RomId> {
 }
 
 /// The array of each ROM.
-fn table_names(design: &Design) -> Vec<String> {
+pub fn table_names(design: &Design) -> Vec<String> {
     let mut names = Names::new(design.nets.iter().map(|net| net.name.as_str()));
     design.roms.iter().map(|rom| names.fresh(&format!("{}_table", rom.name))).collect()
 }

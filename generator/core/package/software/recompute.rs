@@ -1,0 +1,67 @@
+//! A program in C that recomputes every operand with MPFR: evidence for the bound that needs no trust in Glint.
+
+use anyhow::Result;
+
+use super::model::{Field, table_names};
+use crate::package::Unfit;
+use crate::package::artifact::{Artifacts, Job, Kind};
+use glint_base::fill;
+use glint_formula::parse;
+use glint_rtl::netlist::RomId;
+use glint_rtl::verilog::naming::Naming;
+use glint_rtl::verilog::text::{ascii, statement};
+
+/// The most values that the program makes for a part of a formula.
+const VALUES: usize = 8;
+
+/// Adds the program. `read` are the ROMs that the model reads.
+///
+/// # Errors
+/// A core of several operands or results, or one whose contract states no formula.
+pub fn file(job: &Job, read: &[RomId], files: &mut Artifacts) -> Result<()> {
+    let (name, inputs) = (job.name(), job.inputs);
+    let design = inputs.sequential.as_ref().unwrap_or(job.design);
+    let unfit = |why: &str| {
+        let message = format!("nothing recomputes `{name}`: {why}");
+        Unfit::new("package.recomputation", message, "remove it")
+    };
+    let facts = inputs.accuracy.as_ref().ok_or_else(|| unfit("it has no contract"))?;
+    let ([(operand, (first, last))], [(result, None)], [text]) =
+        (&facts.domain[..], &facts.outputs[..], &facts.f[..])
+    else {
+        return Err(unfit("its contract is no formula of one operand, with a bound").into());
+    };
+    let formula = parse(text)?;
+    let mut parts = 0;
+    formula.walk(&mut |_| parts += 1);
+    let field = |name: &str| {
+        let mut ports = design.ports.iter();
+        let port = ports.find(|port| design.net(port.net).name == name);
+        port.map(|port| Field::new(design, port)).ok_or_else(|| unfit("its contract names no port"))
+    };
+    let (operand, result) = (field(operand)?, field(result)?);
+    let (naming, tables) = (Naming::new(design), table_names(design));
+    let written = files.names(&[Kind::Memory]);
+    let memory = |id: &RomId| {
+        let (file, table) = (naming.files[id.index()].clone(), tables[id.index()].clone());
+        written.contains(&file).then(|| (file, table, design.rom(*id).words.len()))
+    };
+    let program = fill!("recompute.c" {
+        name: &'a str,
+        title: String = ascii(&design.about.title).replace("*/", "* /"),
+        regenerate: &'a str = job.regenerate(),
+        text: &'a str,
+        formula: Vec<String> = statement(4, &format!("return {};", formula.c())),
+        values: usize = VALUES * (parts + 1),
+        memories: Vec<(String, String, usize)> = read.iter().filter_map(memory).collect(),
+        operand_exponent: i32 = -operand.format.frac,
+        operand: String = operand.name,
+        result_exponent: i32 = -result.format.frac,
+        result: String = result.name,
+        first: &'a i64,
+        last: &'a i64,
+        bound: String = format!("{:?}", facts.bound),
+    })?;
+    files.add(Kind::Software, format!("{name}_recompute.c"), program);
+    Ok(())
+}

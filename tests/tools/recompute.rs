@@ -1,0 +1,122 @@
+//! The program that recomputes every operand with MPFR: it finds the bound that Glint proved, and notices what is wrong.
+
+use std::fs;
+use std::path::Path;
+
+use glint::core::Core;
+use glint::tools::transient::Directory;
+use glint::verify::{CHECKS, Effort, Finding, Subject, Verdict};
+use rayon::prelude::*;
+
+use crate::common::cores::{configuration, parsed};
+use crate::common::tools::{LIMIT, ran, tool};
+
+/// Formula, ends of the domain, fraction bits of operand and result: every function and operation that a formula can have.
+const FUNCTIONS: [(&str, &str, &str, u32, u32); 12] = [
+    ("1 / sqrt(x)", "1", "4", 10, 10),
+    ("tan(x)", "-1", "1", 10, 12),
+    ("x % 0.375", "0", "4", 8, 10),
+    ("if(x <= 0, 0.5, (1 - cos(x)) / x^2)", "-1", "1", 8, 12),
+    ("abs(x - 0.3) ^ 1.5", "0", "1", 10, 12),
+    ("cbrt(x)", "-1", "1", 8, 10),
+    ("asin(x) - sin(x)", "-1", "1", 8, 12),
+    ("floor(3 * x) / 3", "0", "2", 10, 10),
+    ("max(x^3, -x^2)", "-1", "1", 10, 10),
+    ("x^-2 + min(1, pi * x)", "1", "2", 10, 10),
+    ("erf(x) * e + tanh(x)", "0", "2", 10, 10),
+    ("log2(x) - ln(x) + 2^x + exp(-x)", "1", "2", 10, 10),
+];
+
+fn core((formula, from, to, operand, result): (&str, &str, &str, u32, u32), more: &str) -> Core {
+    let text = format!(
+        "device = \"function\"\nname = \"f\"\n{more}\n[function]\nformula = \"{formula}\"\nfrom = \"{from}\"\nto = \"{to}\"\n\
+         [operand]\nfraction = {operand}\n[result]\nfraction = {result}\n"
+    );
+    parsed("f.toml", &text)
+}
+
+/// Writes the program with what it reads, and compiles it without a warning.
+fn compiled(core: &Core) -> Directory {
+    let dir = Directory::new().expect("a directory");
+    for file in core.recomputation().expect("a formula of one operand") {
+        let path = dir.path().join(&file.path);
+        fs::create_dir_all(path.parent().expect("a directory")).expect("made");
+        fs::write(path, &file.contents).expect("written");
+    }
+    compile(dir.path());
+    dir
+}
+
+fn compile(dir: &Path) {
+    let source = "software/f/f_recompute.c";
+    let flags = ["-std=c99", "-O2", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-o", "recompute"];
+    ran("cc", flags.into_iter().chain([source, "-lmpfr", "-lgmp"]), dir);
+}
+
+/// Runs the program: whether it accepts, and its last line.
+fn said(dir: &Path) -> (bool, String) {
+    let shell = tool("sh").run(["-c", "./recompute rtl_out/f"], dir, LIMIT).expect("a program");
+    (shell.status.success(), shell.output.lines().last().unwrap_or_default().to_owned())
+}
+
+fn found(core: &Core) -> Finding {
+    let check = CHECKS.iter().find(|check| check.id == "recomputation").expect("the check");
+    let effort = Effort { full: false, without_tools: false, time_limit: LIMIT };
+    let subject = Subject::new("f.toml", core, effort, Path::new("proofs"));
+    check.run(&subject, &|_| ()).finding
+}
+
+#[test]
+fn every_operand_is_recomputed_with_the_error_that_was_proved() {
+    FUNCTIONS.into_par_iter().for_each(|function| {
+        for architecture in ["", "architecture = \"pipelined\""] {
+            let core = core(function, architecture);
+            let (accepts, said) = said(compiled(&core).path());
+            assert!(accepts, "{function:?}: {said}");
+            // Both round upwards, Glint after f64 and its limits of it.
+            let printed =
+                said.split("the largest error is ").nth(1).and_then(|it| it.split(' ').next());
+            let printed: f64 = printed.and_then(|it| it.parse().ok()).expect("a number");
+            let bound = core.contract.bound().units;
+            assert!((printed - bound).abs() < 2e-6, "{function:?}: {said} {bound}");
+        }
+    });
+}
+
+#[test]
+fn a_wrong_word_is_noticed() {
+    let dir = compiled(&core(FUNCTIONS[10], ""));
+    let memory = dir.path().join("rtl_out/f/f_coefficients.mem");
+    let text = fs::read_to_string(&memory).expect("a memory");
+    // The first digit has the highest bits of the constant coefficient.
+    let at = text.match_indices('\n').nth(2).expect("words").0 + 1;
+    let digit = text[at..].chars().next().and_then(|it| it.to_digit(16)).expect("a digit");
+    let wrong = format!("{}{:x}{}", &text[..at], digit ^ 1, &text[at + 1..]);
+    fs::write(&memory, &wrong).expect("written");
+    let (accepts, words) = said(dir.path());
+    assert!(!accepts && words.ends_with("word 1 is not that of the model"), "{words}");
+
+    // The model has the wrong word, too.
+    let model = dir.path().join("software/f/f_model.c");
+    let word = |text: &str| {
+        text.lines().nth(3).expect("a word").split(' ').next().map(str::to_owned).expect("digits")
+    };
+    let code = fs::read_to_string(&model).expect("the model");
+    let [right, planted] =
+        [word(&text), word(&wrong)].map(|it| it.trim_start_matches('0').to_owned());
+    assert_eq!(code.matches(&format!("0x{right}u")).count(), 1, "{code}");
+    fs::write(&model, code.replace(&format!("0x{right}u"), &format!("0x{planted}u")))
+        .expect("written");
+    compile(dir.path());
+    let (accepts, words) = said(dir.path());
+    assert!(!accepts && words.ends_with("DOES NOT HOLD"), "{words}");
+}
+
+#[test]
+fn the_check_proves_functions_and_asks_nothing_of_highlights() {
+    let finding = found(&core(FUNCTIONS[0], ""));
+    assert_eq!(finding.verdict, Verdict::Proved, "{finding:?}");
+    assert!(finding.words.ends_with(" holds."), "{finding:?}");
+    let finding = found(&configuration("configs/cosine_power.toml"));
+    assert_eq!(finding.verdict, Verdict::NotApplicable, "{finding:?}");
+}
