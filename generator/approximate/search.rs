@@ -2,7 +2,7 @@
 
 use super::reduction::KEY;
 use super::seen::Seen;
-use super::table::{Table, Widths};
+use super::table::{BITS_A_CELL, Table, Widths};
 use super::{
     Curve, Function, Identity, Layout, MOST_BITS, Piecewise, Reduction, Refusal, Segments,
 };
@@ -43,9 +43,6 @@ const STEP: f64 = 50.0;
 
 /// The cost of an octave: a row of the muxes that bring offsets into their place.
 const OCTAVE: f64 = 12.0;
-
-/// Bits of a table that a look-up table of four inputs holds.
-const BITS_A_CELL: f64 = 16.0;
 
 /// Errors of which the nearest is told where one is out of reach.
 const NEAREST: [f64; 14] =
@@ -145,7 +142,7 @@ fn attempt_reduced(function: &Function, wish: Wish) -> Result<Option<Piecewise>,
 /// Gives the approximation of least cost that is right at every operand that is looked at.
 fn cheapest(seen: &Seen, wish: Wish) -> Option<Piecewise> {
     let few = seen.thinned(CHOOSING);
-    let mut found: Vec<(f64, Segments, Widths)> = Vec::new();
+    let mut found: Vec<(f64, Segments, Widths, Widths)> = Vec::new();
     let mut least = f64::INFINITY;
     // Those first that are rarely far from the best, so that others are seldom searched to their end.
     for degree in [2, 3, 1, 0].into_iter().filter(|it| wish.degree.is_none_or(|own| own == *it)) {
@@ -160,19 +157,28 @@ fn cheapest(seen: &Seen, wish: Wish) -> Option<Piecewise> {
                 continue;
             }
             let table = Table::new(&few, cut);
-            if let Some((widths, words)) = table.narrowest(degree as usize) {
-                let cost = base + table.bits(&widths, &words) as f64 / BITS_A_CELL;
+            let mut generous = Some(table.generous(degree as usize));
+            while let Some(most) = generous
+                && let Some((widths, words)) = table.narrowest(&most)
+            {
+                let cost = base + table.cost(&widths, &words);
                 least = least.min(cost);
-                found.push((cost, cut, widths));
+                generous = table.within_factors(&widths, &words);
+                found.push((cost, cut, widths, most));
             }
         }
     }
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
     let more = seen.thinned(WIDENING);
-    found.into_iter().find_map(|(_, cut, widths)| {
-        let (widths, _) = Table::new(&more, cut).settled(widths)?;
+    found.into_iter().find_map(|(_, cut, widths, most)| {
+        let chosen = widths.clone();
+        let table = Table::new(&more, cut);
+        let (mut widths, words) = table.settled(widths, &most)?;
+        if widths != chosen {
+            (widths, _) = table.lowered(widths, words);
+        }
         let table = Table::new(seen, cut);
-        let (widths, words) = table.settled(widths)?;
+        let (widths, words) = table.settled(widths, &most)?;
         table.finished(&widths, words)
     })
 }

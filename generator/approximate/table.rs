@@ -21,6 +21,15 @@ const GENEROUS: i32 = 8;
 /// The fewest of them.
 const FEWEST: i32 = -8;
 
+/// Bits of a factor that a multiplier of an FPGA takes, with its sign.
+const FACTOR: u32 = 18;
+
+/// Look-up tables for a bit of a partial product that a multiplier does not take, and its adder.
+const PARTIAL: f64 = 2.0;
+
+/// Bits of a table that a look-up table of four inputs holds.
+pub(super) const BITS_A_CELL: f64 = 16.0;
+
 /// A segment in the search.
 pub(super) struct Piece {
     /// Its operands that are looked at, by their numbers among all such.
@@ -159,10 +168,9 @@ impl<'s> Table<'s> {
         found.is_none()
     }
 
-    /// The narrowest coefficients and offsets, if any are right.
-    pub(super) fn narrowest(&self, degree: usize) -> Option<(Widths, Words)> {
-        let generous = self.generous(degree);
-        let mut words = self.fitted(&generous)?;
+    /// The narrowest coefficients and offsets, none wider than these, if any are right.
+    pub(super) fn narrowest(&self, generous: &Widths) -> Option<(Widths, Words)> {
+        let mut words = self.fitted(generous)?;
         // How far each can go alone; together they need about a bit more.
         let mut widths = generous.clone();
         for at in 0..generous.count() {
@@ -177,48 +185,54 @@ impl<'s> Table<'s> {
                 words = found;
                 break;
             }
-            if widths == generous {
+            if widths == *generous {
                 break;
             }
             for at in 0..generous.count() {
-                widths = widths.with(at, 1)?.no_wider(&generous);
+                widths = widths.with(at, 1)?.no_wider(generous);
             }
         }
+        Some(self.lowered(widths, words))
+    }
+
+    /// Lowers widths one at a time until no operand would be right any more.
+    pub(super) fn lowered(&self, mut widths: Widths, mut words: Words) -> (Widths, Words) {
         let mut changed = true;
         while changed {
             changed = false;
-            for at in (0..generous.count()).rev() {
+            for at in (0..widths.count()).rev() {
                 let Some(lower) = widths.with(at, -1) else { continue };
                 if let Some(found) = self.fitted(&lower) {
                     (widths, words, changed) = (lower, found, true);
                 }
             }
         }
-        Some((widths, words))
+        (widths, words)
     }
 
     /// The widths with which the search begins.
-    fn generous(&self, degree: usize) -> Widths {
+    pub(super) fn generous(&self, degree: usize) -> Widths {
         let guard = if degree == 0 { 0 } else { GENEROUS };
         Widths { guard: vec![guard; degree + 1], offset: vec![self.cut.rest(); degree] }
     }
 
-    /// Widths that were chosen by fewer operands, a bit wider where these are not right, and the words with them.
-    pub(super) fn settled(&self, mut widths: Widths) -> Option<(Widths, Words)> {
-        let generous = self.generous(widths.offset.len());
+    /// Widths that were chosen by fewer operands, a bit wider where these are not right but none wider than these, and the words
+    /// with them.
+    pub(super) fn settled(&self, mut widths: Widths, most: &Widths) -> Option<(Widths, Words)> {
+        let count = widths.count();
         let wider = |widths: &Widths, at| {
-            let wider = widths.with(at, 1)?.no_wider(&generous);
+            let wider = widths.with(at, 1)?.no_wider(most);
             (wider != *widths).then_some(wider)
         };
         loop {
-            let one_wider = (0..generous.count()).filter_map(|at| wider(&widths, at));
+            let one_wider = (0..count).filter_map(|at| wider(&widths, at));
             for some in [widths.clone()].into_iter().chain(one_wider) {
                 if let Some(words) = self.fitted(&some) {
                     return Some((some, words));
                 }
             }
             let before = widths.clone();
-            for at in 0..generous.count() {
+            for at in 0..count {
                 widths = wider(&widths, at).unwrap_or(widths);
             }
             if widths == before {
@@ -316,10 +330,33 @@ impl<'s> Table<'s> {
         widths.guard.iter().enumerate().map(format).collect()
     }
 
-    /// Bits of the table.
-    pub(super) fn bits(&self, widths: &Widths, words: &Words) -> u64 {
-        let width: u32 = self.formats(widths, words).iter().map(|format| format.width()).sum();
-        words.len() as u64 * u64::from(width)
+    /// By how many bits each coefficient that is multiplied is too wide for a multiplier.
+    fn excess(formats: &[Format]) -> impl Iterator<Item = u32> {
+        let signed = |format: &Format| format.width() + u32::from(!format.signed);
+        formats.iter().skip(1).map(move |format| signed(format).saturating_sub(FACTOR))
+    }
+
+    /// The cost of table and partial products in look-up tables.
+    pub(super) fn cost(&self, widths: &Widths, words: &Words) -> f64 {
+        let formats = self.formats(widths, words);
+        let width: u32 = formats.iter().map(|format| format.width()).sum();
+        let partial =
+            Self::excess(&formats).zip(&widths.offset).map(|(bits, offset)| bits * offset);
+        words.len() as f64 * f64::from(width) / BITS_A_CELL
+            + PARTIAL * f64::from(partial.sum::<u32>())
+    }
+
+    /// Widths from which the search begins again so that no factor is too wide; none where none is.
+    pub(super) fn within_factors(&self, widths: &Widths, words: &Words) -> Option<Widths> {
+        let mut generous = self.generous(widths.offset.len());
+        let mut is_wide = false;
+        for (k, bits) in Self::excess(&self.formats(widths, words)).enumerate() {
+            if bits > 0 {
+                is_wide = true;
+                generous.guard[k + 1] = widths.guard[k + 1] - bits as i32;
+            }
+        }
+        is_wide.then_some(generous)
     }
 
     /// The approximation with these words, if its nets are not too wide.

@@ -4,12 +4,17 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
+use std::sync::Arc;
 
+use glint::approximate::{Layout, Piecewise};
 use glint::base::input;
 use glint::base::text::grouped;
+use glint::config::{Config, Value as ConfigValue};
 use glint::core::Core;
 use glint::evidence::comparison::{accuracy, clocks_per_point};
 use glint::hdl::netlist::Pipeline;
+use glint::keys::function::{found, schema};
+use glint::keys::presets;
 use glint::mutate::{GOAL_MEMORY, GOAL_TEXT};
 use glint::registry::Registry;
 use glint::synth::{self, Figures, Frequency, Rate, Record, Target};
@@ -28,9 +33,10 @@ type Make = fn(&mut Vec<Row>);
 
 const MEASUREMENTS: &str = "docs/measurements.md";
 const VERIFICATION: &str = "docs/verification.md";
+const FUNCTIONS: &str = "docs/functions.md";
 
 /// A table: its page, its name, and the function that makes it.
-const TABLES: [(&str, &str, Make); 14] = [
+const TABLES: [(&str, &str, Make); 16] = [
     ("README.md", "main_job", |rows| rows.iter_mut().for_each(main_job)),
     (MEASUREMENTS, "devices", |rows| rows.iter_mut().for_each(device)),
     (MEASUREMENTS, "choices", |rows| rows.iter_mut().for_each(choice)),
@@ -42,6 +48,8 @@ const TABLES: [(&str, &str, Make); 14] = [
     (MEASUREMENTS, "registered_multipliers", |rows| {
         rows.iter_mut().for_each(registered_multipliers)
     }),
+    (FUNCTIONS, "presets", |rows| rows.par_iter_mut().for_each(preset)),
+    (FUNCTIONS, "functions", |rows| rows.par_iter_mut().for_each(function)),
     (VERIFICATION, "verify", |rows| verify(rows)),
     (VERIFICATION, "faults", |rows| *rows = faults_in_netlists(false)),
     (VERIFICATION, "faults_of_pipelines", |rows| *rows = faults_in_netlists(true)),
@@ -98,9 +106,52 @@ fn bless_changes_no_table() {
 
 #[test]
 fn every_table_between_markers_is_blessed() {
-    for page in ["README.md", MEASUREMENTS, VERIFICATION] {
+    for page in ["README.md", MEASUREMENTS, FUNCTIONS, VERIFICATION] {
         let names = TABLES.iter().filter(|(of, ..)| *of == page).count();
         assert_eq!(read(page).matches("<!-- table ").count(), names, "{page}");
+    }
+}
+
+/// Returns the approximation that values of the keys of `function` lead to.
+fn approximation(values: Vec<(String, ConfigValue)>) -> Arc<Piecewise> {
+    let mut config = Config::defaults(&schema(), "f");
+    values.iter().for_each(|(key, value)| config.set(key, value.clone()));
+    found(&config).unwrap_or_else(|refusal| panic!("{values:?}: {refusal:?}")).1
+}
+
+/// Of the functions by their names: bits of coefficients, with the reduction and without.
+fn preset(row: &mut Row) {
+    let name = row[0].split(',').next().expect("a name");
+    let values = presets::values(name).unwrap_or_else(|| panic!("no function is `{name}`"));
+    let mut plain = values.clone();
+    plain.push(("approximation.reduction".to_owned(), ConfigValue::Text("none".to_owned())));
+    let bits = [values, plain].map(|values| grouped(approximation(values).rom_bits()));
+    put(row, 3, bits);
+}
+
+/// Of a formula: segments and degree, bits of coefficients and the largest error, at 16 bits and at 20.
+fn function(row: &mut Row) {
+    let formula = row[0].trim_matches('`').to_owned();
+    let ends = if formula.starts_with("x^") { ["1", "16"] } else { ["0", "1"] };
+    for (column, bits) in [(1, 16), (4, 20)] {
+        let text = |key: &str, value: &str| (key.to_owned(), ConfigValue::Text(value.to_owned()));
+        let number = |key: &str, value: i64| (key.to_owned(), ConfigValue::Integer(value));
+        // x in [1, 16) has four bits before the point.
+        let whole = if ends[1] == "16" { 4 } else { 0 };
+        let it = approximation(vec![
+            text("function.formula", &formula),
+            text("function.from", ends[0]),
+            text("function.to", ends[1]),
+            number("operand.fraction", bits - whole),
+            number("result.fraction", bits),
+        ]);
+        let layout = match it.segments.layout {
+            Layout::Uniform => String::new(),
+            layout => format!(" ({})", layout.name()),
+        };
+        let shape = format!("{}{layout}, degree {}", it.words.len(), it.degree());
+        let error = format!("{:.3}", (it.bound * 1000.0).ceil() / 1000.0);
+        put(row, column, [shape, grouped(it.rom_bits()), error]);
     }
 }
 
