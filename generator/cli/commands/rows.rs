@@ -3,7 +3,7 @@
 use std::io;
 use std::path::Path;
 
-use anyhow::{Context, Result, anyhow, ensure};
+use anyhow::{Context, Result, anyhow, bail, ensure};
 use csv::{ReaderBuilder, StringRecord, Trim};
 
 use glint_base::input;
@@ -21,6 +21,15 @@ pub fn read<C, T>(
     let cannot = || format!("cannot read `{shown}`");
     let file = input::open(path).with_context(cannot)?;
     let text = io::read_to_string(file).with_context(cannot)?;
+    // The reader takes one that is never closed for all that follows.
+    if text.matches('"').count() % 2 == 1
+        && let Some(last) = text.rfind('"')
+    {
+        bail!(
+            "`{shown}`, line {}: a quote is not closed; close it, or remove it",
+            line(&text, last)
+        );
+    }
     let mut reader = ReaderBuilder::new().trim(Trim::All).from_reader(text.as_bytes());
     let headings = reader.headers().with_context(cannot)?;
     let columns = columns(headings).with_context(|| format!("`{shown}`, first row"))?;
