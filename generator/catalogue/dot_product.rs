@@ -8,10 +8,12 @@ use glint_rtl::dsl::{About, Designer, Signal, end, step, valid};
 
 /// The device.
 pub fn describe(d: &Designer, config: &Config) {
+    let keys = Keys::of(config);
+    let lower = if keys.two_sided { "abs(" } else { "max(0, " };
     d.about(About {
         device: "dot-product".into(),
         title: "The cosine between a vector of any length and a unit vector".into(),
-        formula: "min(1, max(0, (nx*hx + ny*hy + nz*hz)/sqrt(nx^2 + ny^2 + nz^2)))".into(),
+        formula: format!("min(1, {lower}(nx*hx + ny*hy + nz*hz)/sqrt(nx^2 + ny^2 + nz^2)))"),
         source: "J. F. Blinn, Models of Light Reflection for Computer Synthesized Pictures, SIGGRAPH 1977".into(),
         notes: vec![
             "The normal need not be a unit vector: an interpolated one will do. Of the zero vector the cosine is 0.".into(),
@@ -19,7 +21,6 @@ pub fn describe(d: &Designer, config: &Config) {
             "The components of the half vector are from -1 to 1; nothing is stated of others.".into(),
         ],
     });
-    let keys = Keys::of(config);
     let [fraction, other, kept] = [keys.fraction, keys.other, keys.kept].map(|bits| bits as i32);
     let component = |name: &str, fraction: i32, vector: &str| {
         let doc = format!("{} of the {vector}", &name[1..]);
@@ -56,7 +57,8 @@ pub fn describe(d: &Designer, config: &Config) {
     shift.takes(places);
     let distance =
         d.register("distance", keys.distance()).doc("the products, for a length from 1.0 to 2.0");
-    distance.takes(shifted(d, sum.q(), shift.q(), &keys));
+    let products = if keys.two_sided { size(d, sum.q()) } else { sum.q() };
+    distance.takes(shifted(d, products, shift.q(), &keys));
     let root = d.register("inverse", keys.shortened()).doc("1/sqrt of the mantissa");
     let found = inverse_root(d, mantissa.q(), keys.address as i32, keys.inverse as i32);
     let (rounding, overflow) = (Rounding::Nearest, Overflow::Saturate);
@@ -87,6 +89,16 @@ pub fn describe(d: &Designer, config: &Config) {
         step("scale", [cosine.load()]),
         step("result", [valid(), end()]),
     ]);
+}
+
+/// A number without its sign.
+fn size<'d>(d: &'d Designer, number: Signal<'d>) -> Signal<'d> {
+    let format = number.format();
+    let zero = d.constant("none", 0.0, format);
+    let negated = d.sub("negated", zero, number);
+    let negated = d.narrow("negated_kept", negated, format, Rounding::Truncate, Overflow::Wrap);
+    let is_negative = number.bit(format.width() - 1);
+    d.choose("without_sign", is_negative, [number, negated])
 }
 
 /// The products times 2^places, half of it. A bit that no place to come can bring into the result is dropped.

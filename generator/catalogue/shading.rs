@@ -1,6 +1,6 @@
 //! `shading`: normals in, colours out. Its parts are other devices of Glint.
 
-use super::{blinn, cosine_power, dot_product, schlick};
+use super::{blinn, cosine_power, dot_product, function, gauss, quadratic, schlick, threshold};
 use glint_base::fixed::{Overflow, Rounding};
 use glint_config::Config;
 use glint_keys::shading::{Highlight, Keys};
@@ -14,13 +14,36 @@ pub fn describe<'d>(d: &'d Designer, config: &Config) {
     let keys = Keys::of(config);
     let parts = keys.parts().unwrap_or_else(|(part, _)| panic!("`{part}` is checked"));
     d.about(about(&keys));
-    let vector = |names: [&str; 3], doc: &str, format| {
-        names.map(|name| d.operand(name, format).doc(&format!("{} of {doc}", &name[1..])).q())
+    let describe = match keys.highlight {
+        Highlight::CosinePower => cosine_power::describe,
+        Highlight::Blinn => blinn::describe,
+        Highlight::Schlick => schlick::describe,
+        Highlight::Gauss => gauss::describe,
+        Highlight::Quadratic => quadratic::describe,
+        Highlight::Threshold => threshold::describe,
+        Highlight::Function => function::describe,
     };
-    let normal = vector(["nx", "ny", "nz"], "the normal, of any length", keys.normal_format());
-    let light = vector(["lx", "ly", "lz"], "the unit vector to the light", keys.light_format());
-    let half = vector(["hx", "hy", "hz"], "the unit half vector", keys.light_format());
-    let exponent = d.operand("exponent", keys.exponent_format()).doc("specular exponent n").q();
+    let vector = |name: &str, suffix: &str, doc: &str, format| {
+        ["x", "y", "z"].map(|axis| {
+            let operand = d.operand(&format!("{name}{axis}{suffix}"), format);
+            operand.doc(&format!("{axis} of {doc}")).q()
+        })
+    };
+    let normal = vector("n", "", "the normal, of any length", keys.normal_format());
+    let lights: Vec<[[Signal<'d>; 3]; 2]> = keys
+        .suffixes()
+        .map(|suffix| {
+            let of = if suffix.is_empty() { String::new() } else { format!(" {suffix}") };
+            let of_light = |name, doc: String| vector(name, suffix, &doc, keys.light_format());
+            [
+                of_light("l", format!("the unit vector to the light{of}")),
+                of_light("h", format!("the unit half vector{of}")),
+            ]
+        })
+        .collect();
+    let exponent = keys
+        .has_exponent()
+        .then(|| d.operand("exponent", keys.exponent_format()).doc("specular exponent n").q());
     let material = |kind: &str| {
         ["red", "green", "blue"].map(|colour| {
             let name = format!("{kind}_{colour}");
@@ -36,47 +59,75 @@ pub fn describe<'d>(d: &'d Designer, config: &Config) {
         let given = [("nx", nx), ("ny", ny), ("nz", nz), ("hx", hx), ("hy", hy), ("hz", hz)];
         d.instance(name, |d| dot_product::describe(d, config), &given).out("cosine_out")
     };
-    let facing = cosine("diffuse_cosine", &parts.facing, light);
-    let cos_gamma = cosine("specular_cosine", &parts.cosine, half);
     let guard = keys.guard() as i32;
-    let [red, green, blue] = specular.map(|it| it.with_fraction(guard).shift_left(guard));
-    let given = [
-        ("cos_gamma", cos_gamma),
-        ("exponent", exponent),
-        ("red", red),
-        ("green", green),
-        ("blue", blue),
-    ];
-    let describe = match keys.highlight {
-        Highlight::CosinePower => cosine_power::describe,
-        Highlight::Blinn => blinn::describe,
-        Highlight::Schlick => schlick::describe,
+    let guarded = specular.map(|it| it.with_fraction(guard).shift_left(guard));
+    let mut facing = Vec::new();
+    let mut shine: [Vec<Signal<'d>>; 3] = Default::default();
+    for (suffix, [light, half]) in keys.suffixes().zip(lights) {
+        facing.push(cosine(&format!("diffuse_cosine{suffix}"), &parts.facing, light));
+        let cos_gamma = cosine(&format!("specular_cosine{suffix}"), &parts.cosine, half);
+        let mut given = vec![("cos_gamma", cos_gamma)];
+        given.extend(exponent.map(|it| ("exponent", it)));
+        given.extend(["red", "green", "blue"].into_iter().zip(guarded));
+        let part = |given: &[(&str, Signal<'d>)]| {
+            d.instance(&format!("highlight{suffix}"), |d| describe(d, &parts.highlight), given)
+        };
+        if keys.has_exponent() {
+            let highlight = part(&given);
+            let colours = ["red_out", "green_out", "blue_out"].map(|it| highlight.out(it));
+            shine.iter_mut().zip(colours).for_each(|(all, it)| all.push(it.shift_right(guard)));
+        } else {
+            shine[0].push(part(&[("x", cos_gamma)]).out("result_out"));
+        }
+    }
+    let total = |name: &str, parts: &[Signal<'d>]| {
+        let (first, rest) = parts.split_first().expect("a light");
+        let numbered = (2..).zip(rest);
+        numbered.fold(*first, |sum, (light, it)| d.add(&format!("{name}_of_{light}"), sum, *it))
     };
-    let highlight = d.instance("highlight", |d| describe(d, &parts.highlight), &given);
-
+    let facing = total("facing", &facing);
+    let of_formula = (!keys.has_exponent()).then(|| total("shine", &shine[0]));
     for (at, colour) in ["red", "green", "blue"].into_iter().enumerate() {
-        let output = format!("{colour}_out");
-        let shine = highlight.out(&output).shift_right(guard);
+        let shine = match of_formula {
+            Some(f) => d.mul(&format!("{colour}_specular"), specular[at], f),
+            None => total(&format!("{colour}_shine"), &shine[at]),
+        };
         let matt = d.mul(&format!("{colour}_diffuse"), diffuse[at], facing);
         let lit = d.add(&format!("{colour}_lit"), matt, shine);
         let sum = d.add(&format!("{colour}_sum"), lit, ambient[at]);
         let (rounding, overflow) = (Rounding::Nearest, Overflow::Saturate);
         let name = format!("{colour}_saturated");
+        let output = format!("{colour}_out");
         d.output(&output, d.narrow(&name, sum, keys.colour_format(), rounding, overflow));
     }
     d.dataflow();
 }
 
 fn about(keys: &Keys) -> About {
-    let highlight = match keys.highlight {
-        Highlight::CosinePower => "(n/16 * (N.H - 1) + 1)^16",
-        Highlight::Blinn => "(N.H)^n",
-        Highlight::Schlick => "N.H / (n - n * N.H + N.H)",
+    let Keys { power, formula, .. } = keys;
+    let f = match keys.highlight {
+        Highlight::CosinePower => {
+            format!("max(0, n/{power}*(c - 1) + 1)^{power} where c > 0, else 0")
+        }
+        Highlight::Blinn => "c^n".to_owned(),
+        Highlight::Schlick => "c/(n - n*c + c)".to_owned(),
+        Highlight::Gauss => "exp(-n*acos(c)^2/2) where c > 0, else 0".to_owned(),
+        Highlight::Quadratic => "max(0, c - a(n)*(c - c^2))".to_owned(),
+        Highlight::Threshold => {
+            "max(0, n/2*(c - 1) + 1)^2 where that reaches ROM(n) and c > 0, else 0".to_owned()
+        }
+        Highlight::Function => format!("{formula} with x = c"),
     };
+    let cosine = |other: &str| match keys.two_sided {
+        true => format!("abs(N.{other})"),
+        false => format!("max(0, N.{other})"),
+    };
+    let sum = if keys.lights > 1 { "the sum over the lights of " } else { "" };
+    let (facing, c) = (cosine("L"), cosine("H"));
     About {
         device: "shading".to_owned(),
         title: "The colour of a point: a normal, a light, a half vector, a material".to_owned(),
-        formula: format!("out = ambient + diffuse * max(0, N.L) + specular * {highlight}"),
+        formula: format!("out = ambient + {sum}diffuse*{facing} + specular*f(c), c = {c}, f(c) = {f}"),
         source: "J. F. Blinn, Models of Light Reflection for Computer Synthesized Pictures, SIGGRAPH 1977".to_owned(),
         notes: vec![
             "The normal need not be a unit vector: an interpolated one will do. Of the zero vector every cosine is 0.".into(),

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::contract::{self, ErrorShare};
 use super::frame::{Clocked, Frame, idle, step_by};
-use super::highlight::{self, Highlight, Reflectance};
+use super::highlight::{self, Highlight, Reflectance, Variation};
 use super::narrow::{Narrow, rounding_error};
 use super::{Contract, Model};
 use crate::formulas;
@@ -107,11 +107,12 @@ impl Reflectance for Arithmetic {
 
     #[inline]
     fn reference(&self, control: &[i64]) -> f64 {
-        formulas::cosine_power(
-            self.keys.operands.cosine.value(control[0]),
-            control[1] as f64,
-            self.keys.power,
-        )
+        let cosine = self.keys.operands.cosine.value(control[0]);
+        formulas::cosine_power(cosine, control[1] as f64, self.keys.power)
+    }
+
+    fn at_cosine(&self, cosine: f64, exponent: i64) -> Option<f64> {
+        Some(formulas::cosine_power(cosine, exponent as f64, self.keys.power))
     }
 
     fn expressions(&self) -> Vec<String> {
@@ -121,10 +122,12 @@ impl Reflectance for Arithmetic {
         vec![contract::where_it_faces(&format!("{base} ** {power}"))]
     }
 
-    /// n·base^(m − 1) with a base of at most 1. At 0 it is (1 − n/m)^m, from where it would fall to 0 at once below n = m.
-    fn slope(&self) -> Option<f64> {
+    /// n·base^(m − 1) with a base of at most 1. At 0 it is (1 − n/m)^m, from where it falls to 0 at once below n = m.
+    fn variation(&self) -> Option<Variation> {
         let (least, most) = self.keys.domain.exponents();
-        (least >= i64::from(self.keys.power)).then_some(most as f64)
+        let power = f64::from(self.keys.power);
+        let base = (1.0 - least as f64 / power).max(0.0);
+        Some(Variation { slope: most as f64, jump: libm::pow(base, power) })
     }
 
     /// Every quantity here lies in 0 … 1, hardware's and formula's alike, so by the mean value

@@ -3,12 +3,12 @@
 #[cfg(test)]
 mod tests;
 
-use std::f64::consts::LN_2;
+use std::f64::consts::{LN_2, PI};
 use std::sync::Arc;
 
 use super::contract::{self, ErrorShare};
 use super::frame::{Clocked, Frame, State, idle, step, step_by};
-use super::highlight::{self, Highlight, Reflectance};
+use super::highlight::{self, Highlight, Reflectance, Variation};
 use super::narrow::Narrow;
 use super::polynomial::Polynomial;
 use super::{Contract, Model};
@@ -203,6 +203,17 @@ pub fn contract(config: &Config, of: Decay) -> Box<dyn Contract> {
     Box::new(Highlight::new(it, operands, products))
 }
 
+impl Arithmetic {
+    /// The formula in f64.
+    #[inline]
+    fn formula(&self, cosine: f64, exponent: f64) -> f64 {
+        match self.of {
+            Decay::Logarithm => formulas::blinn(cosine, exponent),
+            Decay::Angle => formulas::gauss(cosine, exponent),
+        }
+    }
+}
+
 impl Reflectance for Arithmetic {
     #[inline]
     fn f(&self, control: &[i64]) -> i64 {
@@ -215,17 +226,24 @@ impl Reflectance for Arithmetic {
 
     #[inline]
     fn reference(&self, control: &[i64]) -> f64 {
-        let (cosine, exponent) = (self.keys.operands.cosine.value(control[0]), control[1] as f64);
-        match self.of {
-            Decay::Logarithm => formulas::blinn(cosine, exponent),
-            Decay::Angle => formulas::gauss(cosine, exponent),
-        }
+        self.formula(self.keys.operands.cosine.value(control[0]), control[1] as f64)
     }
 
-    /// n·c^(n − 1), for cosⁿγ.
-    fn slope(&self) -> Option<f64> {
+    fn at_cosine(&self, cosine: f64, exponent: i64) -> Option<f64> {
+        Some(self.formula(cosine, exponent as f64))
+    }
+
+    /// - cosⁿγ: n·c^(n − 1), at most n; with n = 0 it jumps from 1.
+    /// - exp(−n·γ²/2): n·(γ/sin γ)·exp(−n·γ²/2), at most n, since γ/sin γ ≤ exp(γ²/2) up to a right angle (its logarithm is
+    ///   γ²/6 + γ⁴/180 + …, of positive terms that are together below γ²/2 there). There it jumps from exp(−n·π²/8).
+    fn variation(&self) -> Option<Variation> {
         let (least, most) = self.keys.domain.exponents();
-        (least > 0 && self.of == Decay::Logarithm).then_some(most as f64)
+        let jump = match self.of {
+            Decay::Logarithm if least > 0 => 0.0,
+            Decay::Logarithm => 1.0,
+            Decay::Angle => libm::exp(-(least as f64) * PI * PI / 8.0).next_up(),
+        };
+        Some(Variation { slope: most as f64, jump })
     }
 
     fn expressions(&self) -> Vec<String> {

@@ -44,7 +44,7 @@ fn device(config: &Config) -> device::Device {
             s[shift] = it.root.pairs(s[squares]);
             s[mantissa] = it.root.mantissa(s[squares], s[shift]);
         }),
-        step_by(&it, move |it, s| s[distance] = it.distance.apply(s[sum] << s[shift])),
+        step_by(&it, move |it, s| s[distance] = it.distance(s[sum], s[shift])),
         step_by(&it, move |it, s| {
             s[inverse] = it.shortened.apply(it.root.inverse(s[mantissa]));
         }),
@@ -92,6 +92,11 @@ impl Cosine {
         }
     }
 
+    /// The products of both vectors, for a length from 1 to 2; from both sides without their sign.
+    fn distance(&self, sum: i64, shift: i64) -> i64 {
+        self.distance.apply(if self.keys.two_sided { sum.abs() } else { sum } << shift)
+    }
+
     /// The errors, as values, of a cosine by the inverse root, by its factors, and by its rounding.
     ///
     /// Let m be the squares shifted to 1 ≤ m < 4, f = 1/√m, and t the products as far, of which the cosine is t·f. What
@@ -110,7 +115,7 @@ impl Formula for Cosine {
     fn exact(&self, v: &[f64]) -> Vec<f64> {
         let unit = unit_vector([v[0], v[1], v[2]]);
         let sum: f64 = (0..3).map(|axis| unit[axis] * v[3 + axis]).sum();
-        vec![sum.clamp(0.0, 1.0)]
+        vec![if self.keys.two_sided { sum.abs() } else { sum }.clamp(0.0, 1.0)]
     }
 
     fn terms(&self) -> Vec<Term> {

@@ -9,7 +9,11 @@ use super::{Contract, Model, Term};
 use glint_approximate::{Curve, Function, Outside, Piecewise};
 use glint_base::fixed::exp2;
 use glint_config::Config;
+use glint_formula::{Enclosure, parse};
 use glint_keys::function::found;
+
+/// The pieces of a domain in which a slope is enclosed: a power of two, so that their ends are exact.
+const PIECES: u32 = 4096;
 
 /// Registers: the operand, the sums from each coefficient on, of which the first is the result, or the polynomial from which the
 /// result comes.
@@ -51,6 +55,25 @@ pub fn contract(config: &Config) -> Box<dyn Contract> {
     let (function, it) = found(config).expect("a configuration that is checked");
     let bound = it.bound;
     device(&it).contract(Stated { function, bound })
+}
+
+/// The value of a formula of x, in f64.
+pub(super) fn at(formula: &str, x: f64) -> f64 {
+    let value = parse(formula).and_then(|it| it.enclose(&[("x", Enclosure::exactly(x))]));
+    value.map_or(f64::NAN, Enclosure::middle)
+}
+
+/// A proven limit of the formula's slope over its domain, from interval derivatives; none where it may jump or be infinitely steep.
+pub(super) fn slope(config: &Config) -> Option<f64> {
+    let (function, it) = found(config).ok()?;
+    let Curve::Formula(formula) = &function.curve else { return None };
+    let [low, high] = [it.domain.0, it.domain.1].map(|raw| it.operand.to_f64(raw.into()));
+    let place = |at: u32| low + (high - low) * f64::from(at) / f64::from(PIECES);
+    let steepest = |at: u32| {
+        let (_, slope) = formula.slope("x", Enclosure::between(place(at), place(at + 1))).ok()?;
+        Some(slope.low.abs().max(slope.high.abs()))
+    };
+    (0..PIECES).try_fold(0.0, |most: f64, at| Some(most.max(steepest(at)?)))
 }
 
 /// The function with the bound that was proved.

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use super::contract::{self, ErrorShare};
 use super::frame::{Clocked, Frame, idle, step_by};
-use super::highlight::{self, Highlight, Reflectance};
+use super::highlight::{self, Highlight, Reflectance, Variation};
 use super::narrow::{Narrow, rounding_error};
 use super::{Contract, Model};
 use crate::formulas;
@@ -108,6 +108,17 @@ impl Reflectance for Arithmetic {
             self.keys.operands.cosine.value(control[0]),
             self.exact[control[1] as usize],
         )
+    }
+
+    fn at_cosine(&self, cosine: f64, exponent: i64) -> Option<f64> {
+        Some(formulas::quadratic(cosine, self.exact[exponent as usize]))
+    }
+
+    /// 1 − a + 2·a·c where it is not clamped; at a right angle it is 0.
+    fn variation(&self) -> Option<Variation> {
+        let (least, most) = self.keys.domain.exponents();
+        let exact = self.exact[least as usize..=most as usize].iter();
+        Some(Variation { slope: 1.0 + exact.fold(0.0, |a: f64, it| a.max(it.abs())), jump: 0.0 })
     }
 
     /// The coefficient of the least largest error has no closed form; ROM(n) holds it.

@@ -2,7 +2,7 @@
 
 use super::contract::{self, ErrorShare};
 use super::frame::{Clocked, Frame, idle, step};
-use super::highlight::{self, Highlight, Products, Reflectance};
+use super::highlight::{self, Highlight, Products, Reflectance, Variation};
 use super::{Contract, Model};
 use crate::formulas;
 use glint_base::fixed::{Format, exp2, mask};
@@ -104,10 +104,14 @@ impl Reflectance for Arithmetic {
         vec![contract::where_it_faces("cos_gamma / (exponent * (1 - cos_gamma) + cos_gamma)")]
     }
 
-    /// n/(n − nc + c)², largest at an end: n at 1, 1/n at 0, where it is 0 as beyond.
-    fn slope(&self) -> Option<f64> {
+    fn at_cosine(&self, cosine: f64, exponent: i64) -> Option<f64> {
+        Some(formulas::schlick(cosine, exponent as f64))
+    }
+
+    /// n/(n − nc + c)², largest at an end: n at 1, 1/n at 0, where it is 0 as beyond, but for n = 0, with which it is 1.
+    fn variation(&self) -> Option<Variation> {
         let (least, most) = self.0.domain.exponents();
-        (least > 0).then_some(most as f64)
+        Some(Variation { slope: most as f64, jump: if least > 0 { 0.0 } else { 1.0 } })
     }
 
     /// Dividend and divisor are exact, so that nothing but the quotient's own last bit is lost: it is

@@ -1,11 +1,15 @@
 //! `shading`: ambient, diffuse and specular light of a normal of any length, from the models of its parts.
 
+use std::sync::Arc;
+
 use super::device::{self, Formula};
 use super::frame::{Frame, Slot, State};
+use super::highlight::Variation;
 use super::inverse_root::unit_vector;
 use super::narrow::Narrow;
 use super::{
-    Axis, Contract, Model, Sweep, Term, Values, blinn, cosine_power, dot_product, formulas, schlick,
+    Axis, Contract, Model, Sweep, Term, Values, blinn, cosine_power, dot_product, function, gauss,
+    quadratic, schlick, threshold,
 };
 use glint_base::fixed::{Rounding, exp2};
 use glint_config::Config;
@@ -14,10 +18,13 @@ use glint_keys::shading::{Highlight, Keys, Parts};
 /// The parts, one after the other, and the sum behind them.
 fn device(keys: &Keys, parts: &Parts) -> device::Device {
     let mut frame = Frame::default();
-    let normal = ["nx", "ny", "nz"].map(|name| frame.operand(name, keys.normal_format()));
-    let mut vector = |names: [&str; 3]| names.map(|it| frame.operand(it, keys.light_format()));
-    let [light, half] = [["lx", "ly", "lz"], ["hx", "hy", "hz"]].map(&mut vector);
-    let exponent = frame.operand("exponent", keys.exponent_format());
+    let mut vector = |name: &str, suffix: &str, format| {
+        ["x", "y", "z"].map(|axis| frame.operand(&format!("{name}{axis}{suffix}"), format))
+    };
+    let normal = vector("n", "", keys.normal_format());
+    let of_light = |suffix| ["l", "h"].map(|name| vector(name, suffix, keys.light_format()));
+    let lights: Vec<[[Slot; 3]; 2]> = keys.suffixes().map(of_light).collect();
+    let exponent = keys.has_exponent().then(|| frame.operand("exponent", keys.exponent_format()));
     let [ambient, diffuse, specular] = ["ambient", "diffuse", "specular"].map(|kind| {
         ["red", "green", "blue"]
             .map(|it| frame.operand(&format!("{kind}_{it}"), keys.colour_format()))
@@ -30,59 +37,80 @@ fn device(keys: &Keys, parts: &Parts) -> device::Device {
         (name, move |s: &State| s[slot] << places)
     }
     let [nx, ny, nz] = normal;
-    let mut cosine = |name: &str, config: &Config, [x, y, z]: [Slot; 3]| {
+    let cosine = |frame: &mut Frame, name: &str, config: &Config, [x, y, z]: [Slot; 3]| {
         let given = [("nx", nx), ("ny", ny), ("nz", nz), ("hx", x), ("hy", y), ("hz", z)];
         let given = given.map(|(name, slot)| left((name, slot, 0)));
         frame.part(name, &*dot_product::model(config), given).out("cosine_out")
     };
-    let facing = cosine("diffuse_cosine", &parts.facing, light);
-    let cos_gamma = cosine("specular_cosine", &parts.cosine, half);
-    let [red, green, blue] = specular.map(|slot| (slot, keys.guard()));
-    let given = [
-        ("cos_gamma", cos_gamma, 0),
-        ("exponent", exponent, 0),
-        ("red", red.0, red.1),
-        ("green", green.0, green.1),
-        ("blue", blue.0, blue.1),
-    ];
-    let highlight =
-        frame.part("highlight", &*(part(keys).model)(&parts.highlight), given.map(left));
+    let (mut facing, mut shine) = (Vec::new(), Vec::new());
+    for (suffix, [light, half]) in keys.suffixes().zip(lights) {
+        facing.push(cosine(&mut frame, &format!("diffuse_cosine{suffix}"), &parts.facing, light));
+        let name = format!("specular_cosine{suffix}");
+        let cos_gamma = cosine(&mut frame, &name, &parts.cosine, half);
+        let (model, name) = ((part(keys).model)(&parts.highlight), format!("highlight{suffix}"));
+        let Some(exponent) = exponent else {
+            let part = frame.part(&name, &*model, [left(("x", cos_gamma, 0))]);
+            shine.push([part.out("result_out"); 3]);
+            continue;
+        };
+        let colours = ["red", "green", "blue"].into_iter().zip(specular);
+        let colours = colours.map(|(name, slot)| (name, slot, keys.guard()));
+        let given = [("cos_gamma", cos_gamma, 0), ("exponent", exponent, 0)];
+        let part = frame.part(&name, &*model, given.into_iter().chain(colours).map(left));
+        shine.push(["red_out", "green_out", "blue_out"].map(|it| part.out(it)));
+    }
 
-    let places = keys.facing();
+    let function = (!keys.has_exponent()).then(|| function::contract(&parts.highlight));
+    let of_f = function.map_or(0, |it| it.outputs()[0].format.frac as u32);
+    let places = keys.facing().max(of_f);
     let sum = Narrow::new(places, keys.colour_format(), Rounding::Nearest);
-    let guarded = places - keys.guard();
+    let (to_light, is_formula) = (places - keys.facing(), !keys.has_exponent());
+    let to_shine = places - if is_formula { of_f } else { keys.guard() };
+    let facing = Arc::new(facing);
     for (at, name) in ["red_out", "green_out", "blue_out"].into_iter().enumerate() {
-        let (ambient, diffuse, shine) = (ambient[at], diffuse[at], highlight.out(name));
+        let (ambient, diffuse, specular) = (ambient[at], diffuse[at], specular[at]);
+        let (facing, shine) = (facing.clone(), shine.iter().map(|it| it[at]).collect::<Vec<_>>());
         frame.output(name, keys.colour_format(), move |s| {
-            sum.apply((s[ambient] << places) + s[diffuse] * s[facing] + (s[shine] << guarded))
+            let facing: i64 = facing.iter().map(|it| s[*it]).sum();
+            let shine: i64 = shine.iter().map(|it| s[*it]).sum();
+            let shine = if is_formula { shine * s[specular] } else { shine };
+            let matt = s[diffuse] * facing;
+            sum.apply((s[ambient] << places) + (matt << to_light) + (shine << to_shine))
         });
     }
-    let device = frame.dataflow().domain("exponent", keys.least(), keys.most);
+    let mut device = frame.dataflow();
+    if keys.has_exponent() {
+        device = device.domain("exponent", keys.least(), keys.most);
+    }
     let one = 1 << keys.light;
-    let vectors = ["lx", "ly", "lz", "hx", "hy", "hz"].into_iter();
-    vectors.fold(device, |device, name| device.domain(name, -one, one))
+    for suffix in keys.suffixes() {
+        for name in ["lx", "ly", "lz", "hx", "hy", "hz"] {
+            device = device.domain(&format!("{name}{suffix}"), -one, one);
+        }
+    }
+    device
 }
 
-/// The golden side of a highlight: model, contract, and its formula of cosine and n.
+/// The golden side of a highlight.
 struct Part {
     model: fn(&Config) -> Box<dyn Model>,
     contract: fn(&Config) -> Box<dyn Contract>,
-    formula: fn(f64, f64) -> f64,
 }
 
 fn part(keys: &Keys) -> Part {
+    macro_rules! part {
+        ($of:ident) => {
+            Part { model: $of::model, contract: $of::contract }
+        };
+    }
     match keys.highlight {
-        Highlight::CosinePower => Part {
-            model: cosine_power::model,
-            contract: cosine_power::contract,
-            formula: |c, n| formulas::cosine_power(c, n, 16),
-        },
-        Highlight::Blinn => {
-            Part { model: blinn::model, contract: blinn::contract, formula: formulas::blinn }
-        }
-        Highlight::Schlick => {
-            Part { model: schlick::model, contract: schlick::contract, formula: formulas::schlick }
-        }
+        Highlight::CosinePower => part!(cosine_power),
+        Highlight::Blinn => part!(blinn),
+        Highlight::Schlick => part!(schlick),
+        Highlight::Gauss => part!(gauss),
+        Highlight::Quadratic => part!(quadratic),
+        Highlight::Threshold => part!(threshold),
+        Highlight::Function => part!(function),
     }
 }
 
@@ -108,13 +136,20 @@ pub fn contract(config: &Config) -> Box<dyn Contract> {
     let parts = parts(&keys);
     let device = device(&keys, &parts);
     let highlight = (part(&keys).contract)(&parts.highlight);
+    let colour = exp2(keys.colour_bits as i32) - 1.0;
     let errors = Errors {
         facing: error(&*dot_product::contract(&parts.facing)),
         cosine: error(&*dot_product::contract(&parts.cosine)),
-        highlight: error(&*highlight) * exp2(-(keys.guard() as i32)),
-        slope: highlight.highlight().and_then(|it| it.slope()),
+        highlight: match keys.has_exponent() {
+            true => error(&*highlight) * exp2(-(keys.guard() as i32)),
+            false => error(&*highlight) * colour,
+        },
+        variation: match highlight.highlight() {
+            Some(highlight) => highlight.variation(),
+            None => function::slope(&parts.highlight).map(|slope| Variation { slope, jump: 0.0 }),
+        },
     };
-    device.contract(Shading { formula: part(&keys).formula, errors, keys })
+    device.contract(Shading { highlight, errors, keys })
 }
 
 /// The proved bound of a part, as a value.
@@ -130,66 +165,98 @@ struct Errors {
     cosine: f64,
     /// The error of a colour's highlight, in units of a result.
     highlight: f64,
-    /// The largest slope of the highlight's formula over the cosine.
-    slope: Option<f64>,
+    /// How the highlight's formula follows the cosine.
+    variation: Option<Variation>,
 }
 
 /// The formula.
 struct Shading {
     keys: Keys,
-    formula: fn(f64, f64) -> f64,
+    /// The contract of the highlight.
+    highlight: Box<dyn Contract>,
     errors: Errors,
+}
+
+impl Shading {
+    /// The highlight's formula of a cosine that is not quantised.
+    fn f(&self, cosine: f64, exponent: i64) -> f64 {
+        match self.highlight.highlight() {
+            Some(highlight) => highlight.at_cosine(cosine, exponent).unwrap_or(f64::NAN),
+            None => function::at(&self.keys.formula, cosine),
+        }
+    }
 }
 
 impl Formula for Shading {
     fn exact(&self, v: &[f64]) -> Vec<f64> {
         let unit = unit_vector([v[0], v[1], v[2]]);
-        let cosine = |at: usize| {
-            let products = (0..3).map(|axis| unit[axis] * v[at + axis]);
-            products.sum::<f64>().clamp(0.0, 1.0)
+        let cosine = |vector: &[f64]| {
+            let sum: f64 = unit.iter().zip(vector).map(|(a, b)| a * b).sum();
+            if self.keys.two_sided { sum.abs() } else { sum }.clamp(0.0, 1.0)
         };
-        let (facing, f) = (cosine(3), (self.formula)(cosine(6), v[9]));
+        let (vectors, rest) = v[3..].split_at(6 * self.keys.lights as usize);
+        let (exponent, material) = rest.split_at(usize::from(self.keys.has_exponent()));
+        let n = exponent.first().map_or(0, |&n| n as i64);
+        let of_lights = |of: &dyn Fn(&[f64]) -> f64| vectors.chunks(6).map(of).sum::<f64>();
+        let facing = of_lights(&|light| cosine(&light[..3]));
+        let f = of_lights(&|light| self.f(cosine(&light[3..]), n));
         let most = exp2(self.keys.colour_bits as i32) - 1.0;
-        let colour = |at: usize| (v[10 + at] + v[13 + at] * facing + v[16 + at] * f).min(most);
-        (0..3).map(colour).collect()
+        let colour = |at: usize| material[at] + material[3 + at] * facing + material[6 + at] * f;
+        (0..3).map(|at| colour(at).clamp(0.0, most)).collect()
     }
 
-    /// An error of an operand of a part grows by the part's slope in it, and the part adds its own.
+    /// An error of an operand of a part grows by the part's slope in it, and the part adds its own; each light adds its own.
     ///
     /// - A colour is diffuse·cosine + specular·f(cosine), saturated: its slopes are at most the largest colour, and that times
-    ///   the slope of f.
+    ///   the slope of f. Where f jumps, cosine and exact cosine may lie on both sides.
     fn terms(&self) -> Vec<Term> {
-        let Errors { facing, cosine, highlight, slope } = self.errors;
-        let Some(slope) = slope else { return Vec::new() };
+        let Errors { facing, cosine, highlight, variation } = self.errors;
+        let Some(Variation { slope, jump }) = variation else { return Vec::new() };
         let colour = exp2(self.keys.colour_bits as i32) - 1.0;
+        let lights = f64::from(self.keys.lights);
         let term = |key, what, units| Term { key, what, units };
-        vec![
-            term("colour.bits", "the cosine of the light, through the colour", facing * colour),
+        let mut terms = vec![
+            term(
+                "colour.bits",
+                "the cosine of the light, through the colour",
+                facing * colour * lights,
+            ),
             term(
                 "cosine.fraction",
                 "the cosine of the highlight, through the colour",
-                cosine * slope * colour,
+                cosine * slope * colour * lights,
             ),
-            term("highlight", "the highlight", highlight),
+            term("highlight", "the highlight", highlight * lights),
             term("colour.bits", "rounding of the results", 0.5),
-        ]
+        ];
+        if jump > 0.0 {
+            terms.push(term(
+                "highlight",
+                "where the highlight's formula jumps",
+                jump * colour * lights,
+            ));
+        }
+        terms
     }
 
     /// A light anywhere, a half vector as near to the normal as the exponent asks for, and dull colours, whose sum does not saturate.
     fn hint(&self, unit: &mut dyn FnMut() -> f64) -> Option<Vec<i64>> {
-        let Keys { normal, light, colour_bits, most, .. } = self.keys;
+        let Keys { normal, light, colour_bits, most, lights, .. } = self.keys;
         let mut centred = || [(); 3].map(|()| 2.0 * unit() - 1.0);
         let direction = unit_vector(centred());
-        let [to_light, off] = [unit_vector(centred()), centred()];
+        let pairs = (0..lights).map(|_| [unit_vector(centred()), centred()]);
+        let pairs: Vec<[[f64; 3]; 2]> = pairs.collect();
         let n = self.keys.least() as f64 + unit() * (most - self.keys.least()) as f64;
         let (length, away) = (0.25 + 1.5 * unit(), unit() * 2.0 / n.sqrt());
-        let half = unit_vector([0, 1, 2].map(|axis| direction[axis] + away * off[axis]));
         let raw = |value: f64, fraction: u32| (value * exp2(fraction as i32)).round() as i64;
         let mut operands: Vec<i64> = direction.map(|it| raw(it * length, normal)).into();
-        operands.extend([to_light, half].concat().into_iter().map(|it| raw(it, light)));
-        operands.push(n.round() as i64);
-        let third = exp2(colour_bits as i32) / 3.0;
-        operands.extend((0..9).map(|_| (unit() * third) as i64));
+        for [to_light, off] in pairs {
+            let half = unit_vector([0, 1, 2].map(|axis| direction[axis] + away * off[axis]));
+            operands.extend([to_light, half].concat().into_iter().map(|it| raw(it, light)));
+        }
+        operands.extend(self.keys.has_exponent().then(|| n.round() as i64));
+        let share = exp2(colour_bits as i32) / (1.0 + 2.0 * f64::from(lights));
+        operands.extend((0..9).map(|_| (unit() * share) as i64));
         Some(operands)
     }
 
@@ -197,21 +264,26 @@ impl Formula for Shading {
     fn sweep(&self) -> Option<Sweep> {
         let Keys { normal, light, colour_bits, most, .. } = self.keys;
         let (one, to_light, white) = (1 << normal, 1 << light, (1 << colour_bits) - 1);
-        let vectors = [("ny", 0), ("nz", one / 2)].into_iter();
-        let lights =
-            [("lx", 0), ("ly", 0), ("lz", to_light), ("hx", 0), ("hy", 0), ("hz", to_light)];
         let fixed = |(name, value): (&str, i64)| Axis {
             name: name.to_owned(),
             values: Values::List(vec![value]),
         };
+        let of_light =
+            [("lx", 0), ("ly", 0), ("lz", to_light), ("hx", 0), ("hy", 0), ("hz", to_light)];
+        let lights = self.keys.suffixes().flat_map(|suffix| {
+            of_light.map(|(name, value)| fixed((&format!("{name}{suffix}"), value)))
+        });
         let material = [("ambient", white / 8), ("diffuse", white / 2), ("specular", white / 3)];
         let material = material.into_iter().flat_map(|(kind, value)| {
             ["red", "green", "blue"].map(|colour| fixed((&format!("{kind}_{colour}"), value)))
         });
-        let exponents = Values::List([8, 4, 2, 1].map(|part| (most / part).max(16)).into());
+        let least = self.keys.least();
+        let exponents = Values::List([8, 4, 2, 1].map(|part| (most / part).max(least)).into());
         let mut axes = vec![Axis { name: "nx".to_owned(), values: Values::Range(-one, one) }];
-        axes.extend(vectors.chain(lights).map(fixed));
-        axes.push(Axis { name: "exponent".to_owned(), values: exponents });
+        axes.extend([("ny", 0), ("nz", one / 2)].map(fixed).into_iter().chain(lights));
+        if self.keys.has_exponent() {
+            axes.push(Axis { name: "exponent".to_owned(), values: exponents });
+        }
         axes.extend(material);
         Some(Sweep {
             axes,
@@ -235,8 +307,10 @@ mod tests {
         let keys = keys.map(|(key, value)| (key.to_owned(), Value::Integer(value)));
         let config = Config::from_values(&schema(), "coarse", keys.into()).expect("sound keys");
         let (keys, whole) = (Keys::of(&config), contract(&config));
-        let errors = Errors { facing: 2e-7, cosine: 2e-7, highlight: 0.1, slope: Some(1000.0) };
-        let claimed = Shading { formula: part(&keys).formula, errors, keys };
+        let variation = Some(Variation { slope: 1000.0, jump: 0.0 });
+        let errors = Errors { facing: 2e-7, cosine: 2e-7, highlight: 0.1, variation };
+        let highlight = (part(&keys).contract)(&parts(&keys).highlight);
+        let claimed = Shading { highlight, errors, keys };
         let claimed = Bound::of(claimed.terms()).units;
         // A linear congruential generator.
         let mut at = 1u64;

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use super::contract::{self, ErrorShare};
 use super::frame::{Clocked, Frame, idle, step_by};
-use super::highlight::{self, Highlight, Reflectance};
+use super::highlight::{self, Highlight, Reflectance, Variation};
 use super::narrow::{Narrow, rounding_error};
 use super::{Contract, Model};
 use crate::formulas;
@@ -134,6 +134,23 @@ impl Reflectance for Arithmetic {
     fn reference(&self, control: &[i64]) -> f64 {
         let (square, level) = self.square_and_level(control);
         formulas::threshold(square, level)
+    }
+
+    fn at_cosine(&self, cosine: f64, exponent: i64) -> Option<f64> {
+        let level = self.threshold(exponent) as f64 * exp2(-(self.keys.f.fraction as i32));
+        Some(formulas::threshold(formulas::parabola(cosine, exponent as f64), level))
+    }
+
+    /// n·base with a base of at most 1. It jumps from ROM(n), where either side is right within the margin, or at a right angle from
+    /// (1 − n/2)² if that is more: since the base falls with the cosine, not at both.
+    fn variation(&self) -> Option<Variation> {
+        let (least, most) = self.keys.domain.exponents();
+        let jump = |n: i64| {
+            let level = self.threshold(n) as f64 * exp2(-(self.keys.f.fraction as i32));
+            let base = (1.0 - n as f64 / 2.0).max(0.0);
+            (level + self.margin).max(base * base)
+        };
+        Some(Variation { slope: most as f64, jump: (least..=most).map(jump).fold(0.0, f64::max) })
     }
 
     /// Where the exact square is within the bound on its error of ROM(n), the word may be on either side.

@@ -11,6 +11,7 @@ glint_config::keys! {
             "Fraction bits of a component of the normal, s1.F, which need not be a unit vector."),
         other: u32 = Key::integer("half.fraction", 14, 2..=14,
             "Fraction bits of a component of the half vector, s1.F, a unit vector."),
+        two_sided: bool = two_sided(),
         address: u32 = normaliser::address(),
         inverse: u32 = normaliser::inverse(),
         factor: u32 = Key::integer("factor.bits", 18, 6..=24,
@@ -20,6 +21,12 @@ glint_config::keys! {
         rounding: Rounding = Key::rounding("output.rounding", "nearest",
             "How the cosine is rounded."),
     }
+}
+
+/// Which side of a surface is lit.
+pub(super) fn two_sided() -> Key {
+    let doc = "Light both sides of a surface: cosines lose their sign.";
+    Key::flag("two_sided", false, doc).joined_later()
 }
 
 impl Keys {

@@ -1,9 +1,9 @@
 //! The keys of `shading`, and the configurations of its parts.
 
 use super::common;
-use super::{blinn, cosine_power, dot_product, schlick};
+use super::{blinn, cosine_power, dot_product, function, gauss, quadratic, schlick, threshold};
 use glint_base::fixed::Format;
-use glint_config::{Config, Key, Problems, Schema, Value};
+use glint_config::{Config, Key, Problems, Schema, TextPattern, Value};
 
 glint_config::choices! {
     /// The device that makes the highlight of a cosine.
@@ -14,6 +14,14 @@ glint_config::choices! {
         Blinn = "blinn",
         /// c/(n − nc + c).
         Schlick = "schlick",
+        /// exp(−n·γ²/2).
+        Gauss = "gauss",
+        /// c − a(n)·(c − c²).
+        Quadratic = "quadratic",
+        /// (n/2·(c − 1) + 1)² from ROM(n) on.
+        Threshold = "threshold",
+        /// A formula of the cosine alone.
+        Function = "function",
     }
 }
 
@@ -22,6 +30,13 @@ glint_config::keys! {
     pub struct Keys {
         highlight: Highlight = Key::choice("highlight", "cosine-power", Highlight::WORDS,
             "The device that makes the highlight of the cosine."),
+        power: u32 = common::power().only_when("highlight", "cosine-power"),
+        formula: String = Key::text("function.formula", "x^32", TextPattern::Formula,
+            "The highlight as a function of the cosine x, without an exponent.")
+            .only_when("highlight", "function"),
+        lights: u32 = Key::integer("lights", 1, 1..=4,
+            "Lights, each with a light and a half vector of its own; their diffuse and specular light adds up."),
+        two_sided: bool = dot_product::two_sided(),
         normal: u32 = Key::integer("normal.fraction", 14, 6..=14,
             "Fraction bits of a component of the normal, s1.F, which need not be a unit vector."),
         light: u32 = Key::integer("light.fraction", 14, 6..=14,
@@ -56,6 +71,9 @@ fn check(config: &Config, problems: &mut Problems) {
         problems.push("highlight", message, "other widths");
     }
 }
+
+/// The suffixes of the operands of each light.
+const SUFFIXES: [&str; 4] = ["", "2", "3", "4"];
 
 /// The configurations of the parts.
 pub struct Parts {
@@ -98,9 +116,24 @@ impl Keys {
         self.cosine.min(self.colour_bits + 6)
     }
 
-    /// The smallest n for which the accuracy contract is stated: below the power of W it jumps at a right angle.
+    /// The smallest n for which the accuracy contract is stated: below it the formula jumps at a right angle.
     pub fn least(&self) -> i64 {
-        if self.highlight == Highlight::CosinePower { 16 } else { 1 }
+        match self.highlight {
+            Highlight::CosinePower => self.power.into(),
+            Highlight::Gauss => 16,
+            Highlight::Threshold => 2,
+            _ => 1,
+        }
+    }
+
+    /// Whether the highlight has an exponent.
+    pub fn has_exponent(&self) -> bool {
+        self.highlight != Highlight::Function
+    }
+
+    /// What stands behind the names of what belongs to a light, of each.
+    pub fn suffixes(&self) -> impl Iterator<Item = &'static str> + use<> {
+        SUFFIXES.into_iter().take(self.lights as usize)
     }
 
     /// The parts.
@@ -108,46 +141,55 @@ impl Keys {
     /// # Errors
     /// The part that refuses its configuration, and why.
     pub fn parts(&self) -> Result<Parts, (&'static str, Box<Problems>)> {
-        let make = |schema: Schema, keys: &[(&str, i64)]| {
-            let value = |&(key, value): &(&str, i64)| (key.to_owned(), Value::Integer(value));
-            Config::from_values(&schema, "part", keys.iter().map(value).collect())
-                .map_err(|why| (schema.device, Box::new(why)))
+        let make = |schema: Schema, keys: Vec<(&str, Value)>| {
+            let keys = keys.into_iter().map(|(key, value)| (key.to_owned(), value)).collect();
+            Config::from_values(&schema, "part", keys).map_err(|why| (schema.device, Box::new(why)))
         };
-        let [normal, light, cosine, exponent, colour] = [
-            self.normal,
-            self.light,
-            self.cosine,
-            self.exponent_bits,
-            self.colour_bits + self.guard(),
-        ]
-        .map(i64::from);
-        let between = |kept: i64| {
-            let keys = [
-                ("vector.fraction", normal),
-                ("half.fraction", light),
-                ("table.address", 10),
-                ("inverse.fraction", 21),
-                ("output.fraction", kept),
+        let integer = |key, value: i64| (key, Value::Integer(value));
+        let between = |kept: u32| {
+            let keys = vec![
+                integer("vector.fraction", self.normal.into()),
+                integer("half.fraction", self.light.into()),
+                ("two_sided", Value::Flag(self.two_sided)),
+                integer("table.address", 10),
+                integer("inverse.fraction", 21),
+                integer("output.fraction", kept.into()),
             ];
-            make(dot_product::schema(), &keys)
+            make(dot_product::schema(), keys)
         };
+        let (facing, cosine) = (between(self.facing())?, between(self.cosine)?);
         let (schema, fraction) = match self.highlight {
             Highlight::CosinePower => (cosine_power::schema(), 18),
             Highlight::Blinn => (blinn::schema(), 18),
+            Highlight::Gauss => (gauss::schema(), 18),
+            Highlight::Quadratic => (quadratic::schema(), 16),
+            Highlight::Threshold => (threshold::schema(), 16),
             Highlight::Schlick => (schlick::schema(), 14),
+            Highlight::Function => {
+                let text = |key, value: &str| (key, Value::Text(value.to_owned()));
+                let keys = vec![
+                    text("function.formula", &self.formula),
+                    text("function.from", "0"),
+                    text("function.to", "1"),
+                    ("function.to_included", Value::Flag(true)),
+                    integer("operand.fraction", self.cosine.into()),
+                    integer("result.fraction", 16),
+                ];
+                let highlight = make(function::schema(), keys)?;
+                return Ok(Parts { facing, cosine, highlight });
+            }
         };
-        let highlight = [
-            ("cosine.fraction", cosine),
-            ("exponent.bits", exponent),
-            ("colour.bits", colour),
-            ("intensity.fraction", fraction),
-            ("domain.exponent_min", self.least()),
-            ("domain.exponent_max", self.most),
+        let mut keys = vec![
+            integer("cosine.fraction", self.cosine.into()),
+            integer("exponent.bits", self.exponent_bits.into()),
+            integer("colour.bits", (self.colour_bits + self.guard()).into()),
+            integer("intensity.fraction", fraction),
+            integer("domain.exponent_min", self.least()),
+            integer("domain.exponent_max", self.most),
         ];
-        Ok(Parts {
-            facing: between(self.facing().into())?,
-            cosine: between(cosine)?,
-            highlight: make(schema, &highlight)?,
-        })
+        if self.highlight == Highlight::CosinePower {
+            keys.push(("power", Value::Text(self.power.to_string())));
+        }
+        Ok(Parts { facing, cosine, highlight: make(schema, keys)? })
     }
 }

@@ -66,9 +66,14 @@ pub trait Reflectance: Send + Sync {
         first.to_vec()
     }
 
-    /// A proven limit of the formula's slope in the cosine over the domain, from −1 to 1; none where it jumps, or nobody stated
-    /// one.
-    fn slope(&self) -> Option<f64> {
+    /// The formula at a cosine that is not quantised, and a raw exponent; none of a device with other control operands.
+    fn at_cosine(&self, cosine: f64, exponent: i64) -> Option<f64> {
+        let _ = (cosine, exponent);
+        None
+    }
+
+    /// How far the formula follows the cosine over the domain; none where nobody stated it.
+    fn variation(&self) -> Option<Variation> {
         None
     }
 
@@ -117,6 +122,16 @@ pub trait Reflectance: Send + Sync {
     fn remarks(&self) -> Vec<String> {
         Vec::new()
     }
+}
+
+/// Proven limits of how far values of a formula are apart: the slope times the distance of two cosines from −1 to 1, and a jump
+/// that may lie between them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Variation {
+    /// The largest slope beside the jump.
+    pub slope: f64,
+    /// The largest jump: of most formulas what they have at a right angle, beyond which they are 0.
+    pub jump: f64,
 }
 
 /// The accuracy contract of a device that multiplies by a reflectance.

@@ -3,11 +3,11 @@
 use super::Designer;
 use crate::netlist::microcode;
 use crate::netlist::{
-    Control, Driver, FieldId, Microinstruction, NetId, Op, Partition, RegisterKind, Role,
+    Control, Driver, Field, FieldId, Microinstruction, NetId, Op, Partition, RegisterKind, Role,
     Rom as NetRom,
 };
 use glint_base::diagnostic::SourceLocation;
-use glint_base::fixed::Format;
+use glint_base::fixed::{Format, MAX_WIDTH};
 
 /// The fields that the sequencer uses, as far as the program needs them.
 pub struct SequenceFields {
@@ -171,12 +171,73 @@ fn valid_line(d: &Designer) -> NetId {
     source
 }
 
+/// Moves fields of parts, the last first, into memories beside the control ROM, until the others fit a control word.
+fn moved_beside(d: &Designer, microinstructions: &mut [Microinstruction], address: NetId) {
+    let width_of = |field: &Field| d.net(field.net).format.width();
+    let mut fields = d.with(|inner| inner.design.control.fields.clone());
+    let mut total: u32 = fields.iter().map(width_of).sum();
+    let mut left: Vec<u32> = (0..fields.len() as u32).collect();
+    let mut beside: Vec<(Field, Vec<u64>)> = Vec::new();
+    for at in (0..fields.len()).rev() {
+        if total <= MAX_WIDTH || !d.with(|inner| inner.placed.contains(&fields[at].net)) {
+            continue;
+        }
+        left.remove(at);
+        let field = fields.remove(at);
+        total -= width_of(&field);
+        let values = microinstructions.iter_mut().map(|it| it.values.remove(at)).collect();
+        beside.push((field, values));
+    }
+    d.with(|inner| {
+        for (at, field) in fields.iter().enumerate() {
+            inner.design.nets[field.net.index()].driver = Driver::Field(FieldId(at as u32));
+        }
+        inner.design.control.fields = fields;
+        let is_partly = |id: &u32| inner.partly_used.contains(&FieldId(*id));
+        let partly = (0..).zip(&left).filter(|(_, id)| is_partly(id)).map(|(at, _)| FieldId(at));
+        inner.partly_used = partly.collect();
+    });
+    let mut number = 1;
+    while !beside.is_empty() {
+        number += 1;
+        let mut width = 0;
+        let fits = |(field, _): &&(Field, Vec<u64>)| {
+            width += width_of(field);
+            width <= MAX_WIDTH
+        };
+        let taken: Vec<_> = beside.drain(..beside.iter().take_while(fits).count()).collect();
+        let widths: Vec<u32> = taken.iter().map(|(field, _)| width_of(field)).collect();
+        let word = |at: usize| {
+            microcode::pack(&widths, &taken.iter().map(|it| it.1[at]).collect::<Vec<u64>>())
+        };
+        let words = (0..microinstructions.len()).map(word).collect();
+        let mut low: u32 = widths.iter().sum();
+        let name = format!("control{number}");
+        let format = Format::unsigned(low as i32, 0);
+        let data = d.add_named(&format!("{name}_word"), format, Driver::Undriven);
+        let location = d.net(data).location;
+        let names: Vec<&str> = taken.iter().map(|(field, _)| field.name.as_str()).collect();
+        let doc =
+            vec![format!("fields that the control word has no room for: {}", names.join(", "))];
+        d.with(|inner| {
+            let rom = NetRom::new(&name, address, data, words, location);
+            inner.design.add_rom(NetRom { doc, ..rom });
+            for ((field, _), width) in taken.iter().zip(&widths) {
+                low -= width;
+                inner.design.nets[field.net.index()].driver =
+                    Driver::Op(Op::Slice { of: data, low });
+            }
+        });
+    }
+}
+
 fn control_rom(
     d: &Designer,
     location: SourceLocation,
-    microinstructions: Vec<Microinstruction>,
+    mut microinstructions: Vec<Microinstruction>,
     address: NetId,
 ) {
+    moved_beside(d, &mut microinstructions, address);
     let fields = d.with(|inner| inner.design.control.fields.clone());
     let widths: Vec<u32> = fields.iter().map(|field| d.net(field.net).format.width()).collect();
     let packed: Vec<u64> = microinstructions
