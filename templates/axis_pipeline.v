@@ -66,6 +66,20 @@ module ${ name }$_axis #(
 
     // tlast and tuser of the points in the ${ stages }$ stages of the core, with which they move.
     localparam SIDE = USER_WIDTH + 1;
+<%- if let Some(bits) = memory %>
+    wire [USER_WIDTH:0] results_side;
+    ${ name }$_delay #(
+        .WIDTH(SIDE),
+        .WORDS(${ stages - 1 }$),
+        .BITS(${ bits }$)
+    ) side (
+        .clk(aclk),
+        .rst_n(aresetn),
+        .enable(s_axis_tready),
+        .entering({s_axis_tlast, s_axis_tuser}),
+        .leaving(results_side)
+    );
+<%- else %>
     reg  [${ stages }$*SIDE-1:0] side;
     always @(posedge aclk) begin
         if (s_axis_tready) begin
@@ -77,6 +91,7 @@ module ${ name }$_axis #(
         end
     end
     wire [USER_WIDTH:0] results_side = side[${ stages }$*SIDE-1:${ stages - 1 }$*SIDE];
+<%- endif %>
 
     wire offer = m_axis_tready | ~m_axis_tvalid;
     always @(posedge aclk) begin

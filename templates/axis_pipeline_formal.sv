@@ -33,6 +33,22 @@ module ${ name }$ (
 <%- endfor %>
 endmodule
 
+<%- if memory.is_some() %>
+// The delay line of tlast and tuser, as registers: a test holds its memory against these.
+module ${ name }$_delay #(
+    parameter WIDTH = 8,
+    parameter WORDS = 2,
+    parameter BITS = 1
+) (
+    input wire clk, rst_n, enable,
+    input wire [WIDTH-1:0] entering,
+    output wire [WIDTH-1:0] leaving
+);
+    reg [WIDTH*(WORDS+1)-1:0] words;
+    assign leaving = words[WIDTH*(WORDS+1)-1:WIDTH*WORDS];
+    always @(posedge clk) if (enable) words <= {words, entering};
+endmodule
+<% endif %>
 module ${ name }$_axis_formal (
     input wire aclk,
     input wire aresetn,
@@ -154,7 +170,7 @@ module ${ name }$_axis_formal (
         assert ((mark & ~dut.core.points) == 0);
         if (!was_marked) assert (mark == 0);
 <%- for stage in sides %>
-        if (mark[${ loop.index0 }$]) assert (dut.side[${ stage.high }$:${ stage.low }$] == its_side);
+        if (mark[${ loop.index0 }$]) assert (dut.${ side }$[${ stage.high }$:${ stage.low }$] == its_side);
 <%- endfor %>
         assert (left - given == {1'b0, dut.held} + m_axis_tvalid);
         if (dut.held) assert (m_axis_tvalid);

@@ -31,14 +31,14 @@ pub fn describe(d: &Designer, config: &Config) {
     let first = d.mux("first", normal.map(|it| it.q()));
     let second = d.mux("second", half.map(|it| it.q()));
 
-    // Three products of at most 4.0: what the adders could exceed, the program does not.
+    // Three products of at most 4.0 fit: bits above them are copies of the sign.
     let sum_of = |name: &str, product, format: Format, doc: &str| {
         let sum = d.register(name, format).doc(doc);
         let zero = d.constant(&format!("no_{name}"), 0.0, format);
         let so_far = d.mux(&format!("{name}_so_far"), [sum.q(), zero]);
         let added = d.add(&format!("{name}_added"), so_far.out(), product);
         let name = format!("{name}_kept");
-        sum.takes(d.narrow(&name, added, format, Rounding::Truncate, Overflow::Saturate));
+        sum.takes(d.narrow(&name, added, format, Rounding::Truncate, Overflow::Wrap));
         (sum, so_far, zero)
     };
     let product = d.mul("product", first.out(), second.out());

@@ -28,14 +28,14 @@ pub fn describe(d: &Designer, config: &Config) {
         .map(|name| d.operand(name, Format::signed(1, fraction)).doc("component of the vector"));
     let component = d.mux("component", operands.map(|it| it.q()));
 
-    // Three squares of at most 4.0: what the adder could exceed, the program does not.
+    // Three squares of at most 4.0 fit.
     let squares = Format::unsigned(4, 2 * fraction);
     let square = d.mul("square", component.out(), component.out());
     let sum = d.register("sum", squares).doc("the squares so far");
     let zero = d.constant("nothing", 0.0, squares);
     let so_far = d.mux("so_far", [sum.q(), zero]);
     let added = d.add("added", so_far.out(), square);
-    sum.takes(d.narrow("added_kept", added, squares, Rounding::Truncate, Overflow::Saturate));
+    sum.takes(d.narrow("added_kept", added, squares, Rounding::Truncate, Overflow::Wrap));
 
     let width = 2 * fraction + 4;
     let (word, places) = by_pairs(d, sum.q().read_as(integer(width)));
@@ -124,8 +124,9 @@ pub(super) fn inverse_root<'d>(
     let whole =
         d.narrow("fallen_cut", fallen, integer(fall_bits), Rounding::Truncate, Overflow::Saturate);
     let left = d.sub("inverse_found", start, whole.shift_right(inverse));
+    // What falls over a segment is less than its start.
     let format = Format::unsigned(1, inverse);
-    d.narrow("inverse_kept", left, format, Rounding::Truncate, Overflow::Saturate)
+    d.narrow("inverse_kept", left, format, Rounding::Truncate, Overflow::Wrap)
 }
 
 /// A component times 2^places, half of it: in −2 … 2 with one fraction bit more. Its square is at most the mantissa,

@@ -76,13 +76,18 @@ module cosine_power_pipelined_axis #(
 
     // tlast and tuser of the points in the 10 stages of the core, with which they move.
     localparam SIDE = USER_WIDTH + 1;
-    reg  [10*SIDE-1:0] side;
-    always @(posedge aclk) begin
-        if (s_axis_tready) begin
-            side <= {side[9*SIDE-1:0], s_axis_tlast, s_axis_tuser};
-        end
-    end
-    wire [USER_WIDTH:0] results_side = side[10*SIDE-1:9*SIDE];
+    wire [USER_WIDTH:0] results_side;
+    cosine_power_pipelined_delay #(
+        .WIDTH(SIDE),
+        .WORDS(9),
+        .BITS(4)
+    ) side (
+        .clk(aclk),
+        .rst_n(aresetn),
+        .enable(s_axis_tready),
+        .entering({s_axis_tlast, s_axis_tuser}),
+        .leaving(results_side)
+    );
 
     wire offer = m_axis_tready | ~m_axis_tvalid;
     always @(posedge aclk) begin

@@ -54,12 +54,12 @@ fn configurations_in(directory: &str) -> Vec<String> {
 /// # Panics
 /// It is wrong.
 pub fn configuration(path: &str) -> Core {
-    of_config(path, config::read(Path::new(path), &Registry::catalogue().schemas()))
+    of_config(path, config::read(Path::new(path), &Registry::shipped().schemas()))
 }
 
 fn of_config(path: &str, config: Result<Config, Problems>) -> Core {
     let config = config.unwrap_or_else(|problems| panic!("{problems}"));
-    let device = *Registry::catalogue().device(&config.device).expect("a device");
+    let device = *Registry::shipped().device(&config.device).expect("a device");
     Core::new(device, config).unwrap_or_else(|error| panic!("{path}: {error:?}"))
 }
 
@@ -95,7 +95,7 @@ pub fn configuration_between(path: &str, interface: &str) -> Core {
 /// # Panics
 /// It is wrong.
 pub fn parsed(path: &str, text: &str) -> Core {
-    of_config(path, config::parse(path, text, &Registry::catalogue().schemas()))
+    of_config(path, config::parse(path, text, &Registry::shipped().schemas()))
 }
 
 /// The core of a device, of the catalogue or changed, by its defaults and more keys, as TOML.

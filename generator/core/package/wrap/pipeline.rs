@@ -52,6 +52,10 @@ pub fn modules(job: &Job, pipeline: &Pipeline, files: &mut Artifacts) -> Result<
         unused.push("core_side_out".to_owned());
     }
     let (stages, user_bits) = (pipeline.stages.len(), job.inputs.around.user_bits);
+    // Where the core has delay lines in memory, one more holds tlast and tuser.
+    let words = stages.saturating_sub(1);
+    let in_memory = words > 1 && !design.delay_lines().is_empty();
+    let memory = in_memory.then(|| usize::BITS - (words - 1).leading_zeros());
     let (in_high, out_high) = (bits(&operands)? - 1, bits(&results)? - 1);
     let text = fill!("axis_pipeline.v" {
         name: &'a str,
@@ -63,6 +67,8 @@ pub fn modules(job: &Job, pipeline: &Pipeline, files: &mut Artifacts) -> Result<
         in_high: u32,
         out_high: u32,
         stages: usize,
+        // Bits of the number of a slot in the memory for tlast and tuser.
+        memory: Option<u32>,
         // Bits of the own side channel of the core, which is not used.
         side: u32 = pipeline.side,
         packed: Vec<String> = separated(packed(&results, "core_")),
@@ -78,11 +84,12 @@ pub fn modules(job: &Job, pipeline: &Pipeline, files: &mut Artifacts) -> Result<
         raw.push(Raw { name: &field.name, low: raw_bits, width: field.width });
         raw_bits += field.width;
     }
+    let side_net = if in_memory { "side.words" } else { "side" };
     let mut nets = vec![
         ("held".to_owned(), 1),
         ("held_results".to_owned(), out_high + 1),
         ("held_side".to_owned(), side),
-        ("side".to_owned(), stages as u32 * side),
+        (side_net.to_owned(), stages as u32 * side),
         ("results_side".to_owned(), side),
         ("core.points".to_owned(), stages as u32),
     ];
@@ -104,6 +111,8 @@ pub fn modules(job: &Job, pipeline: &Pipeline, files: &mut Artifacts) -> Result<
         // Declarations of what the proof sees of the inside.
         inside: Vec<String> = nets.into_iter().map(seen_inside).collect(),
         stages: usize,
+        memory: Option<u32>,
+        side: &'a str = side_net,
         sides: Vec<Side> = (0..stages as u32)
             .map(|stage| Side { low: stage * side, high: stage * side + user_bits })
             .collect(),
