@@ -119,8 +119,8 @@ fn about(keys: &Keys) -> About {
         Highlight::Function => format!("{formula} with x = c"),
     };
     let cosine = |other: &str| match keys.two_sided {
-        true => format!("abs(N.{other})"),
-        false => format!("max(0, N.{other})"),
+        true => format!("min(1, abs(N.{other}))"),
+        false => format!("min(1, max(0, N.{other}))"),
     };
     let sum = if keys.lights > 1 { "the sum over the lights of " } else { "" };
     let (facing, c) = (cosine("L"), cosine("H"));
@@ -130,7 +130,7 @@ fn about(keys: &Keys) -> About {
         formula: format!("out = ambient + {sum}diffuse*{facing} + specular*f(c), c = {c}, f(c) = {f}"),
         source: "J. F. Blinn, Models of Light Reflection for Computer Synthesized Pictures, SIGGRAPH 1977".to_owned(),
         notes: vec![
-            "The normal need not be a unit vector: an interpolated one will do. Of the zero vector every cosine is 0.".into(),
+            "N is the unit vector of the normal, which can have any length: an interpolated one will do. Of the zero vector every cosine is 0.".into(),
             "Light and half vector are unit vectors: nothing is stated of components beyond -1 and 1.".into(),
             "A sum above the largest result becomes the largest.".into(),
         ],

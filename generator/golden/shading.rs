@@ -226,17 +226,22 @@ impl Formula for Shading {
                 "the cosine of the highlight, through the colour",
                 cosine * slope * colour * lights,
             ),
-            term("highlight", "the highlight", highlight * lights),
+            term("domain.exponent_max", "the highlight", highlight * lights),
             term("colour.bits", "rounding of the results", 0.5),
         ];
         if jump > 0.0 {
             terms.push(term(
-                "highlight",
+                "domain.exponent_max",
                 "where the highlight's formula jumps",
                 jump * colour * lights,
             ));
         }
         terms
+    }
+
+    /// A unit of each light, and half a one that the result is rounded by.
+    fn limit(&self) -> f64 {
+        f64::from(self.keys.lights) + 0.5
     }
 
     /// A light anywhere, a half vector as near to the normal as the exponent asks for, and dull colours, whose sum does not saturate.

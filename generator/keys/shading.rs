@@ -146,13 +146,16 @@ impl Keys {
             Config::from_values(&schema, "part", keys).map_err(|why| (schema.device, Box::new(why)))
         };
         let integer = |key, value: i64| (key, Value::Integer(value));
+        // The highlight's slope is n: beyond 128 each bit of n is one more of the cosine.
+        let more = i64::from((self.most.max(2) - 1).ilog2()).saturating_sub(6).clamp(0, 3);
         let between = |kept: u32| {
             let keys = vec![
                 integer("vector.fraction", self.normal.into()),
                 integer("half.fraction", self.light.into()),
                 ("two_sided", Value::Flag(self.two_sided)),
-                integer("table.address", 10),
-                integer("inverse.fraction", 21),
+                integer("table.address", 10 + (more + 1) / 2),
+                integer("inverse.fraction", 21 + more),
+                integer("factor.bits", 18 + more),
                 integer("output.fraction", kept.into()),
             ];
             make(dot_product::schema(), keys)

@@ -11,7 +11,7 @@ use crate::config_device::{lamp, schemas};
 
 /// Reads a file of a device of the catalogue.
 fn of(text: &str) -> Result<Config, Problems> {
-    parse("core.toml", text, &Registry::catalogue().schemas())
+    parse("core.toml", text, &Registry::shipped().schemas())
 }
 
 #[test]
@@ -127,7 +127,7 @@ fn shipped_configurations_follow_from_nothing() {
         if path.extension().is_some_and(|it| it == "toml") {
             let text = std::fs::read_to_string(&path).expect("text");
             let config = of(&text).unwrap_or_else(|problems| panic!("{problems}"));
-            let schemas = Registry::catalogue().schemas();
+            let schemas = Registry::shipped().schemas();
             let schema = schemas.iter().find(|it| it.device == config.device).expect("a schema");
             let again = parse("core.toml", &config.to_toml(schema), &schemas).expect("valid");
             assert_eq!(again.values().collect::<Vec<_>>(), config.values().collect::<Vec<_>>());

@@ -52,6 +52,69 @@ fn shading(v: &[f64]) -> Vec<f64> {
     (10..13).map(|at| (v[at] + v[at + 3] * facing + v[at + 6] * f).min(255.0)).collect()
 }
 
+/// A highlight by its keys, and its formula of cosine and exponent.
+type OfHighlight = (&'static str, fn(f64, f64) -> f64);
+
+const HIGHLIGHTS: [OfHighlight; 5] = [
+    ("highlight = \"cosine-power\"\npower = 4", |c, n| {
+        if c > 0.0 { (n / 4.0 * (c - 1.0) + 1.0).max(0.0).powi(4) } else { 0.0 }
+    }),
+    ("highlight = \"blinn\"", |c, n| c.powf(n)),
+    ("highlight = \"schlick\"", |c, n| c / (n - n * c + c)),
+    (
+        "highlight = \"gauss\"",
+        |c, n| {
+            if c > 0.0 { (-n * c.acos().powi(2) / 2.0).exp() } else { 0.0 }
+        },
+    ),
+    ("highlight = \"function\"\n[function]\nformula = \"x^3 + 0.25\"", |c, _| c.powi(3) + 0.25),
+];
+
+/// Colours of several lights, from both sides, against formulas that are written out here.
+#[test]
+fn lights_add_up_on_both_sides() {
+    let shading = named("shading");
+    for ((keys, f), (lights, two_sided)) in
+        HIGHLIGHTS.into_iter().flat_map(|it| [(1, true), (3, false)].map(|of| (it, of)))
+    {
+        let text = format!(
+            "device = \"shading\"\nname = \"s\"\nlights = {lights}\ntwo_sided = {two_sided}\n{keys}\n"
+        );
+        let config =
+            parse("s.toml", &text, &[(shading.schema)()]).unwrap_or_else(|it| panic!("{it}"));
+        let core = Core::new(shading, config).unwrap_or_else(|error| panic!("{text}: {error:#}"));
+        let contract = core.contract.as_ref();
+        let has_exponent = !keys.contains("function");
+        let formula = |v: &[f64]| {
+            let normal = unit(&v[..3]);
+            let cosine = |other: &[f64]| {
+                let sum: f64 = normal.iter().zip(other).map(|(a, b)| a * b).sum();
+                (if two_sided { sum.abs() } else { sum }).clamp(0.0, 1.0)
+            };
+            let vectors = &v[3..3 + 6 * lights];
+            let n = v[3 + 6 * lights];
+            let material = &v[3 + 6 * lights + usize::from(has_exponent)..];
+            let facing: f64 = vectors.chunks(6).map(|it| cosine(&it[..3])).sum();
+            let shine: f64 = vectors.chunks(6).map(|it| f(cosine(&it[3..]), n)).sum();
+            let colour =
+                |at: usize| material[at] + material[3 + at] * facing + material[6 + at] * shine;
+            (0..3).map(|at| colour(at).min(255.0)).collect()
+        };
+        let mut at = 7u64;
+        let mut random = || {
+            at = at.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (at >> 11) as f64 / (1u64 << 53) as f64
+        };
+        let points = (0..20_000).filter_map(|_| contract.hint(&mut random));
+        let worst = points.map(|it| errors(contract, &it, formula)).fold(0.0, f64::max);
+        let bound = contract.bound().units;
+        assert!(worst <= bound + 1e-9 && worst > 0.49, "{text}: {worst}, {bound}");
+        let lockstep = core.lockstep(1).and_then(|it| it.run(300, &|_| ()));
+        let outcome = lockstep.unwrap_or_else(|error| panic!("{text}: {error:#}"));
+        assert!(outcome.mismatch.is_none(), "{text}: {:?}", outcome.mismatch);
+    }
+}
+
 fn unit(v: &[f64]) -> Vec<f64> {
     let length = v.iter().map(|it| it * it).sum::<f64>().sqrt();
     v.iter().map(|it| if length == 0.0 { 0.0 } else { it / length }).collect()

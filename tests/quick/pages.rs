@@ -15,7 +15,7 @@ fn read(path: &str) -> String {
 
 /// The default configurations and their pipelines, each with the name of its module.
 fn names() -> Vec<(String, String)> {
-    let catalogue = Registry::catalogue();
+    let catalogue = Registry::shipped();
     let devices = catalogue.devices().iter();
     let cores = devices.map(|device| device.name.replace('-', "_"));
     let both = cores.flat_map(|core| {

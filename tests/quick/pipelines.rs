@@ -65,7 +65,7 @@ fn values_of_a_stage_are_made_of_values_of_this_stage_and_all_registers_move_tog
             assert_eq!(stage(port.net), pipeline.stages.len(), "{path}");
         }
     }
-    assert_eq!(seen, 10, "pipelines");
+    assert_eq!(seen, 11, "pipelines");
 }
 
 /// In a narrow pipeline every fault that a point shows is caught, and of a sample of all faults most, the rest proved.

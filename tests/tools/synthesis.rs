@@ -81,7 +81,7 @@ fn every_flow_takes_the_delay_lines_of_pipelines() {
     let names = shipped.map(|entry| entry.expect("an entry").file_name().into_string());
     let pipelines: Vec<String> =
         names.filter_map(Result::ok).filter(|name| name.ends_with("_pipelined")).collect();
-    assert_eq!(pipelines.len(), 9);
+    assert_eq!(pipelines.len(), 10);
     pipelines.par_iter().for_each(|name| {
         let directory = Path::new("rtl_out").join(name);
         let text = fs::read_to_string(directory.join(format!("{name}.v"))).expect("the core");

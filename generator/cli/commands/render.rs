@@ -28,7 +28,7 @@ const LARGEST_FILE: u64 = 4 << 30;
 /// Draw a picture whose highlights are bit-accurate results of the device
 ///
 /// Ambient and diffuse light are f64, and so is all geometry; the specular term of every sample and light
-/// is a result of the device. Without a configuration it is the first device of `glint list` with its
+/// is a result of the device, and of one that takes normals (`shading`) the whole colour. Without a configuration it is the first device of `glint list` with its
 /// defaults. The same command gives the same bytes on every machine, whatever computes the points.
 #[derive(Args)]
 #[command(after_help = "\

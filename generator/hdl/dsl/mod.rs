@@ -427,8 +427,13 @@ impl Designer {
                 program::assemble(&self, &program);
             });
         } else {
-            let location = self.net(self.start).location;
-            self.report(Diagnostic::new("the design has no microprogram".to_owned(), location));
+            let first = self.with(|inner| inner.parts.get(1).map(|step| step.location));
+            let location = first.unwrap_or(self.net(self.start).location);
+            let message = match first {
+                Some(_) => "nothing executes the parts: state `dataflow()` behind them",
+                None => "the design has no microprogram",
+            };
+            self.report(Diagnostic::new(message.to_owned(), location));
         }
         let inner = self.inner.into_inner();
         let registers_operand_logic = inner.registers_operand_logic;

@@ -238,6 +238,17 @@ impl Graph {
         }
     }
 
+    /// Whether a value is never above a limit, a power of two, whose bit selects the limit.
+    fn is_kept(&self, value: NodeId, select: NodeId, limit: u64) -> bool {
+        let (low, high) = self.node(value).range;
+        let Cell::Op(Op::Slice { of, low: bit }) = self.node(select).cell else { return false };
+        of == value
+            && limit.checked_ilog2() == Some(bit)
+            && low >= 0
+            && high <= limit.into()
+            && limit.is_power_of_two()
+    }
+
     /// A node that already is what the cell would give, or one that is less.
     fn fold(&mut self, op: &Op, format: Format, label: &Label) -> Option<NodeId> {
         let known = op.operands().into_iter();
@@ -337,6 +348,9 @@ impl Graph {
                     }
                     [Some(1), Some(0)] if width == 1 => {
                         Some(self.op(Op::Not(*select), format, label))
+                    }
+                    [None, Some(limit)] if self.is_kept(inputs[0], *select, limit) => {
+                        Some(self.op(Op::Relabel(inputs[0]), format, label))
                     }
                     _ => None,
                 }

@@ -417,9 +417,16 @@ fn fixed(operand: &Operand, value: f64) -> Result<Quantity> {
     Ok(Quantity::Given(value))
 }
 
+/// What an operand takes. Of a unit with several lights one is lit: vectors to the others are zero.
 fn quantity(operand: &Operand, names: &[(&str, Quantity)]) -> Option<Quantity> {
-    let found = names
-        .iter()
-        .find(|(name, quantity)| operand.name == *name && operand.colour == quantity.is_colour());
-    found.map(|(_, quantity)| *quantity)
+    let of = |wanted: &str| {
+        let mut names = names.iter();
+        names.find(|(name, quantity)| wanted == *name && operand.colour == quantity.is_colour())
+    };
+    let first = operand.name.trim_end_matches(|it: char| it.is_ascii_digit());
+    match (of(&operand.name), of(first)) {
+        (Some((_, quantity)), _) => Some(*quantity),
+        (None, Some((_, Quantity::Light(_) | Quantity::Half(_)))) => Some(Quantity::Given(0.0)),
+        _ => None,
+    }
 }

@@ -5,6 +5,7 @@ mod compare;
 mod configurations;
 mod cosim;
 mod datasheet;
+mod documents;
 mod fuzz;
 mod generate;
 mod interrupt;

@@ -30,6 +30,18 @@ fn a_right_dataflow_has_no_mistakes() {
 }
 
 #[test]
+fn parts_that_nothing_executes_are_a_mistake_at_the_first() {
+    let d = Designer::new("device");
+    let a = d.operand("a", BYTE).q();
+    let line = line!() + 1;
+    d.output("a_out", d.instance("part", held, &[("x", a)]).out("y_out"));
+    let mistakes = d.finish().expect_err("a mistake").0;
+    assert_eq!(mistakes.len(), 1);
+    assert_eq!(mistakes[0].message, "nothing executes the parts: state `dataflow()` behind them");
+    assert_eq!(mistakes[0].location.line(), line);
+}
+
+#[test]
 fn operands_and_results_of_parts_go_by_name_and_format() {
     dataflow(|d, a| {
         d.instance("none", held, &[]);

@@ -1,0 +1,154 @@
+// shading_pipelined_tb: self-checking bench of shading_pipelined
+//
+// Run it with any simulator from a directory that holds the files of both folders, for example
+//   $ iverilog -g2012 -s shading_pipelined_tb -o sim shading_pipelined*.v
+//   $ ./sim
+// or, with Verilator 5,
+//   $ verilator --binary --timing --top shading_pipelined_tb shading_pipelined*.v
+//   $ obj_dir/Vshading_pipelined_tb
+// Inputs change on the falling edge of the clock; outputs are compared just before the rising edge.
+//
+// Generated files belong to their user, without conditions.
+
+`default_nettype none
+
+module shading_pipelined_tb #(
+    parameter STIMULUS_FILE = "shading_pipelined_stimulus.mem",
+    parameter EXPECTED_FILE = "shading_pipelined_expected.mem"
+);
+    localparam CLOCKS     = 17968;
+    localparam KNOWN_FROM = 24;  // results are compared from this clock on
+    localparam REPORTED   = 20;  // differences that are printed
+
+    reg [228:0] stimulus [0:CLOCKS-1];
+    reg [25:0] expected [0:CLOCKS-1];
+    reg [25:0] want;
+
+    reg clk = 1'b0;
+    reg                rst_n;
+    reg                in_valid;
+    reg  signed [15:0] nx;
+    reg  signed [15:0] ny;
+    reg  signed [15:0] nz;
+    reg  signed [15:0] lx;
+    reg  signed [15:0] ly;
+    reg  signed [15:0] lz;
+    reg  signed [15:0] hx;
+    reg  signed [15:0] hy;
+    reg  signed [15:0] hz;
+    reg         [9:0]  exponent;
+    reg         [7:0]  ambient_red;
+    reg         [7:0]  ambient_green;
+    reg         [7:0]  ambient_blue;
+    reg         [7:0]  diffuse_red;
+    reg         [7:0]  diffuse_green;
+    reg         [7:0]  diffuse_blue;
+    reg         [7:0]  specular_red;
+    reg         [7:0]  specular_green;
+    reg         [7:0]  specular_blue;
+    reg                out_ready;
+    wire               in_ready;
+    wire               out_valid;
+    wire        [7:0]  red_out;
+    wire        [7:0]  green_out;
+    wire        [7:0]  blue_out;
+
+    integer clock;
+    // Initial values stand here and not in the process below: Verilator 5.006 takes a variable for
+    // constant after a loop with delays when the process has set it before the loop.
+    integer errors = 0;
+    reg was_reset = 1'b0;  // the control unit is in a known state
+
+    shading_pipelined dut (
+        .clk(clk),
+        .rst_n(rst_n),
+        .in_valid(in_valid),
+        .nx(nx),
+        .ny(ny),
+        .nz(nz),
+        .lx(lx),
+        .ly(ly),
+        .lz(lz),
+        .hx(hx),
+        .hy(hy),
+        .hz(hz),
+        .exponent(exponent),
+        .ambient_red(ambient_red),
+        .ambient_green(ambient_green),
+        .ambient_blue(ambient_blue),
+        .diffuse_red(diffuse_red),
+        .diffuse_green(diffuse_green),
+        .diffuse_blue(diffuse_blue),
+        .specular_red(specular_red),
+        .specular_green(specular_green),
+        .specular_blue(specular_blue),
+        .out_ready(out_ready),
+        .in_ready(in_ready),
+        .out_valid(out_valid),
+        .red_out(red_out),
+        .green_out(green_out),
+        .blue_out(blue_out)
+    );
+
+    initial begin
+        $readmemh(STIMULUS_FILE, stimulus);
+        $readmemh(EXPECTED_FILE, expected);
+        for (clock = 0; clock < CLOCKS; clock = clock + 1) begin
+            {rst_n, in_valid, nx, ny, nz, lx, ly, lz, hx, hy, hz, exponent, ambient_red,
+                    ambient_green, ambient_blue, diffuse_red, diffuse_green, diffuse_blue,
+                    specular_red, specular_green, specular_blue, out_ready} = stimulus[clock];
+            want = expected[clock];
+            #4;
+            if (was_reset) begin
+                if (in_ready !== want[25]) begin
+                    errors = errors + 1;
+                    if (errors <= REPORTED) begin
+                        $write("clock %0d", clock);
+                        $display(": in_ready is %h, expected %h", in_ready, want[25]);
+                    end
+                end
+                if (out_valid !== want[24]) begin
+                    errors = errors + 1;
+                    if (errors <= REPORTED) begin
+                        $write("clock %0d", clock);
+                        $display(": out_valid is %h, expected %h", out_valid, want[24]);
+                    end
+                end
+            end
+            if (clock >= KNOWN_FROM && want[24]) begin
+                if (red_out !== want[23:16]) begin
+                    errors = errors + 1;
+                    if (errors <= REPORTED) begin
+                        $write("clock %0d", clock);
+                        $display(": red_out is %h, expected %h", red_out, want[23:16]);
+                    end
+                end
+                if (green_out !== want[15:8]) begin
+                    errors = errors + 1;
+                    if (errors <= REPORTED) begin
+                        $write("clock %0d", clock);
+                        $display(": green_out is %h, expected %h", green_out, want[15:8]);
+                    end
+                end
+                if (blue_out !== want[7:0]) begin
+                    errors = errors + 1;
+                    if (errors <= REPORTED) begin
+                        $write("clock %0d", clock);
+                        $display(": blue_out is %h, expected %h", blue_out, want[7:0]);
+                    end
+                end
+            end
+            if (!rst_n) was_reset = 1'b1;
+            #1 clk = 1'b1;
+            #5 clk = 1'b0;
+        end
+        if (errors != 0) begin
+            $display("FAIL shading_pipelined: %0d differences in %0d clocks", errors, CLOCKS);
+            $fatal;
+        end
+        $display("PASS shading_pipelined: %0d clocks, no difference", CLOCKS);
+        $finish;
+    end
+endmodule
+
+`default_nettype wire
