@@ -2,7 +2,7 @@
 //
 // A transfer on s_axis is a point: its operands, each in whole bytes, the first in the lowest ones.
 // One on m_axis has its results, likewise. tlast and tuser travel with the point. There can be a
-// transfer in every clock.
+// transfer in every <% if interval > 1 %>${ interval }$ clocks<% else %>clock<% endif %>.
 //
 //  s_axis_tdata
 <%- for field in operands %>
@@ -66,6 +66,9 @@ module ${ name }$_axis #(
 
     // tlast and tuser of the points in the ${ stages }$ stages of the core, with which they move.
     localparam SIDE = USER_WIDTH + 1;
+<%- if interval > 1 %>
+    wire moves = ready | ~valid;
+<%- endif %>
 <%- if let Some(bits) = memory %>
     wire [USER_WIDTH:0] results_side;
     ${ name }$_delay #(
@@ -75,14 +78,14 @@ module ${ name }$_axis #(
     ) side (
         .clk(aclk),
         .rst_n(aresetn),
-        .enable(s_axis_tready),
+        .enable(${ moves }$),
         .entering({s_axis_tlast, s_axis_tuser}),
         .leaving(results_side)
     );
 <%- else %>
     reg  [${ stages }$*SIDE-1:0] side;
     always @(posedge aclk) begin
-        if (s_axis_tready) begin
+        if (${ moves }$) begin
 <%- if stages > 1 %>
             side <= {side[${ stages - 1 }$*SIDE-1:0], s_axis_tlast, s_axis_tuser};
 <%- else %>

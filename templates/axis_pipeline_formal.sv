@@ -21,13 +21,26 @@ module ${ name }$ (
     (* anyseq *) reg [${ raw_high }$:0] any;
     reg [${ stages - 1 }$:0] points;  // the stages that have one, the first in bit 0
     reg [${ raw_high }$:0] shown;
-    assign in_ready = out_ready | ~points[${ stages - 1 }$];
     assign out_valid = points[${ stages - 1 }$];
+<%- if interval > 1 %>
+    wire moves = out_ready | ~out_valid;
+    reg [${ slot_high }$:0] turn;  // points are taken at 0
+    assign in_ready = moves & (turn == 0);
+    always @(posedge clk) begin
+        if (!rst_n) turn <= 0;
+        else if (moves) turn <= (turn == ${ interval - 1 }$) ? 0 : turn + 1;
+        if (!rst_n) points <= 0;
+        else if (moves) points <= {points, in_valid & (turn == 0)};
+        if (moves) shown <= any;
+    end
+<%- else %>
+    assign in_ready = out_ready | ~out_valid;
     always @(posedge clk) begin
         if (!rst_n) points <= 0;
         else if (in_ready) points <= {points, in_valid};
         if (in_ready) shown <= any;
     end
+<%- endif %>
 <%- for result in raw %>
     assign ${ result.name }$ = shown[${ result.low + result.width - 1 }$:${ result.low }$];
 <%- endfor %>
@@ -102,7 +115,7 @@ module ${ name }$_axis_formal (
             mark <= 0;
         end else begin
             if (marked) was_marked <= 1;
-            if (s_axis_tready) mark <= {mark, marked};
+            if (dut.core.out_ready || !dut.core.out_valid) mark <= {mark, marked};
         end
         if (marked) its_side <= {s_axis_tlast, s_axis_tuser};
     end

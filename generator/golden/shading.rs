@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::contract::{self, COSINE};
 use super::device::{self, Formula};
 use super::frame::{Frame, Slot, State};
 use super::highlight::Variation;
@@ -13,6 +14,7 @@ use super::{
 };
 use glint_base::fixed::{Rounding, exp2};
 use glint_config::Config;
+use glint_formula::{Kind, parse};
 use glint_keys::shading::{Highlight, Keys, Parts};
 
 /// The parts, one after the other, and the sum behind them.
@@ -237,6 +239,48 @@ impl Formula for Shading {
             ));
         }
         terms
+    }
+
+    /// None where the highlight's formula reads a table, or nobody wrote it.
+    fn expressions(&self) -> Vec<String> {
+        let squares = "(nx ** 2 + ny ** 2 + nz ** 2)";
+        let cosine = |vector: &str, suffix: &str| {
+            let axes = ["x", "y", "z"].map(|axis| format!("n{axis} * {vector}{axis}{suffix}"));
+            let along = format!("({}) / sqrt({squares})", axes.join(" + "));
+            let above = match self.keys.two_sided {
+                true => format!("abs({along})"),
+                false => contract::clamped_at_0(&along),
+            };
+            format!("(min({above}, 1) if {squares} > 0 else 0)")
+        };
+        let (operand, f) = match self.highlight.highlight() {
+            Some(highlight) => (COSINE, highlight.expressions()),
+            None => ("x", self.highlight.expressions()),
+        };
+        let Some(f) = f.first().and_then(|text| parse(text).ok()) else { return Vec::new() };
+        if f.has(&|part| matches!(part, Kind::Word(..))) {
+            return Vec::new();
+        }
+        let (mut facing, mut shine) = (Vec::new(), Vec::new());
+        for suffix in self.keys.suffixes() {
+            facing.push(cosine("l", suffix));
+            let of = parse(&cosine("h", suffix)).expect("a formula");
+            shine.push(format!(
+                "({})",
+                f.substitute(&glint_formula::Formula::operand(operand), &of, &(0..0)).python()
+            ));
+        }
+        let [facing, shine] = [facing, shine].map(|parts| parts.join(" + "));
+        let most = exp2(self.keys.colour_bits as i32) - 1.0;
+        let colours = ["red", "green", "blue"].into_iter();
+        colours
+            .map(|colour| {
+                let sum = format!(
+                    "ambient_{colour} + diffuse_{colour} * ({facing}) + specular_{colour} * ({shine})"
+                );
+                format!("min({}, {most:?})", contract::clamped_at_0(&sum))
+            })
+            .collect()
     }
 
     /// A unit of each light, and half a one that the result is rounded by.

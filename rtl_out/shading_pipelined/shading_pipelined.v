@@ -26,7 +26,8 @@
 `default_nettype none
 
 module shading_pipelined #(
-    parameter DIFFUSE_COSINE_INVERSE_ROOTS_FILE = "shading_pipelined_diffuse_cosine_inverse_roots.mem"
+    parameter DIFFUSE_COSINE_INVERSE_ROOTS_FILE =
+            "shading_pipelined_diffuse_cosine_inverse_roots.mem"
 ) (
     input  wire               clk,
     input  wire               rst_n,           // reset, active low: drops the points on their way

@@ -32,8 +32,8 @@ module cosine_power_pipelined (
     (* anyseq *) reg [23:0] any;
     reg [9:0] points;  // the stages that have one, the first in bit 0
     reg [23:0] shown;
-    assign in_ready = out_ready | ~points[9];
     assign out_valid = points[9];
+    assign in_ready = out_ready | ~out_valid;
     always @(posedge clk) begin
         if (!rst_n) points <= 0;
         else if (in_ready) points <= {points, in_valid};
@@ -127,7 +127,7 @@ module cosine_power_pipelined_axis_formal (
             mark <= 0;
         end else begin
             if (marked) was_marked <= 1;
-            if (s_axis_tready) mark <= {mark, marked};
+            if (dut.core.out_ready || !dut.core.out_valid) mark <= {mark, marked};
         end
         if (marked) its_side <= {s_axis_tlast, s_axis_tuser};
     end

@@ -18,6 +18,7 @@ import glint_cocotb
 from glint_cocotb import (  # noqa: F401 - cocotb runs what is imported here
     bubbles_and_stalls_change_nothing,
     points_are_exact,
+    random_points_follow_the_formula,
     reset_drops_every_point,
 )
 

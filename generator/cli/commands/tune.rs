@@ -30,6 +30,7 @@ Examples:
   glint tune cosine-power --error 0.75                     3/4 of the outputs' last bit, on ECP5
   glint tune blinn --error 0.0005 --unit f --target ice40
   glint tune rough --error 0.9 --set cosine.fraction=16 --set exponent.bits=7 --out small_rough.toml
+  glint tune cosine-power --error 0.75 --rate 30           sequential, or a pipeline with the interval that has the rate
   glint tune gauss --error 0.001 --unit f --csv            the trade-off of error and area")]
 pub struct Arguments {
     /// A device of `glint list`
@@ -49,7 +50,8 @@ pub struct Arguments {
     /// The clock that the core must reach, by the estimate
     #[arg(long, value_name = "MHZ", value_parser = number)]
     clock: Option<f64>,
-    /// How many million points a second the core must compute, by the estimated clock and the clocks of a point
+    /// How many million points a second the core must compute, by the estimated clock and the clocks of a point. Without
+    /// `--set architecture=…` pipelines are looked at too, with the longest interval that has the rate
     #[arg(long, value_name = "MPOINTS", value_parser = number)]
     rate: Option<f64>,
     /// A key with the value that it must have: a format, the domain, or any other; may be repeated

@@ -503,7 +503,10 @@ fn words(
 pub fn parameters(naming: &Naming, roms: &[RomId]) -> Vec<String> {
     let roms = roms.iter().filter(|_| !naming.style.inline);
     let texts = roms.filter(|rom| !naming.second.contains(rom)).map(|rom| {
-        format!("parameter {} = \"{}\"", naming.parameters[rom.index()], naming.files[rom.index()])
+        let (name, file) = (&naming.parameters[rom.index()], &naming.files[rom.index()]);
+        let text = format!("parameter {name} = \"{file}\"");
+        // Beside its margin and a comma.
+        if text.len() + 5 > COLUMNS { text.replacen(" = ", " =\n            ", 1) } else { text }
     });
     separated(texts.collect())
 }

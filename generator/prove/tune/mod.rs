@@ -9,12 +9,13 @@ mod search;
 mod space;
 
 use std::fmt;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use anyhow::{Context, Result};
 use clap::ValueEnum;
 use serde::Serialize;
 
-use glint_config::Config;
+use glint_config::{Config, Shared, Value};
 use glint_core::registry::Device;
 use glint_golden::Bound;
 pub use model::{Cost, Features};
@@ -83,12 +84,76 @@ pub struct Goal {
     pub rate: Option<f64>,
 }
 
+/// The keys by which a pipeline has a rate.
+const ARCHITECTURE: [&str; 2] = ["architecture", "pipeline.interval"];
+
 /// Searches for the smallest configuration. `base` has the keys that are part of the goal; the free ones are changed, but for those
-/// in `fixed`. `progress` is called with the number of configurations that were looked at.
+/// in `fixed`. Where a rate is wanted and `fixed` has no architecture, pipelines are looked at too, with the longest interval that has
+/// the rate. `progress` is called with the number of configurations that were looked at.
 ///
 /// # Errors
 /// No configuration keeps the goal; the message says which term of the bound, or the clock, is in the way.
 pub fn tune(
+    device: &Device,
+    base: &Config,
+    fixed: &[&str],
+    goal: &Goal,
+    progress: &(dyn Fn(usize) + Sync),
+) -> Result<Answer> {
+    let before = AtomicUsize::new(0);
+    let of = |config: &Config| {
+        let shown = |looked_at: usize| progress(before.load(Ordering::Relaxed) + looked_at);
+        let answer = of_architecture(device, config, fixed, goal, &shown);
+        before.fetch_add(answer.as_ref().map_or(0, |it| it.looked_at), Ordering::Relaxed);
+        answer
+    };
+    let mut pipeline = pipelines(base, fixed, goal).iter().find_map(|config| of(config).ok());
+    if let Some(pipeline) = &mut pipeline {
+        pipeline.free.splice(0..0, ARCHITECTURE);
+    }
+    if Shared::of(base).architecture == "pipelined"
+        && let Some(pipeline) = pipeline
+    {
+        return Ok(pipeline);
+    }
+    let own = of(base);
+    let Some(pipeline) = pipeline else { return own };
+    let Ok(mut own) = own else { return Ok(pipeline) };
+    own.free.splice(0..0, ARCHITECTURE);
+    let smaller = goal.order(&pipeline.best) < goal.order(&own.best);
+    let best = if smaller { pipeline.best } else { own.best };
+    let free = if smaller { pipeline.free } else { own.free };
+    let looked_at = own.looked_at + pipeline.looked_at;
+    Ok(Answer { best, front: goal.front([own.front, pipeline.front].concat()), free, looked_at })
+}
+
+/// The pipelines that could have the rate, the longest interval first.
+fn pipelines(base: &Config, fixed: &[&str], goal: &Goal) -> Vec<Config> {
+    let (Some(rate), Some(family)) = (goal.rate, goal.target.family()) else { return Vec::new() };
+    let is_pipelined = Shared::of(base).architecture == "pipelined";
+    if fixed.contains(&"pipeline.interval") || fixed.contains(&"architecture") && !is_pipelined {
+        return Vec::new();
+    }
+    let mut pipeline = base.clone();
+    pipeline.set("architecture", Value::Text("pipelined".to_owned()));
+    if !fixed.contains(&"pipeline.target") {
+        pipeline.set("pipeline.target", Value::Text(family.name().to_owned()));
+    }
+    if let Some(clock) = goal.clock.filter(|_| !fixed.contains(&"pipeline.clock_mhz")) {
+        pipeline.set("pipeline.clock_mhz", Value::Number(clock));
+    }
+    let clock = Shared::of(&pipeline).pipeline_clock_mhz;
+    let longest = ((clock / rate) as i64).clamp(0, 64);
+    let of = |interval: i64| {
+        let mut config = pipeline.clone();
+        config.set("pipeline.interval", Value::Text(interval.to_string()));
+        config
+    };
+    (1..=longest).rev().map(of).collect()
+}
+
+/// As [`tune`], of one architecture.
+fn of_architecture(
     device: &Device,
     base: &Config,
     fixed: &[&str],

@@ -79,9 +79,9 @@ impl<'a> Search<'a> {
             best = better;
         }
         let seen = self.seen.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        let all: Vec<Candidate> = seen.values().flatten().cloned().collect();
+        let all = seen.values().flatten().filter(|it| self.is_fast(it)).cloned().collect();
         let (looked_at, free) = (seen.len(), self.space.free().to_vec());
-        Ok(Answer { front: self.front(all), best, free, looked_at })
+        Ok(Answer { front: self.goal.front(all), best, free, looked_at })
     }
 
     /// Goes through all combinations of values; the smallest that keeps the goal.
@@ -133,7 +133,7 @@ impl<'a> Search<'a> {
     }
 
     fn error(&self, candidate: &Candidate) -> f64 {
-        self.goal.unit.of(&candidate.bound)
+        self.goal.error(candidate)
     }
 
     fn keeps(&self, candidate: &Candidate) -> bool {
@@ -153,24 +153,9 @@ impl<'a> Search<'a> {
         self.goal.clock.unwrap_or_default().max(of_rate.unwrap_or_default())
     }
 
-    /// Returns the costs, the most important first: fit to the chip, objective, error, and bits of ROM. Candidates of equal costs
-    /// differ in their text.
+    /// Returns the costs, the most important first. Candidates of equal costs differ in their text.
     fn order(&self, candidate: &Candidate) -> ([f64; 5], String) {
-        let (cost, target) = (&candidate.cost, self.goal.target);
-        let excess = if cost.excess(target).is_empty() { 0.0 } else { 1.0 };
-        let (first, second) = (self.objective(candidate), cost.area(target));
-        let small = [excess, first, second, self.error(candidate), cost.rom_bits as f64];
-        (small, candidate.config.to_toml(self.space.schema()))
-    }
-
-    fn objective(&self, candidate: &Candidate) -> f64 {
-        let cost = &candidate.cost;
-        match self.goal.objective {
-            Objective::Area => cost.area(self.goal.target),
-            Objective::Luts => cost.luts,
-            Objective::Dsps => cost.dsps as f64,
-            Objective::Memory => cost.rom_bits as f64,
-        }
+        (self.goal.order(candidate), candidate.config.to_toml(self.space.schema()))
     }
 
     fn smallest(&self, candidates: Vec<Candidate>) -> Option<Candidate> {
@@ -259,9 +244,33 @@ impl<'a> Search<'a> {
         let smallest = self.smallest(self.around(here, changes))?;
         (self.order(&smallest).0 < self.order(here).0).then_some(smallest)
     }
+}
 
-    fn front(&self, all: Vec<Candidate>) -> Vec<Candidate> {
-        let mut all: Vec<Candidate> = all.into_iter().filter(|it| self.is_fast(it)).collect();
+impl Goal {
+    fn error(&self, candidate: &Candidate) -> f64 {
+        self.unit.of(&candidate.bound)
+    }
+
+    fn objective(&self, candidate: &Candidate) -> f64 {
+        let cost = &candidate.cost;
+        match self.objective {
+            Objective::Area => cost.area(self.target),
+            Objective::Luts => cost.luts,
+            Objective::Dsps => cost.dsps as f64,
+            Objective::Memory => cost.rom_bits as f64,
+        }
+    }
+
+    /// Returns the costs, the most important first: fit to the chip, objective, area, error, and bits of ROM.
+    pub(super) fn order(&self, candidate: &Candidate) -> [f64; 5] {
+        let (cost, target) = (&candidate.cost, self.target);
+        let excess = if cost.excess(target).is_empty() { 0.0 } else { 1.0 };
+        let (first, second) = (self.objective(candidate), cost.area(target));
+        [excess, first, second, self.error(candidate), cost.rom_bits as f64]
+    }
+
+    /// Returns those that none betters both in error and in the objective, by rising error.
+    pub(super) fn front(&self, mut all: Vec<Candidate>) -> Vec<Candidate> {
         all.sort_by(|one, other| {
             let by_error = self.error(one).total_cmp(&self.error(other));
             by_error.then(self.objective(one).total_cmp(&self.objective(other)))

@@ -5,7 +5,7 @@ mod planted;
 use std::fs;
 
 use crate::common::Sure;
-use crate::common::cores::{Emitted, all_configurations, configuration_between};
+use crate::common::cores::{Emitted, all_configurations, configuration_between, parsed};
 use crate::common::tools::{LIMIT, assert_lint_clean, tool};
 use crate::faults::{Fault, faults};
 use glint::core::Core;
@@ -27,13 +27,24 @@ const PROVED: [(&str, &str); 5] = [
     ("quad_cosine", BUFFERED),
 ];
 
-/// Every configuration with these keys in its table `interface`.
+/// Every configuration with these keys in its table `interface`, and pipelines that take a point every few clocks.
 fn with_interface(keys: &str) -> Vec<(String, Core)> {
     let with = |(path, _): (String, Core)| {
         let core = configuration_between(&path, keys);
         (path, core)
     };
-    all_configurations().into_iter().map(with).collect()
+    let own = all_configurations().into_iter().map(with);
+    own.chain([2, 4].map(|clocks| (format!("every {clocks} clocks"), slower(clocks, keys))))
+        .collect()
+}
+
+/// A pipeline that takes a point every so many clocks, with these keys in its table `interface`.
+fn slower(clocks: u32, keys: &str) -> Core {
+    let text = fs::read_to_string("configs/cosine_power_pipelined.toml").expect("a configuration");
+    let own = text.split("\n[interface]\n").next().expect("its keys");
+    let interval = format!("[pipeline]\ninterval = {clocks}\n");
+    let own = own.replacen("[pipeline]\n", &interval, 1);
+    parsed("configs/cosine_power_pipelined.toml", &format!("{own}\n[interface]\n{keys}"))
 }
 
 #[test]
@@ -56,6 +67,11 @@ fn streams_are_proved() {
         prove(dir.path(), &format!("{name}_axis"), LIMIT)
             .unwrap_or_else(|error| panic!("{name}, {keys}: {error:#}"));
     });
+    for clocks in [2, 4] {
+        let dir = Emitted::new(&slower(clocks, STREAM), 1, 1).beside("");
+        prove(dir.path(), "cosine_power_pipelined_axis", LIMIT)
+            .unwrap_or_else(|error| panic!("every {clocks} clocks: {error:#}"));
+    }
 }
 
 #[test]

@@ -69,6 +69,9 @@ pub fn modules(job: &Job, pipeline: &Pipeline, files: &mut Artifacts) -> Result<
         stages: usize,
         // Bits of the number of a slot in the memory for tlast and tuser.
         memory: Option<u32>,
+        interval: usize = pipeline.interval,
+        // When the points in the core move.
+        moves: &'a str = if pipeline.interval > 1 { "moves" } else { "s_axis_tready" },
         // Bits of the own side channel of the core, which is not used.
         side: u32 = pipeline.side,
         packed: Vec<String> = separated(packed(&results, "core_")),
@@ -112,6 +115,8 @@ pub fn modules(job: &Job, pipeline: &Pipeline, files: &mut Artifacts) -> Result<
         inside: Vec<String> = nets.into_iter().map(seen_inside).collect(),
         stages: usize,
         memory: Option<u32>,
+        interval: usize = pipeline.interval,
+        slot_high: u32 = (pipeline.interval - 1).checked_ilog2().unwrap_or(0),
         side: &'a str = side_net,
         sides: Vec<Side> = (0..stages as u32)
             .map(|stage| Side { low: stage * side, high: stage * side + user_bits })
