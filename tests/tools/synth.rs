@@ -33,7 +33,7 @@ fn flow(target: Target) -> Flow {
 
 fn measured(target: Target, design: &Design, seeds: u32) -> Figures {
     let files = package::emit(design, &EmitInputs::default()).expect("Verilog");
-    let files = package::sources(files);
+    let files = package::sources_for(files, target.name());
     let subject = Subject { design, files: &files, seeds, limit: LIMIT };
     flow(target).measure(&subject, &|| ()).unwrap_or_else(|error| panic!("{error:#}"))
 }
