@@ -35,4 +35,5 @@ mod synthesis;
 mod vendor;
 mod verilog;
 mod video;
+mod wheel;
 mod wrappers;
