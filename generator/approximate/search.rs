@@ -163,7 +163,7 @@ fn cheapest(seen: &Seen, wish: Wish) -> Option<Piecewise> {
             {
                 let cost = base + table.cost(&widths, &words);
                 least = least.min(cost);
-                generous = table.within_factors(&widths, &words);
+                generous = table.within_factors(&most, &widths, &words);
                 found.push((cost, cut, widths, most));
             }
         }

@@ -346,9 +346,14 @@ impl<'s> Table<'s> {
             + PARTIAL * f64::from(partial.sum::<u32>())
     }
 
-    /// Widths from which the search begins again so that no factor is too wide; none where none is.
-    pub(super) fn within_factors(&self, widths: &Widths, words: &Words) -> Option<Widths> {
-        let mut generous = self.generous(widths.offset.len());
+    /// Returns narrower widths than `most`, from which the search begins again so that no factor is too wide; none where none is.
+    pub(super) fn within_factors(
+        &self,
+        most: &Widths,
+        widths: &Widths,
+        words: &Words,
+    ) -> Option<Widths> {
+        let mut generous = most.clone();
         let mut is_wide = false;
         for (k, bits) in Self::excess(&self.formats(widths, words)).enumerate() {
             if bits > 0 {

@@ -238,7 +238,7 @@ impl Core {
         package::emit(&self.design, &inputs)
     }
 
-    /// Of a pipeline the design with the microprogram, if it is wanted.
+    /// Returns of a pipeline the design with the microprogram, if it is wanted.
     fn microprogram(&self, is_wanted: bool) -> Result<Option<Design>> {
         let wanted = is_wanted && self.design.pipeline.is_some();
         Ok(wanted.then(|| self.device.sequential(&self.config)).transpose()?)

@@ -23,7 +23,7 @@ glint_config::keys! {
     }
 }
 
-/// Which side of a surface is lit.
+/// Returns the key that lights both sides of a surface.
 pub(super) fn two_sided() -> Key {
     let doc = "Light both sides of a surface: cosines lose their sign.";
     Key::flag("two_sided", false, doc).joined_later()

@@ -131,7 +131,7 @@ impl Keys {
         self.highlight != Highlight::Function
     }
 
-    /// What stands behind the names of what belongs to a light, of each.
+    /// Returns the suffix of the operands and parts of each light.
     pub fn suffixes(&self) -> impl Iterator<Item = &'static str> + use<> {
         SUFFIXES.into_iter().take(self.lights as usize)
     }

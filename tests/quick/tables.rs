@@ -119,7 +119,7 @@ fn approximation(values: Vec<(String, ConfigValue)>) -> Arc<Piecewise> {
     found(&config).unwrap_or_else(|refusal| panic!("{values:?}: {refusal:?}")).1
 }
 
-/// Of the functions by their names: bits of coefficients, with the reduction and without.
+/// Writes bits of coefficients of a function by its name, with the reduction and without.
 fn preset(row: &mut Row) {
     let name = row[0].split(',').next().expect("a name");
     let values = presets::values(name).unwrap_or_else(|| panic!("no function is `{name}`"));
@@ -129,7 +129,7 @@ fn preset(row: &mut Row) {
     put(row, 3, bits);
 }
 
-/// Of a formula: segments and degree, bits of coefficients and the largest error, at 16 bits and at 20.
+/// Writes of a formula segments and degree, bits of coefficients and the largest error, at 16 bits and at 20.
 fn function(row: &mut Row) {
     let formula = row[0].trim_matches('`').to_owned();
     let ends = if formula.starts_with("x^") { ["1", "16"] } else { ["0", "1"] };

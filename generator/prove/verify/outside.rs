@@ -29,6 +29,9 @@ const POINTS: [u64; 2] = [200, 20_000];
 /// How long it may take to write the statements for Gappa, and to prove one, but with full effort.
 const STATEMENT: Duration = Duration::from_secs(10);
 
+/// Operands that are recomputed but with full effort.
+const RECOMPUTED: u64 = 1 << 20;
+
 /// How long the solver may take to prove a pipeline equal to its sequential core, but with full effort.
 const EQUAL: Duration = Duration::from_secs(300);
 
@@ -122,12 +125,26 @@ pub const RECOMPUTATION: Check = Check {
         let (dir, limit) = (directory_of(&files)?, subject.effort.time_limit);
         let name = &subject.core.config.name;
         let source = format!("software/{name}/{name}_recompute.c");
-        let compile = ["-std=c99", "-O2", "-o", "recompute", &source, "-lmpfr", "-lgmp"];
-        let compiled = tools[0].run(compile, dir.path(), limit)?;
-        if !compiled.status.success() && compiled.output.contains("mpfr") {
+        let (first, last) = subject.core.contract.operands()[0].domain;
+        if last.abs_diff(first) >= RECOMPUTED && !subject.effort.full {
+            let why = format!(
+                "{} operands take minutes or more: `--full` has them, as far as `--time-limit` goes.",
+                grouped(last.abs_diff(first) + 1)
+            );
+            return Ok(Finding::without(Verdict::LeftOut, why));
+        }
+        let compile = |source| {
+            let arguments = ["-std=c99", "-O2", "-o", "recompute", source, "-lmpfr", "-lgmp"];
+            tools[0].run(arguments, dir.path(), limit)
+        };
+        // Whether the library is there is asked of a program that needs nothing else.
+        fs::write(dir.path().join("probe.c"), "#include <mpfr.h>\nint main(void) { return 0; }\n")
+            .context("cannot write a program for the C compiler")?;
+        if !compile("probe.c")?.status.success() {
             let why = "MPFR is not installed for the C compiler: package libmpfr-dev, say";
             return Ok(Finding::without(Verdict::NotRun, why));
         }
+        let compiled = compile(&source)?;
         ensure!(compiled.status.success(), "`{source}`: {}", compiled.output.trim());
         let program = Tool::find_in("recompute", dir.path().as_os_str())?;
         let run = program.run([format!("rtl_out/{name}")], dir.path(), limit)?;

@@ -417,7 +417,7 @@ fn fixed(operand: &Operand, value: f64) -> Result<Quantity> {
     Ok(Quantity::Given(value))
 }
 
-/// What an operand takes. Of a unit with several lights one is lit: vectors to the others are zero.
+/// Returns the quantity that an operand takes. Of a unit with several lights one is lit: vectors to the others are zero.
 fn quantity(operand: &Operand, names: &[(&str, Quantity)]) -> Option<Quantity> {
     let of = |wanted: &str| {
         let mut names = names.iter();
