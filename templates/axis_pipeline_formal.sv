@@ -47,6 +47,7 @@ module ${ name }$ (
 endmodule
 
 <%- if memory.is_some() %>
+
 // The delay line of tlast and tuser, as registers: a test holds its memory against these.
 module ${ name }$_delay #(
     parameter WIDTH = 8,
@@ -61,7 +62,8 @@ module ${ name }$_delay #(
     assign leaving = words[WIDTH*(WORDS+1)-1:WIDTH*WORDS];
     always @(posedge clk) if (enable) words <= {words, entering};
 endmodule
-<% endif %>
+<%- endif %>
+
 module ${ name }$_axis_formal (
     input wire aclk,
     input wire aresetn,

@@ -43,6 +43,7 @@ module cosine_power_pipelined (
     assign green_out = shown[15:8];
     assign blue_out = shown[23:16];
 endmodule
+
 // The delay line of tlast and tuser, as registers: a test holds its memory against these.
 module cosine_power_pipelined_delay #(
     parameter WIDTH = 8,

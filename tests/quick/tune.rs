@@ -222,6 +222,31 @@ fn median(mut values: Vec<f64>) -> f64 {
 
 /// The errors are those that stand beside the weights in `generator/base/target.rs`: of the look-up tables in the median and
 /// at most. Where there is a frequency the estimates are as often above as below.
+/// Eight products: 130 MHz and 30 million points a second leave four clocks a point and two multipliers, 5 million the eight clocks
+/// of the sequential core and one.
+#[test]
+fn a_rate_chooses_architecture_and_interval() {
+    let device = device("cosine-power");
+    let mut pipelined = defaults(&device);
+    pipelined.set("architecture", Value::Text("pipelined".to_owned()));
+    let plain = defaults(&device);
+    let architecture = ["architecture"];
+    for (base, fixed, rate, interval, multipliers) in [
+        (&plain, &[][..], 30.0, "4", 2),
+        (&pipelined, &architecture[..], 30.0, "4", 2),
+        (&plain, &[][..], 5.0, "8", 1),
+    ] {
+        let goal = Goal { rate: Some(rate), ..goal(0.75, Target::Ecp5) };
+        let best = tune(&device, base, fixed, &goal, &|_| ()).expect("an answer").best;
+        assert_eq!(best.config.choice("architecture"), "pipelined", "{rate}");
+        assert_eq!(best.config.choice("pipeline.interval"), interval, "{rate}");
+        assert_eq!(best.cost.dsps, multipliers, "{rate}");
+    }
+    // A sequential core that somebody asks for stays one, and is too slow.
+    let goal = Goal { rate: Some(30.0), ..goal(0.75, Target::Ecp5) };
+    assert!(tune(&device, &plain, &architecture, &goal, &|_| ()).is_err());
+}
+
 #[test]
 fn estimates_are_as_near_to_synthesis_as_is_said() {
     let records = input::records::<Record>(Path::new(synth::DIRECTORY)).expect("records");
