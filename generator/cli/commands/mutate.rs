@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 use clap::Args;
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -86,15 +86,6 @@ impl Scored {
 /// `glint mutate`.
 pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
-    let every_few = |one: &&Loaded| {
-        one.core.design.pipeline.as_ref().is_some_and(|pipeline| pipeline.interval > 1)
-    };
-    if let Some(one) = loaded.iter().find(every_few) {
-        bail!(
-            "`{}`: faults are planted in pipelines that take a point every clock; set pipeline.interval = 1",
-            one.path
-        );
-    }
     if let Some(id) = &arguments.only {
         return match &loaded[..] {
             [one] => only(output, one, id),

@@ -2,7 +2,7 @@
 //!
 //! What a pipeline has and its core has not, such as the parts of a product, may show in a result only when a carry runs
 //! through all bits that are then dropped, and only with some values of the other operands: too seldom for points at random.
-//! The pipeline is therefore simulated beside the mutant, with a point a clock in every lane. Points that make a register
+//! The pipeline is therefore simulated beside the mutant, with a point in every lane in each clock that takes one. Points that make a register
 //! differ are kept, those most that do it in a late stage, and new ones are made of them by a change of one operand. What the
 //! golden model predicts is seen to differ at last, or nothing is found, which proves nothing.
 
@@ -19,7 +19,7 @@ use glint_rtl::sim::{Machine, Program};
 
 const LANES: usize = 64;
 
-/// Clocks of a search, each with a point in every lane.
+/// Clocks of a search.
 const CLOCKS: usize = 1 << 16;
 
 /// Points that differ where the golden model predicts a value, and are not confirmed: after so many the search ends. A
@@ -34,13 +34,15 @@ const SEED: u64 = 4;
 /// The pipeline without a fault.
 pub(super) struct PointSearch {
     sound: Arc<Program>,
-    /// How many inputs there are, and which are high after a clock of reset: a point comes and one goes on every clock.
+    /// How many inputs there are, and which are high after a clock of reset: a point comes and one goes whenever it can.
     inputs: usize,
     high: Vec<usize>,
     /// The operands of the contract with their places among the inputs.
     operands: Vec<(usize, Operand)>,
     /// From the operands to the results.
     stages: Vec<Stage>,
+    /// The clocks from a point to the next.
+    interval: usize,
 }
 
 /// The nets of a stage.
@@ -86,6 +88,7 @@ impl PointSearch {
                 .collect(),
             operands: operands.collect::<Result<_>>()?,
             stages,
+            interval: pipeline.interval,
         })
     }
 
@@ -113,7 +116,9 @@ impl PointSearch {
         }
         self.high.iter().for_each(|&at| inputs[at] = [1; LANES]);
         for clock in 0..CLOCKS {
-            for (lane, point) in points[clock % self.stages.len()].iter_mut().enumerate() {
+            let taken = clock % self.interval == 0;
+            let arriving = points[clock % self.stages.len()].iter_mut().enumerate();
+            for (lane, point) in arriving.filter(|_| taken) {
                 self.draw(&mut random, &kept, point);
                 for ((at, operand), &raw) in self.operands.iter().zip(point.iter()) {
                     inputs[*at][lane] = raw as u64 & mask(operand.format.width());
@@ -122,7 +127,8 @@ impl PointSearch {
             for machine in [&mut sound, &mut mutant] {
                 machine.update(false, Some(&inputs));
             }
-            for (depth, stage) in self.stages.iter().enumerate().take(clock + 1) {
+            let stages = self.stages.iter().enumerate().take(clock + 1);
+            for (depth, stage) in stages.skip(clock % self.interval).step_by(self.interval) {
                 let points = &points[(clock - depth) % self.stages.len()];
                 for lane in differing(&sound, &mutant, &stage.registers) {
                     kept.keep(depth, &points[lane], &mut random);

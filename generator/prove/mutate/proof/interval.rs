@@ -14,6 +14,18 @@ pub(super) fn trusted(design: &Design, register: &Register) -> bool {
     register.kind != RegisterKind::Internal && low <= 0 && high >= 0
 }
 
+/// Returns the interval of each net, whatever the inputs are; where an operand stands behind a net in the order, it may have
+/// any value of its format.
+pub(super) fn of_all(design: &Design, order: &[NetId]) -> Vec<Interval> {
+    let mut intervals: Vec<Option<Interval>> = vec![None; design.nets.len()];
+    for &id in order {
+        let known =
+            |net: NetId| intervals[net.index()].unwrap_or_else(|| design.net(net).format.range());
+        intervals[id.index()] = Some(of(design, id, &known, &|net| Pairs::same(design.width(net))));
+    }
+    intervals.into_iter().map(|it| it.unwrap_or((0, 0))).collect()
+}
+
 /// Returns the interval of one net, from the intervals (`of`) and the bits (`known`) of its operands.
 pub(super) fn of(
     design: &Design,

@@ -7,19 +7,20 @@
 //! combination of values around the fault ([`window`]).
 
 mod cut;
+mod flat;
 mod interval;
 mod pairs;
 mod step;
 mod window;
 
 use pairs::Pairs;
-use step::{Order, State, following};
+use step::{Order, State, count, following};
 use window::Windows;
 
 use super::fault::Site;
 use super::verdict::How;
 use glint_base::fixed::mask;
-use glint_rtl::netlist::{Design, Driver, RegId, RegisterKind};
+use glint_rtl::netlist::{Design, Driver, NetId, RegId, RegisterKind};
 
 /// Proves faults of one design equivalent.
 pub(super) struct Prover<'a> {
@@ -28,25 +29,33 @@ pub(super) struct Prover<'a> {
     nets: Vec<Vec<Pairs>>,
     /// For each microinstruction those that may follow it.
     following: Vec<Vec<usize>>,
-    /// The bits of each net that are compared in every clock.
-    compared: Vec<u64>,
+    /// For each microinstruction the bits of each net that are compared in it.
+    compared: Vec<Vec<u64>>,
     windows: Windows<'a>,
 }
 
 impl<'a> Prover<'a> {
     /// `None` for a design with a combinational loop.
     pub(super) fn new(design: &'a Design) -> Option<Self> {
-        let mut compared = vec![0; design.nets.len()];
-        let outputs = design.outputs().map(|port| port.net);
+        let length = count(design);
+        let mut compared = vec![vec![0; design.nets.len()]; length];
+        let mut compare = |net: NetId, slot: Option<usize>| {
+            for (at, compared) in compared.iter_mut().enumerate() {
+                if slot.is_none_or(|slot| slot == at) {
+                    compared[net.index()] = mask(design.width(net));
+                }
+            }
+        };
         let registers = design.registers.iter();
         let registers = registers.filter(|register| register.kind != RegisterKind::Internal);
-        let checkpoints = design.pipeline.iter().flat_map(|pipeline| &pipeline.checkpoints);
-        let checkpoints = checkpoints.map(|checkpoint| checkpoint.net);
-        for net in outputs.chain(registers.map(|register| register.q)).chain(checkpoints) {
-            compared[net.index()] = mask(design.width(net));
+        let outputs = design.outputs().map(|port| port.net);
+        outputs.chain(registers.map(|register| register.q)).for_each(|net| compare(net, None));
+        if let Some(pipeline) = &design.pipeline {
+            // There is a point in a stage in one slot alone.
+            let slot = |net: NetId| pipeline.clock_of(net) % pipeline.interval;
+            pipeline.checkpoints.iter().for_each(|it| compare(it.net, Some(slot(it.net))));
         }
         let order = Order::of(design)?;
-        let length = design.control.microprogram.len().max(1);
         let following: Vec<_> = (0..length).map(|at| following(design, at)).collect();
         // At power-up everything that is held is 0, in microinstruction 0.
         let mut held: Vec<Option<State>> = vec![None; length];
@@ -103,7 +112,7 @@ impl<'a> Prover<'a> {
             let fault = Some((site, &self.nets[at][..]));
             let nets = self.order.settle(at, &states[at], fault);
             let seen = |(net, bits): (&Pairs, &u64)| net.differ() & bits != 0;
-            if nets.iter().zip(&self.compared).any(seen) {
+            if nets.iter().zip(&self.compared[at]).any(seen) {
                 return false;
             }
             let next = self.order.next(&nets, fault);

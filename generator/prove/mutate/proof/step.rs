@@ -1,9 +1,10 @@
-//! One microinstruction, of the fault-free design or of a mutant beside it; a pipeline, which has none, is taken as one that
-//! follows itself.
+//! One microinstruction, of the fault-free design or of a mutant beside it. A pipeline has none: each of its slots is taken as
+//! one.
 
 use super::interval;
 use super::pairs::{self, Pairs};
 use crate::mutate::fault::Site;
+use glint_base::interval::Interval;
 use glint_rtl::netlist::{Design, Driver, NetId, Op, RegId, RomId};
 
 /// The contents of registers and synchronous ROMs between two clocks.
@@ -16,6 +17,10 @@ pub(super) struct Order<'a> {
     order: Vec<NetId>,
     /// For each net the first that has the same driver: the same value.
     same: Vec<NetId>,
+    /// The register with the number of the microinstruction; none in a pipeline that takes a point every clock.
+    counter: Option<RegId>,
+    /// The interval of each net in every slot, of a pipeline with several.
+    in_all_slots: Vec<Interval>,
 }
 
 /// A fault, and what the fault-free design has on every net in the microinstruction.
@@ -25,11 +30,25 @@ impl<'a> Order<'a> {
     /// `None` for a design with a combinational loop.
     pub(super) fn of(design: &'a Design) -> Option<Self> {
         let mut order = design.levelise().ok()?;
+        let mut in_all_slots = Vec::new();
         if let Some(pipeline) = &design.pipeline {
             // Registers behind the logic of the stage before.
-            order.sort_by_key(|net| pipeline.clock_of(*net));
+            let mut by_stage = order.clone();
+            by_stage.sort_by_key(|net| pipeline.clock_of(*net));
+            if pipeline.interval == 1 {
+                order = by_stage;
+            } else {
+                in_all_slots = interval::of_all(design, &by_stage);
+            }
         }
-        Some(Self { design, same: same(design, &order), order })
+        let counter = match &design.pipeline {
+            None => Some(design.control.address),
+            Some(pipeline) => pipeline.slot.and_then(|slot| match design.net(slot).driver {
+                Driver::Register(id) => Some(id),
+                _ => None,
+            }),
+        };
+        Some(Self { design, same: same(design, &order), order, counter, in_all_slots })
     }
 
     /// The nets of which a [`State`] is: those of the registers, then those of the ROMs.
@@ -58,7 +77,7 @@ impl<'a> Order<'a> {
                 }
                 (Driver::Op(op), _) => pairs::cell(design, op, width, &of, &self.same),
                 (Driver::Constant(bits), _) => Pairs::constant(*bits, width),
-                (Driver::Register(register), None) if *register == design.control.address => {
+                (Driver::Register(register), None) if Some(*register) == self.counter => {
                     Pairs::constant(at as u64, width)
                 }
                 (Driver::Register(register), _) => state[register.index()],
@@ -82,7 +101,11 @@ impl<'a> Order<'a> {
             nets[id.index()] = match fault {
                 None => {
                     let of = |net: NetId| intervals[net.index()];
-                    let interval = interval::of(design, id, &of, &|net| nets[net.index()]);
+                    let interval = match (&net.driver, self.in_all_slots.get(id.index())) {
+                        // It has what was made in the slot before.
+                        (Driver::Register(_), Some(interval)) => *interval,
+                        _ => interval::of(design, id, &of, &|net| nets[net.index()]),
+                    };
                     intervals[id.index()] = interval;
                     value.and(Pairs::of_interval(interval, width))
                 }
@@ -201,13 +224,25 @@ fn taken(design: &Design, driver: &Driver, value: &impl Fn(NetId) -> Pairs) -> O
     }
 }
 
-/// The microinstructions that may follow one, reset included, which leads to microinstruction 0 from any.
+/// Returns how many microinstructions a design has; a pipeline has its slots.
+pub(super) fn count(design: &Design) -> usize {
+    match &design.pipeline {
+        Some(pipeline) => pipeline.interval,
+        None => design.control.microprogram.len().max(1),
+    }
+}
+
+/// Returns the microinstructions that may follow one, reset included, which leads to microinstruction 0 from any. A pipeline
+/// stays in a slot while it is held back.
 pub(super) fn following(design: &Design, at: usize) -> Vec<usize> {
-    let Some(last) = design.control.microprogram.len().checked_sub(1) else {
-        return vec![at];
-    };
     let mut following = vec![0];
-    following.extend(design.control.successors(at).into_iter().map(|to| to.min(last)));
+    match &design.pipeline {
+        Some(pipeline) => following.extend([at, (at + 1) % pipeline.interval]),
+        None => {
+            let last = count(design) - 1;
+            following.extend(design.control.successors(at).into_iter().map(|to| to.min(last)));
+        }
+    }
     following.sort_unstable();
     following.dedup();
     following

@@ -5,17 +5,17 @@
 //! every value of its interval.
 
 use std::borrow::Cow;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Mutex, OnceLock};
 
 use rayon::prelude::*;
 
 use super::cut::smallest_cut;
+use super::flat::Flat;
 use super::interval;
-use super::pairs::Pairs;
 use crate::mutate::fault::Site;
 use glint_base::interval::Interval;
-use glint_rtl::netlist::{Design, Driver, NetId, Op, Pipeline, RomId, eval};
+use glint_rtl::netlist::{Design, Driver, NetId, Op, RomId, eval};
 
 /// Values that are evaluated together.
 const LANES: usize = 128;
@@ -44,38 +44,24 @@ pub(super) struct Windows<'a> {
     sinks: Vec<bool>,
     /// Whether a multiplier reads it.
     multiplied: Vec<bool>,
+    /// For each net of a multiplier that products share, a net a product in its place.
+    copies: BTreeMap<NetId, Vec<NetId>>,
     /// For each ROM the words that may be read, once asked for; none if they are too many to tell.
     read: Vec<OnceLock<Option<BTreeSet<u64>>>>,
-}
-
-/// A pipeline as a point sees it: registers hand on what they take, so that a window reaches over stages. What decides when
-/// points move stays as it is.
-fn flattened(design: &Design, pipeline: &Pipeline) -> Design {
-    let mut flat = design.clone();
-    for register in &mut flat.registers {
-        if !pipeline.handshake.contains(&register.q)
-            && let Some(data) = register.data.take()
-        {
-            flat.nets[register.q.index()].driver = Driver::Op(Op::Relabel(data));
-        }
-    }
-    flat
 }
 
 impl<'a> Windows<'a> {
     /// `None` for a design with a combinational loop.
     pub(super) fn of(design: &'a Design) -> Option<Self> {
-        let design = match &design.pipeline {
-            Some(pipeline) => Cow::Owned(flattened(design, pipeline)),
-            None => Cow::Borrowed(design),
+        let (design, copies) = match &design.pipeline {
+            Some(pipeline) => {
+                let flat = Flat::of(design, pipeline);
+                (Cow::Owned(flat.design), flat.copies)
+            }
+            None => (Cow::Borrowed(design), BTreeMap::new()),
         };
         let order = design.levelise().ok()?;
-        let mut intervals = vec![(0, 0); design.nets.len()];
-        for &id in &order {
-            let of = |net: NetId| intervals[net.index()];
-            intervals[id.index()] =
-                interval::of(&design, id, &of, &|net| Pairs::same(design.width(net)));
-        }
+        let intervals = interval::of_all(&design, &order);
         let mut readers = vec![Vec::new(); design.nets.len()];
         let mut sinks = vec![false; design.nets.len()];
         let mut multiplied = sinks.clone();
@@ -104,6 +90,7 @@ impl<'a> Windows<'a> {
             readers,
             sinks,
             multiplied,
+            copies,
         })
     }
 
@@ -125,6 +112,11 @@ impl<'a> Windows<'a> {
                 };
                 !words.iter().any(is_read) || self.stays_inside(self.design.rom(*rom).data, site)
             }
+            // The fault is in each product.
+            Site::Bit(net, ..) if self.copies.contains_key(net) => {
+                self.copies[net].iter().all(|copy| self.stays_inside(*copy, site))
+            }
+            Site::Driver(net, _) if self.copies.contains_key(net) => false,
             Site::Bit(net, ..) | Site::Driver(net, _) => {
                 let driver = &self.design.net(*net).driver;
                 // What a register takes and what an input brings is at fault elsewhere.
