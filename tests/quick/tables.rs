@@ -36,13 +36,14 @@ const VERIFICATION: &str = "docs/verification.md";
 const FUNCTIONS: &str = "docs/functions.md";
 
 /// A table: its page, its name, and the function that makes it.
-const TABLES: [(&str, &str, Make); 16] = [
+const TABLES: [(&str, &str, Make); 17] = [
     ("README.md", "main_job", |rows| rows.iter_mut().for_each(main_job)),
     (MEASUREMENTS, "devices", |rows| rows.iter_mut().for_each(device)),
     (MEASUREMENTS, "choices", |rows| rows.iter_mut().for_each(choice)),
     (MEASUREMENTS, "area_and_speed", area_and_speed),
-    (MEASUREMENTS, "small_ice40", |rows| small(rows, Target::Ice40)),
-    (MEASUREMENTS, "small_ecp5", |rows| small(rows, Target::Ecp5)),
+    (MEASUREMENTS, "small_ice40", |rows| small(rows, "small", "_60", Target::Ice40)),
+    (MEASUREMENTS, "small_ecp5", |rows| small(rows, "small", "_up5k", Target::Ecp5)),
+    (MEASUREMENTS, "intervals", |rows| small(rows, "intervals", "none", Target::Ecp5)),
     (MEASUREMENTS, "literature", |rows| literature(rows)),
     (MEASUREMENTS, "pipelines", pipelines),
     (MEASUREMENTS, "registered_multipliers", |rows| {
@@ -350,12 +351,12 @@ fn frequency(figures: &Figures) -> String {
     format!("{median:.1} ({lowest:.1}–{highest:.1})")
 }
 
-/// Rows of the records in `benches/small/` with a frequency for the target, and of the sequential cores beside them.
-fn small(rows: &mut Vec<Row>, target: Target) {
-    let small = input::records::<Record>(Path::new("benches/small")).expect("records");
+/// Rows of the records in a folder of `benches/` with a frequency for the target, and of cores in `synthesis/` beside them. Records
+/// of the `other` target have no row.
+fn small(rows: &mut Vec<Row>, folder: &str, other: &str, target: Target) {
+    let small = input::records::<Record>(&Path::new("benches").join(folder)).expect("records");
     let own: BTreeMap<String, Record> =
         small.into_iter().map(|(_, record)| (record.name.clone(), record)).collect();
-    let other = if target == Target::Ice40 { "_60" } else { "_up5k" };
     for name in own.keys() {
         let listed = rows.iter().any(|row| key(row) == name);
         assert!(listed || name.contains(other), "{name} has no row");

@@ -64,6 +64,7 @@ fn goal(error: f64, target: Target) -> Goal {
         objective: Objective::Area,
         clock: None,
         rate: None,
+        most_dsps: None,
     }
 }
 
@@ -242,6 +243,13 @@ fn a_rate_chooses_architecture_and_interval() {
         assert_eq!(best.config.choice("pipeline.interval"), interval, "{rate}");
         assert_eq!(best.cost.dsps, multipliers, "{rate}");
     }
+    // No rate, and a single multiplier.
+    let goal_of_one = Goal { most_dsps: Some(1), ..goal(0.75, Target::Ecp5) };
+    let one = tune(&device, &plain, &[], &goal_of_one, &|_| ()).expect("an answer").best;
+    assert_eq!((one.cost.dsps, one.config.choice("pipeline.interval")), (1, "8"));
+    let none = Goal { most_dsps: Some(0), ..goal(0.75, Target::Ecp5) };
+    let refused = tune(&device, &plain, &[], &none, &|_| ()).expect_err("there is none");
+    assert!(format!("{refused:#}").contains("0 are allowed"), "{refused:#}");
     // A sequential core that somebody asks for stays one, and is too slow.
     let goal = Goal { rate: Some(30.0), ..goal(0.75, Target::Ecp5) };
     assert!(tune(&device, &plain, &architecture, &goal, &|_| ()).is_err());

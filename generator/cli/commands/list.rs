@@ -7,7 +7,8 @@ use clap::Args;
 use serde_json::json;
 
 use super::{CONFIGS, paths};
-use crate::{Output, tables};
+use crate::{Output, say, tables};
+use glint_base::program::Program;
 use glint_core::registry::Registry;
 
 /// List the devices, and the configurations in configs/
@@ -38,6 +39,10 @@ pub fn run(registry: &Registry, output: Output, _: &Arguments) -> Result<bool> {
         .iter()
         .map(|device| vec![device.name.to_owned(), device.summary.to_owned()]);
     tables::print("device | what it computes", rows);
+    say!(
+        "Most are sequential cores or, with architecture = \"pipelined\", pipelines that take a point every few clocks, at twice the rate from a multiplier or two, or one every clock; \
+         `{Program} tune DEVICE --error E --rate R` chooses."
+    );
     for config in configs {
         tables::print_line(&config);
     }

@@ -31,6 +31,7 @@ Examples:
   glint tune blinn --error 0.0005 --unit f --target ice40
   glint tune rough --error 0.9 --set cosine.fraction=16 --set exponent.bits=7 --out small_rough.toml
   glint tune cosine-power --error 0.75 --rate 30           sequential, or a pipeline with the interval that has the rate
+  glint tune lyon --error 1.5 --rate 20 --max-multipliers 6
   glint tune gauss --error 0.001 --unit f --csv            the trade-off of error and area")]
 pub struct Arguments {
     /// A device of `glint list`
@@ -54,6 +55,10 @@ pub struct Arguments {
     /// `--set architecture=…` pipelines are looked at too, with the longest interval that has the rate
     #[arg(long, value_name = "MPOINTS", value_parser = number)]
     rate: Option<f64>,
+    /// The most DSP blocks that the core may have. Without `--set architecture=…` pipelines are looked at too, with the longest
+    /// interval that does
+    #[arg(long, value_name = "N")]
+    max_multipliers: Option<u64>,
     /// A key with the value that it must have: a format, the domain, or any other; may be repeated
     #[arg(long = "set", value_name = "KEY=VALUE")]
     set: Vec<String>,
@@ -108,6 +113,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
         objective: arguments.objective,
         clock: arguments.clock,
         rate: arguments.rate,
+        most_dsps: arguments.max_multipliers,
     };
     let bar: ProgressBar = progress::bar(output, 0, "configurations");
     let fixed: Vec<&str> = fixed.iter().map(String::as_str).collect();

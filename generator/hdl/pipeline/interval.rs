@@ -43,7 +43,7 @@ pub fn clocks<'a>(
         Interval::Clocks(interval) if interval > most => wrong(
             "pipeline.interval",
             format!(
-                "`{name}` has no use for a point every {interval} clocks: its sequential core takes one every {most} and is smaller"
+                "`{name}` has no use for a point every {interval} clocks: its sequential core takes one every {most}"
             ),
             format!("set pipeline.interval to {most} or less, or architecture = \"sequential\""),
         ),

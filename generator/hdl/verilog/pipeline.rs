@@ -37,13 +37,17 @@ pub fn module(plan: &Plan, naming: &Naming, pipeline: &Pipeline, origin: &Origin
     stages.extend(Row::declarations(&builder.state(&behind)));
     for (number, stage) in pipeline.stages.iter().enumerate() {
         let here = |net: NetId| here(net, number);
-        stages.push(String::new());
-        stages.extend(title(number, &stage.microinstructions));
-        stages.extend(Row::declarations(&builder.state(&|net| here(net) && is_word(net))));
-        stages.extend(builder.items(&here).concat());
+        let mut lines = Row::declarations(&builder.state(&|net| here(net) && is_word(net)));
+        lines.extend(builder.items(&here).concat());
         let registers = Row::together(builder.state(&|net| here(net) && !is_word(net)));
-        stages.extend(Row::declarations(&registers));
-        stages.extend(builder.stage(&here));
+        lines.extend(Row::declarations(&registers));
+        lines.extend(builder.stage(&here));
+        // In some stages shared multipliers alone work, or values are on their way in memories.
+        if !lines.is_empty() {
+            stages.push(String::new());
+            stages.extend(title(number, &stage.microinstructions));
+            stages.extend(lines);
+        }
     }
     stages.extend(delays::section(&mut builder, naming));
     let results = builder.items(&|net| here(net, pipeline.stages.len())).concat();
@@ -71,11 +75,15 @@ pub fn module(plan: &Plan, naming: &Naming, pipeline: &Pipeline, origin: &Origin
     )
 }
 
-/// `multiplier_1, slot 0 on: base, -, red_product, green_product`.
+/// `multiplier_1: in slots 0, 1, 2, 3 it takes the factors of base, -, red_product, green_product`: a slot before it computes
+/// them.
 fn reservations(unit: &Unit) -> Vec<String> {
-    let serves = unit.serves.iter().map(|it| it.as_deref().unwrap_or("-"));
-    let serves: Vec<&str> = serves.collect();
-    let text = format!("{}, from slot 0 on: {}", unit.name, serves.join(", "));
+    let slots = unit.serves.len();
+    let numbers: Vec<String> = (0..slots).map(|slot| slot.to_string()).collect();
+    let taken = (1..=slots).map(|slot| unit.serves[slot % slots].as_deref().unwrap_or("-"));
+    let taken: Vec<&str> = taken.collect();
+    let (slots, taken) = (numbers.join(", "), taken.join(", "));
+    let text = format!("{}: in slots {slots} it takes the factors of {taken}", unit.name);
     comment(4, &ascii(&text))
 }
 

@@ -82,14 +82,19 @@ pub struct Goal {
     pub clock: Option<f64>,
     /// The fewest million points a second, by the estimate of the clock.
     pub rate: Option<f64>,
+    /// The most DSP blocks.
+    pub most_dsps: Option<u64>,
 }
+
+/// Beyond the clocks of every sequential core.
+const LONGEST: i64 = 64;
 
 /// The keys by which a pipeline has a rate.
 const ARCHITECTURE: [&str; 2] = ["architecture", "pipeline.interval"];
 
 /// Searches for the smallest configuration. `base` has the keys that are part of the goal; the free ones are changed, but for those
-/// in `fixed`. Where a rate is wanted and `fixed` has no architecture, pipelines are looked at too, with the longest interval that has
-/// the rate. `progress` is called with the number of configurations that were looked at.
+/// in `fixed`. Where a rate is wanted or DSP blocks are limited, and `fixed` has no architecture, pipelines are looked at too, with the
+/// longest interval that does. `progress` is called with the number of configurations that were looked at.
 ///
 /// # Errors
 /// No configuration keeps the goal; the message says which term of the bound, or the clock, is in the way.
@@ -127,9 +132,13 @@ pub fn tune(
     Ok(Answer { best, front: goal.front([own.front, pipeline.front].concat()), free, looked_at })
 }
 
-/// The pipelines that could have the rate, the longest interval first.
+/// The pipelines that could have the rate, and no more multipliers than are allowed, the longest interval first.
 fn pipelines(base: &Config, fixed: &[&str], goal: &Goal) -> Vec<Config> {
-    let (Some(rate), Some(family)) = (goal.rate, goal.target.family()) else { return Vec::new() };
+    let Some(family) =
+        goal.target.family().filter(|_| goal.rate.is_some() || goal.most_dsps.is_some())
+    else {
+        return Vec::new();
+    };
     let is_pipelined = Shared::of(base).architecture == "pipelined";
     if fixed.contains(&"pipeline.interval") || fixed.contains(&"architecture") && !is_pipelined {
         return Vec::new();
@@ -143,7 +152,7 @@ fn pipelines(base: &Config, fixed: &[&str], goal: &Goal) -> Vec<Config> {
         pipeline.set("pipeline.clock_mhz", Value::Number(clock));
     }
     let clock = Shared::of(&pipeline).pipeline_clock_mhz;
-    let longest = ((clock / rate) as i64).clamp(0, 64);
+    let longest = goal.rate.map_or(LONGEST, |rate| ((clock / rate) as i64).clamp(0, LONGEST));
     let of = |interval: i64| {
         let mut config = pipeline.clone();
         config.set("pipeline.interval", Value::Text(interval.to_string()));
@@ -160,7 +169,8 @@ fn of_architecture(
     goal: &Goal,
     progress: &(dyn Fn(usize) + Sync),
 ) -> Result<Answer> {
-    let slower = goal.rate.is_some() || goal.objective == Objective::Dsps;
+    let slower =
+        goal.rate.is_some() || goal.most_dsps.is_some() || goal.objective == Objective::Dsps;
     let run = |slower| -> Result<Answer> {
         let space = Space::new(device, base, fixed, slower)?;
         Search::new(device, &space, goal, progress).run(base)

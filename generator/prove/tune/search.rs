@@ -79,7 +79,7 @@ impl<'a> Search<'a> {
             best = better;
         }
         let seen = self.seen.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        let all = seen.values().flatten().filter(|it| self.is_fast(it)).cloned().collect();
+        let all = seen.values().flatten().filter(|it| self.is_possible(it)).cloned().collect();
         let (looked_at, free) = (seen.len(), self.space.free().to_vec());
         Ok(Answer { front: self.goal.front(all), best, free, looked_at })
     }
@@ -137,11 +137,16 @@ impl<'a> Search<'a> {
     }
 
     fn keeps(&self, candidate: &Candidate) -> bool {
-        self.error(candidate) <= self.goal.error && self.is_fast(candidate)
+        self.error(candidate) <= self.goal.error && self.is_possible(candidate)
     }
 
-    fn is_fast(&self, candidate: &Candidate) -> bool {
-        candidate.cost.mhz >= self.wanted_mhz(candidate)
+    /// Whether the clock is fast enough, and there are no more DSP blocks than are allowed.
+    fn is_possible(&self, candidate: &Candidate) -> bool {
+        self.has_dsps(candidate) && candidate.cost.mhz >= self.wanted_mhz(candidate)
+    }
+
+    fn has_dsps(&self, candidate: &Candidate) -> bool {
+        self.goal.most_dsps.is_none_or(|most| candidate.cost.dsps <= most)
     }
 
     /// The clock that a candidate needs for the goal, in MHz: infinite where it shows no point.
@@ -191,8 +196,9 @@ impl<'a> Search<'a> {
             let wanted = self.error(&here) > self.goal.error;
             let measure = |candidate: &Candidate| match wanted {
                 true => self.error(candidate),
-                // The error is kept, and the clock is not.
+                // The error is kept, and the clock or the number of DSP blocks is not.
                 false if self.error(candidate) > self.goal.error => f64::INFINITY,
+                false if !self.has_dsps(candidate) => candidate.cost.dsps as f64,
                 false => -candidate.cost.mhz / self.wanted_mhz(candidate),
             };
             let next = self.around(&here, 1).into_iter();
@@ -200,6 +206,7 @@ impl<'a> Search<'a> {
             match next.filter(|next| measure(next) < measure(&here) - 1e-9) {
                 Some(next) => here = next,
                 None if wanted => return self.out_of_reach(&here),
+                None if !self.has_dsps(&here) => return self.too_many_dsps(&here),
                 None => return self.too_slow(&here),
             }
         }
@@ -219,6 +226,15 @@ impl<'a> Search<'a> {
              `--set architecture=pipelined` computes a point a clock",
             fastest.cost.mhz,
             self.wanted_mhz(fastest)
+        )
+    }
+
+    /// The number of DSP blocks that cannot be kept.
+    fn too_many_dsps(&self, fewest: &Candidate) -> Result<Candidate> {
+        bail!(
+            "the fewest DSP blocks that were found with the error are {}, {} are allowed; a longer pipeline.interval has fewer",
+            fewest.cost.dsps,
+            self.goal.most_dsps.unwrap_or_default()
         )
     }
 

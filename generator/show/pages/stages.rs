@@ -1,7 +1,19 @@
-//! The stages of a pipeline as a table.
+//! The stages of a pipeline, and what shares its multipliers, as tables.
 
 use super::account::{Table, code};
 use glint_rtl::netlist::{Design, Pipeline};
+
+/// Returns the product that each shared multiplier computes in each slot; none where no multiplier is shared.
+pub fn reservations(pipeline: &Pipeline) -> Option<Table> {
+    let slots = (0..pipeline.interval).map(|slot| format!("slot {slot}"));
+    let headings: Vec<String> = ["multiplier".to_owned()].into_iter().chain(slots).collect();
+    let mut table = Table::of(&headings.join(" | "));
+    for unit in &pipeline.units {
+        let serves = unit.serves.iter().map(|it| it.as_deref().map_or("–".to_owned(), code));
+        table.row([code(&unit.name)].into_iter().chain(serves));
+    }
+    (!pipeline.units.is_empty()).then_some(table)
+}
 
 /// The stages with their microinstructions, values, time and registers.
 pub fn table(design: &Design, pipeline: &Pipeline) -> Table {

@@ -71,6 +71,7 @@ enum Program {
     },
     Pipeline {
         stages: TableView,
+        reservations: Option<TableView>,
         handshake: String,
     },
 }
@@ -86,6 +87,8 @@ impl Program {
             },
             Some(pipeline) => Self::Pipeline {
                 stages: TableView::new("Stages", &stages::table(design, pipeline)),
+                reservations: stages::reservations(pipeline)
+                    .map(|table| TableView::new("Shared multipliers", &table)),
                 handshake: html(account::handshake(pipeline)),
             },
         }

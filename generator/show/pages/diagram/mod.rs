@@ -215,7 +215,9 @@ impl Page<'_> {
             |stage: usize| columns(stage).map(|column| column.1).fold(0.0, f64::max) + REGISTERS;
         let first = columns(0).map(|column| column.0).fold(f64::MAX, f64::min);
         let mut top = first - 2.0 * REGISTERS;
-        for (number, stage) in pipeline.stages.iter().enumerate() {
+        // Where shared multipliers alone work there is no box.
+        let drawn = |(number, _): &(usize, &Stage)| columns(*number).next().is_some();
+        for (number, stage) in pipeline.stages.iter().enumerate().filter(drawn) {
             let bottom = end(number);
             self.stage(number, stage, 1000.0 / pipeline.clock_mhz, [top, bottom], routes);
             top = bottom;

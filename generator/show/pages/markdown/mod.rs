@@ -45,6 +45,7 @@ enum Program {
     },
     Pipeline {
         stages: String,
+        reservations: Option<String>,
         handshake: &'static str,
     },
 }
@@ -60,6 +61,7 @@ impl Program {
             },
             Some(pipeline) => Self::Pipeline {
                 stages: table(&stages::table(design, pipeline)),
+                reservations: stages::reservations(pipeline).map(|it| table(&it)),
                 handshake: account::handshake(pipeline),
             },
         }
