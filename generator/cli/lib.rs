@@ -173,11 +173,21 @@ pub fn run(registry: &Registry) -> ExitCode {
 
 /// Runs the command line of this process under the name `program`, which messages and written files call it by.
 pub fn run_as(program: &str, registry: &Registry) -> ExitCode {
+    run_with(program, registry, std::env::args_os())
+}
+
+/// Runs a command line of this process, the program's name first, under the name `program`: for a process whose own arguments are
+/// others, such as an interpreter.
+pub fn run_with(
+    program: &str,
+    registry: &Registry,
+    arguments: impl IntoIterator<Item = OsString>,
+) -> ExitCode {
     program::run_as(program);
     if let Err(error) = interrupt::listen() {
         failure::warn(&format!("an interruption may leave temporary files behind: {error}"));
     }
-    run_from(registry, std::env::args_os())
+    run_from(registry, arguments)
 }
 
 /// Runs the command line `arguments`, the program's name first.

@@ -54,7 +54,7 @@ pub fn model(config: &Config) -> Box<dyn Model> {
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     let (function, it) = found(config).expect("a configuration that is checked");
     let bound = it.bound;
-    device(&it).contract(Stated { function, bound })
+    device(&it).contract(Stated { function, bound, polynomials: it.clone() })
 }
 
 /// The value of a formula of x, in f64.
@@ -80,6 +80,7 @@ pub(super) fn slope(config: &Config) -> Option<f64> {
 struct Stated {
     function: Function,
     bound: f64,
+    polynomials: Arc<Piecewise>,
 }
 
 impl Formula for Stated {
@@ -88,6 +89,16 @@ impl Formula for Stated {
         let raw = (operands[0] * exp2(self.function.operand.frac)) as i64;
         let value = self.function.limits(raw).map_or(f64::NAN, |limits| limits.middle());
         vec![value * exp2(-(self.function.fraction as i32))]
+    }
+
+    /// Within the domain no sum leaves its format: that was proved at every operand.
+    fn results(&self, operands: &[i64], raw: &mut Vec<i64>) -> bool {
+        let (first, last) = self.polynomials.domain;
+        let inside = (first..=last).contains(&operands[0]);
+        if inside {
+            raw.push(self.polynomials.result(operands[0]));
+        }
+        inside
     }
 
     fn terms(&self) -> Vec<Term> {

@@ -1,13 +1,13 @@
-//! The program as a wheel for Python's installer: `pip install` puts a `glint` on PATH that needs nothing else.
+//! The wheel for Python's installer: the module `glint`, and a `glint` on PATH.
 
 use std::fs;
 use std::path::Path;
+use std::process::Command;
 
 use crate::common::tools::{LIMIT, ran, tool};
-use glint::tools::Tool;
 
 #[test]
-fn a_wheel_has_the_program() {
+fn a_wheel_has_the_module_and_the_program() {
     let dir = tempfile::TempDir::new().expect("a directory");
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let [out, place] = ["wheels", "place"].map(|name| dir.path().join(name));
@@ -18,8 +18,19 @@ fn a_wheel_has_the_program() {
     let install = ["-m", "pip", "install", "-q", "--no-deps", "--no-index", "--target", paths[1]];
     let install = install.into_iter().chain([wheel.to_str().expect("a path")]);
     tool("python").run_to_success(install, dir.path(), LIMIT).expect("it installs");
-    let program = Tool::find_in("glint", place.join("bin").as_os_str()).expect("a program");
+    let run = |program: &Path, arguments: &[&str]| {
+        let mut command = Command::new(program);
+        let done =
+            command.args(arguments).env("PYTHONPATH", &place).current_dir(dir.path()).output();
+        let done = done.expect("it starts");
+        let said =
+            [done.stdout, done.stderr].map(|text| String::from_utf8_lossy(&text).into_owned());
+        assert!(done.status.success(), "{arguments:?}:\n{}", said.concat());
+    };
     fs::write(dir.path().join("core.toml"), "device = \"cosine-power\"\n").expect("written");
-    program.run_to_success(["generate", "core.toml"], dir.path(), LIMIT).expect("it generates");
+    run(&place.join("bin/glint"), &["generate", "core.toml"]);
     assert!(dir.path().join("rtl_out/core/core.v").is_file());
+    let tests = root.join("python/tests");
+    let tests = tests.to_str().expect("a path");
+    run(tool("python").path(), &["-m", "pytest", "-q", "-p", "no:cacheprovider", tests]);
 }

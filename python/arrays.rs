@@ -1,0 +1,258 @@
+//! Columns of operands, of values or of raw integers, and columns of results.
+
+use std::ops::Range;
+use std::slice::ChunksExact;
+
+use numpy::{PyArray1, PyReadonlyArray1};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use rayon::prelude::*;
+
+use glint::fixed::Format;
+use glint::golden::{Contract, nearer};
+
+/// Points that one thread computes at a time.
+const PIECE: usize = 1 << 12;
+
+/// An operand of many points: one number for all of them, or a number each.
+#[derive(FromPyObject)]
+pub enum Column<'py> {
+    Integer(i64),
+    Value(f64),
+    Integers(PyReadonlyArray1<'py, i64>),
+    Values(PyReadonlyArray1<'py, f64>),
+}
+
+/// The raw operands of many points.
+pub struct Operands<'a> {
+    columns: Vec<Raw<'a>>,
+    points: usize,
+}
+
+/// A column.
+enum Raw<'a> {
+    All(i64),
+    Integers(&'a [i64]),
+    /// Values that are rounded to the format as they are read.
+    Values(&'a [f64], Format),
+}
+
+impl<'a> Operands<'a> {
+    /// Takes a column for each operand of a contract; of values, or of raw integers.
+    ///
+    /// # Errors
+    /// Columns of different lengths, and numbers that the format of the operand has not.
+    pub fn new(contract: &dyn Contract, columns: &'a [Column<'_>], raw: bool) -> PyResult<Self> {
+        let mut points = None;
+        let mut taken = Vec::new();
+        for (operand, column) in contract.operands().iter().zip(columns) {
+            let format = operand.format;
+            let refused = |at: Option<usize>, number: String| {
+                let place = at.map_or_else(String::new, |at| format!(" at [{at}]"));
+                let (low, high) = (format.min_raw(), format.max_raw());
+                let limits = match raw {
+                    true => format!("raw integers from {low} to {high}"),
+                    false => format!("{} to {}", format.to_f64(low), format.to_f64(high)),
+                };
+                let name = &operand.name;
+                PyValueError::new_err(format!(
+                    "`{name}`{place} is {number}, and {format} has {limits}"
+                ))
+            };
+            let limits = [format.min_raw(), format.max_raw()];
+            // Of 64 bits without a sign, what an array of integers can hold.
+            let [first, last] = limits.map(|it| it.clamp(i64::MIN.into(), i64::MAX.into()) as i64);
+            let holds = |integer: i64| (first..=last).contains(&integer);
+            // Half a place beyond the last is rounded to it.
+            let [least, most] = limits.map(|it| format.to_f64(it));
+            let half = format.to_f64(1) / 2.0;
+            let near = |value: f64| value >= least - half && value < most + half;
+            let column = match column {
+                Column::Integer(it) if raw && holds(*it) => Raw::All(*it),
+                Column::Integer(it) if !raw && near(*it as f64) => {
+                    Raw::All(format.quantise(*it as f64) as i64)
+                }
+                Column::Integer(it) => return Err(refused(None, it.to_string())),
+                Column::Value(it) if !raw && near(*it) => Raw::All(format.quantise(*it) as i64),
+                Column::Value(it) => return Err(refused(None, it.to_string())),
+                Column::Integers(array) if raw => {
+                    let all = array.as_slice()?;
+                    if !all.iter().fold(true, |all, it| all & holds(*it))
+                        && let Some(at) = all.iter().position(|it| !holds(*it))
+                    {
+                        return Err(refused(Some(at), all[at].to_string()));
+                    }
+                    Raw::Integers(all)
+                }
+                Column::Values(array) if !raw => {
+                    let all = array.as_slice()?;
+                    if !all.iter().fold(true, |all, it| all & near(*it))
+                        && let Some(at) = all.iter().position(|it| !near(*it))
+                    {
+                        return Err(refused(Some(at), all[at].to_string()));
+                    }
+                    Raw::Values(all, format)
+                }
+                _ => {
+                    let wanted = if raw { "int64" } else { "float64" };
+                    let message = format!("`{}`: an array of {wanted} is wanted", operand.name);
+                    return Err(PyValueError::new_err(message));
+                }
+            };
+            let count = match column {
+                Raw::All(_) => None,
+                Raw::Integers(all) => Some(all.len()),
+                Raw::Values(all, _) => Some(all.len()),
+            };
+            if let (Some(count), Some(before)) = (count, points)
+                && count != before
+            {
+                return Err(PyValueError::new_err(format!(
+                    "`{}` has {count} numbers, an operand before it {before}",
+                    operand.name
+                )));
+            }
+            points = points.or(count);
+            taken.push(column);
+        }
+        Ok(Self { columns: taken, points: points.unwrap_or(1) })
+    }
+
+    /// The number of points.
+    pub fn len(&self) -> usize {
+        self.points
+    }
+
+    /// Puts the raw operands of some points into `rows`, point after point.
+    pub fn rows(&self, points: Range<usize>, rows: &mut Vec<i64>) {
+        let width = self.columns.len();
+        rows.resize(points.len() * width, 0);
+        for (at, column) in self.columns.iter().enumerate() {
+            let into = rows.iter_mut().skip(at).step_by(width);
+            match column {
+                Raw::All(it) => into.for_each(|raw| *raw = *it),
+                Raw::Integers(all) => {
+                    into.zip(&all[points.clone()]).for_each(|(raw, it)| *raw = *it);
+                }
+                Raw::Values(all, format) => {
+                    let values = into.zip(&all[points.clone()]);
+                    let (scale, most) = (1.0 / format.to_f64(1), format.max_raw() as i64);
+                    values.for_each(|(raw, value)| *raw = nearest(value * scale).min(most));
+                }
+            }
+        }
+    }
+}
+
+/// Columns of results.
+pub enum Computed {
+    Integers(Vec<Vec<i64>>),
+    Values(Vec<Vec<f64>>),
+}
+
+impl Computed {
+    /// The results of the golden model, raw or as values.
+    pub fn golden(contract: &dyn Contract, operands: &Operands, raw: bool) -> Self {
+        let results = |points: ChunksExact<i64>, out: &mut Vec<i64>| {
+            points.for_each(|point| contract.results(point, 0, out));
+        };
+        if raw {
+            return Self::Integers(each(contract, operands, results));
+        }
+        let units = units(contract);
+        Self::Values(each(contract, operands, |points, out| {
+            let mut raw = Vec::with_capacity(points.len() * units.len());
+            results(points, &mut raw);
+            out.extend(raw.iter().zip(units.iter().cycle()).map(|(&raw, unit)| raw as f64 * unit));
+        }))
+    }
+
+    /// What the formula has.
+    pub fn exact(contract: &dyn Contract, operands: &Operands) -> Self {
+        let mut columns = each(contract, operands, |points, out| {
+            for point in points {
+                contract.exact(point, 0, out);
+            }
+        });
+        Self::Values(
+            columns.drain(..).map(|it| it.into_iter().map(|[value, _]| value).collect()).collect(),
+        )
+    }
+
+    /// How far the golden model is from the formula, in units of the outputs' last place.
+    pub fn errors(contract: &dyn Contract, operands: &Operands) -> Self {
+        let units = units(contract);
+        Self::Values(each(contract, operands, |points, out| {
+            let (mut raw, mut exact) = (Vec::new(), Vec::new());
+            for point in points {
+                raw.clear();
+                exact.clear();
+                contract.results(point, 0, &mut raw);
+                contract.exact(point, 0, &mut exact);
+                let all = raw.iter().zip(&exact).zip(&units);
+                out.extend(
+                    all.map(|((&raw, exact), unit)| nearer(raw as f64, exact.map(|it| it / unit))),
+                );
+            }
+        }))
+    }
+
+    /// An array for each output.
+    pub fn into_arrays(self, py: Python<'_>) -> Vec<Bound<'_, PyAny>> {
+        match self {
+            Self::Integers(all) => {
+                all.into_iter().map(|it| PyArray1::from_vec(py, it).into_any()).collect()
+            }
+            Self::Values(all) => {
+                all.into_iter().map(|it| PyArray1::from_vec(py, it).into_any()).collect()
+            }
+        }
+    }
+}
+
+/// The nearest integer, ties upward, as of [`Format::quantise`]; without a call of `floor`, which processors without SSE4.1 need.
+#[inline]
+fn nearest(value: f64) -> i64 {
+    let above = value + 0.5;
+    let whole = above as i64;
+    whole - i64::from(whole as f64 > above)
+}
+
+/// The values of the last places of the outputs.
+fn units(contract: &dyn Contract) -> Vec<f64> {
+    contract.outputs().iter().map(|it| it.format.to_f64(1)).collect()
+}
+
+/// A column for each output of what `of` appends for points: a number for each output, point after point.
+fn each<T: Copy + Default + Send>(
+    contract: &dyn Contract,
+    operands: &Operands,
+    of: impl Fn(ChunksExact<i64>, &mut Vec<T>) + Sync,
+) -> Vec<Vec<T>> {
+    let (inputs, width) = (operands.columns.len(), contract.outputs().len());
+    // Each has memory that is not yet touched, which a copy of another would touch.
+    let mut columns: Vec<Vec<T>> =
+        (0..width).map(|_| vec![T::default(); operands.points]).collect();
+    // The same piece of every column.
+    let mut pieces: Vec<Vec<&mut [T]>> = Vec::new();
+    for column in &mut columns {
+        for (at, piece) in column.chunks_mut(PIECE).enumerate() {
+            match pieces.get_mut(at) {
+                Some(columns) => columns.push(piece),
+                None => pieces.push(vec![piece]),
+            }
+        }
+    }
+    let buffers = || (Vec::new(), Vec::new());
+    pieces.into_par_iter().enumerate().for_each_init(buffers, |(rows, made), (at, columns)| {
+        let count = columns.first().map_or(0, |it| it.len());
+        operands.rows(at * PIECE..at * PIECE + count, rows);
+        made.clear();
+        of(rows.chunks_exact(inputs), made);
+        for (output, column) in columns.into_iter().enumerate() {
+            let made = made.iter().skip(output).step_by(width);
+            column.iter_mut().zip(made).for_each(|(into, made)| *into = *made);
+        }
+    });
+    columns
+}

@@ -1,0 +1,226 @@
+"""Glint: specular-shading hardware and fixed-point functions, bit-exact in NumPy.
+
+    >>> import glint
+    >>> core = glint.Core(device="cosine-power")
+    >>> out = core(cos_gamma=[0.9, 0.99, 1.0], exponent=100, red=255, green=128, blue=0)
+    >>> out["red_out"].tolist()
+    [0.0, 136.0, 255.0]
+    >>> core.bound < 1
+    True
+
+A core is a configuration: a TOML file, as `glint new` writes it, or a device with keys. It computes arrays by the golden model,
+which the Verilog equals bit by bit, states the proved bound of its error, and gives the Verilog.
+"""
+
+import os
+import sys
+from math import ldexp
+
+import numpy as np
+
+from . import _glint
+
+__all__ = ["Core", "Port", "devices", "function"]
+__version__ = _glint.__version__
+
+
+class Port:
+    """An operand or an output: a name with a fixed-point format. A value is the raw integer times 2^-fraction."""
+
+    def __init__(self, facts):
+        self.name = facts["name"]
+        self.width = facts["width"]
+        self.fraction = facts["fraction"]
+        self.signed = facts["signed"]
+        #: The smallest and the largest raw integer for which the bound is stated; none of an output.
+        self.domain = facts.get("domain")
+        #: Whether the operand multiplies a reflectance.
+        self.colour = facts.get("colour", False)
+        self.doc = facts.get("doc", "")
+
+    @property
+    def limits(self):
+        """The domain in values; none of an output."""
+        return self.domain and tuple(ldexp(raw, -self.fraction) for raw in self.domain)
+
+    def __repr__(self):
+        integer = self.width - self.fraction - self.signed
+        return f"<{self.name}: {'s' if self.signed else 'u'}{integer}.{self.fraction}>"
+
+
+class Core:
+    """A configuration of a device.
+
+    `Core("core.toml")` reads a file; `Core(device="lyon", **{"cosine.fraction": 16})` takes a device with keys, the others at
+    their defaults. Raises ValueError with what is wrong and the remedy.
+    """
+
+    def __init__(self, config=None, *, device=None, **keys):
+        path = None if config is None else os.fspath(config)
+        self._core = _glint.Core(path, device, keys)
+        self.operands = {facts["name"]: Port(facts) for facts in self._core.operands()}
+        self.outputs = {facts["name"]: Port(facts) for facts in self._core.outputs()}
+
+    @property
+    def name(self):
+        """The name of the Verilog module."""
+        return self._core.name
+
+    @property
+    def device(self):
+        """The device, as `glint.devices()` lists it."""
+        return self._core.device
+
+    @property
+    def bound(self):
+        """The proved bound of an output's error, in units of its last place."""
+        return self._core.bound()["units"]
+
+    @property
+    def terms(self):
+        """The terms of the bound: key, what it is, units."""
+        return self._core.bound()["terms"]
+
+    @property
+    def latency(self):
+        """Clocks from a start, or from a point that a pipeline takes, to the first results."""
+        return self._core.clocks()[0]
+
+    @property
+    def interval(self):
+        """Clocks from a point to the next."""
+        return self._core.clocks()[1]
+
+    def __call__(self, *columns, raw=False, **operands):
+        """Computes many points by the golden model.
+
+        An operand is a number or an array; what is not given is an error. Arrays are broadcast. They hold values, which are rounded to
+        the format, or with `raw=True` raw integers, and so do the results: an array (of numbers alone, a number) of a core with one
+        output, or a dictionary by output. Of a device that walks lines (`core.length`) a call is one line.
+        """
+        columns, shape = self._columns(columns, operands, raw)
+        if self.length is not None:
+            return self._line(columns, raw, False)
+        return self._shaped(self._core.compute(columns, "golden", raw), shape)
+
+    def exact(self, *columns, raw=False, **operands):
+        """The formula in float64 at the operands after they are rounded to their formats."""
+        columns, shape = self._columns(columns, operands, raw)
+        return self._shaped(self._core.compute(columns, "exact", raw), shape)
+
+    def error(self, *columns, raw=False, **operands):
+        """How far results are from the formula, in units of the outputs' last place: at most `bound` within the domain."""
+        columns, shape = self._columns(columns, operands, raw)
+        return self._shaped(self._core.compute(columns, "error", raw), shape)
+
+    def simulate(self, *columns, raw=False, **operands):
+        """Computes as a call does, but by simulation of the netlist, clock by clock."""
+        columns, shape = self._columns(columns, operands, raw)
+        if self.length is not None:
+            return self._line(columns, raw, True)
+        results = self._core.run(columns, True, raw)
+        return self._shaped(results if raw else self._values(results), shape)
+
+    def cosim(self, points=10_000, seed=1):
+        """Golden model against the simulated netlist on every clock of so many results; the first difference, or none."""
+        return self._core.cosim(points, seed)
+
+    def verilog(self):
+        """The Verilog and the contents of the memories, by file name."""
+        return self._core.verilog()
+
+    def schedule(self):
+        """A dictionary for each stage of a pipeline, or for each microinstruction."""
+        return self._core.schedule()
+
+    def estimate(self, target="ecp5"):
+        """An estimate of look-up tables, DSP blocks, block RAMs and MHz on `ice40`, `ecp5` or `xilinx7`."""
+        return self._core.estimate(target)
+
+    def render(self, size=256, exponent=None, samples=2):
+        """A lit sphere as an array of height, width and colour (uint8), its highlights by the golden model."""
+        width, height = (size, size) if np.isscalar(size) else size
+        return self._core.render((width, height), exponent, samples)
+
+    def toml(self):
+        """The configuration with all its keys."""
+        return self._core.toml()
+
+    @property
+    def length(self):
+        """The operand that says how many results a computation has, of a device that walks lines; otherwise none."""
+        return self._core.length
+
+    def __repr__(self):
+        return f"<glint.Core {self.name}: {self.device}>"
+
+    def _columns(self, columns, operands, raw):
+        """A number or a contiguous array for each operand, and the shape of the results."""
+        names = list(self.operands)
+        if len(columns) > len(names):
+            raise TypeError(f"there are {len(columns)} operands; {self.name} has {', '.join(names)}")
+        given = dict(zip(names, columns))
+        for name, column in operands.items():
+            if name not in self.operands:
+                raise TypeError(f"there is no operand {name!r}; the operands are {', '.join(names)}")
+            if name in given:
+                raise TypeError(f"operand {name!r} is given twice")
+            given[name] = column
+        missing = [name for name in names if name not in given]
+        if missing:
+            raise TypeError(f"give {', '.join(missing)}: the operands are {', '.join(names)}")
+        kind = np.int64 if raw else np.float64
+        arrays = {}
+        for name in names:
+            array = np.asarray(given[name])
+            if raw and array.dtype.kind not in "iub":
+                raise TypeError(f"operand {name!r}: raw integers are wanted, not {array.dtype}")
+            if array.dtype.kind not in "iubf":
+                raise TypeError(f"operand {name!r}: numbers are wanted, not {array.dtype}")
+            arrays[name] = array
+        shape = np.broadcast_shapes(*(array.shape for array in arrays.values()))
+
+        def column(array):
+            if array.ndim == 0:
+                return kind(array).item()
+            whole = np.broadcast_to(array, shape) if array.shape != shape else array
+            return np.ascontiguousarray(whole, kind).reshape(-1)
+
+        return [column(arrays[name]) for name in names], shape
+
+    def _values(self, results):
+        return [np.ldexp(raw.astype(np.float64), -port.fraction) for raw, port in zip(results, self.outputs.values())]
+
+    def _shaped(self, results, shape):
+        results = [array.reshape(shape) if shape else array.item() for array in results]
+        return results[0] if len(results) == 1 else dict(zip(self.outputs, results))
+
+    def _line(self, columns, raw, simulated):
+        if not all(np.isscalar(column) for column in columns):
+            raise TypeError(f"{self.device} walks a line a call: give numbers")
+        results = self._core.run(columns, simulated, raw)
+        return self._shaped(results if raw else self._values(results), (-1,))
+
+
+def devices():
+    """The devices, by name, with what they compute."""
+    return dict(_glint.devices())
+
+
+def function(formula, low, high, *, fraction=None, error=None, **keys):
+    """A core for a formula of `x` from `low` to `high`: `glint.function("1/sqrt(x)", 1, 4, fraction=16)(2.0)`.
+
+    `fraction` is that of operand and result, `error` the largest error in units of the result's last place; other keys are
+    those of the device `function`.
+    """
+    given = {"function.formula": formula, "function.from": low, "function.to": high}
+    if fraction is not None:
+        given |= {"operand.fraction": fraction, "result.fraction": fraction}
+    if error is not None:
+        given["result.error"] = error
+    return Core(device="function", **{**given, **keys})
+
+
+def main():
+    """The command `glint`."""
+    sys.exit(_glint.run_command(["glint", *sys.argv[1:]]))

@@ -1,0 +1,329 @@
+//! The extension module behind the Python package `glint`, which says what each function is for.
+
+mod arrays;
+
+use std::collections::BTreeMap;
+use std::ffi::OsString;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::{Context, Result, bail};
+use numpy::{PyArray1, PyArray3, PyArrayMethods};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString};
+
+use arrays::{Column, Computed};
+use glint::config::{self, Config};
+use glint::core::Core;
+use glint::cosim::batch::{Engine, Golden, Points, RustHdl};
+use glint::registry::Registry;
+use glint::render::{self, BuiltIn, Light, Material, Object, Scene, Settings, Vector, View};
+use glint::synth::{TARGETS, Target};
+use glint::tune::Cost;
+
+/// The angle between the upper and the lower edge of a picture, in degrees: as of `glint render`.
+const FIELD: f64 = 30.0;
+
+/// A configuration with everything that is made of it.
+#[pyclass(name = "Core", module = "glint._glint", frozen)]
+struct PyCore {
+    core: Core,
+}
+
+/// An error of Python with the causes of one of Rust, a line each.
+fn wrong(error: anyhow::Error) -> PyErr {
+    let causes: Vec<String> = error.chain().map(ToString::to_string).collect();
+    PyValueError::new_err(causes.join("\n  caused by: "))
+}
+
+/// A value of TOML.
+fn toml(value: &Bound<'_, PyAny>) -> Result<String> {
+    if let Ok(flag) = value.cast::<PyBool>() {
+        return Ok(flag.is_true().to_string());
+    }
+    if let Ok(text) = value.cast::<PyString>() {
+        return Ok(serde_json::to_string(&text.to_string())?);
+    }
+    if let Ok(list) = value.cast::<PyList>() {
+        let values = list.iter().map(|it| toml(&it)).collect::<Result<Vec<_>>>()?;
+        return Ok(format!("[{}]", values.join(", ")));
+    }
+    if value.is_instance_of::<PyInt>() || value.is_instance_of::<PyFloat>() {
+        return Ok(value.str()?.to_string());
+    }
+    bail!("`{value}` is no value of a key: a number, a text, True, False or a list is wanted")
+}
+
+#[pymethods]
+impl PyCore {
+    /// Reads a TOML file, or takes a device with keys.
+    #[new]
+    #[pyo3(signature = (path, device, keys))]
+    fn new(
+        path: Option<PathBuf>,
+        device: Option<&str>,
+        keys: &Bound<'_, PyDict>,
+    ) -> PyResult<Self> {
+        Self::made(path, device, keys).map_err(wrong)
+    }
+
+    #[getter]
+    fn name(&self) -> &str {
+        &self.core.config.name
+    }
+
+    #[getter]
+    fn device(&self) -> &str {
+        self.core.device.name
+    }
+
+    /// The operands: name, fraction bits, integer bits, sign, domain in raw integers, colour, a sentence.
+    fn operands<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        let of = |operand: &glint::golden::Operand| {
+            let it = port(py, &operand.name, operand.format)?;
+            it.set_item("domain", operand.domain)?;
+            it.set_item("colour", operand.colour)?;
+            it.set_item("doc", &operand.doc)?;
+            Ok(it)
+        };
+        self.core.contract.operands().iter().map(of).collect()
+    }
+
+    fn outputs<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        let outputs = self.core.contract.outputs();
+        outputs.iter().map(|output| port(py, &output.name, output.format)).collect()
+    }
+
+    /// The operand that says how many results a computation has.
+    #[getter]
+    fn length(&self) -> Option<&str> {
+        self.core.contract.length()
+    }
+
+    /// The bound in units of the outputs' last place, whether it is proved, and its terms.
+    fn bound<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let bound = self.core.contract.bound();
+        let it = PyDict::new(py);
+        it.set_item("units", bound.units)?;
+        it.set_item("proved", self.core.device.proved)?;
+        let terms = bound.terms.iter().map(|term| (term.key, term.what, term.units));
+        it.set_item("terms", terms.collect::<Vec<_>>())?;
+        Ok(it)
+    }
+
+    /// Clocks from a start, or a point taken, to its first results, and to the next.
+    fn clocks(&self) -> PyResult<(Option<u32>, Option<u32>)> {
+        if let Some(pipeline) = &self.core.design.pipeline {
+            return Ok((Some(pipeline.stages.len() as u32), Some(pipeline.interval as u32)));
+        }
+        let timing = self.core.timing().map_err(wrong)?;
+        Ok((timing.start_to_valid, timing.start_to_start))
+    }
+
+    fn toml(&self) -> String {
+        self.core.config.to_toml(&(self.core.device.schema)())
+    }
+
+    /// Verilog and memory files by name.
+    fn verilog(&self, py: Python<'_>) -> PyResult<BTreeMap<String, String>> {
+        let files = py.detach(|| self.core.verilog()).map_err(wrong)?;
+        Ok(files.into_iter().collect())
+    }
+
+    /// Rows of the schedule: the stages of a pipeline, or the microprogram.
+    fn schedule<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        let design = &self.core.design;
+        let Some(pipeline) = &design.pipeline else {
+            let of = |(at, it): (usize, &glint::hdl::netlist::Microinstruction)| {
+                let row = PyDict::new(py);
+                row.set_item("address", at)?;
+                row.set_item("microinstruction", &it.name)?;
+                Ok(row)
+            };
+            return design.control.microprogram.iter().enumerate().map(of).collect();
+        };
+        let of = |(at, it): (usize, &glint::hdl::netlist::Stage)| {
+            let row = PyDict::new(py);
+            let computes: Vec<&str> = pipeline.computed(design, at).map(|(name, _)| name).collect();
+            row.set_item("stage", at)?;
+            row.set_item("microinstructions", &it.microinstructions)?;
+            row.set_item("computes", computes)?;
+            row.set_item("logic_ns", it.logic_ns)?;
+            row.set_item("slack_ns", it.slack_ns)?;
+            row.set_item("register_bits", it.register_bits)?;
+            Ok(row)
+        };
+        pipeline.stages.iter().enumerate().map(of).collect()
+    }
+
+    /// An estimate of what a family's chip takes, and the clock in MHz.
+    fn estimate<'py>(&self, py: Python<'py>, target: &str) -> PyResult<Bound<'py, PyDict>> {
+        let named = |it: &&Target| it.family().is_some_and(|it| it.name() == target);
+        let target = TARGETS.iter().find(named).ok_or_else(|| {
+            let names = glint::target::FAMILIES.map(|it| it.name()).join(", ");
+            PyValueError::new_err(format!("there is no target `{target}`; targets: {names}"))
+        })?;
+        let cost = Cost::new(&self.core.design, *target);
+        let it = PyDict::new(py);
+        it.set_item("luts", cost.luts.round() as u64)?;
+        it.set_item("dsps", cost.dsps)?;
+        it.set_item("block_rams", cost.block_rams)?;
+        it.set_item("rom_bits", cost.rom_bits)?;
+        it.set_item("mhz", cost.mhz)?;
+        Ok(it)
+    }
+
+    /// The outputs of many points: `what` is `golden`, `exact` or `error`. A column of operands each, in the order of
+    /// [`PyCore::operands`]; of values, or of raw integers.
+    fn compute<'py>(
+        &self,
+        py: Python<'py>,
+        columns: Vec<Column<'py>>,
+        what: &str,
+        raw: bool,
+    ) -> PyResult<Vec<Bound<'py, PyAny>>> {
+        let contract = self.core.contract.as_ref();
+        let points = arrays::Operands::new(contract, &columns, raw)?;
+        let computed = py.detach(|| match what {
+            "exact" => Computed::exact(contract, &points),
+            "error" => Computed::errors(contract, &points),
+            _ => Computed::golden(contract, &points, raw),
+        });
+        Ok(computed.into_arrays(py))
+    }
+
+    /// As [`PyCore::compute`], by the simulated netlist, or the golden model: raw outputs, result after result. Of a device
+    /// that walks lines, all results of a line.
+    fn run<'py>(
+        &self,
+        py: Python<'py>,
+        columns: Vec<Column<'py>>,
+        simulated: bool,
+        raw: bool,
+    ) -> PyResult<Vec<Bound<'py, PyArray1<i64>>>> {
+        let contract = self.core.contract.as_ref();
+        let operands = arrays::Operands::new(contract, &columns, raw)?;
+        let length =
+            contract.operands().iter().position(|it| Some(it.name.as_str()) == contract.length());
+        let count = columns.len();
+        let out = py.detach(|| -> Result<Vec<i64>> {
+            let mut points = Points::new(count);
+            let mut rows = Vec::new();
+            operands.rows(0..operands.len(), &mut rows);
+            for point in rows.chunks_exact(count) {
+                let results = length.map_or(1, |length| point[length].max(0) as usize + 1);
+                points.push(point.iter().copied(), results);
+            }
+            match simulated {
+                true => RustHdl::new(&self.core.design, contract)?.compute(&points),
+                false => Golden(contract).compute(&points),
+            }
+        });
+        let out = out.map_err(wrong)?;
+        let width = contract.outputs().len();
+        let column = |at: usize| out.iter().skip(at).step_by(width).copied().collect::<Vec<i64>>();
+        Ok((0..width).map(|at| PyArray1::from_vec(py, column(at))).collect())
+    }
+
+    /// Golden model against simulation on every clock; the first difference in words.
+    fn cosim(&self, py: Python<'_>, points: u64, seed: u64) -> PyResult<Option<String>> {
+        let outcome =
+            py.detach(|| self.core.lockstep(seed)?.run(points, &|_| ())).map_err(wrong)?;
+        Ok(outcome.mismatch.map(|it| format!("{it:?}")))
+    }
+
+    /// A picture through the golden model: rows of pixels from the top, red, green and blue.
+    fn render<'py>(
+        &self,
+        py: Python<'py>,
+        size: (u32, u32),
+        exponent: Option<u32>,
+        samples: u32,
+    ) -> PyResult<Bound<'py, PyArray3<u8>>> {
+        let core = &self.core;
+        let exponent = exponent.unwrap_or_else(|| render::usual_exponent(core.contract.as_ref()));
+        let drawn = || -> Result<Vec<u8>> {
+            let settings = Settings {
+                size,
+                samples,
+                view: View { eye: None, target: None, field: FIELD },
+                material: Material::usual(exponent),
+                background: render::BACKGROUND,
+                compare: false,
+                operands: Vec::new(),
+            };
+            let objects: Vec<Object> = Scene::built_in(BuiltIn::Sphere, None::<Vector>, false)?;
+            let scene = Scene { objects, lights: Light::usual(), relief: None };
+            let golden = &mut Golden(core.contract.as_ref());
+            let rendered = render::render(core, golden, &scene, &settings, &mut |_| ())?;
+            Ok(rendered.picture.pixels.into_iter().flatten().collect())
+        };
+        let pixels = py.detach(drawn).map_err(wrong)?;
+        PyArray1::from_vec(py, pixels).reshape([size.1 as usize, size.0 as usize, 3])
+    }
+}
+
+impl PyCore {
+    fn made(path: Option<PathBuf>, device: Option<&str>, keys: &Bound<'_, PyDict>) -> Result<Self> {
+        let registry = Registry::shipped();
+        let config: Config = match (path, device) {
+            (Some(path), None) if keys.is_empty() => config::read(&path, &registry.schemas())?,
+            (None, Some(name)) => {
+                let device = registry.device(name);
+                let module = device.map_or_else(|| "core".to_owned(), |it| (it.schema)().module());
+                let mut text = format!("device = {name:?}\n");
+                if !keys.contains("name")? {
+                    text += &format!("name = {module:?}\n");
+                }
+                for (key, value) in keys {
+                    text += &format!(
+                        "{key} = {}\n",
+                        toml(&value).with_context(|| format!("key `{key}`"))?
+                    );
+                }
+                config::parse("glint.Core", &text, &registry.schemas())?
+            }
+            _ => bail!(
+                "give a TOML file, or device=… with keys: Core(\"core.toml\"), Core(device=\"lyon\")"
+            ),
+        };
+        let device = registry.device(&config.device).context("no such device")?;
+        Ok(Self { core: Core::new(*device, config)? })
+    }
+}
+
+/// Name and format of a port.
+fn port<'py>(
+    py: Python<'py>,
+    name: &str,
+    format: glint::fixed::Format,
+) -> PyResult<Bound<'py, PyDict>> {
+    let it = PyDict::new(py);
+    it.set_item("name", name)?;
+    it.set_item("signed", format.signed)?;
+    it.set_item("width", format.width())?;
+    it.set_item("fraction", format.frac)?;
+    Ok(it)
+}
+
+/// Names and sentences of the devices.
+#[pyfunction]
+fn devices() -> Vec<(&'static str, &'static str)> {
+    Registry::shipped().devices().iter().map(|it| (it.name, it.summary)).collect()
+}
+
+/// Runs a command line, the program's name first; its exit code.
+#[pyfunction]
+fn run_command(py: Python<'_>, arguments: Vec<OsString>) -> Option<u8> {
+    let code = py.detach(|| glint::cli::run_with("glint", &Registry::shipped(), arguments));
+    (0..=u8::MAX).find(|it| ExitCode::from(*it) == code)
+}
+
+#[pymodule]
+fn _glint(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add_class::<PyCore>()?;
+    module.add_function(wrap_pyfunction!(devices, module)?)?;
+    module.add_function(wrap_pyfunction!(run_command, module)?)
+}

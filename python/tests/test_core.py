@@ -1,0 +1,177 @@
+"""The module against the command line, formulas of NumPy, and the emitted Verilog in Verilator."""
+
+import csv
+import io
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import glint
+
+
+def command(*arguments, stdin=None):
+    """What `glint` prints; it must succeed."""
+    program = [sys.executable, "-c", "import glint; glint.main()", *map(str, arguments)]
+    done = subprocess.run(program, input=stdin, capture_output=True, text=True, timeout=600)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def drawn(core, count, seed=1):
+    """Raw operands at random from the domain."""
+    random = np.random.default_rng(seed)
+    ports = core.operands.items()
+    return {name: random.integers(it.domain[0], it.domain[1], count, endpoint=True) for name, it in ports}
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        'device = "cosine-power"\n',
+        'device = "lyon"\n[colour]\nbits = 6\n',
+        'device = "function"\n[function]\nformula = "sin(x)"\nfrom = -1\nto = 1\n',
+        'device = "normaliser"\n',
+    ],
+)
+def test_results_are_those_of_the_command_line(tmp_path, text):
+    path = tmp_path / "core.toml"
+    path.write_text(text)
+    core = glint.Core(path)
+    operands = drawn(core, 500)
+    results = core(raw=True, **operands)
+    results = results if isinstance(results, dict) else {next(iter(core.outputs)): results}
+    rows = io.StringIO()
+    table = csv.writer(rows)
+    table.writerow(operands)
+    table.writerows([f"#{raw}" for raw in row] for row in zip(*operands.values()))
+    printed = list(csv.DictReader(io.StringIO(command("eval", path, "--batch", "-", stdin=rows.getvalue()))))
+    assert len(printed) == 500
+    for name, column in results.items():
+        assert column.tolist() == [int(row[name]) for row in printed]
+
+
+def test_every_operand_of_a_function_is_within_its_bound():
+    for formula, low, high, of in [
+        ("1/sqrt(x)", 1, 4, lambda x: 1 / np.sqrt(x)),
+        ("exp2(x)", 0, 1, np.exp2),
+        ("sin(x)", -1, 1, np.sin),
+    ]:
+        core = glint.function(formula, low, high, fraction=12)
+        first, last = core.operands["x"].domain
+        x = np.arange(first, last + 1) / 2**12
+        error = np.abs(core(x) - of(x)) * 2**12
+        assert error.max() <= core.bound < 1
+        assert np.allclose(core.error(x), error, atol=1e-9)
+        assert np.allclose(core.exact(x), of(x), atol=1e-12)
+
+
+def test_the_simulated_netlist_has_the_same_results():
+    for core in [
+        glint.Core(device="cosine-power"),
+        glint.Core(device="rough", architecture="pipelined", **{"pipeline.interval": 3}),
+        glint.Core(device="shading"),
+    ]:
+        operands = drawn(core, 300)
+        golden, simulated = core(raw=True, **operands), core.simulate(raw=True, **operands)
+        assert all((golden[name] == simulated[name]).all() for name in core.outputs)
+        assert any(golden[name].any() for name in core.outputs)
+        assert core.cosim(2000) is None
+
+
+def test_a_line_has_a_result_for_each_point():
+    core = glint.Core(device="cosine-squared")
+    line = {name: it.domain[0] for name, it in core.operands.items()} | {core.length: 7}
+    assert core(raw=True, **line).shape == (8,) if len(core.outputs) == 1 else True
+    golden, simulated = core(raw=True, **line), core.simulate(raw=True, **line)
+    for name in core.outputs if isinstance(golden, dict) else [None]:
+        own, other = (golden, simulated) if name is None else (golden[name], simulated[name])
+        assert own.shape == (8,) and (own == other).all()
+
+
+BENCH = """
+module bench;
+    reg clk = 0, rst_n = 0;
+    reg [{width}:0] points [0:{last}];
+    integer taken = 0, shown = 0;
+    wire in_ready, out_valid;
+    wire [{result}:0] result_out;
+    {name} core (
+        .clk(clk), .rst_n(rst_n), .in_valid(taken <= {last}), .in_ready(in_ready), .x(points[taken]),
+        .out_ready(1'b1), .out_valid(out_valid), .result_out(result_out)
+    );
+    always #5 clk = ~clk;
+    always @(posedge clk) begin
+        rst_n <= 1;
+        if (rst_n && in_ready && taken <= {last}) taken <= taken + 1;
+        if (rst_n && out_valid) begin
+            $display("%0d", result_out);
+            shown = shown + 1;
+            if (shown > {last}) $finish;
+        end
+    end
+    initial $readmemh("points.hex", points);
+endmodule
+"""
+
+
+def test_verilated_verilog_has_the_same_results(tmp_path):
+    core = glint.function("1/sqrt(x)", 1, 4, fraction=16, architecture="pipelined")
+    x = core.operands["x"]
+    raw = np.linspace(*x.domain, 3000).astype(np.int64)
+    for name, text in core.verilog().items():
+        (tmp_path / name).write_text(text)
+    (tmp_path / "points.hex").write_text("".join(f"{point:x}\n" for point in [*raw, 0]))
+    result = core.outputs["result_out"].width - 1
+    bench = BENCH.format(name=core.name, width=x.width - 1, last=len(raw) - 1, result=result)
+    (tmp_path / "bench.v").write_text(bench.replace(f"[0:{len(raw) - 1}]", f"[0:{len(raw)}]"))
+    sources = [name for name in core.verilog() if name.endswith(".v")]
+    build = ["verilator", "--binary", "-Wno-fatal", "--top-module", "bench", "bench.v", *sources]
+    subprocess.run(build, cwd=tmp_path, check=True, capture_output=True, timeout=600)
+    done = subprocess.run(["obj_dir/Vbench"], cwd=tmp_path, check=True, capture_output=True, text=True, timeout=600)
+    shown = [int(line) for line in done.stdout.splitlines() if line.strip().isdigit()]
+    assert shown == core(raw, raw=True).tolist()
+
+
+def test_shapes_follow_numpy():
+    core = glint.Core(device="cosine-power")
+    out = core(cos_gamma=np.linspace(0, 1, 6).reshape(3, 2), exponent=[[10], [20], [30]], red=255, green=0, blue=1)
+    assert out["red_out"].shape == (3, 2) and out["green_out"].max() == 0
+    assert core(1, 1, 255, 0, 0)["red_out"] == 255 and isinstance(core(1, 1, 255, 0, 0, raw=True)["red_out"], int)
+    empty = core(np.empty(0), 1, 1, 1, 1)["red_out"]
+    assert empty.shape == (0,)
+
+
+def test_a_core_tells_what_it_is():
+    core = glint.Core(device="rough", architecture="pipelined")
+    assert core.interval == 1 and core.latency == len(core.schedule())
+    assert core.bound == pytest.approx(sum(units for *_, units in core.terms))
+    assert f"module {core.name} #(" in core.verilog()[f"{core.name}.v"]
+    assert core.estimate("ecp5")["dsps"] > 0
+    assert core.render(32).shape == (32, 32, 3) and core.render((40, 30)).shape == (30, 40, 3)
+    assert 'device = "rough"' in core.toml() and "lyon" in glint.devices()
+
+
+@pytest.mark.parametrize(
+    "call, error, words",
+    [
+        (lambda: glint.Core("nowhere.toml"), ValueError, "nowhere.toml"),
+        (lambda: glint.Core(device="lyonn"), ValueError, 'did you mean "lyon"'),
+        (lambda: glint.Core(), ValueError, "give a TOML file"),
+        (lambda: glint.Core(device="lyon", power=17), ValueError, "power"),
+        (lambda: glint.Core(device="lyon", power=object()), ValueError, "no value of a key"),
+        (lambda: glint.function("1/x", -1, 1, fraction=8), ValueError, "a pole"),
+        (lambda: glint.Core(device="cosine-power")(1, 2, 3, 4), TypeError, "give blue"),
+        (lambda: glint.Core(device="cosine-power")(1, 2, 3, 4, blu=1), TypeError, "no operand 'blu'"),
+        (lambda: glint.Core(device="cosine-power")(1, 2, 3, 4, 256), ValueError, "`blue` is 256"),
+        (lambda: glint.Core(device="cosine-power")([0, np.nan], 2, 3, 4, 5), ValueError, "`cos_gamma` at [1]"),
+        (lambda: glint.Core(device="cosine-power")(0.5, 2, 3, 4, 5, raw=True), TypeError, "raw integers"),
+        (lambda: glint.Core(device="cosine-power")("a", 2, 3, 4, 5), TypeError, "numbers are wanted"),
+        (lambda: glint.Core(device="cosine-squared")(*[[1, 2]] * 4), TypeError, "a line a call"),
+    ],
+)
+def test_what_is_wrong_is_said(call, error, words):
+    with pytest.raises(error) as raised:
+        call()
+    assert words in str(raised.value)
