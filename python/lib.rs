@@ -22,9 +22,6 @@ use glint::render::{self, BuiltIn, Light, Material, Object, Scene, Settings, Vec
 use glint::synth::{TARGETS, Target};
 use glint::tune::Cost;
 
-/// The angle between the upper and the lower edge of a picture, in degrees: as of `glint render`.
-const FIELD: f64 = 30.0;
-
 /// A configuration with everything that is made of it.
 #[pyclass(name = "Core", module = "glint._glint", frozen)]
 struct PyCore {
@@ -247,7 +244,7 @@ impl PyCore {
             let settings = Settings {
                 size,
                 samples,
-                view: View { eye: None, target: None, field: FIELD },
+                view: View { eye: None, target: None, field: render::FIELD },
                 material: Material::usual(exponent),
                 background: render::BACKGROUND,
                 compare: false,

@@ -22,6 +22,7 @@ mod gate_level;
 mod litex;
 mod multipliers;
 mod mutants;
+mod playground;
 mod random_configurations;
 mod random_netlists;
 mod recompute;

@@ -116,7 +116,7 @@ pub struct Arguments {
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = vector)]
     target: Option<Vector>,
     /// The vertical field of view, in degrees, 1 to 150
-    #[arg(long, value_name = "DEGREES", default_value_t = 30.0, value_parser = field)]
+    #[arg(long, value_name = "DEGREES", default_value_t = render::FIELD, value_parser = field)]
     fov: f64,
     #[command(flatten)]
     time_limit: TimeLimit,

@@ -48,6 +48,9 @@ pub const LARGEST: u64 = 1 << 28;
 /// The most lights.
 pub const MOST_LIGHTS: usize = 16;
 
+/// The angle between the upper and the lower edge of a picture by default, in degrees.
+pub const FIELD: f64 = 30.0;
+
 /// n by default, where the device takes so much.
 const EXPONENT: i64 = 80;
 

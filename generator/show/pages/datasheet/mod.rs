@@ -128,7 +128,7 @@ fn highlight(core: &Core) -> Result<Highlight> {
     let settings = Settings {
         size: (SIDE, SIDE),
         samples: SAMPLES,
-        view: View { eye: None, target: None, field: 30.0 },
+        view: View { eye: None, target: None, field: render::FIELD },
         material: Material::usual(exponent),
         background: BACKGROUND,
         compare: true,

@@ -1,0 +1,261 @@
+//! Glint for a page in the browser: a request in JSON in, an answer in JSON out.
+//!
+//! `site/worker.js` calls it: it reserves room for the text of a request, writes it there and calls [`answer`]. Everything that the
+//! page shows is made by the code that makes the native pages, pictures and files.
+
+use std::cell::RefCell;
+
+use anyhow::{Context, Result};
+use base64::Engine as _;
+use base64::prelude::BASE64_STANDARD;
+use serde::Deserialize;
+use serde_json::{Map, Value, json};
+
+use glint_base::target::FAMILIES;
+use glint_config::{self as config, Key, Kind, Problems, shared_keys};
+use glint_core::core::Core;
+use glint_core::cosim::batch::Golden;
+use glint_core::package;
+use glint_core::registry::Registry;
+use glint_keys::presets;
+use glint_prove::synth::TARGETS;
+use glint_prove::tune::Cost;
+use glint_show::evidence::curves;
+use glint_show::evidence::domain;
+use glint_show::pages::{diagram, plots};
+use glint_show::render::{self, BACKGROUND, BuiltIn, Light, Material, Scene, Settings, View};
+
+/// The name under which messages know the text of the editor.
+const FILE: &str = "core.toml";
+
+thread_local! {
+    /// Room for a request or an answer.
+    static ROOM: RefCell<Vec<u8>> = const { RefCell::new(Vec::new()) };
+    /// The configuration of the last request, and its core: most requests in a row are about the same.
+    static LAST: RefCell<Option<(String, Core)>> = const { RefCell::new(None) };
+}
+
+/// What the page asks for.
+#[derive(Deserialize)]
+#[serde(tag = "ask", rename_all = "lowercase")]
+enum Request {
+    /// The devices and the presets of `function`.
+    Devices,
+    /// The keys of a preset.
+    Preset { name: String },
+    /// What the core is: keys, bound, clocks, estimates, schedule, diagram.
+    Core { toml: String },
+    /// A lit sphere beside Blinn's function in f64 and the difference.
+    Picture { toml: String, exponent: Option<u32>, side: u32 },
+    /// The error over the domain, or over exponents and angles.
+    Charts { toml: String },
+    /// All files of `glint generate`.
+    Files { toml: String },
+}
+
+/// Makes room for a request of so many bytes; returns where.
+#[unsafe(no_mangle)]
+pub extern "C" fn reserve(len: usize) -> *mut u8 {
+    ROOM.with_borrow_mut(|room| {
+        room.clear();
+        room.resize(len, 0);
+        room.as_mut_ptr()
+    })
+}
+
+/// Answers the request in the room. Returns where the answer is; [`answer_len`] has its length.
+#[unsafe(no_mangle)]
+pub extern "C" fn answer() -> *const u8 {
+    let request = ROOM.take();
+    let answer = answered(&request).unwrap_or_else(|error| failed(&error));
+    ROOM.set(answer.to_string().into_bytes());
+    ROOM.with_borrow(|room| room.as_ptr())
+}
+
+/// The bytes of the last answer.
+#[unsafe(no_mangle)]
+pub extern "C" fn answer_len() -> usize {
+    ROOM.with_borrow(Vec::len)
+}
+
+/// The problems of a configuration, each with its line, or a message.
+fn failed(error: &anyhow::Error) -> Value {
+    match error.downcast_ref::<Problems>() {
+        Some(problems) => json!({ "ok": false, "problems": problems.to_json() }),
+        None => {
+            let causes: Vec<String> = error.chain().map(ToString::to_string).collect();
+            json!({ "ok": false, "problems": [{ "message": causes.join(": ") }] })
+        }
+    }
+}
+
+fn answered(request: &[u8]) -> Result<Value> {
+    match serde_json::from_slice(request).context("no request")? {
+        Request::Devices => {
+            let devices = Registry::shipped();
+            let devices: Vec<Value> = devices
+                .devices()
+                .iter()
+                .map(|it| json!({ "name": it.name, "summary": it.summary }))
+                .collect();
+            let presets: Vec<&str> = presets::names().collect();
+            Ok(json!({ "ok": true, "devices": devices, "presets": presets }))
+        }
+        Request::Preset { name } => {
+            let values = presets::values(&name).context("no such preset")?;
+            let values: Map<String, Value> =
+                values.into_iter().map(|(key, value)| (key, plain(&value))).collect();
+            Ok(json!({ "ok": true, "values": values }))
+        }
+        Request::Core { toml } => of(&toml, described),
+        Request::Picture { toml, exponent, side } => {
+            of(&toml, |core| picture(core, exponent, side))
+        }
+        Request::Charts { toml } => of(&toml, charts),
+        Request::Files { toml } => of(&toml, |core| {
+            let mut files = core.files(FILE, core.shipped_vectors()?)?;
+            files.push(package::driver());
+            let files = files.iter().map(|it| json!({ "name": it.path, "text": it.contents }));
+            Ok(json!({ "ok": true, "files": files.collect::<Vec<_>>() }))
+        }),
+    }
+}
+
+/// What `ask` says of the core of a configuration.
+fn of(toml: &str, ask: impl FnOnce(&Core) -> Result<Value>) -> Result<Value> {
+    LAST.with_borrow_mut(|last| {
+        if last.as_ref().is_none_or(|(text, _)| text != toml) {
+            *last = None;
+            let registry = Registry::shipped();
+            let config = config::parse(FILE, toml, &registry.schemas())?;
+            let device = registry.device(&config.device).context("no such device")?;
+            *last = Some((toml.to_owned(), Core::new(*device, config)?));
+        }
+        let (_, core) = last.as_ref().context("no core")?;
+        ask(core)
+    })
+}
+
+/// A value of a key for JSON.
+fn plain(value: &config::Value) -> Value {
+    match value {
+        config::Value::Integer(value) => json!(value),
+        config::Value::Number(value) => json!(value),
+        config::Value::Text(value) => json!(value),
+        config::Value::Flag(value) => json!(value),
+        config::Value::Integers(values) => json!(values),
+    }
+}
+
+/// A key for the form.
+fn key(core: &Core, key: &Key) -> Value {
+    let kind = match &key.kind {
+        Kind::Integer { min, max } => json!({ "is": "integer", "min": min, "max": max }),
+        Kind::Number { min, max, .. } => json!({ "is": "number", "min": min, "max": max }),
+        Kind::Choice(options) => json!({ "is": "choice", "options": options }),
+        Kind::Flag => json!({ "is": "flag" }),
+        Kind::Text(_) => json!({ "is": "text" }),
+        Kind::Integers { .. } => json!({ "is": "integers" }),
+    };
+    json!({
+        "name": key.name,
+        "kind": kind,
+        "doc": key.doc,
+        "default": plain(&key.default),
+        "value": plain(core.config.value(key.name)),
+        "applies": core.config.applies(&(core.device.schema)(), key.name),
+    })
+}
+
+fn described(core: &Core) -> Result<Value> {
+    let (design, contract) = (&core.design, core.contract.as_ref());
+    let schema = (core.device.schema)();
+    let keys: Vec<Value> = schema.all_keys().map(|it| key(core, it)).collect();
+    let bound = contract.bound();
+    let (latency, interval) = match &design.pipeline {
+        Some(pipeline) => (Some(pipeline.stages.len() as u32), Some(pipeline.interval as u32)),
+        None => {
+            let timing = core.timing()?;
+            (timing.start_to_valid, timing.start_to_start)
+        }
+    };
+    let estimates = TARGETS.iter().filter_map(|target| {
+        let family = target.family()?;
+        let cost = Cost::new(design, *target);
+        Some(json!({ "target": family.title, "luts": cost.luts.round(), "dsps": cost.dsps,
+            "block_rams": cost.block_rams, "mhz": cost.mhz }))
+    });
+    let schedule: Vec<Value> = match &design.pipeline {
+        Some(pipeline) => pipeline
+            .stages
+            .iter()
+            .enumerate()
+            .map(|(at, stage)| {
+                let values: Vec<&str> = pipeline.computed(design, at).map(|it| it.0).collect();
+                json!({ "at": at, "does": stage.microinstructions.join("; "), "values": values,
+                    "ns": stage.logic_ns, "bits": stage.register_bits })
+            })
+            .collect(),
+        None => {
+            let program = design.control.microprogram.iter().enumerate();
+            program.map(|(at, it)| json!({ "at": at, "does": it.name })).collect()
+        }
+    };
+    Ok(json!({
+        "ok": true,
+        "name": core.config.name,
+        "device": core.device.name,
+        "summary": core.device.summary,
+        "keys": keys,
+        "shared": shared_keys().iter().map(|it| it.name).collect::<Vec<_>>(),
+        "bound": { "units": bound.units, "proved": core.device.proved,
+            "terms": bound.terms.iter().map(|it| (it.what, it.units)).collect::<Vec<_>>() },
+        "latency": latency,
+        "interval": interval,
+        "pipelined": design.pipeline.is_some(),
+        "clock_mhz": design.pipeline.as_ref().map(|it| it.clock_mhz),
+        "estimates": estimates.collect::<Vec<_>>(),
+        "families": FAMILIES.map(|it| it.title),
+        "schedule": schedule,
+        "diagram": diagram::svg(design)?,
+        "draws": render::draws(core),
+        "exponents": render::exponents(contract),
+        "exponent": render::usual_exponent(contract),
+    }))
+}
+
+fn picture(core: &Core, exponent: Option<u32>, side: u32) -> Result<Value> {
+    let contract = core.contract.as_ref();
+    let exponent = exponent.unwrap_or_else(|| render::usual_exponent(contract));
+    let lines = render::walks_lines(contract);
+    let settings = Settings {
+        size: (side, side),
+        samples: 1,
+        view: View { eye: None, target: None, field: render::FIELD },
+        material: Material::usual(exponent),
+        background: BACKGROUND,
+        compare: true,
+        operands: Vec::new(),
+    };
+    let objects = Scene::built_in(BuiltIn::Sphere, None, lines)?;
+    let scene = Scene { objects, lights: Light::usual(), relief: None };
+    let rendered = render::render(core, &mut Golden(contract), &scene, &settings, &mut |_| ())?;
+    let png = BASE64_STANDARD.encode(rendered.whole(core.device.name).png()?);
+    let units = rendered.comparison.as_ref().map(|it| it.units);
+    Ok(json!({ "ok": true, "png": png, "exponent": exponent, "units": units }))
+}
+
+fn charts(core: &Core) -> Result<Value> {
+    let contract = core.contract.as_ref();
+    let of_domain = domain::charts(contract);
+    let charts = match of_domain.is_empty() {
+        true => curves::configuration(&core.device, contract, &|| ()).charts,
+        false => of_domain,
+    };
+    let drawn = charts.iter().map(|chart| {
+        let names: Vec<&str> = chart.series.iter().map(|it| it.name.as_str()).collect();
+        Ok(json!({ "title": chart.title, "caption": chart.caption, "svg": plots::svg(chart)?, "series": names,
+            "y": chart.y.label }))
+    });
+    Ok(json!({ "ok": true, "charts": drawn.collect::<Result<Vec<_>>>()? }))
+}

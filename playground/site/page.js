@@ -1,0 +1,342 @@
+// The page: controls on the left, what the core is and does on the right.
+
+import { toml } from "./toml.js";
+import { zip } from "./zip.js";
+
+const $ = (id) => document.getElementById(id);
+const element = (name, properties = {}, ...children) => {
+  const made = Object.assign(document.createElement(name), properties);
+  made.append(...children);
+  return made;
+};
+
+// Requests to the worker. Of those that wait, one of a kind is left: the last.
+const worker = new Worker(new URL("worker.js", import.meta.url), { type: "module" });
+const waiting = new Map();
+let running = null;
+
+function ask(request, then) {
+  waiting.set(request.ask, { request, then });
+  next();
+}
+
+function next() {
+  if (running || waiting.size === 0) return;
+  const [kind, { request, then }] = waiting.entries().next().value;
+  waiting.delete(kind);
+  running = then;
+  worker.postMessage({ number: 0, request });
+}
+
+worker.onmessage = ({ data: { answer, failure } }) => {
+  const then = running;
+  running = null;
+  if (failure) showProblems([{ message: `this cannot be computed here: ${failure}` }]);
+  else then(answer);
+  next();
+};
+worker.onerror = (event) => showProblems([{ message: `the page cannot start its worker: ${event.message ?? "no answer"}` }]);
+
+// --- Configuration -----------------------------------------------------------------------------
+
+// The core that is shown; none before the first.
+let core = null;
+let exponent = null;
+
+const MORE = ["interface", "package", "operands", "output.registered", "strict", "domain"];
+const SLIDER = 64;
+
+function control(key) {
+  const { is, min, max, options } = key.kind;
+  const id = `key-${key.name}`;
+  const value = key.value;
+  const changed = (read) => (event) => change(key, read(event.target));
+  if (is === "choice") {
+    const select = element("select", { id, onchange: changed((it) => it.value) });
+    select.append(...options.map((it) => element("option", { value: it, textContent: it, selected: String(value) === it })));
+    return [select];
+  }
+  if (is === "flag") return [element("input", { id, type: "checkbox", checked: value, onchange: changed((it) => it.checked) })];
+  const interval = key.name === "pipeline.interval";
+  const [low, high] = interval ? [1, 12] : key.name === "pipeline.clock_mhz" ? [20, 200] : [min, max];
+  const number = is === "integer" || is === "number" || (interval && /^\d+$/.test(value));
+  if (number && high - low <= (is === "integer" ? SLIDER : 400)) {
+    const shown = element("output", { htmlFor: id, textContent: value });
+    const read = (it) => (interval ? it.value : Number(it.value));
+    const slider = element("input", { id, type: "range", min: low, max: high, step: is === "number" && high - low < 10 ? 0.01 : 1, value });
+    slider.oninput = (event) => {
+      shown.textContent = event.target.value;
+      change(key, read(event.target));
+    };
+    return [slider, shown];
+  }
+  if (number) return [element("input", { id, type: "number", min, max, step: is === "integer" ? 1 : "any", value, onchange: changed((it) => Number(it.value)) })];
+  const text = is === "integers" ? value.join(", ") : value;
+  const read = (it) => (is === "integers" ? it.value.split(",").map(Number) : it.value);
+  return [element("input", { id, type: "text", value: text, spellcheck: false, onchange: changed(read) })];
+}
+
+// Writes the form again where keys or devices have come or gone, and otherwise its values alone, so that a slider that is held stays.
+function showForm() {
+  const applied = core.keys.filter((it) => it.applies);
+  const signature = JSON.stringify([core.device, applied.map((it) => [it.name, it.kind])]);
+  const is = (key, name) => key.name === name || key.name.startsWith(`${name}.`);
+  if ($("form").dataset.signature !== signature) {
+    $("form").dataset.signature = signature;
+    const row = (key) =>
+      element("div", { className: "key", title: key.doc }, element("label", { htmlFor: `key-${key.name}`, textContent: key.name }), element("div", {}, ...control(key)));
+    const [more, first] = [true, false].map((wanted) => applied.filter((key) => MORE.some((it) => is(key, it)) === wanted));
+    $("form").replaceChildren(...first.map(row));
+    $("form-more").replaceChildren(...more.map(row));
+  }
+  for (const key of applied) {
+    const input = $(`key-${key.name}`);
+    const value = Array.isArray(key.value) ? key.value.join(", ") : key.value;
+    input.closest(".key").classList.toggle("set", JSON.stringify(key.value) !== JSON.stringify(key.default));
+    if (document.activeElement === input) continue;
+    if (input.type === "checkbox") input.checked = value;
+    else input.value = value;
+    const shown = input.nextElementSibling;
+    if (shown) shown.textContent = value;
+  }
+}
+
+// Values that were set in the form since the core that is shown.
+let edits = {};
+
+function change({ name }, value) {
+  edits[name] = value;
+  const own = core.keys.filter((it) => it.applies).map((it) => [it.name, it.value]);
+  $("toml").value = toml(core.device, core.keys, { ...Object.fromEntries(own), ...edits });
+  refresh();
+}
+
+function showProblems(problems) {
+  const item = ({ line, message, remedy }) => {
+    const text = remedy ? `${message}; ${remedy}` : message;
+    if (!line) return element("li", {}, element("code", { textContent: text }));
+    const go = element("button", { type: "button", textContent: `line ${line}` });
+    go.onclick = () => {
+      const lines = $("toml").value.split("\n");
+      const start = lines.slice(0, line - 1).join("\n").length + (line > 1 ? 1 : 0);
+      $("toml").focus();
+      $("toml").setSelectionRange(start, start + lines[line - 1].length);
+    };
+    return element("li", {}, go, ": ", element("code", { textContent: text }));
+  };
+  $("problems").replaceChildren(...problems.map(item));
+  $("toml").setAttribute("aria-invalid", String(problems.length > 0));
+}
+
+function refresh() {
+  const text = $("toml").value;
+  $("results").setAttribute("aria-busy", "true");
+  const hash = `#${encoded(text)}`;
+  if (location.hash !== hash) history.replaceState(null, "", hash);
+  ask({ ask: "core", toml: text }, (answer) => {
+    const isLast = text === $("toml").value;
+    if (isLast) $("results").setAttribute("aria-busy", "false");
+    showProblems(answer.ok ? [] : answer.problems);
+    if (!answer.ok) return;
+    if (core?.device !== answer.device) exponent = answer.exponent;
+    core = answer;
+    if (isLast) edits = {};
+    show(text);
+  });
+}
+
+// --- Results -----------------------------------------------------------------------------------
+
+function show(text) {
+  const known = [...$("device").options].some((it) => it.value === core.device);
+  if (known && !$("device").value.startsWith(`${core.device} `)) $("device").value = core.device;
+  $("summary").textContent = core.summary;
+  showForm();
+  showFacts();
+  showSchedule();
+  const bytes = new TextEncoder().encode(core.diagram);
+  const address = URL.createObjectURL(new Blob([bytes], { type: "image/svg+xml" }));
+  const image = element("img", { src: address, alt: `Block diagram of ${core.name}` });
+  image.onclick = () => image.classList.toggle("whole");
+  image.onload = () => URL.revokeObjectURL(address);
+  $("diagram").replaceChildren(image);
+  if (!$("files").hidden) showFiles(text);
+  $("exponent-row").hidden = !core.draws || !core.exponents;
+  if (core.exponents) {
+    const [least, most] = core.exponents;
+    Object.assign($("exponent"), { min: least, max: Math.min(most, 1000), value: exponent });
+    $("exponent-value").textContent = exponent;
+  }
+  $("sphere").hidden = !core.draws;
+  if (core.draws) showPicture(text);
+  ask({ ask: "charts", toml: text }, showCharts);
+}
+
+function showPicture(text) {
+  ask({ ask: "picture", toml: text, exponent: core.exponents ? exponent : null, side: 200 }, (answer) => {
+    if (!answer.ok) return showProblems(answer.problems);
+    $("sphere-image").src = `data:image/png;base64,${answer.png}`;
+    $("sphere-caption").textContent =
+      `The specular term of every pixel is a result of the core, here with n = ${answer.exponent}; the largest error against its own formula is ${answer.units.toFixed(3)} of 255.`;
+  });
+}
+
+function showFacts() {
+  const facts = [
+    [core.bound.proved ? "Error, proved bound" : "Error, stated bound", `${core.bound.units.toFixed(3)} units`],
+    ["Latency", core.latency === null ? "by the operands" : `${core.latency} clocks`],
+    ["A point every", core.interval === null ? "line" : core.interval === 1 ? "clock" : `${core.interval} clocks`],
+    ...core.estimates.map(({ target, luts, dsps, mhz }) => [`${target}, estimated`, `${luts} LUT, ${dsps} DSP, ${mhz.toFixed(0)} MHz`]),
+  ];
+  const fact = ([name, value]) => element("div", {}, element("dt", { textContent: name }), element("dd", { textContent: value }));
+  $("facts").replaceChildren(...facts.map(fact));
+}
+
+function showSchedule() {
+  const number = (textContent) => element("td", { className: "number", textContent });
+  const cell = (textContent) => element("td", { textContent });
+  const head = core.pipelined ? ["stage", "microinstructions", "computes", "ns", "register bits"] : ["address", "microinstruction"];
+  const row = ({ at, does, values, ns, bits }) =>
+    element("tr", {}, number(at), cell(does), ...(core.pipelined ? [cell(values.join(", ")), number(ns.toFixed(2)), number(bits)] : []));
+  const heads = head.map((textContent) => element("th", { scope: "col", textContent }));
+  $("schedule").replaceChildren(element("table", {}, element("thead", {}, element("tr", {}, ...heads)), element("tbody", {}, ...core.schedule.map(row))));
+}
+
+// The files of the configuration, and their text.
+let files = { of: null, all: [] };
+
+// Hands the files of a configuration to `then`, once the bench is simulated.
+function withFiles(text, then) {
+  if (files.of === text) return then(files.all);
+  ask({ ask: "files", toml: text }, (answer) => {
+    if (!answer.ok) return showProblems(answer.problems);
+    files = { of: text, all: answer.files };
+    then(files.all);
+  });
+}
+
+function showFiles(text) {
+  withFiles(text, (all) => {
+    const before = $("file").value;
+    const plain = ({ name }) => element("option", { textContent: name });
+    $("file").replaceChildren(...all.map(plain));
+    const wanted = all.find(({ name }) => name === before) ?? all.find(({ name }) => name.endsWith(".v")) ?? all[0];
+    $("file").value = wanted.name;
+    $("source").textContent = wanted.text;
+  });
+}
+
+function showCharts(answer) {
+  if (!answer.ok) return showProblems(answer.problems);
+  const legend = (series) =>
+    element("p", { className: "legend" }, ...series.map((name, at) => {
+      const line = element("i");
+      line.style.background = `var(--s${(at % 5) + 1})`;
+      return element("span", {}, line, name);
+    }));
+  const chart = ({ title, caption, svg, series, y }) => {
+    const figure = element("figure", {}, element("h2", { textContent: title }), element("p", { className: "quiet", textContent: y }));
+    figure.insertAdjacentHTML("beforeend", svg);
+    figure.append(legend(series), element("figcaption", { textContent: caption }));
+    return figure;
+  };
+  $("charts").replaceChildren(...answer.charts.map(chart));
+}
+
+// --- Links, files, tabs ------------------------------------------------------------------------
+
+function encoded(text) {
+  return btoa(String.fromCharCode(...new TextEncoder().encode(text))).replaceAll("+", "-").replaceAll("/", "_").replace(/=+$/, "");
+}
+
+// The text of a link; throws where it is damaged.
+function decoded(hash) {
+  const bytes = Uint8Array.from(atob(hash.replaceAll("-", "+").replaceAll("_", "/")), (it) => it.charCodeAt(0));
+  return new TextDecoder("utf-8", { fatal: true }).decode(bytes);
+}
+
+$("link").onclick = async () => {
+  try {
+    await navigator.clipboard.writeText(location.href);
+    $("said").textContent = "copied";
+  } catch {
+    $("said").textContent = "the address of this page is the link";
+  }
+};
+
+$("download").onclick = () => {
+  $("said").textContent = "simulating the bench …";
+  const text = $("toml").value;
+  withFiles(text, (all) => {
+    const address = URL.createObjectURL(zip([{ name: "core.toml", text }, ...all]));
+    element("a", { href: address, download: `${core.name}.zip` }).click();
+    URL.revokeObjectURL(address);
+    $("said").textContent = `${all.length + 1} files`;
+  });
+};
+
+for (const tab of $("tabs").children) {
+  tab.onclick = () => {
+    for (const other of $("tabs").children) {
+      const chosen = other === tab;
+      other.setAttribute("aria-selected", String(chosen));
+      other.tabIndex = chosen ? 0 : -1;
+      $(other.getAttribute("aria-controls")).hidden = !chosen;
+    }
+    if (tab.id === "tab-files") showFiles($("toml").value);
+  };
+  tab.onkeydown = ({ key }) => {
+    const to = { ArrowRight: tab.nextElementSibling ?? $("tabs").firstElementChild, ArrowLeft: tab.previousElementSibling ?? $("tabs").lastElementChild }[key];
+    to?.focus();
+    to?.click();
+  };
+}
+
+$("toml").oninput = () => {
+  edits = {};
+  refresh();
+};
+$("file").onchange = () => showFiles(files.of);
+$("exponent").oninput = (event) => {
+  exponent = Number(event.target.value);
+  $("exponent-value").textContent = exponent;
+  showPicture($("toml").value);
+};
+$("device").onchange = ({ target: { value } }) => {
+  const [device, preset] = value.split(" ");
+  if (!preset) {
+    $("toml").value = `device = "${device}"\n`;
+    return refresh();
+  }
+  ask({ ask: "preset", name: preset }, ({ values }) => {
+    const lines = Object.entries(values).map(([key, it]) => `${key} = ${JSON.stringify(it)}\n`);
+    $("toml").value = `device = "function"\nname = "${preset}"\n${lines.join("")}`;
+    refresh();
+  });
+};
+
+window.onhashchange = fromLink;
+
+function fromLink() {
+  let text = 'device = "cosine-power"\n';
+  let damaged = false;
+  if (location.hash.length > 1) {
+    try {
+      text = decoded(location.hash.slice(1));
+    } catch {
+      damaged = true;
+    }
+  }
+  $("said").textContent = damaged ? "The link is damaged: it holds no configuration. Here is another to start from." : "";
+  if (core && text === $("toml").value) return;
+  $("toml").value = text;
+  refresh();
+}
+
+ask({ ask: "devices" }, ({ devices, presets }) => {
+  const option = (value, name, title) => element("option", { value, textContent: name, title });
+  const known = devices.filter(({ name }) => name !== "function").map(({ name, summary }) => option(name, name, summary));
+  const functions = [option("function", "a formula of your own"), ...presets.map((it) => option(`function ${it}`, it))];
+  $("device").append(element("optgroup", { label: "Devices" }, ...known), element("optgroup", { label: "Functions" }, ...functions));
+  fromLink();
+});
