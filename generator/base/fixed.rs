@@ -83,7 +83,9 @@ impl Format {
 
     /// The value of `raw` as a real number (exact up to 53 significant bits).
     pub fn to_f64(self, raw: i128) -> f64 {
-        raw as f64 * exp2(-self.frac)
+        // Processors convert 64 bits, and round as well.
+        let value = i64::try_from(raw).map_or(raw as f64, |raw| raw as f64);
+        value * exp2(-self.frac)
     }
 
     /// The raw value nearest to `x`, ties upward, saturated to the format.

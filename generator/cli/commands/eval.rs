@@ -58,14 +58,6 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     }
 }
 
-/// The formula at raw operands: f of a highlight, and each output, of result number `index`.
-fn formula(contract: &dyn Contract, raw: &[i64], index: u64) -> (Option<f64>, Vec<f64>) {
-    let f = contract.highlight().map(|it| it.reference(&it.point(&raw[..it.control()], index)));
-    let mut exact = Vec::new();
-    contract.exact(raw, index, &mut exact);
-    (f, exact.into_iter().map(|[value, _]| value).collect())
-}
-
 /// The operands that are outside the domain for which the contract is stated, in words.
 fn outside(operands: &[Operand], raw: &[i64]) -> Vec<String> {
     let outside = operands.iter().zip(raw).filter_map(|(operand, raw)| {

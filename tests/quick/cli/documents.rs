@@ -1,30 +1,69 @@
-//! The commands of docs/composing.md run, with the configuration that stands before them.
+//! The commands of pages run, with the configurations that stand before them; the book has every page.
 
+use std::collections::BTreeSet;
 use std::fs;
+use std::path::Path;
 
 use super::workspace::Workspace;
 
-/// The text between a line and the end of its block.
-fn block<'t>(text: &'t str, language: &str) -> &'t str {
-    let (_, rest) = text.split_once(&format!("```{language}\n")).expect("a block");
-    rest.split_once("```").expect("its end").0
+/// The blocks of a page: language and text.
+fn blocks(page: &str) -> Vec<(&str, &str)> {
+    let fenced = page.split("\n```").skip(1).step_by(2);
+    fenced.filter_map(|block| block.split_once('\n')).collect()
+}
+
+/// Runs the commands of a page; a configuration begins with its name, `# core.toml`.
+fn run_all(page: &str) {
+    let text = fs::read_to_string(page).expect("the page");
+    let mut dir: Option<Workspace> = None;
+    let mut run = 0;
+    for (language, block) in blocks(&text) {
+        match language {
+            "toml" => {
+                let name = block.strip_prefix("# ").and_then(|it| it.lines().next());
+                let name = name.unwrap_or_else(|| panic!("{page}: a name before\n{block}"));
+                match &dir {
+                    Some(dir) => dir.write(name, block),
+                    None => dir = Some(Workspace::with(name, block)),
+                }
+            }
+            "sh" => {
+                let dir = dir.as_ref().expect("a configuration before the commands");
+                for line in block.lines() {
+                    let (command, remark) = line.split_once('#').unwrap_or((line, ""));
+                    let arguments: Vec<&str> = command.split_whitespace().skip(1).collect();
+                    let of = dir.glint(&arguments);
+                    let code = i32::from(remark.contains("exit code 1"));
+                    assert_eq!(of.code, code, "{page}: {command}\n{}{}", of.out, of.err);
+                    run += 1;
+                }
+            }
+            _ => {}
+        }
+    }
+    assert!(run > 3, "{page}: {run} commands");
 }
 
 #[test]
 fn commands_on_composing_run() {
-    let text = fs::read_to_string("docs/composing.md").expect("the page");
-    let dir = Workspace::with("shade.toml", block(&text, "toml"));
-    let commands = block(&text, "sh").lines();
-    let commands: Vec<(&str, i32)> = commands
-        .map(|line| {
-            let (command, remark) = line.split_once('#').unwrap_or((line, ""));
-            (command.trim(), i32::from(remark.contains("exit code 1")))
-        })
-        .collect();
-    assert!(commands.len() > 3, "{commands:?}");
-    for (command, code) in commands {
-        let arguments: Vec<&str> = command.split_whitespace().skip(1).collect();
-        let run = dir.glint(&arguments);
-        assert_eq!(run.code, code, "{command}\n{}{}", run.out, run.err);
-    }
+    run_all("docs/composing.md");
+}
+
+#[test]
+fn commands_of_the_tutorial_run() {
+    run_all("docs/tutorial.md");
+}
+
+#[test]
+fn every_page_is_in_the_book() {
+    let summary = fs::read_to_string("docs/SUMMARY.md").expect("a summary");
+    let links = summary.split("](").skip(1).filter_map(|rest| rest.split_once(')'));
+    let listed: BTreeSet<String> =
+        links.map(|it| it.0.to_owned()).filter(|it| !it.is_empty()).collect();
+    let pages = ["", "devices/"].into_iter().flat_map(|folder| {
+        let entries = fs::read_dir(Path::new("docs").join(folder)).expect("pages");
+        entries.map(move |it| format!("{folder}{}", it.expect("an entry").file_name().display()))
+    });
+    let pages = pages.filter(|it| it.ends_with(".md") && it != "SUMMARY.md");
+    assert_eq!(listed, pages.collect());
 }

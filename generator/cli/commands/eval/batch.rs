@@ -1,16 +1,19 @@
 //! Many points: operands from CSV, results as CSV.
 
+use std::fmt::Write;
 use std::path::Path;
 
 use anyhow::{Result, anyhow, bail};
 use serde_json::{Map, Value, json};
 
-use super::{formula, operands, outside};
+use super::operands;
 use crate::commands::setup::REAL;
 use crate::commands::{Loaded, rows};
 use crate::{Output, tables};
+use glint_golden::Contract;
 
-/// The result of a point.
+/// The result of a point. Its room is used again for the next.
+#[derive(Default)]
 struct Row {
     operands: Vec<i64>,
     /// Its number in the line, of a device that walks lines.
@@ -18,23 +21,28 @@ struct Row {
     f: Option<i64>,
     outputs: Vec<i64>,
     exact_f: Option<f64>,
-    exact: Vec<f64>,
+    exact: Vec<[f64; 2]>,
     inside: bool,
 }
 
 /// Computes every row of a CSV file with the golden model's arithmetic and in f64; of a line, every point. `given` holds
 /// for all rows.
 pub fn batch(output: Output, one: &Loaded, given: &[Option<i64>], path: &Path) -> Result<bool> {
-    let rows = rows::read(
+    let contract = one.core.contract.as_ref();
+    let (mut text, mut json) = (headings(contract), Vec::new());
+    let mut row = Row::default();
+    let mut shown = |row: &Row| match output.json {
+        true => json.push(as_json(contract, row)),
+        false => append(contract, row, &mut text),
+    };
+    rows::read(
         path,
         |headings| columns(one, given, headings.iter()),
-        |columns, record| points(one, given, columns, record),
+        |columns, record| points(contract, given, columns, record, &mut row, &mut shown),
     )?;
-    let rows: Vec<Row> = rows.into_iter().flatten().collect();
-    if output.json {
-        print_json(one, &rows)
-    } else {
-        print_csv(one, &rows)?
+    match output.json {
+        true => tables::print_json(&json!({ "config": one.path, "points": json })),
+        false => tables::print_line(text.trim_end()),
     }
     Ok(true)
 }
@@ -60,14 +68,15 @@ fn columns<'a>(
     Ok(columns)
 }
 
-/// The points of a row: those of a line, or one.
+/// Hands the points of a row to `shown`: those of a line, or one.
 fn points(
-    one: &Loaded,
+    contract: &dyn Contract,
     given: &[Option<i64>],
     columns: &[Option<usize>],
     record: &csv::StringRecord,
-) -> Result<Vec<Row>, String> {
-    let contract = one.core.contract.as_ref();
+    row: &mut Row,
+    shown: &mut impl FnMut(&Row),
+) -> Result<(), String> {
     let known = contract.operands();
     let mut given = given.to_vec();
     for (at, text) in columns.iter().zip(record) {
@@ -76,23 +85,35 @@ fn points(
             given[at] = Some(operands::named_value(&known[at], text)?);
         }
     }
-    let raw = operands::completed(contract, &given);
+    row.operands.clear();
+    row.operands.extend(given.iter().flatten());
+    if row.operands.len() < known.len() {
+        row.operands = operands::completed(contract, &given);
+    }
+    let raw = &row.operands;
     let length = known.iter().position(|operand| Some(operand.name.as_str()) == contract.length());
     let last = length.map_or(0, |at| raw[at].max(0) as u64);
-    let inside = outside(known, &raw).is_empty();
-    let point = |index| {
-        let f = contract.highlight().map(|it| it.f(&it.point(&raw[..it.control()], index)));
-        let mut outputs = Vec::new();
-        contract.results(&raw, index, &mut outputs);
-        let (exact_f, exact) = formula(contract, &raw, index);
-        let point = length.map(|_| index);
-        Row { operands: raw.clone(), point, f, outputs, exact_f, exact, inside }
-    };
-    Ok((0..=last).map(point).collect())
+    let domains = known.iter().map(|operand| operand.domain);
+    row.inside = domains.zip(raw).all(|((low, high), raw)| (low..=high).contains(raw));
+    for index in 0..=last {
+        let raw = &row.operands;
+        let of = contract.highlight().map(|it| {
+            let point = it.point(&raw[..it.control()], index);
+            (it.f(&point), it.reference(&point))
+        });
+        (row.f, row.exact_f) = of.unzip();
+        row.outputs.clear();
+        row.exact.clear();
+        contract.results(raw, index, &mut row.outputs);
+        contract.exact(raw, index, &mut row.exact);
+        row.point = length.map(|_| index);
+        shown(row);
+    }
+    Ok(())
 }
 
-fn print_csv(one: &Loaded, rows: &[Row]) -> Result<()> {
-    let contract = one.core.contract.as_ref();
+/// The first row of the results, ending with a newline.
+fn headings(contract: &dyn Contract) -> String {
     let mut headings: Vec<String> =
         contract.operands().iter().map(|operand| operand.name.clone()).collect();
     let highlight = contract.highlight();
@@ -103,47 +124,61 @@ fn print_csv(one: &Loaded, rows: &[Row]) -> Result<()> {
     headings.extend(highlight.map(|_| "formula_f".to_owned()));
     headings.extend(outputs().map(|name| format!("formula_{name}")));
     headings.push("inside_the_domain".to_owned());
-    let cells = |row: &Row| {
-        let operands = contract.operands().iter().zip(&row.operands);
-        let mut cells: Vec<String> = operands
-            .map(|(operand, &raw)| operand.format.to_f64(i128::from(raw)).to_string())
-            .collect();
-        cells.extend(row.point.map(|index| index.to_string()));
-        let f = highlight.zip(row.f);
-        cells.extend(f.map(|(it, f)| it.f_format().to_f64(i128::from(f)).to_string()));
-        cells.extend(row.outputs.iter().map(i64::to_string));
-        cells.extend(row.exact_f.map(|f| f.to_string()));
-        cells.extend(row.exact.iter().map(f64::to_string));
-        cells.push(row.inside.to_string());
-        cells
-    };
-    tables::print_csv(std::iter::once(headings).chain(rows.iter().map(cells)))
+    headings.join(",") + "\n"
 }
 
-fn print_json(one: &Loaded, rows: &[Row]) {
-    let contract = one.core.contract.as_ref();
-    let points = rows.iter().map(|row| {
-        let operands = contract.operands().iter().zip(&row.operands);
-        let operands: Map<String, Value> =
-            operands.map(|(operand, raw)| (operand.name.clone(), json!(raw))).collect();
-        let outputs = contract.outputs().iter().zip(&row.outputs);
-        let outputs: Map<String, Value> =
-            outputs.map(|(output, raw)| (output.name.clone(), json!(raw))).collect();
-        let mut point = json!({
-            "operands": operands,
-            "inside_the_domain": row.inside,
-            "outputs": outputs,
-            "formula": { "outputs": row.exact },
-        });
-        if let Some(index) = row.point {
-            point["point"] = json!(index);
-        }
-        if let (Some(f), Some(exact)) = (row.f, row.exact_f) {
-            point["f"] = json!(f);
-            point["formula"]["f"] = json!(exact);
-        }
-        point
+/// Appends a row of numbers, none of which needs a quote, as CSV.
+fn append(contract: &dyn Contract, row: &Row, text: &mut String) {
+    for (operand, &raw) in contract.operands().iter().zip(&row.operands) {
+        decimal(operand.format.to_f64(raw.into()), text);
+    }
+    if let Some(index) = row.point {
+        integer(index as i64, text);
+    }
+    if let Some((highlight, f)) = contract.highlight().zip(row.f) {
+        decimal(highlight.f_format().to_f64(f.into()), text);
+    }
+    row.outputs.iter().for_each(|&raw| integer(raw, text));
+    row.exact_f.iter().for_each(|&f| decimal(f, text));
+    row.exact.iter().for_each(|&[value, _]| decimal(value, text));
+    text.push_str(if row.inside { "true\n" } else { "false\n" });
+}
+
+fn integer(value: i64, text: &mut String) {
+    text.push_str(itoa::Buffer::new().format(value));
+    text.push(',');
+}
+
+/// Appends a number as `{}` writes it, whole numbers quickly.
+fn decimal(value: f64, text: &mut String) {
+    let whole = value as i64;
+    let is_whole = whole as f64 == value && whole.unsigned_abs() < 1 << 53;
+    if is_whole && (whole != 0 || value.is_sign_positive()) {
+        return integer(whole, text);
+    }
+    write!(text, "{value},").expect("a text takes all that is written");
+}
+
+fn as_json(contract: &dyn Contract, row: &Row) -> Value {
+    let operands = contract.operands().iter().zip(&row.operands);
+    let operands: Map<String, Value> =
+        operands.map(|(operand, raw)| (operand.name.clone(), json!(raw))).collect();
+    let outputs = contract.outputs().iter().zip(&row.outputs);
+    let outputs: Map<String, Value> =
+        outputs.map(|(output, raw)| (output.name.clone(), json!(raw))).collect();
+    let exact: Vec<f64> = row.exact.iter().map(|it| it[0]).collect();
+    let mut point = json!({
+        "operands": operands,
+        "inside_the_domain": row.inside,
+        "outputs": outputs,
+        "formula": { "outputs": exact },
     });
-    let points: Vec<Value> = points.collect();
-    tables::print_json(&json!({ "config": one.path, "points": points }));
+    if let Some(index) = row.point {
+        point["point"] = json!(index);
+    }
+    if let (Some(f), Some(exact)) = (row.f, row.exact_f) {
+        point["f"] = json!(f);
+        point["formula"]["f"] = json!(exact);
+    }
+    point
 }
