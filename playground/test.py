@@ -119,6 +119,8 @@ def every_choice_has_its_views(page):
         for tab in ("schedule", "diagram", "files", "picture"):
             page.locator(f"#tab-{tab}").click()
             expect(page.locator(f"#{tab}")).to_be_visible()
+        if choice.startswith("function"):
+            expect(page.locator("#exponent-row")).to_be_hidden()
         assert page.locator("#schedule tr").count() > 2 and page.locator("#facts dd").count() == 6
 
 

@@ -2,7 +2,8 @@
 //!
 //! A golden model uses [`glint_base::fixed`] and [`glint_config`] alone. It never sees the description,
 //! the netlist or the microcode, and it computes its own tables; that is what makes the comparison
-//! with the simulated hardware worth something.
+//! with the simulated hardware worth something. Of `function` the tables are found once, for both
+//! ([`glint_keys::function`]): there it is the proof at every operand that does not trust them.
 
 pub mod blinn;
 pub mod contract;

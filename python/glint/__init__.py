@@ -98,20 +98,17 @@ class Core:
         the format, or with `raw=True` raw integers, and so do the results: an array (of numbers alone, a number) of a core with one
         output, or a dictionary by output. Of a device that walks lines (`core.length`) a call is one line.
         """
-        columns, shape = self._columns(columns, operands, raw)
         if self.length is not None:
-            return self._line(columns, raw, False)
-        return self._shaped(self._core.compute(columns, "golden", raw), shape)
+            return self._line(self._columns(columns, operands, raw)[0], raw, False)
+        return self._of_points("golden", columns, operands, raw)
 
     def exact(self, *columns, raw=False, **operands):
         """The formula in float64 at the operands after they are rounded to their formats."""
-        columns, shape = self._columns(columns, operands, raw)
-        return self._shaped(self._core.compute(columns, "exact", raw), shape)
+        return self._of_points("exact", columns, operands, raw)
 
     def error(self, *columns, raw=False, **operands):
         """How far results are from the formula, in units of the outputs' last place: at most `bound` within the domain."""
-        columns, shape = self._columns(columns, operands, raw)
-        return self._shaped(self._core.compute(columns, "error", raw), shape)
+        return self._of_points("error", columns, operands, raw)
 
     def simulate(self, *columns, raw=False, **operands):
         """Computes as a call does, but by simulation of the netlist, clock by clock."""
@@ -153,6 +150,12 @@ class Core:
 
     def __repr__(self):
         return f"<glint.Core {self.name}: {self.device}>"
+
+    def _of_points(self, what, columns, operands, raw):
+        if self.length is not None:
+            raise TypeError(f"{self.device} walks lines: its formula is that of their points")
+        columns, shape = self._columns(columns, operands, raw)
+        return self._shaped(self._core.compute(columns, what, raw), shape)
 
     def _columns(self, columns, operands, raw):
         """A number or a contiguous array for each operand, and the shape of the results."""

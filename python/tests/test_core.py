@@ -169,6 +169,7 @@ def test_a_core_tells_what_it_is():
         (lambda: glint.Core(device="cosine-power")(0.5, 2, 3, 4, 5, raw=True), TypeError, "raw integers"),
         (lambda: glint.Core(device="cosine-power")("a", 2, 3, 4, 5), TypeError, "numbers are wanted"),
         (lambda: glint.Core(device="cosine-squared")(*[[1, 2]] * 4), TypeError, "a line a call"),
+        (lambda: glint.Core(device="cosine-squared").exact(1, 2, 3, 4), TypeError, "walks lines"),
     ],
 )
 def test_what_is_wrong_is_said(call, error, words):

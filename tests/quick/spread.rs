@@ -15,10 +15,9 @@ const SHARE: f64 = 0.6;
 
 #[test]
 fn most_points_have_f_between_0_and_1() {
-    configurations().into_par_iter().for_each(|(path, unit)| {
-        if unit.contract.highlight().is_none() {
-            return;
-        }
+    let highlights = configurations().into_par_iter();
+    let highlights = highlights.filter(|(_, unit)| unit.contract.highlight().is_some());
+    let looked_at = highlights.map(|(path, unit)| {
         let lockstep = unit.lockstep(3).unwrap_or_else(|error| panic!("{path}: {error:?}"));
         let outcome =
             lockstep.run(POINTS, &|_| ()).unwrap_or_else(|error| panic!("{path}: {error:?}"));
@@ -26,11 +25,13 @@ fn most_points_have_f_between_0_and_1() {
         assert_eq!(histogram.counts().iter().sum::<u64>(), outcome.points, "{path}");
         assert!(histogram.share_inside() >= SHARE, "{path}: {histogram:?}");
     });
+    assert!(looked_at.count() > 8, "a highlight is missing");
 }
 
 /// By the formula, and not by the device's word; so too for what is drawn for the manifest.
 #[test]
 fn most_operands_that_are_drawn_have_a_formula_between_0_and_1() {
+    let mut looked_at = 0;
     for (path, unit) in configurations() {
         let contract = unit.contract.as_ref();
         let points = Points::new(contract);
@@ -43,5 +44,7 @@ fn most_operands_that_are_drawn_have_a_formula_between_0_and_1() {
         });
         let share = inside.count() as f64 / DRAWN as f64;
         assert!(share >= SHARE, "{path}: {share}");
+        looked_at += 1;
     }
+    assert!(looked_at > 8, "{looked_at} highlights");
 }

@@ -18,7 +18,6 @@ use glint::tools::Tool;
 use rayon::prelude::*;
 
 use crate::common::cores::{configuration, parsed};
-use crate::common::sample::sampled;
 use crate::example::fresnel;
 
 /// The time limit of a proof; Gappa takes a second where it finds one.
@@ -310,17 +309,13 @@ fn committed_certificates_are_those_of_today_and_proved() {
     }
 }
 
-/// On request: what Gappa writes for Coq takes seconds to minutes a statement.
 #[test]
+#[ignore = "on request: Coq is no tool that tools/install brings, and takes seconds to minutes a statement"]
 fn coq_accepts_certificates() {
-    let wanted =
-        sampled("configurations with certificates for Coq", CERTIFIED.into_iter().take(BY_COQ), 0);
-    if wanted.is_empty() {
-        return;
-    }
+    let wanted = CERTIFIED.into_iter().take(BY_COQ);
     let [gappa, coq] =
         ["gappa", "coqc"].map(|tool| Tool::find(tool).unwrap_or_else(|error| panic!("{error}")));
-    let all = wanted.into_iter().flat_map(|it| committed(it).into_iter().map(move |of| (it, of)));
+    let all = wanted.flat_map(|it| committed(it).into_iter().map(move |of| (it, of)));
     let all: Vec<_> = all.collect();
     all.par_iter().for_each(|(name, (_, statement))| {
         let outcome = prove(&gappa, Some(&coq), statement, LIMIT_COQ).expect("tools that work");
