@@ -35,7 +35,7 @@ thread_local! {
     static LAST: RefCell<Option<(String, Core)>> = const { RefCell::new(None) };
 }
 
-/// What the page asks for.
+/// A question of the page.
 #[derive(Deserialize)]
 #[serde(tag = "ask", rename_all = "lowercase")]
 enum Request {
@@ -43,7 +43,7 @@ enum Request {
     Devices,
     /// The keys of a preset.
     Preset { name: String },
-    /// What the core is: keys, bound, clocks, estimates, schedule, diagram.
+    /// Describes a core: keys, bound, clocks, estimates, schedule, diagram.
     Core { toml: String },
     /// A lit sphere beside Blinn's function in f64 and the difference.
     Picture { toml: String, exponent: Option<u32>, side: u32 },
@@ -121,7 +121,7 @@ fn answered(request: &[u8]) -> Result<Value> {
     }
 }
 
-/// What `ask` says of the core of a configuration.
+/// Returns the answer of `ask` to the core of a configuration.
 fn of(toml: &str, ask: impl FnOnce(&Core) -> Result<Value>) -> Result<Value> {
     LAST.with_borrow_mut(|last| {
         if last.as_ref().is_none_or(|(text, _)| text != toml) {

@@ -167,7 +167,7 @@ impl Computed {
         }))
     }
 
-    /// What the formula has.
+    /// Computes the formula.
     pub fn exact(contract: &dyn Contract, operands: &Operands) -> Self {
         let mut columns = each(contract, operands, |points, out| {
             for point in points {
