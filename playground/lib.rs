@@ -11,8 +11,7 @@ use base64::prelude::BASE64_STANDARD;
 use serde::Deserialize;
 use serde_json::{Map, Value, json};
 
-use glint_base::target::FAMILIES;
-use glint_config::{self as config, Key, Kind, Problems, shared_keys};
+use glint_config::{self as config, Key, Kind, Problems};
 use glint_core::core::Core;
 use glint_core::cosim::batch::Golden;
 use glint_core::package;
@@ -207,15 +206,12 @@ fn described(core: &Core) -> Result<Value> {
         "device": core.device.name,
         "summary": core.device.summary,
         "keys": keys,
-        "shared": shared_keys().iter().map(|it| it.name).collect::<Vec<_>>(),
         "bound": { "units": bound.units, "proved": core.device.proved,
             "terms": bound.terms.iter().map(|it| (it.what, it.units)).collect::<Vec<_>>() },
         "latency": latency,
         "interval": interval,
         "pipelined": design.pipeline.is_some(),
-        "clock_mhz": design.pipeline.as_ref().map(|it| it.clock_mhz),
         "estimates": estimates.collect::<Vec<_>>(),
-        "families": FAMILIES.map(|it| it.title),
         "schedule": schedule,
         "diagram": diagram::svg(design)?,
         "draws": render::draws(core),

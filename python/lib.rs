@@ -227,7 +227,7 @@ impl PyCore {
     fn cosim(&self, py: Python<'_>, points: u64, seed: u64) -> PyResult<Option<String>> {
         let outcome =
             py.detach(|| self.core.lockstep(seed)?.run(points, &|_| ())).map_err(wrong)?;
-        Ok(outcome.mismatch.map(|it| format!("{it:?}")))
+        Ok(outcome.mismatch.map(|it| it.to_string()))
     }
 
     /// A picture through the golden model: rows of pixels from the top, red, green and blue.
