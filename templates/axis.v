@@ -34,6 +34,9 @@ module ${ name }$_axis #(
     input  wire aclk,
     input  wire aresetn,  // active low, synchronous
     input  wire [${ in_high }$:0] s_axis_tdata,
+<%- if keep %>
+    input  wire [${ in_high / 8 }$:0] s_axis_tkeep,
+<%- endif %>
     input  wire [USER_WIDTH-1:0] s_axis_tuser,
 <%- if line.is_none() %>
     input  wire s_axis_tlast,
@@ -41,6 +44,9 @@ module ${ name }$_axis #(
     input  wire s_axis_tvalid,
     output reg  s_axis_tready,
     output ${ output }$ [${ out_high }$:0] m_axis_tdata,
+<%- if keep %>
+    output wire [${ out_high / 8 }$:0] m_axis_tkeep,
+<%- endif %>
     output ${ output }$ [USER_WIDTH-1:0] m_axis_tuser,
     output ${ output }$ m_axis_tlast,
     output reg  m_axis_tvalid,
@@ -200,6 +206,11 @@ module ${ name }$_axis #(
             held_last <= last;
         end
     end
+<%- endif %>
+<%- if keep %>
+
+    // Every byte of a transfer counts.
+    assign m_axis_tkeep = ~${ out_high / 8 + 1 }$'d0;
 <%- endif %>
 <%- if !unused.is_empty() %>
 

@@ -90,6 +90,9 @@ module ${ name }$_axis_formal (
     input wire aclk,
     input wire aresetn,
     input wire [${ in_high }$:0] s_axis_tdata,
+<%- if keep %>
+    input wire [${ in_high / 8 }$:0] s_axis_tkeep,
+<%- endif %>
     input wire [${ user_high }$:0] s_axis_tuser,
 <%- if line.is_none() %>
     input wire s_axis_tlast,
@@ -99,6 +102,9 @@ module ${ name }$_axis_formal (
 );
     wire s_axis_tready;
     wire [${ out_high }$:0] m_axis_tdata;
+<%- if keep %>
+    wire [${ out_high / 8 }$:0] m_axis_tkeep;
+<%- endif %>
     wire [${ user_high }$:0] m_axis_tuser;
     wire m_axis_tlast;
     wire m_axis_tvalid;
@@ -107,6 +113,9 @@ module ${ name }$_axis_formal (
         .aclk(aclk),
         .aresetn(aresetn),
         .s_axis_tdata(s_axis_tdata),
+<%- if keep %>
+        .s_axis_tkeep(s_axis_tkeep),
+<%- endif %>
         .s_axis_tuser(s_axis_tuser),
 <%- if line.is_none() %>
         .s_axis_tlast(s_axis_tlast),
@@ -114,6 +123,9 @@ module ${ name }$_axis_formal (
         .s_axis_tvalid(s_axis_tvalid),
         .s_axis_tready(s_axis_tready),
         .m_axis_tdata(m_axis_tdata),
+<%- if keep %>
+        .m_axis_tkeep(m_axis_tkeep),
+<%- endif %>
         .m_axis_tuser(m_axis_tuser),
         .m_axis_tlast(m_axis_tlast),
         .m_axis_tvalid(m_axis_tvalid),
@@ -127,6 +139,10 @@ module ${ name }$_axis_formal (
 
     // The reset comes first; the state before it is arbitrary.
     always @* if ($initstate) assume (!aresetn);
+<%- if keep %>
+
+    always @* assert (&m_axis_tkeep);
+<%- endif %>
 <%- if let Some(line) = line %>
 
     // Lines taken and begun, and points given, modulo more than there can be under way. The number

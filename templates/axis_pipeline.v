@@ -27,11 +27,17 @@ module ${ name }$_axis #(
     input  wire aclk,
     input  wire aresetn,  // active low, synchronous
     input  wire [${ in_high }$:0] s_axis_tdata,
+<%- if keep %>
+    input  wire [${ in_high / 8 }$:0] s_axis_tkeep,
+<%- endif %>
     input  wire [USER_WIDTH-1:0] s_axis_tuser,
     input  wire s_axis_tlast,
     input  wire s_axis_tvalid,
     output wire s_axis_tready,
     output reg  [${ out_high }$:0] m_axis_tdata,
+<%- if keep %>
+    output wire [${ out_high / 8 }$:0] m_axis_tkeep,
+<%- endif %>
     output reg  [USER_WIDTH-1:0] m_axis_tuser,
     output reg  m_axis_tlast,
     output reg  m_axis_tvalid,
@@ -122,6 +128,11 @@ module ${ name }$_axis #(
             held_side <= results_side;
         end
     end
+<%- if keep %>
+
+    // Every byte of a transfer counts.
+    assign m_axis_tkeep = ~${ out_high / 8 + 1 }$'d0;
+<%- endif %>
 <%- if !unused.is_empty() %>
 
     // Unused: bits above operands, and outputs of the core.

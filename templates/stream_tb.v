@@ -35,6 +35,9 @@ module ${ name }$_axis_tb #(
     reg aclk = 1'b0;
     reg aresetn = 1'b0;
     reg [${ in_high }$:0] s_axis_tdata;
+<%- if keep %>
+    reg [${ in_high / 8 }$:0] s_axis_tkeep;
+<%- endif %>
     reg [${ user_bits - 1 }$:0] s_axis_tuser;
 <%- if !is_line %>
     reg s_axis_tlast;
@@ -42,6 +45,9 @@ module ${ name }$_axis_tb #(
     reg s_axis_tvalid = 1'b0;
     wire s_axis_tready;
     wire [${ out_high }$:0] m_axis_tdata;
+<%- if keep %>
+    wire [${ out_high / 8 }$:0] m_axis_tkeep;
+<%- endif %>
     wire [${ user_bits - 1 }$:0] m_axis_tuser;
     wire m_axis_tlast;
     wire m_axis_tvalid;
@@ -51,6 +57,9 @@ module ${ name }$_axis_tb #(
         .aclk(aclk),
         .aresetn(aresetn),
         .s_axis_tdata(s_axis_tdata),
+<%- if keep %>
+        .s_axis_tkeep(s_axis_tkeep),
+<%- endif %>
         .s_axis_tuser(s_axis_tuser),
 <%- if !is_line %>
         .s_axis_tlast(s_axis_tlast),
@@ -58,6 +67,9 @@ module ${ name }$_axis_tb #(
         .s_axis_tvalid(s_axis_tvalid),
         .s_axis_tready(s_axis_tready),
         .m_axis_tdata(m_axis_tdata),
+<%- if keep %>
+        .m_axis_tkeep(m_axis_tkeep),
+<%- endif %>
         .m_axis_tuser(m_axis_tuser),
         .m_axis_tlast(m_axis_tlast),
         .m_axis_tvalid(m_axis_tvalid),
@@ -129,6 +141,9 @@ module ${ name }$_axis_tb #(
             #1;
             // What is there without an offer means nothing.
             s_axis_tdata = s_axis_tvalid ? sent[offered % SENT] : ~sent[0];
+<%- if keep %>
+            s_axis_tkeep = {${ in_high / 8 + 1 }${s_axis_tvalid}};
+<%- endif %>
             s_axis_tuser = sent_users[${ user_bits - 1 }$:0] ^ {USER{!s_axis_tvalid}};
 <%- if !is_line %>
             s_axis_tlast = sent_marks[31] == s_axis_tvalid;
@@ -152,6 +167,9 @@ module ${ name }$_axis_tb #(
                     waited = 0;
                     want = received[taken % RECEIVED];
                     check(m_axis_tdata === want[${ out_high }$:0], "m_axis_tdata");
+<%- if keep %>
+                    check(&m_axis_tkeep === 1'b1, "m_axis_tkeep");
+<%- endif %>
                     check(m_axis_tuser === taken_users[${ user_bits - 1 }$:0], "m_axis_tuser");
 <%- if is_line %>
                     check(m_axis_tlast === want[${ out_high + 1 }$], "m_axis_tlast");

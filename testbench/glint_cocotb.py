@@ -481,7 +481,7 @@ class Stream:
             above = self.random.getrandbits(bits) >> width << width
             word |= (operands[name] & ((1 << width) - 1) | above) << low
             low += bits
-        return word
+        return word | self.random.getrandbits(len(self.dut.s_axis_tdata)) >> low << low
 
     def unpacked(self, word: int) -> Raw:
         """The results that are side by side, with copies of their signs."""
@@ -492,6 +492,7 @@ class Stream:
             negative = self.manifest.ports[name]["signed"] and value >> (bits - 1)
             results[name] = value - (1 << bits) if negative else value
             word >>= bits
+        assert word == 0, f"{word} above the results"
         return {name: results[name] for name in self.manifest.outputs}
 
     async def through(
@@ -511,6 +512,8 @@ class Stream:
             offered = offered or at < len(points) and self.random.randrange(offer) == 0
             dut.s_axis_tvalid.value = int(offered)
             dut.s_axis_tuser.value = at % users
+            if hasattr(dut, "s_axis_tkeep"):
+                dut.s_axis_tkeep.value = self.random.getrandbits(len(dut.s_axis_tkeep))
             if offered:
                 dut.s_axis_tdata.value = self.packed(points[at])
             else:
@@ -521,6 +524,8 @@ class Stream:
             dut.m_axis_tready.value = int(ready)
             await RisingEdge(dut.aclk)
             if dut.m_axis_tvalid.value == 1:
+                if hasattr(dut, "m_axis_tkeep"):
+                    assert int(dut.m_axis_tkeep.value) + 1 == 1 << len(dut.m_axis_tkeep)
                 data, user = int(dut.m_axis_tdata.value), int(dut.m_axis_tuser.value)
                 shown = (self.unpacked(data), user, bool(dut.m_axis_tlast.value))
                 assert waiting in (None, shown), f"{waiting} changed while it waited"
@@ -920,4 +925,4 @@ def run(name: str, wrapper: str = "") -> None:
     sys.exit(1 if failed or not tests else 0)
 
 
-# sha256 3e08599fcdde1a4567e2dc80e8ee2244d6b6d5082d484b8e24588d685f96df9c
+# sha256 2273cb3252dd93e0c50ad6c83ea59bc98a2852b1a149d15be3732c63530ced00

@@ -75,6 +75,12 @@ keys! {
         user_bits: u32 = Key::integer("interface.user_bits", 1, 1..=1024,
             "Bits of tuser, the side channel that travels with a point.")
             .only_when("interface.stream", "true"),
+        data_width: String = Key::choice("interface.data_width", "bytes", &["bytes", "power-of-two"],
+            "Bytes of a transfer: as many as its numbers take, or a power of two, as DMA engines have it.")
+            .only_when("interface.stream", "true"),
+        keep: bool = Key::flag("interface.keep", false,
+            "Both streams have tkeep: all ones on m_axis, and not looked at on s_axis.")
+            .only_when("interface.stream", "true"),
         registers: String = Key::choice("interface.registers", "none", &["none", "axi-lite", "wishbone"],
             "Write registers around the core: <name>_axil.v on AXI4-Lite, <name>_wb.v on Wishbone.")
             .only_when("architecture", "sequential"),
@@ -111,6 +117,10 @@ keys! {
             .only_when("package.constraints", "true"),
         ip_xact: bool = Key::flag("package.ip_xact", false,
             "Write IP-XACT components (IEEE 1685-2014): <top>.xml."),
+        vhdl: bool = Key::flag("package.vhdl", false,
+            "Write <name>.vhd: each module as a component of VHDL, and the core as an entity with ports of ieee.fixed_pkg."),
+        systemverilog: bool = Key::flag("package.systemverilog", false,
+            "Write <name>_pkg.sv: the numbers as types of SystemVerilog, with conversions from and to real."),
         vendor: String = Key::text("package.vendor", "glint", TextPattern::Name,
             "The vendor in IP-XACT, Vivado and Platform Designer; a domain name, as a rule."),
         version: String = Key::text("package.version", "0.1.0", TextPattern::Version,

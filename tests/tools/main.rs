@@ -19,6 +19,7 @@ mod faults;
 mod foreign;
 mod formal;
 mod gate_level;
+mod languages;
 mod litex;
 mod multipliers;
 mod mutants;

@@ -61,7 +61,8 @@ pub struct Arguments {
     shard: Option<Shard>,
     #[command(flatten)]
     sweep: SweepValues,
-    /// Write a waveform (VCD) of one configuration (built-in simulator only)
+    /// Write a waveform (VCD) of one configuration (built-in simulator only), and beside it, unless they are there, the views of
+    /// GTKWave (.gtkw) and Surfer (.sucl)
     #[arg(long, value_name = "FILE")]
     vcd: Option<PathBuf>,
     #[command(flatten)]
@@ -189,7 +190,7 @@ fn outcome(
         return lockstep.run(points, progress);
     };
     let destination = Destination::fresh(path, arguments.force.force)?;
-    mismatch::traced(&lockstep, destination, points, 0)
+    mismatch::traced(one, &lockstep, destination, points, 0)
 }
 
 /// The operands of the largest error, as values.

@@ -12,6 +12,7 @@ use crate::destination::Destination;
 use glint_base::program::Program;
 use glint_core::cosim::exhaustive::{Clocks, Difference};
 use glint_core::cosim::{Lockstep, Mismatch, Outcome};
+use glint_rtl::sim::views;
 
 /// Clocks in the waveform that ends with a difference.
 const WINDOW: u64 = 64;
@@ -34,7 +35,7 @@ impl Reproducer {
     pub fn of_run(one: &Loaded, mismatch: &Mismatch) -> Result<Self> {
         let (vcd, from) = window(one, mismatch);
         let lockstep = one.core.lockstep(mismatch.seed)?;
-        let outcome = traced(&lockstep, Destination::open(&vcd)?, u64::MAX, from)?;
+        let outcome = traced(one, &lockstep, Destination::open(&vcd)?, u64::MAX, from)?;
         Ok(Self {
             vcd,
             from,
@@ -57,7 +58,7 @@ impl Reproducer {
         difference: &Difference,
     ) -> Result<Self> {
         let (vcd, from) = window(one, &difference.mismatch);
-        write(Destination::open(&vcd)?, |file| clocks.trace(difference.place, from, file))?;
+        write(one, Destination::open(&vcd)?, |file| clocks.trace(difference.place, from, file))?;
         Ok(Self { vcd, from, command: format!("{Program} cosim {} --exhaustive", one.path) })
     }
 
@@ -114,21 +115,34 @@ pub fn first_clock(clock: u64) -> u64 {
 /// # Errors
 /// As of [`Lockstep::trace`]; the file cannot be written.
 pub fn traced(
+    one: &Loaded,
     lockstep: &Lockstep<'_>,
     destination: Destination,
     points: u64,
     from: u64,
 ) -> Result<Outcome> {
-    write(destination, |file| lockstep.trace(points, from, file))
+    write(one, destination, |file| lockstep.trace(points, from, file))
 }
 
-/// Has a waveform written beside its place, and moves it there when it is whole.
+/// Has a waveform written beside its place, and moves it there when it is whole. The files of viewers that are not there yet
+/// are written with it; those that are may be the user's.
 fn write<T>(
+    one: &Loaded,
     destination: Destination,
     trace: impl FnOnce(BufWriter<File>) -> Result<T>,
 ) -> Result<T> {
     let outcome = trace(BufWriter::new(destination.file()?))
         .with_context(|| format!("cannot write the waveform `{}`", destination.path().display()))?;
+    let path = destination.path().to_owned();
     destination.commit()?;
+    if path.is_file() {
+        let design = &one.core.design;
+        for (ending, text) in [("gtkw", views::gtkwave(design)), ("sucl", views::surfer(design))] {
+            let view = path.with_extension(ending);
+            if !view.exists() {
+                Destination::open(&view)?.write(text)?;
+            }
+        }
+    }
     Ok(outcome)
 }

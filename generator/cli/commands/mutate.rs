@@ -191,7 +191,7 @@ fn only(output: Output, one: &Loaded, id: &str) -> Result<bool> {
         let lockstep = lockstep.holding(held);
         let path = PathBuf::from(format!("{}_mutant.vcd", one.core.config.name));
         let from = first_clock(mismatch.clock);
-        traced(&lockstep, Destination::open(&path)?, u64::MAX, from)?;
+        traced(one, &lockstep, Destination::open(&path)?, u64::MAX, from)?;
         waveform = Some((path, from, mismatch.clock));
     }
     if output.json {

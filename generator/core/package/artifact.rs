@@ -23,6 +23,8 @@ pub enum Kind {
     Constraint,
     /// Scripts and descriptions for vendors' tools.
     Script,
+    /// By which designs in other languages know the core.
+    Language,
     /// Benches in Python.
     Python,
     /// Proofs of wrappers.

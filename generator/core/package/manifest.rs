@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 use super::artifact::{Artifacts, Job, Kind};
 use super::facts::{self, Port, Rom};
 use super::map::Register;
+use super::wrap::fields::{Field, Transfer};
 use super::{Computation, ContractFacts, EmitInputs, OutputFile, Quantity, Timing, digest};
 use glint_rtl::netlist::{Design, Pipeline, RegId};
 
@@ -45,6 +46,8 @@ struct Manifest<'a> {
     computations: Option<Computations<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     registers: Option<Vec<Value>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    stream: Option<Value>,
 }
 
 /// Computations, and what the numbers of each stand for.
@@ -65,7 +68,7 @@ impl Names {
     /// All files but the manifest itself.
     pub fn new(files: &Artifacts) -> Self {
         use Kind::{Bench, BenchCore, Core, Primitive, Proof, Python, Wrapper, WrapperProof};
-        let lists: [(&str, &[Kind]); 9] = [
+        let lists: [(&str, &[Kind]); 10] = [
             ("rtl", &[Kind::Rtl]),
             ("memories", &[Kind::Memory]),
             ("cores", &[Core, BenchCore]),
@@ -75,6 +78,7 @@ impl Names {
             ("software", &[Kind::Software]),
             ("constraints", &[Kind::Constraint]),
             ("scripts", &[Kind::Script]),
+            ("languages", &[Kind::Language]),
         ];
         let named = lists.into_iter().map(|(list, kinds)| (list, files.names(kinds))).enumerate();
         // The first four are there even if they are empty.
@@ -127,8 +131,25 @@ pub fn contents(job: &Job, names: &Names, others: &[OutputFile]) -> Result<Strin
             .registers
             .as_ref()
             .map(|(_, map)| map.registers.iter().map(register).collect()),
+        stream: inputs.around.stream.then(|| stream(job)).transpose()?,
     };
     Ok(serde_json::to_string_pretty(&manifest)? + "\n")
+}
+
+/// The layout of a transfer on each stream.
+fn stream(job: &Job) -> Result<Value> {
+    let layout = |transfer: Transfer| {
+        let field = |it: &Field| json!({ "name": it.name, "low": it.low, "width": it.width });
+        let fields: Vec<Value> = transfer.fields.iter().map(field).collect();
+        json!({ "bits": transfer.bits, "fields": fields })
+    };
+    let around = &job.inputs.around;
+    Ok(json!({
+        "s_axis_tdata": layout(Transfer::sent(job)?),
+        "m_axis_tdata": layout(Transfer::received(job)?),
+        "user_bits": around.user_bits,
+        "keep": around.keep,
+    }))
 }
 
 fn register(register: &Register) -> Value {

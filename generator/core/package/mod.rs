@@ -29,6 +29,7 @@ mod formal;
 mod formal_pipeline;
 mod fusesoc;
 mod instance;
+mod languages;
 mod manifest;
 mod map;
 pub mod module_names;
@@ -186,6 +187,7 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
     wrap::files(&job, &mut files)?;
     let tops = tops::tops(&job, &files)?;
     vendor::files(&job, &tops, &mut files)?;
+    languages::files(&job, &tops, &mut files)?;
     software::files(&job, &tops, &mut files)?;
     fusesoc::files(&job, &mut files)?;
     let names = manifest::Names::new(&files);

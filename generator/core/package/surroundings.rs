@@ -66,6 +66,10 @@ pub struct Surroundings {
     pub stream: bool,
     /// The width of their `tuser`.
     pub user_bits: u32,
+    /// The bytes of a transfer are as many as a power of two.
+    pub power_of_two: bool,
+    /// The streams have `tkeep`.
+    pub keep: bool,
     /// The core behind registers.
     pub registers: Option<&'static Bus>,
     /// A model in C, in `software/<name>/`.
@@ -84,6 +88,10 @@ pub struct Surroundings {
     pub quartus: bool,
     /// Components of IP-XACT.
     pub ip_xact: bool,
+    /// Components and an entity in VHDL.
+    pub vhdl: bool,
+    /// A package in SystemVerilog.
+    pub systemverilog: bool,
     /// Who is said to make the core.
     pub vendor: String,
     /// Three numbers with dots between them.
@@ -107,6 +115,8 @@ impl Surroundings {
         Self {
             stream: keys.stream,
             user_bits: keys.user_bits,
+            power_of_two: keys.data_width == "power-of-two",
+            keep: keys.keep,
             registers: BUSES.iter().find(|bus| bus.key == keys.registers),
             software: keys.software,
             recomputation: keys.recomputation,
@@ -129,6 +139,8 @@ impl Surroundings {
             vivado: keys.vivado,
             quartus: keys.quartus,
             ip_xact: keys.ip_xact,
+            vhdl: keys.vhdl,
+            systemverilog: keys.systemverilog,
             vendor: keys.vendor,
             version: keys.version,
             licence: keys.licence,

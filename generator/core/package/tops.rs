@@ -4,7 +4,7 @@ use anyhow::Result;
 
 use super::artifact::{Artifacts, Job, Kind};
 use super::bus::{Bus, Protocol, STREAMS};
-use super::wrap::fields::{bits, operands, results};
+use super::wrap::fields::Transfer;
 use glint_rtl::netlist::{Design, Role};
 use glint_rtl::verilog::text::ascii;
 
@@ -151,13 +151,18 @@ fn core_ports(design: &Design) -> Vec<TopPort> {
 }
 
 fn stream_ports(job: &Job) -> Result<Vec<TopPort>> {
-    let (input, output) = (bits(&operands(job.design))?, bits(&results(job.design))?);
+    let (input, output) = (Transfer::sent(job)?.bits, Transfer::received(job)?.bits);
+    let keep = |port: &str, bits: u32| match job.inputs.around.keep {
+        true => format!("{port}_axis_tkeep {}, ", bits / 8),
+        false => String::new(),
+    };
+    let (in_keep, out_keep) = (keep("in s", input), keep("out m", output));
     let user = job.inputs.around.user_bits;
     // A line has its end in its length.
     let last = if job.is_line() { "" } else { "in s_axis_tlast, " };
     Ok(listed(&format!(
-        "in aclk, in aresetn, in s_axis_tdata {input}, in s_axis_tuser {user}, {last}\
-         in s_axis_tvalid, out s_axis_tready, out m_axis_tdata {output}, out m_axis_tuser {user}, \
+        "in aclk, in aresetn, in s_axis_tdata {input}, {in_keep}in s_axis_tuser {user}, {last}\
+         in s_axis_tvalid, out s_axis_tready, out m_axis_tdata {output}, {out_keep}out m_axis_tuser {user}, \
          out m_axis_tlast, out m_axis_tvalid, in m_axis_tready"
     )))
 }

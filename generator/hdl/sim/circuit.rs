@@ -120,7 +120,7 @@ impl<const LANES: usize> Circuit<LANES> {
 }
 
 /// Returns the named nets that are no ports, by the scope in which a waveform has them.
-fn scopes(design: &Design) -> Vec<(String, Vec<NetId>)> {
+pub(super) fn scopes(design: &Design) -> Vec<(String, Vec<NetId>)> {
     let mut names = vec!["control".to_owned()];
     match &design.pipeline {
         Some(pipeline) => names.extend((0..=pipeline.stages.len()).map(|at| format!("stage_{at}"))),

@@ -22,6 +22,7 @@ mod slots;
 #[cfg(test)]
 mod tests;
 mod vcd;
+pub mod views;
 mod wire;
 mod word;
 

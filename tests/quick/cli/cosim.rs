@@ -73,6 +73,28 @@ fn a_waveform_has_ports_and_microinstructions() {
             seen.insert(text);
         }
     }
+    // The views name what is in the waveform, all of it, and the binary points of the manifest.
+    let view = dir.read("wave.gtkw");
+    let traces = || view.lines().filter(|line| line.starts_with("core."));
+    let plain = |trace: &str| trace.split('[').next().unwrap_or_default().to_owned();
+    let shown: BTreeSet<String> = traces().map(plain).collect();
+    let there: BTreeSet<String> = found.iter().map(|(path, _)| path.clone()).collect();
+    assert_eq!((shown.len(), &shown), (traces().count(), &there));
+    let adds = dir.read("wave.sucl");
+    let adds = adds.lines().filter_map(|line| line.strip_prefix("variable_add "));
+    assert_eq!(adds.map(str::to_owned).collect::<BTreeSet<_>>(), there);
+    let fraction = |port: &Value| format!("[fpshift_count] {}\ncore.", port["fraction_bits"]);
+    for name in ["cos_gamma", "exponent"] {
+        let ports = manifest["ports"].as_array().unwrap();
+        let port = ports.iter().find(|port| port["name"] == name).unwrap();
+        let pointed = view.contains(&format!("{}{name}[", fraction(port)));
+        assert_eq!(pointed, name == "cos_gamma", "{view}");
+    }
+    // The user's view stays.
+    dir.write("wave.gtkw", "mine");
+    dir.done(["cosim", "core.toml", "--points", "20", "--vcd", "wave.vcd", "--force"]);
+    assert_eq!(dir.read("wave.gtkw"), "mine");
+
     let words = manifest["control"]["words"].as_array().unwrap();
     assert_eq!((executed.var_type, executed.size), (VarType::String, 1));
     // A VCD string has no spaces.

@@ -6,10 +6,11 @@ use std::fs;
 
 use crate::common::Sure;
 use crate::common::cores::{Emitted, all_configurations, configuration_between, parsed};
-use crate::common::tools::{LIMIT, assert_lint_clean, tool};
+use crate::common::tools::{LIMIT, assert_bench_passes, assert_lint_clean, ran, tool};
 use crate::faults::{Fault, faults};
 use glint::core::Core;
-use glint::tools::prove;
+use glint::package::driver;
+use glint::tools::{Simulator, prove};
 use rayon::prelude::*;
 
 /// Bits of tuser in these tests.
@@ -18,16 +19,33 @@ const STREAM: &str = "stream = true\nuser_bits = 9\n";
 /// A stream around a core whose operands have buffers.
 const BUFFERED: &str = "stream = true\nuser_bits = 9\n[operands]\nbuffered = true\n";
 
+/// Streams as DMA engines want them.
+const PADDED: &str = "stream = true\nuser_bits = 9\ndata_width = \"power-of-two\"\nkeep = true\n";
+
 /// Configurations of which the wrapper is proved: a core of each kind that a wrapper knows.
-const PROVED: [(&str, &str); 5] = [
+const PROVED: [(&str, &str); 8] = [
     ("cosine_power", STREAM),
     ("quad_cosine", STREAM),
     ("cosine_power_pipelined", STREAM),
     ("cosine_power", BUFFERED),
     ("quad_cosine", BUFFERED),
+    ("cosine_power", PADDED),
+    ("quad_cosine", PADDED),
+    ("cosine_power_pipelined", PADDED),
 ];
 
-/// Every configuration with these keys in its table `interface`, and pipelines that take a point every few clocks.
+/// Every configuration with these keys in its table `interface`, and pipelines that take a point every few clocks; some as
+/// DMA engines want them.
+fn with_streams() -> Vec<(String, Core)> {
+    let padded =
+        ["cosine_power", "quad_cosine", "cosine_power_pipelined", "function"].map(|name| {
+            let path = format!("configs/{name}.toml");
+            let core = configuration_between(&path, PADDED);
+            (path, core)
+        });
+    with_interface(STREAM).into_iter().chain(padded).collect()
+}
+
 fn with_interface(keys: &str) -> Vec<(String, Core)> {
     let with = |(path, _): (String, Core)| {
         let core = configuration_between(&path, keys);
@@ -49,7 +67,7 @@ fn slower(clocks: u32, keys: &str) -> Core {
 
 #[test]
 fn streams_are_clean_verilog() {
-    with_interface(STREAM).par_iter().for_each(|(path, core)| {
+    with_streams().par_iter().for_each(|(path, core)| {
         let emitted = Emitted::new(core, 1, 1);
         let dir = emitted.beside("rtl_out/");
         assert_lint_clean(dir.path(), &format!("{}_axis", emitted.name));
@@ -97,12 +115,29 @@ fn proof(name: &str, keys: &str) -> tempfile::TempDir {
 /// Source and sink of cocotbext-axi.
 #[test]
 fn streams_carry_every_point() {
-    with_interface(STREAM).par_iter().for_each(|(path, core)| {
+    with_streams().par_iter().for_each(|(path, core)| {
         let dir = Emitted::new(core, 1, 1).tree();
         let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/tools/wrappers/stream.py");
         let run = tool("python").run([script, &core.config.name], dir.path(), LIMIT).sure();
         let says = format!("PASS {}: 6 tests, 0 failed", core.config.name);
         assert!(run.status.success() && run.output.contains(&says), "{path}:\n{}", run.output);
+    });
+}
+
+/// The benches that go with streams as DMA engines want them.
+#[test]
+fn shipped_benches_pass_on_padded_streams() {
+    ["cosine_power", "quad_cosine", "cosine_power_pipelined"].par_iter().for_each(|name| {
+        let core = configuration_between(&format!("configs/{name}.toml"), PADDED);
+        let emitted = Emitted::new(&core, 200, 1);
+        for simulator in [Simulator::Icarus, Simulator::Verilator] {
+            assert_bench_passes(simulator, &emitted.simulated(), &format!("{name}_axis_tb"));
+        }
+        let dir = emitted.tree();
+        fs::write(dir.path().join("testbench/glint_cocotb.py"), driver().contents)
+            .expect("written");
+        let script = format!("testbench/{name}/test_{name}_axis.py");
+        ran("python", [script], dir.path());
     });
 }
 

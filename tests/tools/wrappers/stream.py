@@ -6,6 +6,7 @@ in a directory that has rtl_out/NAME/. Both sides pause at random, operands are 
 every transfer is compared with the computations of the manifest.
 """
 
+import importlib
 import itertools
 import json
 import os
@@ -25,30 +26,20 @@ USER_BITS = 9
 PACKETS = 60
 
 
-def width(name):
-    return next(port["width"] for port in MANIFEST["ports"] if port["name"] == name)
+STREAM = MANIFEST["stream"]
+# As software has the transfers.
+sys.path.insert(0, str(PLACE / "software" / NAME))
+transfers = importlib.import_module(f"{NAME}_stream")
 
 
 def packed(names, values):
-    """Raw values side by side, each in whole bytes, negative ones in two's complement."""
-    parts = []
-    for name, value in zip(names, values):
-        size = -(-width(name) // 8)
-        parts.append((value % (1 << (8 * size))).to_bytes(size, "little"))
-    return b"".join(parts)
+    """The bytes of a transfer to the core."""
+    return transfers.pack({name: [value] for name, value in zip(names, values)}).tobytes()
 
 
-def unpacked(names, data):
-    values, at = {}, 0
-    for name in names:
-        size = -(-width(name) // 8)
-        values[name] = int.from_bytes(data[at : at + size], "little")
-        at += size
-    return values
-
-
-def size(names):
-    return sum(-(-width(name) // 8) for name in names)
+def unpacked(data):
+    """The results in the bytes of a transfer from the core."""
+    return {name: int(values[0]) for name, values in transfers.unpack(bytes(data)).items()}
 
 
 class Bench:
@@ -56,9 +47,6 @@ class Bench:
 
     computations = MANIFEST["computations"]
     operands = computations["operands"]
-    # More than the computations have, of a core that shows its reflectance; which value that has is proved, not
-    # known here.
-    results = [port["name"] for port in MANIFEST["ports"] if port["role"] == "result"]
     is_line = any(len(point["results"]) > 1 for point in computations["points"])
 
     def __init__(self, dut, seed):
@@ -105,11 +93,12 @@ class Bench:
             await self.source.send(AxiStreamFrame(data, tuser=user))
         for _, wanted in drawn:
             got = await self.sink.recv(compact=False)
-            transfer = size(self.results)
+            transfer = transfers.RECEIVED_BYTES
             assert len(got.tdata) == transfer * len(wanted), f"{len(got.tdata)} bytes"
             assert list(got.tuser) == [user for _, user in wanted for _ in range(transfer)]
             for at, (values, _) in enumerate(wanted):
-                seen = unpacked(self.results, got.tdata[at * transfer : (at + 1) * transfer])
+                seen = unpacked(got.tdata[at * transfer : (at + 1) * transfer])
+                # A core that shows its reflectance has a result more; which value that has is proved, not known here.
                 seen = {name: seen[name] for name in values}
                 assert seen == values, f"{seen}, not {values}"
         await ClockCycles(self.dut.aclk, 200)
@@ -189,6 +178,7 @@ module harness (
     input wire [{in_high}:0] s_axis_tdata,
     input wire [{user_high}:0] s_axis_tuser,
     {last_port}
+    {keep_ports}
     input wire s_axis_tvalid,
     output wire s_axis_tready,
     output wire [{out_high}:0] m_axis_tdata,
@@ -203,6 +193,7 @@ module harness (
         .s_axis_tdata(s_axis_tvalid ? s_axis_tdata : {{{in_high} + 1{{1'bx}}}}),
         .s_axis_tuser(s_axis_tvalid ? s_axis_tuser : {{{user_high} + 1{{1'bx}}}}),
         {last}
+        {keep}
         .s_axis_tvalid(s_axis_tvalid),
         .s_axis_tready(s_axis_tready),
         .m_axis_tdata(m_axis_tdata),
@@ -223,15 +214,22 @@ def main():
     build = PLACE / "sim_build"
     build.mkdir(exist_ok=True)
     last = "" if Bench.is_line else ".s_axis_tlast(s_axis_tvalid ? s_axis_tlast : 1'bx),"
+    keep_ports = (
+        f"input wire [{transfers.SENT_BYTES - 1}:0] s_axis_tkeep,"
+        f"output wire [{transfers.RECEIVED_BYTES - 1}:0] m_axis_tkeep,"
+    )
+    keep = ".s_axis_tkeep(s_axis_tkeep), .m_axis_tkeep(m_axis_tkeep),"
     harness = PLACE / "harness.v"
     harness.write_text(
         HARNESS.format(
             name=NAME,
-            in_high=8 * size(Bench.operands) - 1,
-            out_high=8 * size(Bench.results) - 1,
+            in_high=STREAM["s_axis_tdata"]["bits"] - 1,
+            out_high=STREAM["m_axis_tdata"]["bits"] - 1,
             user_high=USER_BITS - 1,
             last_port="" if Bench.is_line else "input wire s_axis_tlast,",
             last=last,
+            keep_ports=keep_ports if STREAM["keep"] else "",
+            keep=keep if STREAM["keep"] else "",
         )
     )
     for memory in rtl.glob("*.mem"):

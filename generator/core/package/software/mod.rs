@@ -9,6 +9,7 @@ mod print;
 mod recompute;
 mod registers;
 mod setup;
+mod stream;
 
 use anyhow::Result;
 
@@ -26,6 +27,9 @@ pub fn files(job: &Job, tops: &[Top], files: &mut Artifacts) -> Result<()> {
             recompute::file(job, &read, files)?;
         }
         setup::files(job, files)?;
+    }
+    if job.inputs.around.stream {
+        stream::files(job, files)?;
     }
     if let Some((bus, map)) = &job.registers {
         registers::files(job, bus, map, files)?;

@@ -26,7 +26,8 @@ pub struct Field {
     pub kind: &'static str,
     /// The format of the port.
     pub format: Format,
-    doc: String,
+    /// Format and meaning.
+    pub doc: String,
 }
 
 impl Field {

@@ -3,7 +3,7 @@
 use anyhow::Result;
 use glint_base::fill;
 
-use super::fields::{Field, bits, operands, results};
+use super::fields::{Field, Transfer};
 use super::points::{points, received, sent};
 use crate::package::Vectors;
 use crate::package::artifact::{Artifacts, Job, Kind};
@@ -30,8 +30,8 @@ pub fn files(job: &Job, vectors: &Vectors, files: &mut Artifacts) -> Result<()> 
     if points.is_empty() {
         return Ok(());
     }
-    let (operands, results) = (operands(design), results(design));
-    let (in_high, out_high) = (bits(&operands)? - 1, bits(&results)? - 1);
+    let (operands, results) = (Transfer::sent(job)?, Transfer::received(job)?);
+    let (in_high, out_high) = (operands.high(), results.high());
     let clocks = vectors.inputs.len();
     if job.inputs.around.stream {
         let user_bits = job.inputs.around.user_bits;
@@ -51,6 +51,7 @@ pub fn files(job: &Job, vectors: &Vectors, files: &mut Artifacts) -> Result<()> 
             // Of a line's results, which say whether they are the last.
             word_high: u32 = out_high + u32::from(job.is_line()),
             user_bits: u32,
+            keep: bool = job.inputs.around.keep,
             // Words of 32 bits that tuser needs.
             user_words: u32 = user_bits.div_ceil(32),
             offer_high: u32 = out_high + 1 + user_bits,
@@ -75,8 +76,8 @@ pub fn files(job: &Job, vectors: &Vectors, files: &mut Artifacts) -> Result<()> 
             in_high: u32,
             out_high: u32,
             address_high: u32 = map.address_bits() - 1,
-            parts: Vec<Access> = accesses(&map.operands, &operands, "point"),
-            results: Vec<Access> = of_results(map, &results),
+            parts: Vec<Access> = accesses(&map.operands, &operands.fields, "point"),
+            results: Vec<Access> = of_results(map, &results.fields),
             constants: Vec<(String, String)>,
             read_only: Vec<String>,
         })?;

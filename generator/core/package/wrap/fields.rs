@@ -2,6 +2,7 @@
 
 use anyhow::{Context, Result};
 
+use crate::package::artifact::Job;
 use glint_rtl::netlist::{Design, Port, Role};
 use glint_rtl::verilog::text::{ascii, literal, statement};
 
@@ -83,29 +84,77 @@ fn side_by_side<'a>(
     ports.map(field).collect()
 }
 
-/// The parts of a concatenation of all fields; the last field in the top bits.
-pub fn packed(fields: &[Field], prefix: &str) -> Vec<String> {
-    let of_field = |field: &Field| field.packed(&format!("{prefix}{}", field.name));
-    fields.iter().rev().flat_map(of_field).collect()
+/// The fields of a transfer, and the bits of all of it.
+pub struct Transfer {
+    pub fields: Vec<Field>,
+    pub bits: u32,
 }
 
-/// The bits of all fields.
-///
-/// # Errors
-/// There is none.
-pub fn bits(fields: &[Field]) -> Result<u32> {
-    let last = fields.last().context("a wrapper needs a core with operands and results")?;
-    Ok(last.low + last.padded())
-}
+impl Transfer {
+    /// Returns a transfer to the core: the operands.
+    ///
+    /// # Errors
+    /// There is none.
+    pub fn sent(job: &Job) -> Result<Self> {
+        Self::new(job, operands(job.design))
+    }
 
-/// The bits of operands that only fill their bytes, as parts of `net`.
-pub fn padding(fields: &[Field], net: &str) -> Vec<String> {
-    let padded = fields.iter().filter(|field| field.padded() > field.width);
-    let bits = padded.map(|field| {
-        let (low, high) = (field.high() + 1, field.low + field.padded() - 1);
-        if low == high { format!("{net}[{low}]") } else { format!("{net}[{high}:{low}]") }
-    });
-    bits.collect()
+    /// Returns a transfer from the core: the results.
+    ///
+    /// # Errors
+    /// There is none.
+    pub fn received(job: &Job) -> Result<Self> {
+        Self::new(job, results(job.design))
+    }
+
+    fn new(job: &Job, fields: Vec<Field>) -> Result<Self> {
+        let last = fields.last().context("a wrapper needs a core with operands and results")?;
+        let bits = last.low + last.padded();
+        let bits = if job.inputs.around.power_of_two { bits.next_power_of_two() } else { bits };
+        Ok(Self { fields, bits })
+    }
+
+    /// The highest bit.
+    pub fn high(&self) -> u32 {
+        self.bits - 1
+    }
+
+    /// The bits that fields fill, with those of their last bytes.
+    pub fn filled(&self) -> u32 {
+        self.fields.last().map_or(0, |last| last.low + last.padded())
+    }
+
+    /// Returns the field of a port.
+    pub fn field(&self, name: &str) -> Option<&Field> {
+        self.fields.iter().find(|field| field.name == name)
+    }
+
+    /// Returns whether a result has copies of its sign above it.
+    pub fn has_signs(&self) -> bool {
+        self.fields.iter().any(|field| field.signed && field.padded() > field.width)
+    }
+
+    /// Returns the parts of a concatenation of all of it; the last field is above the others.
+    pub fn packed(&self, prefix: &str) -> Vec<String> {
+        let above = self.bits - self.filled();
+        let of_field = |field: &Field| field.packed(&format!("{prefix}{}", field.name));
+        let fields = self.fields.iter().rev().flat_map(of_field);
+        (above > 0).then(|| literal(0, above)).into_iter().chain(fields).collect()
+    }
+
+    /// Returns the bits that only fill bytes, as parts of `net`.
+    pub fn padding(&self, net: &str) -> Vec<String> {
+        let fields = self.fields.iter();
+        let of_fields = fields.map(|field| (field.high() + 1, field.low + field.padded()));
+        let ranges = of_fields.chain([(self.filled(), self.bits)]);
+        ranges
+            .filter(|(low, end)| low < end)
+            .map(|(low, end)| match end - low {
+                1 => format!("{net}[{low}]"),
+                _ => format!("{net}[{}:{low}]", end - 1),
+            })
+            .collect()
+    }
 }
 
 /// A wire that reads what nothing else does, for linters; nothing for nothing.

@@ -3,7 +3,7 @@
 use anyhow::{Result, ensure};
 use glint_base::fill;
 
-use super::fields::{Field, bits, operands, packed, padding, results, sink};
+use super::fields::{Field, Transfer, sink};
 use super::{add_proof, connected, seen_inside, stub_ports};
 use crate::package::artifact::{Artifacts, Job, Kind};
 use glint_rtl::netlist::{Pipeline, Role};
@@ -33,7 +33,8 @@ pub fn modules(job: &Job, pipeline: &Pipeline, files: &mut Artifacts) -> Result<
         pipeline.stall,
         "`{name}` cannot be held back, which interface.stream needs; set pipeline.stall = \"ready\""
     );
-    let (operands, results) = (operands(design), results(design));
+    let (operands, results) = (Transfer::sent(job)?, Transfer::received(job)?);
+    let keep = job.inputs.around.keep;
     let connections = connected(design, "aclk", |role, name| match role {
         Role::Reset => Some("aresetn".to_owned()),
         Role::InValid => Some("s_axis_tvalid".to_owned()),
@@ -41,13 +42,14 @@ pub fn modules(job: &Job, pipeline: &Pipeline, files: &mut Artifacts) -> Result<
         Role::OutReady => Some("ready".to_owned()),
         Role::Valid => Some("valid".to_owned()),
         Role::Point => {
-            let field = operands.iter().find(|field| field.name == name);
+            let field = operands.field(name);
             Some(format!("s_axis_tdata{}", field.map(Field::bits).unwrap_or_default()))
         }
         Role::SideIn => Some(literal(0, pipeline.side)),
         _ => None,
     });
-    let mut unused = padding(&operands, "s_axis_tdata");
+    let mut unused = operands.padding("s_axis_tdata");
+    unused.extend(keep.then(|| "s_axis_tkeep".to_owned()));
     if pipeline.side > 0 {
         unused.push("core_side_out".to_owned());
     }
@@ -56,14 +58,15 @@ pub fn modules(job: &Job, pipeline: &Pipeline, files: &mut Artifacts) -> Result<
     let words = stages.saturating_sub(1);
     let in_memory = words > 1 && !design.delay_lines().is_empty();
     let memory = in_memory.then(|| usize::BITS - (words - 1).leading_zeros());
-    let (in_high, out_high) = (bits(&operands)? - 1, bits(&results)? - 1);
+    let (in_high, out_high) = (operands.high(), results.high());
     let text = fill!("axis_pipeline.v" {
         name: &'a str,
         regenerate: &'a str = job.regenerate(),
         user_bits: u32,
-        operands: &'a [Field] = &operands,
-        results: &'a [Field] = &results,
-        signed: bool = results.iter().any(|field| field.signed && field.padded() > field.width),
+        keep: bool,
+        operands: &'a [Field] = &operands.fields,
+        results: &'a [Field] = &results.fields,
+        signed: bool = results.has_signs(),
         in_high: u32,
         out_high: u32,
         stages: usize,
@@ -74,7 +77,7 @@ pub fn modules(job: &Job, pipeline: &Pipeline, files: &mut Artifacts) -> Result<
         moves: &'a str = if pipeline.interval > 1 { "moves" } else { "s_axis_tready" },
         // Bits of the own side channel of the core, which is not used.
         side: u32 = pipeline.side,
-        packed: Vec<String> = separated(packed(&results, "core_")),
+        packed: Vec<String> = separated(results.packed("core_")),
         connections: Vec<String>,
         unused: Vec<String> = sink(&unused),
     })?;
@@ -83,7 +86,7 @@ pub fn modules(job: &Job, pipeline: &Pipeline, files: &mut Artifacts) -> Result<
     let side = user_bits + 1;
     let mut raw_bits = 0;
     let mut raw = Vec::new();
-    for field in &results {
+    for field in &results.fields {
         raw.push(Raw { name: &field.name, low: raw_bits, width: field.width });
         raw_bits += field.width;
     }
@@ -98,7 +101,7 @@ pub fn modules(job: &Job, pipeline: &Pipeline, files: &mut Artifacts) -> Result<
     ];
     let handshake = ["rst_n", "in_valid", "in_ready", "out_valid", "out_ready"];
     nets.extend(handshake.map(|port| (format!("core.{port}"), 1)));
-    let ports = operands.iter().chain(&results);
+    let ports = operands.fields.iter().chain(&results.fields);
     nets.extend(ports.map(|field| (format!("core.{}", field.name), field.width)));
     let check = |field: &Field| format!("dut.core.{} == s_axis_tdata{}", field.name, field.bits());
     let text = fill!("axis_pipeline_formal.sv" {
@@ -106,11 +109,12 @@ pub fn modules(job: &Job, pipeline: &Pipeline, files: &mut Artifacts) -> Result<
         in_high: u32,
         out_high: u32,
         user_bits: u32,
+        keep: bool,
         stub_ports: Vec<String> = stub_ports(design),
         raw: Vec<Raw<'a>>,
         raw_high: u32 = raw_bits - 1,
-        packed: Vec<String> = separated(packed(&results, "dut.core.")),
-        checks: Vec<String> = operands.iter().map(check).collect(),
+        packed: Vec<String> = separated(results.packed("dut.core.")),
+        checks: Vec<String> = operands.fields.iter().map(check).collect(),
         // Declarations of what the proof sees of the inside.
         inside: Vec<String> = nets.into_iter().map(seen_inside).collect(),
         stages: usize,

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use anyhow::{Context, Result};
 
-use super::fields::Field;
+use super::fields::{Field, Transfer};
 use crate::package::Vectors;
 use crate::package::bench::packed;
 use glint_base::fixed::mask;
@@ -139,23 +139,23 @@ fn streamed<'a>(rows: impl Iterator<Item = Row<'a>>) -> Option<Vec<Point>> {
 }
 
 /// Returns the stream's input: the operands side by side in whole bytes, the bits above them of every other point set.
-pub fn sent(points: &[Point], operands: &[Field]) -> String {
+pub fn sent(points: &[Point], operands: &Transfer) -> String {
     let word = |(number, point): (usize, &Point)| {
         let above = |field: &Field| if number % 2 == 1 { !mask(field.width) } else { 0 };
-        word(&point.operands, operands, above, None)
+        word(&point.operands, operands, above, number % 2 == 1, None)
     };
     points.iter().enumerate().map(word).collect()
 }
 
 /// Returns the stream's output, a line a result: likewise, with copies of the sign, and above them whether it is the last of a line.
-pub fn received(points: &[Point], results: &[Field], is_line: bool) -> String {
+pub fn received(points: &[Point], results: &Transfer, is_line: bool) -> String {
     let mut text = String::new();
     for point in points {
         let last = point.results.len() - 1;
         for (number, result) in point.results.iter().enumerate() {
             let signs: Vec<bool> = result
                 .iter()
-                .zip(results)
+                .zip(&results.fields)
                 .map(|(value, field)| field.signed && value >> (field.width - 1) & 1 == 1)
                 .collect();
             let mut signs = signs.into_iter();
@@ -164,22 +164,28 @@ pub fn received(points: &[Point], results: &[Field], is_line: bool) -> String {
                 _ => 0,
             };
             let last = is_line.then_some(u64::from(number == last));
-            text += &word(result, results, above, last);
+            text += &word(result, results, above, false, last);
         }
     }
     text
 }
 
-/// A line of a file for `$readmemh`.
+/// Returns a line of a file for `$readmemh`; the bytes above all fields are filled with ones or zeros.
 fn word(
     values: &[u64],
-    fields: &[Field],
+    transfer: &Transfer,
     mut above: impl FnMut(&Field) -> u64,
+    ones: bool,
     top: Option<u64>,
 ) -> String {
+    let fields = &transfer.fields;
     let whole = |(value, field): (&u64, &Field)| (value | above(field)) & mask(field.padded());
     let mut row: Vec<u64> = values.iter().zip(fields).map(whole).collect();
     let mut widths: Vec<u32> = fields.iter().map(Field::padded).collect();
+    for _ in 0..(transfer.bits - transfer.filled()) / 8 {
+        row.push(if ones { 0xff } else { 0 });
+        widths.push(8);
+    }
     if let Some(top) = top {
         row.push(top);
         widths.push(4);

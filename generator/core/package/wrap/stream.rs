@@ -3,7 +3,7 @@
 use anyhow::{Context, Result};
 use glint_base::fill;
 
-use super::fields::{Field, bits, operands, packed, padding, results, sink};
+use super::fields::{Field, Transfer, sink};
 use super::{add_proof, connected, core_wire, seen_inside, stub_free, stub_ports};
 use crate::package::artifact::{Artifacts, Job, Kind};
 use glint_rtl::netlist::Role;
@@ -51,8 +51,9 @@ impl Line {
 pub fn modules(job: &Job, files: &mut Artifacts) -> Result<()> {
     let (name, design, regenerate) = (job.name(), job.design, job.regenerate());
     design.handshake()?;
-    let (operands, results) = (operands(design), results(design));
-    let (in_high, out_high) = (bits(&operands)? - 1, bits(&results)? - 1);
+    let (operands, results) = (Transfer::sent(job)?, Transfer::received(job)?);
+    let keep = job.inputs.around.keep;
+    let (in_high, out_high) = (operands.high(), results.high());
     let user_bits = job.inputs.around.user_bits;
     let overlaps = design.control.overlaps;
     let is_unused = |role: Role| role == Role::Status || role == Role::Done && !overlaps;
@@ -61,10 +62,10 @@ pub fn modules(job: &Job, files: &mut Artifacts) -> Result<()> {
         Role::Start | Role::Valid | Role::Busy => Some(name.to_owned()),
         Role::Done if overlaps => Some("done".to_owned()),
         Role::Operand { .. } => {
-            let field = operands.iter().find(|field| field.name == name);
+            let field = operands.field(name);
             Some(format!("operands{}", field.map(Field::bits).unwrap_or_default()))
         }
-        Role::Strobe if operands.iter().any(|field| field.strobe == name) => {
+        Role::Strobe if operands.fields.iter().any(|field| field.strobe == name) => {
             Some("start".to_owned())
         }
         _ => None,
@@ -79,19 +80,21 @@ pub fn modules(job: &Job, files: &mut Artifacts) -> Result<()> {
             unused.push(format!("core_{}", design.net(port.net).name));
         }
     }
-    unused.extend(padding(&operands, "operands"));
+    unused.extend(operands.padding("operands"));
+    unused.extend(keep.then(|| "s_axis_tkeep".to_owned()));
     let line = line(job, &operands)?;
     let text = fill!("axis.v" {
         name: &'a str,
         regenerate: &'a str,
         user_bits: u32,
-        operands: &'a [Field] = &operands,
-        results: &'a [Field] = &results,
-        signed: bool = results.iter().any(|field| field.signed && field.padded() > field.width),
+        keep: bool,
+        operands: &'a [Field] = &operands.fields,
+        results: &'a [Field] = &results.fields,
+        signed: bool = results.has_signs(),
         in_high: u32,
         out_high: u32,
         result_wires: Vec<String>,
-        packed: Vec<String> = separated(packed(&results, "core_")),
+        packed: Vec<String> = separated(results.packed("core_")),
         connections: Vec<String>,
         // What drives the outputs: a register, or the buffer.
         output: &'a str = if line.is_some() { "wire" } else { "reg " },
@@ -112,16 +115,17 @@ pub fn modules(job: &Job, files: &mut Artifacts) -> Result<()> {
         name: &'a str,
         in_high: u32,
         out_high: u32,
+        keep: bool,
         user_high: u32 = user_bits - 1,
         // The highest bit of results, tlast and tuser together.
         packed_high: u32 = out_high + 1 + user_bits,
         stub_ports: Vec<String> = stub_ports(design),
         stub_free: Vec<String> = stub_free(design),
-        stub_packed: Vec<String> = separated(packed(&results, "dut.core.")),
-        stub_checks: Vec<String> = operands.iter().map(check).collect(),
+        stub_packed: Vec<String> = separated(results.packed("dut.core.")),
+        stub_checks: Vec<String> = operands.fields.iter().map(check).collect(),
         // Declarations of what the proof sees of the inside.
         inside: Vec<String> = inside(&operands, &results, line.as_ref(), user_bits)?,
-        strobes: Vec<&'a String> = operands.iter().map(|field| &field.strobe).collect(),
+        strobes: Vec<&'a String> = operands.fields.iter().map(|field| &field.strobe).collect(),
         line: Option<&'a Line> = line.as_ref(),
         overlaps: bool,
     })?;
@@ -130,12 +134,12 @@ pub fn modules(job: &Job, files: &mut Artifacts) -> Result<()> {
 
 /// Yosys finds nets below the top by their path, if a declaration says how wide they are.
 fn inside(
-    operands: &[Field],
-    results: &[Field],
+    operands: &Transfer,
+    results: &Transfer,
     line: Option<&Line>,
     user: u32,
 ) -> Result<Vec<String>> {
-    let (in_bits, out_bits) = (bits(operands)?, bits(results)?);
+    let (in_bits, out_bits) = (operands.bits, results.bits);
     let mut nets: Vec<(String, u32)> = [
         ("start", 1),
         ("valid", 1),
@@ -168,17 +172,17 @@ fn inside(
         ],
     };
     nets.extend(own.into_iter().map(|(net, width)| (net.to_owned(), width)));
-    let ports = operands.iter().chain(results);
+    let ports = operands.fields.iter().chain(&results.fields);
     nets.extend(ports.map(|field| (format!("core.{}", field.name), field.width)));
     Ok(nets.into_iter().map(seen_inside).collect())
 }
 
-fn line(job: &Job, operands: &[Field]) -> Result<Option<Line>> {
+fn line(job: &Job, operands: &Transfer) -> Result<Option<Line>> {
     let length = job.inputs.accuracy.as_ref().and_then(|accuracy| accuracy.length.as_ref());
     let Some(length) = length else {
         return Ok(None);
     };
-    let field = operands.iter().find(|field| field.name == *length);
+    let field = operands.field(length);
     let field = field.with_context(|| format!("`{length}` is no operand"))?;
     Ok(Some(Line {
         length: field.name.clone(),

@@ -1,6 +1,6 @@
 //! Registers in Verilog: whether an address is one of some, and what is read of each.
 
-use super::fields::{self, packed, results};
+use super::fields::{Transfer, results};
 use crate::package::map::{self, Map, Part, Placed, Register};
 use glint_rtl::netlist::Design;
 use glint_rtl::verilog::text::{literal, statement};
@@ -82,13 +82,8 @@ pub fn words(design: &Design, map: &Map) -> Vec<Word> {
             );
         }
     } else {
-        let fields = results(design);
-        let all: u32 = fields.iter().map(fields::Field::padded).sum();
-        let mut parts = packed(&fields, "core_");
-        if all < 32 {
-            parts.insert(0, literal(0, 32 - all));
-        }
-        reads.push(format!("{{{}}}", parts.join(", ")));
+        let all = Transfer { fields: results(design), bits: 32 };
+        reads.push(format!("{{{}}}", all.packed("core_").join(", ")));
     }
     let word = |(number, read): (u64, String)| Word {
         number,

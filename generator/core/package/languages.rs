@@ -1,0 +1,252 @@
+//! By which designs in other languages know a core: `<name>.vhd`, and `<name>_pkg.sv`.
+
+use anyhow::Result;
+use glint_base::fill;
+use glint_base::fixed::{Format, exp2};
+
+use super::artifact::{Artifacts, Job, Kind};
+use super::tops::{Face, Top, TopPort};
+use super::wrap::fields::Transfer;
+use glint_rtl::netlist::{Port, Role};
+use glint_rtl::verilog::rows::separated;
+use glint_rtl::verilog::text::{Names, ascii, comment, constant_name, literal};
+
+/// Adds the files that the configuration asks for.
+///
+/// # Errors
+/// A template that fails.
+pub fn files(job: &Job, tops: &[Top], files: &mut Artifacts) -> Result<()> {
+    if job.inputs.around.vhdl {
+        let text = vhdl(job, tops)?;
+        files.add(Kind::Language, format!("{}.vhd", job.name()), text);
+    }
+    if job.inputs.around.systemverilog {
+        let text = systemverilog(job)?;
+        files.add(Kind::Language, format!("{}_pkg.sv", job.name()), text);
+    }
+    Ok(())
+}
+
+/// Returns whether a port carries a number.
+fn is_number(role: Role) -> bool {
+    matches!(role, Role::Operand { .. } | Role::Point | Role::Result)
+}
+
+/// A component of VHDL.
+struct Component<'a> {
+    name: &'a str,
+    what: &'a str,
+    generics: Vec<String>,
+    ports: Vec<String>,
+}
+
+fn component<'a>(top: &'a Top, of_core: &[String]) -> Component<'a> {
+    Component {
+        name: &top.module,
+        what: &top.what,
+        generics: if top.face == Face::Core { of_core.to_vec() } else { Vec::new() },
+        ports: listed(top.ports.iter().map(plain).collect()),
+    }
+}
+
+fn vhdl(job: &Job, tops: &[Top]) -> Result<String> {
+    let (name, design, naming) = (job.name(), job.design, job.naming);
+    let memories = design.roms.iter().enumerate().filter(|(_, rom)| rom.shares.is_none());
+    let memories: Vec<(String, &String)> = memories
+        .filter(|_| !naming.style.inline)
+        .map(|(at, _)| (vhdl_name(&naming.parameters[at]), &naming.files[at]))
+        .collect();
+    let generic = |(name, file): &(String, &String)| format!("{name} : string := \"{file}\"");
+    let generics = listed(memories.iter().map(generic).collect());
+    // Of each result the wire to the component, its type, and the assignment.
+    let mut names = Names::new(design.nets.iter().map(|net| net.name.as_str()));
+    let mut outputs = Vec::new();
+    let (mut ports, mut connections) = (vec!["clk : in std_logic".to_owned()], Vec::new());
+    connections.push("clk => clk".to_owned());
+    for port in &design.ports {
+        let net = design.net(port.net);
+        let (own, format) = (vhdl_name(&net.name), net.format);
+        let direction = if port.role.is_input() { "in" } else { "out" };
+        let plain = std_logic(format.width(), format.width() > 1);
+        let number = is_number(port.role);
+        let kind = if number { fixed(format) } else { plain.clone() };
+        ports.push(format!("{own} : {direction} {kind}"));
+        let one_bit = format.width() == 1;
+        connections.push(match (number, port.role.is_input()) {
+            (false, _) => format!("{own} => {own}"),
+            (true, _) if one_bit => format!("{own} => {own}({own}'low)"),
+            (true, true) => format!("{own} => to_slv({own})"),
+            (true, false) => {
+                let wire = vhdl_name(&names.fresh(&format!("{}_bits", net.name)));
+                let conversion = if format.signed { "to_sfixed" } else { "to_ufixed" };
+                let bounds = format!("{own}'high, {own}'low");
+                let assignment = format!("{own} <= {conversion}({wire}, {bounds})");
+                outputs.push((wire.clone(), plain, assignment));
+                format!("{own} => {wire}")
+            }
+        });
+    }
+    fill!("vhdl.vhd" {
+        name: &'a str,
+        regenerate: &'a str = job.regenerate(),
+        components: Vec<Component<'a>> = tops.iter().map(|top| component(top, &generics)).collect(),
+        generics: Vec<String>,
+        // The generics of the entity, which are those of the component.
+        passed: Vec<String> =
+            separated(memories.iter().map(|(name, _)| format!("{name} => {name}")).collect()),
+        ports: Vec<String> = listed(ports),
+        outputs: Vec<(String, String, String)>,
+        connections: Vec<String> = separated(connections),
+    })
+}
+
+/// Declarations with semicolons between them.
+fn listed(mut declarations: Vec<String>) -> Vec<String> {
+    let last = declarations.len().saturating_sub(1);
+    declarations.iter_mut().take(last).for_each(|line| line.push(';'));
+    declarations
+}
+
+fn plain(port: &TopPort) -> String {
+    let direction = if port.input { "in" } else { "out" };
+    format!("{} : {direction} {}", vhdl_name(&port.name), std_logic(port.width, port.vector))
+}
+
+fn std_logic(width: u32, vector: bool) -> String {
+    match vector {
+        false => "std_logic".to_owned(),
+        true => format!("std_logic_vector({} downto 0)", width - 1),
+    }
+}
+
+/// The type of a number, whose bits are numbered by their weights.
+fn fixed(format: Format) -> String {
+    let kind = if format.signed { "sfixed" } else { "ufixed" };
+    let low = -format.frac;
+    format!("{kind}({} downto {low})", low + format.width() as i32 - 1)
+}
+
+/// Returns a name as VHDL takes it: extended, which keeps upper and lower case, where a plain one does not do.
+fn vhdl_name(name: &str) -> String {
+    let reserved = VHDL_2008.split_ascii_whitespace().any(|word| word == name.to_ascii_lowercase());
+    let plain = !name.starts_with('_') && !name.ends_with('_') && !name.contains("__");
+    let small = !name.chars().any(|sign| sign.is_ascii_uppercase());
+    // The generics, all of them upper case, are the only names of which case does not matter.
+    let upper = !name.chars().any(|sign| sign.is_ascii_lowercase());
+    if plain && !reserved && (small || upper) { name.to_owned() } else { format!("\\{name}\\") }
+}
+
+/// The reserved words of IEEE 1076-2008.
+const VHDL_2008: &str = "
+    abs access after alias all and architecture array assert assume assume_guarantee attribute
+    begin block body buffer bus case component configuration constant context cover default
+    disconnect downto else elsif end entity exit fairness file for force function generate generic
+    group guarded if impure in inertial inout is label library linkage literal loop map mod nand
+    new next nor not null of on open or others out package parameter port postponed procedure
+    process property protected pure range record register reject release rem report restrict
+    restrict_guarantee return rol ror select sequence severity shared signal sla sll sra srl
+    strong subtype then to transport type unaffected units until use variable vmode vprop vunit
+    wait when while with xnor xor
+";
+
+/// A number of SystemVerilog.
+struct Number {
+    name: String,
+    constant: String,
+    /// Its type.
+    kind: String,
+    doc: Vec<String>,
+    format: Format,
+}
+
+impl Number {
+    fn unit(&self) -> String {
+        format!("{:?}", exp2(-self.format.frac))
+    }
+
+    fn scale(&self) -> String {
+        format!("{:?}", exp2(self.format.frac))
+    }
+
+    /// The limits as reals.
+    fn limits(&self) -> (String, String) {
+        let (low, high) = self.format.range();
+        (format!("{:?}", low as f64), format!("{:?}", high as f64))
+    }
+
+    fn least(&self) -> String {
+        let width = self.format.width();
+        match self.format.signed {
+            true => format!("{{1'b1, {}}}", literal(0, width - 1)),
+            false => literal(0, width),
+        }
+    }
+
+    /// The raw integer of `scaled`, which is within the limits. Verilator takes no real above 2^63.
+    fn whole(&self) -> String {
+        let plain = format!("{}'(longint'(scaled))", self.kind);
+        match (self.format.signed, self.format.width()) {
+            (false, 64) => format!(
+                "scaled < 9223372036854775808.0 ? {plain} :\n            \
+                 {{1'b1, 63'(longint'(scaled - 9223372036854775808.0))}}"
+            ),
+            _ => plain,
+        }
+    }
+
+    fn most(&self) -> String {
+        literal(self.format.max_raw() as u64, self.format.width())
+    }
+}
+
+/// A transfer of a stream as a structure.
+struct Structure {
+    net: &'static str,
+    members: Vec<String>,
+}
+
+fn systemverilog(job: &Job) -> Result<String> {
+    let (name, design) = (job.name(), job.design);
+    let ports = || design.ports.iter().filter(|port| is_number(port.role));
+    let mut names = Names::new(design.nets.iter().map(|net| net.name.as_str()));
+    let number = |port: &Port| {
+        let net = design.net(port.net);
+        let colon = if net.doc.is_empty() { "" } else { ": " };
+        let doc = format!("{}, {}{colon}{}", net.name, net.format, ascii(&net.doc));
+        Number {
+            name: net.name.clone(),
+            constant: constant_name(&net.name),
+            kind: names.fresh(&format!("{}_t", net.name)),
+            doc: comment(4, &doc),
+            format: net.format,
+        }
+    };
+    let numbers: Vec<Number> = ports().map(number).collect();
+    let mut transfers = Vec::new();
+    if job.inputs.around.stream {
+        for (net, transfer) in
+            [("s_axis_tdata", Transfer::sent(job)?), ("m_axis_tdata", Transfer::received(job)?)]
+        {
+            let mut names = Names::new(design.nets.iter().map(|net| net.name.as_str()));
+            let mut filling = |name: &str, bits: u32| {
+                (bits > 0).then(|| format!("logic [{}:0] {};", bits - 1, names.fresh(name)))
+            };
+            let mut members = Vec::new();
+            members.extend(filling("above", transfer.bits - transfer.filled()));
+            for field in transfer.fields.iter().rev() {
+                let above = format!("above_{}", field.name);
+                members.extend(filling(&above, field.padded() - field.width));
+                let of = numbers.iter().find(|number| number.name == field.name);
+                members.extend(of.map(|number| format!("{} {};", number.kind, number.name)));
+            }
+            transfers.push(Structure { net, members });
+        }
+    }
+    fill!("formats.sv" {
+        name: &'a str,
+        package: String = format!("{name}_pkg"),
+        regenerate: &'a str = job.regenerate(),
+        numbers: Vec<Number>,
+        transfers: Vec<Structure>,
+    })
+}

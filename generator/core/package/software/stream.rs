@@ -1,0 +1,114 @@
+//! `<name>_stream.h` and `<name>_stream.py`: transfers of the streams in memory.
+
+use anyhow::Result;
+use glint_base::fill;
+
+use super::model::Field;
+use crate::package::artifact::{Artifacts, Job, Kind};
+use crate::package::wrap::fields::Transfer;
+use glint_rtl::verilog::text::constant_name;
+
+/// A number in the bytes of a transfer.
+struct Number {
+    field: Field,
+    port: String,
+    first: u32,
+    /// Its bytes.
+    size: u32,
+}
+
+impl Number {
+    fn bytes(&self) -> std::ops::Range<u32> {
+        0..self.size
+    }
+
+    /// The type of its bit pattern.
+    fn unsigned(&self) -> &'static str {
+        if self.size <= 4 { "uint32_t" } else { "uint64_t" }
+    }
+
+    /// The bit pattern of its bytes.
+    fn joined(&self) -> String {
+        let kind = self.unsigned();
+        let byte = |at: u32| match (at, self.size) {
+            (0, 1) => format!("transfer[{}]", self.first),
+            (0, _) => format!("({kind})transfer[{}]", self.first),
+            _ => format!("({kind})transfer[{}] << {}", self.first + at, 8 * at),
+        };
+        self.bytes().map(byte).collect::<Vec<_>>().join(" | ")
+    }
+
+    /// Returns the number of the bit pattern `raw`, where that is another.
+    fn value(&self) -> Option<String> {
+        let kind = self.field.kind;
+        let (sign, suffix) =
+            (1u64 << (8 * self.size - 1), if self.size <= 4 { "u" } else { "ull" });
+        match (self.field.format.signed, self.size) {
+            (false, _) => None,
+            (true, 4 | 8) => Some(format!("({kind})raw")),
+            (true, _) => {
+                Some(format!("({kind})(raw ^ {sign:#x}{suffix}) - ({kind}){sign:#x}{suffix}"))
+            }
+        }
+    }
+
+    fn python_sign(&self) -> &'static str {
+        if self.field.format.signed { "True" } else { "False" }
+    }
+}
+
+/// A transfer, one way.
+struct Bytes {
+    bytes: u32,
+    filled: u32,
+    numbers: Vec<Number>,
+}
+
+impl Bytes {
+    fn new(job: &Job, transfer: &Transfer) -> Self {
+        let design = job.design;
+        let number = |field: &crate::package::wrap::fields::Field| {
+            let port = design.ports.iter().find(|port| design.net(port.net).name == field.name)?;
+            Some(Number {
+                field: Field::new(design, port),
+                port: field.name.clone(),
+                first: field.low / 8,
+                size: field.padded() / 8,
+            })
+        };
+        Self {
+            bytes: transfer.bits / 8,
+            filled: transfer.filled() / 8,
+            numbers: transfer.fields.iter().filter_map(number).collect(),
+        }
+    }
+
+    /// The bytes above all numbers.
+    fn above(&self) -> std::ops::Range<u32> {
+        self.filled..self.bytes
+    }
+}
+
+/// Adds what a program needs that fills and empties the memory of the streams.
+///
+/// # Errors
+/// A template that fails.
+pub fn files(job: &Job, files: &mut Artifacts) -> Result<()> {
+    let (name, regenerate) = (job.name(), job.regenerate());
+    let (sent, received) = (Transfer::sent(job)?, Transfer::received(job)?);
+    let (sent, received) = (Bytes::new(job, &sent), Bytes::new(job, &received));
+    let header = fill!("stream.h" {
+        name: &'a str, regenerate: &'a str,
+        prefix: String = constant_name(name),
+        sent: &'a Bytes = &sent,
+        received: &'a Bytes = &received,
+    })?;
+    let python = fill!("stream.py" {
+        name: &'a str, regenerate: &'a str,
+        sent: &'a Bytes = &sent,
+        received: &'a Bytes = &received,
+    })?;
+    files.add(Kind::Software, format!("{name}_stream.h"), header);
+    files.add(Kind::Software, format!("{name}_stream.py"), python);
+    Ok(())
+}

@@ -1,0 +1,73 @@
+//! What a viewer shows of a waveform at first: every net in its scope, numbers by their values.
+
+use std::fmt::Write;
+
+use super::circuit::scopes;
+use crate::netlist::{Design, Net};
+
+/// Flags of a trace in GTKWave (`TR_…_B` in its `analyzer.h`): right-justified binary, unsigned and signed decimal, a
+/// binary point, and a line of text alone.
+const BINARY: u32 = 1 << 3 | 1 << 5;
+const UNSIGNED: u32 = 1 << 2 | 1 << 5;
+const SIGNED: u32 = 1 << 10 | 1 << 5;
+const POINT: u32 = 1 << 30;
+const TEXT: u32 = 1 << 9;
+
+/// The scopes of a waveform with their nets, the ports first.
+fn shown(design: &Design) -> Vec<(String, Vec<&Net>)> {
+    let ports = design.ports.iter().map(|port| design.net(port.net)).collect();
+    let scopes = scopes(design).into_iter();
+    let inner = scopes.map(|(scope, nets)| {
+        let nets = nets.into_iter().map(|net| design.net(net)).collect();
+        (format!("{}.{scope}", design.name), nets)
+    });
+    std::iter::once((design.name.clone(), ports)).chain(inner).collect()
+}
+
+/// Returns the save file of GTKWave for a waveform of the design: `gtkwave FILE.vcd FILE.gtkw`.
+pub fn gtkwave(design: &Design) -> String {
+    // Twenty pixels a clock or so.
+    let mut text = format!("*-17.000000 0\n@{BINARY:x}\n{}.clk\n", design.name);
+    for (scope, nets) in shown(design) {
+        let _ = writeln!(text, "@{TEXT:x}\n-{scope}");
+        if scope.ends_with(".control") && design.pipeline.is_none() {
+            let _ = writeln!(text, "@{BINARY:x}\n{scope}.microinstruction");
+        }
+        for net in nets {
+            let format = net.format;
+            let (kind, fraction) = match (format.width(), format.signed, format.frac) {
+                (1, false, 0) => (BINARY, None),
+                (_, signed, frac) => {
+                    let point = Some(frac).filter(|&frac| frac > 0);
+                    (if signed { SIGNED } else { UNSIGNED }, point)
+                }
+            };
+            let flags = kind | if fraction.is_some() { POINT } else { 0 };
+            let _ = writeln!(text, "@{flags:x}");
+            if let Some(fraction) = fraction {
+                let _ = writeln!(text, "[fpshift_count] {fraction}");
+            }
+            let range = match format.width() {
+                1 => String::new(),
+                width => format!("[{}:0]", width - 1),
+            };
+            let _ = writeln!(text, "{scope}.{}{range}", net.name);
+        }
+    }
+    text
+}
+
+/// Returns the commands of Surfer for a waveform of the design: `surfer --command-file FILE.sucl FILE.vcd`.
+pub fn surfer(design: &Design) -> String {
+    let mut text = format!("variable_add {}.clk\n", design.name);
+    for (scope, nets) in shown(design) {
+        let _ = writeln!(text, "divider_add {}", scope.rsplit('.').next().unwrap_or(&scope));
+        if scope.ends_with(".control") && design.pipeline.is_none() {
+            let _ = writeln!(text, "variable_add {scope}.microinstruction");
+        }
+        for net in nets {
+            let _ = writeln!(text, "variable_add {scope}.{}", net.name);
+        }
+    }
+    text + "zoom_fit\n"
+}
