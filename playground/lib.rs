@@ -14,14 +14,14 @@ use serde_json::{Map, Value, json};
 use glint_config::{self as config, Key, Kind, Problems};
 use glint_core::core::Core;
 use glint_core::cosim::batch::Golden;
-use glint_core::package;
+use glint_core::package::{self, OutputFile};
 use glint_core::registry::Registry;
 use glint_keys::presets;
 use glint_prove::synth::TARGETS;
 use glint_prove::tune::Cost;
 use glint_show::evidence::curves;
 use glint_show::evidence::domain;
-use glint_show::pages::{diagram, plots};
+use glint_show::pages::{datasheet, diagram, plots};
 use glint_show::render::{self, BACKGROUND, BuiltIn, Light, Material, Scene, Settings, View};
 
 /// The name under which messages know the text of the editor.
@@ -48,6 +48,10 @@ enum Request {
     Picture { toml: String, exponent: Option<u32>, side: u32 },
     /// The error over the domain, or over exponents and angles.
     Charts { toml: String },
+    /// The timing diagram of a computation, or of points through the pipeline.
+    Waves { toml: String },
+    /// The files of `glint generate` that do not depend on the bench, whose points take a while to choose.
+    Sources { toml: String },
     /// All files of `glint generate`.
     Files { toml: String },
 }
@@ -111,13 +115,27 @@ fn answered(request: &[u8]) -> Result<Value> {
             of(&toml, |core| picture(core, exponent, side))
         }
         Request::Charts { toml } => of(&toml, charts),
+        Request::Waves { toml } => of(&toml, |core| {
+            let (svg, described) = datasheet::timing_diagram(core)?;
+            Ok(json!({ "ok": true, "svg": svg, "described": described }))
+        }),
         Request::Files { toml } => of(&toml, |core| {
             let mut files = core.files(FILE, core.shipped_vectors()?)?;
             files.push(package::driver());
-            let files = files.iter().map(|it| json!({ "name": it.path, "text": it.contents }));
-            Ok(json!({ "ok": true, "files": files.collect::<Vec<_>>() }))
+            Ok(listed(&files))
+        }),
+        Request::Sources { toml } => of(&toml, |core| {
+            let mut files = core.files(FILE, None)?;
+            // Manifest and FuseSoC core list the bench, too.
+            files.retain(|it| ![".json", ".core"].iter().any(|ending| it.path.ends_with(ending)));
+            Ok(listed(&files))
         }),
     }
+}
+
+fn listed(files: &[OutputFile]) -> Value {
+    let files = files.iter().map(|it| json!({ "name": it.path, "text": it.contents }));
+    json!({ "ok": true, "files": files.collect::<Vec<_>>() })
 }
 
 /// Returns the answer of `ask` to the core of a configuration.

@@ -244,11 +244,15 @@ impl Core {
         Ok(wanted.then(|| self.device.sequential(&self.config)).transpose()?)
     }
 
-    /// Every file of the configuration, which the command line knows as `config`, a path.
+    /// Every file of the configuration, which the command line knows as `config`, a path; without vectors there are no benches.
     ///
     /// # Errors
     /// Golden model and simulation do not agree, or the design cannot be written as Verilog.
-    pub fn files(&self, config: &str, vectors: Vectors) -> Result<Vec<OutputFile>> {
+    pub fn files(
+        &self,
+        config: &str,
+        vectors: impl Into<Option<Vectors>>,
+    ) -> Result<Vec<OutputFile>> {
         let around = Surroundings::new(&self.config, self.design.pipeline.as_ref());
         let sequential = self.microprogram(around.software)?;
         let inputs = EmitInputs {
@@ -258,7 +262,7 @@ impl Core {
             example: Some(self.example()?),
             accuracy: Some(ContractFacts::new(self.contract.as_ref())),
             computations: trial::computations(&self.design, self.contract.as_ref())?,
-            vectors: Some(vectors),
+            vectors: vectors.into(),
             around,
             sequential,
         };

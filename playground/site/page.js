@@ -11,7 +11,9 @@ const element = (name, properties = {}, ...children) => {
 };
 
 // Requests to the worker. Of those that wait, one of a kind is left: the last.
-const worker = new Worker(new URL("worker.js", import.meta.url), { type: "module" });
+// Of the page that is one file the worker is text in it, which browsers take as a classic script alone.
+const own = globalThis.GLINT_WORKER;
+const worker = new Worker(own ?? new URL("worker.js", import.meta.url), { type: own ? "classic" : "module" });
 const waiting = new Map();
 let running = null;
 
@@ -154,13 +156,9 @@ function show(text) {
   showForm();
   showFacts();
   showSchedule();
-  const bytes = new TextEncoder().encode(core.diagram);
-  const address = URL.createObjectURL(new Blob([bytes], { type: "image/svg+xml" }));
-  const image = element("img", { src: address, alt: `Block diagram of ${core.name}` });
-  image.onclick = () => image.classList.toggle("whole");
-  image.onload = () => URL.revokeObjectURL(address);
-  $("diagram").replaceChildren(image);
+  $("diagram").replaceChildren(drawing(core.diagram, `Block diagram of ${core.name}`));
   if (!$("files").hidden) showFiles(text);
+  if (!$("waves").hidden) showWaves(text);
   $("exponent-row").hidden = !core.draws || !core.exponents;
   if (core.exponents) {
     const [least, most] = core.exponents;
@@ -170,6 +168,22 @@ function show(text) {
   $("sphere").hidden = !core.draws;
   if (core.draws) showPicture(text);
   ask({ ask: "charts", toml: text }, showCharts);
+}
+
+// A drawing, fitted to the page until it is clicked.
+function drawing(svg, alt) {
+  const address = URL.createObjectURL(new Blob([svg], { type: "image/svg+xml" }));
+  const image = element("img", { src: address, alt });
+  image.onclick = () => image.classList.toggle("whole");
+  image.onload = () => URL.revokeObjectURL(address);
+  return image;
+}
+
+function showWaves(text) {
+  ask({ ask: "waves", toml: text }, ({ ok, problems, svg, described }) => {
+    if (!ok) return showProblems(problems);
+    $("waves").replaceChildren(drawing(svg, described), element("p", { className: "quiet", textContent: described }));
+  });
 }
 
 function showPicture(text) {
@@ -202,27 +216,28 @@ function showSchedule() {
   $("schedule").replaceChildren(element("table", {}, element("thead", {}, element("tr", {}, ...heads)), element("tbody", {}, ...core.schedule.map(row))));
 }
 
-// The files of the configuration, and their text.
-let files = { of: null, all: [] };
+// The files of the configuration, and their text; all of them once they were downloaded.
+let files = { of: null, all: [], whole: false };
 
-// Hands the files of a configuration to `then`, once the bench is simulated.
-function withFiles(text, then) {
-  if (files.of === text) return then(files.all);
-  ask({ ask: "files", toml: text }, (answer) => {
+// Hands files of a configuration to `then`: all, for which the bench is simulated, or those that do without.
+function withFiles(text, whole, then) {
+  if (files.of === text && (files.whole || !whole)) return then(files.all);
+  ask({ ask: whole ? "files" : "sources", toml: text }, (answer) => {
     if (!answer.ok) return showProblems(answer.problems);
-    files = { of: text, all: answer.files };
+    files = { of: text, all: answer.files, whole };
     then(files.all);
   });
 }
 
 function showFiles(text) {
-  withFiles(text, (all) => {
+  withFiles(text, false, (all) => {
     const before = $("file").value;
     const plain = ({ name }) => element("option", { textContent: name });
     $("file").replaceChildren(...all.map(plain));
     const wanted = all.find(({ name }) => name === before) ?? all.find(({ name }) => name.endsWith(".v")) ?? all[0];
     $("file").value = wanted.name;
     $("source").textContent = wanted.text;
+    $("files-note").hidden = files.whole;
   });
 }
 
@@ -267,7 +282,7 @@ $("link").onclick = async () => {
 $("download").onclick = () => {
   $("said").textContent = "simulating the bench …";
   const text = $("toml").value;
-  withFiles(text, (all) => {
+  withFiles(text, true, (all) => {
     const address = URL.createObjectURL(zip([{ name: "core.toml", text }, ...all]));
     element("a", { href: address, download: `${core.name}.zip` }).click();
     URL.revokeObjectURL(address);
@@ -284,6 +299,7 @@ for (const tab of $("tabs").children) {
       $(other.getAttribute("aria-controls")).hidden = !chosen;
     }
     if (tab.id === "tab-files") showFiles($("toml").value);
+    if (tab.id === "tab-waves") showWaves($("toml").value);
   };
   tab.onkeydown = ({ key }) => {
     const to = { ArrowRight: tab.nextElementSibling ?? $("tabs").firstElementChild, ArrowLeft: tab.previousElementSibling ?? $("tabs").lastElementChild }[key];

@@ -2,12 +2,16 @@
 
 import { start } from "./glint.js";
 
-const glint = fetch(new URL("glint.wasm", import.meta.url))
-  .then((response) => {
-    if (!response.ok) throw new Error(`glint.wasm: ${response.status}`);
-    return response.arrayBuffer();
-  })
-  .then(start);
+// The module's bytes: beside this file, or in the page that is one file, gzipped.
+async function bytes() {
+  const packed = globalThis.GLINT_WASM;
+  const response = await fetch(packed ? `data:;base64,${packed}` : new URL("glint.wasm", location));
+  if (!response.ok) throw new Error(`glint.wasm: ${response.status}`);
+  const unpacked = packed ? new Response(response.body.pipeThrough(new DecompressionStream("gzip"))) : response;
+  return unpacked.arrayBuffer();
+}
+
+const glint = bytes().then(start);
 
 onmessage = async ({ data: { number, request } }) => {
   try {

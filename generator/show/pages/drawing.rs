@@ -1,6 +1,7 @@
 //! Drawings as data: lines, boxes and text, in colours that the page's style sheet decides.
 
 use anyhow::Result;
+use glint_base::fill;
 use glint_base::template::Template;
 
 /// A drawing; units are those of the page at full size.
@@ -72,6 +73,18 @@ impl Drawing {
     /// A template that fails to print.
     pub fn svg(&self) -> Result<String> {
         Ok(self.render()?)
+    }
+
+    /// As a file of its own, ending with a newline.
+    ///
+    /// # Errors
+    /// A template that fails to print.
+    pub fn file(&self) -> Result<String> {
+        fill!("standalone.svg" {
+            drawing: String = self.svg()?,
+            width: i32 = self.width,
+            height: i32 = self.height,
+        })
     }
 }
 

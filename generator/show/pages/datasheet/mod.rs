@@ -121,6 +121,15 @@ pub fn datasheet(subject: &Subject, done: &(dyn Fn() + Sync)) -> Result<Datashee
     Ok(Datasheet { page: page::page(subject, &measured)?, wavedrom: measured.waves.wavedrom()? })
 }
 
+/// Returns the timing diagram of a core as a file of its own, and what it shows in words.
+///
+/// # Errors
+/// A device that never ends.
+pub fn timing_diagram(core: &Core) -> Result<(String, String)> {
+    let waves = Waves::record(core)?;
+    Ok((timing::drawing(&waves).file()?, waves.described()))
+}
+
 /// A ball in the light that pictures have by default.
 fn highlight(core: &Core) -> Result<Highlight> {
     let contract = core.contract.as_ref();

@@ -163,7 +163,7 @@ pub fn page(subject: &Subject, measured: &Measured) -> Result<String> {
             },
         ),
         throughput: throughput(subject, &measured.timing),
-        timing: timing::drawing(&measured.waves, described(design, measured)).svg()?,
+        timing: timing::drawing(&measured.waves).svg()?,
         wavedrom_link: format!("data:application/json;base64,{}", STANDARD.encode(&wavedrom)),
         wavedrom,
         accuracy: html(&account::accuracy(contract, &subject.backing)),
@@ -310,25 +310,6 @@ fn throughput(subject: &Subject, timing: &Timing) -> String {
         ),
         (None, None) => format!("{often}."),
     }
-}
-
-/// Describes the timing diagram in words, for those who do not see it.
-fn described(design: &Design, measured: &Measured) -> String {
-    if design.pipeline.is_some() {
-        return format!(
-            "Points through the pipeline, simulated: the first is taken in clock 0, its results are on the outputs from clock {} \
-             on. One clock has no point; where the pipeline can be held back, the first results wait.",
-            measured.waves.first("out_valid").map_or("some".to_owned(), |clock| clock.to_string())
-        );
-    }
-    let at = |clock: Option<u32>| clock.map_or("some".to_owned(), |clock| clock.to_string());
-    format!(
-        "One computation in {} clocks, simulated: start is high in clock 0, valid first in clock {}, done in clock {}. \
-         Below the handshake are the microinstruction, registers and results with their values.",
-        measured.waves.clocks.last().map_or(0, |last| last + 1),
-        at(measured.waves.first("valid")),
-        at(measured.waves.first("done")),
-    )
 }
 
 /// With a narrow space between thousands, which no line ends at.

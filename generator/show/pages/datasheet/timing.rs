@@ -33,7 +33,7 @@ const ROOM: i32 = 1120;
 const APART: i32 = 22;
 
 /// Draws a waveform, in as many strips as it takes.
-pub fn drawing(waves: &Waves, description: String) -> Drawing {
+pub fn drawing(waves: &Waves) -> Drawing {
     let widest = waves.lanes.iter().map(|lane| text_width(&label(lane), SIZE));
     let left = widest.max().unwrap_or(0) + 16;
     let count = waves.clocks.len();
@@ -51,7 +51,7 @@ pub fn drawing(waves: &Waves, description: String) -> Drawing {
     Drawing {
         id: "timing-diagram".to_owned(),
         title: format!("Timing of {}", waves.name),
-        description,
+        description: waves.described(),
         width: left + clock * clocks as i32 + 8,
         height: (height + APART) * strips as i32 - APART,
         items,

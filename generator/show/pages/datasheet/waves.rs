@@ -26,6 +26,8 @@ pub const MICROINSTRUCTION: &str = "microinstruction";
 pub struct Waves {
     /// The name of the module.
     pub name: String,
+    /// Points through a pipeline, and not one computation.
+    pub pipelined: bool,
     /// A caption in some words.
     pub what: &'static str,
     /// The clocks that are shown, from 0; a number that is not one more than that before follows a gap.
@@ -152,7 +154,8 @@ impl Waves {
         for lane in &mut lanes {
             lane.values = shown.iter().map(|&at| lane.values[at].take()).collect();
         }
-        Self { name: design.name.clone(), what, clocks: shown, lanes }
+        let pipelined = design.pipeline.is_some();
+        Self { name: design.name.clone(), pipelined, what, clocks: shown, lanes }
     }
 
     /// The first clock in which a signal is 1.
@@ -160,6 +163,25 @@ impl Waves {
         let lane = self.lanes.iter().find(|lane| lane.name == name)?;
         let at = lane.values.iter().position(|value| value.as_deref() == Some("1"))?;
         u32::try_from(self.clocks[at]).ok()
+    }
+
+    /// Describes the timing diagram in words, for those who do not see it.
+    pub fn described(&self) -> String {
+        if self.pipelined {
+            return format!(
+                "Points through the pipeline, simulated: the first is taken in clock 0, its results are on the outputs from clock {} \
+                 on. One clock has no point; where the pipeline can be held back, the first results wait.",
+                self.first("out_valid").map_or("some".to_owned(), |clock| clock.to_string())
+            );
+        }
+        let at = |clock: Option<u32>| clock.map_or("some".to_owned(), |clock| clock.to_string());
+        format!(
+            "One computation in {} clocks, simulated: start is high in clock 0, valid first in clock {}, done in clock {}. \
+             Below the handshake are the microinstruction, registers and results with their values.",
+            self.clocks.last().map_or(0, |last| last + 1),
+            at(self.first("valid")),
+            at(self.first("done")),
+        )
     }
 
     /// As WaveDrom's JSON, ending with a newline.
@@ -316,6 +338,7 @@ mod tests {
             values: values.map(|value| value.map(str::to_owned)).to_vec(),
         };
         let waves = Waves {
+            pipelined: false,
             name: "core".to_owned(),
             what: "one computation",
             clocks: vec![0, 1, 7, 8],

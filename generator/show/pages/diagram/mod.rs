@@ -10,7 +10,6 @@ mod route;
 mod tracks;
 
 use anyhow::Result;
-use glint_base::template::Template;
 
 use crate::pages::account::blocks::BlockKind;
 use crate::pages::drawing::{Drawing, Item, text_width};
@@ -104,21 +103,12 @@ pub fn drawing(design: &Design) -> Drawing {
     }
 }
 
-#[glint_base::template::template("standalone.svg")]
-struct Standalone<'a> {
-    drawing: &'a str,
-    width: i32,
-    height: i32,
-}
-
 /// The drawing as a file of its own, ending with a newline.
 ///
 /// # Errors
 /// A template that fails to print.
 pub fn svg(design: &Design) -> Result<String> {
-    let drawing = drawing(design);
-    let (width, height) = (drawing.width, drawing.height);
-    Ok(Standalone { drawing: &drawing.svg()?, width, height }.render()? + "\n")
+    drawing(design).file()
 }
 
 /// The size of a box in the layout, which sees the page turned: its height there is the width on the page.
