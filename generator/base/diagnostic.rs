@@ -3,12 +3,17 @@
 use std::fmt;
 use std::panic::Location;
 
+use crate::codes::Code;
+use crate::program::Program;
+
 /// Where a description says something.
 pub type SourceLocation = &'static Location<'static>;
 
 /// A mistake in a description.
 #[derive(Clone, Debug)]
 pub struct Diagnostic {
+    /// The kind of the mistake.
+    pub code: Code,
     /// The message, with the names of the signals.
     pub message: String,
     /// Where in the Rust source.
@@ -22,8 +27,8 @@ pub struct Diagnostic {
 }
 
 impl Diagnostic {
-    pub fn new(message: String, location: SourceLocation) -> Self {
-        Self { message, location, notes: Vec::new(), key: None, nearest: None }
+    pub fn new(code: Code, message: String, location: SourceLocation) -> Self {
+        Self { code, message, location, notes: Vec::new(), key: None, nearest: None }
     }
 
     /// Makes it a problem of a configuration's key, with a remedy.
@@ -40,7 +45,7 @@ impl Diagnostic {
 
 impl fmt::Display for Diagnostic {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        write!(f, "error: {}\n  --> {}", self.message, self.location)?;
+        write!(f, "error[{}]: {}\n  --> {}", self.code, self.message, self.location)?;
         for (note, location) in &self.notes {
             write!(f, "\n  note: {note}: {location}")?;
         }
@@ -62,6 +67,9 @@ impl fmt::Display for Diagnostics {
                 f.write_str("\n")?;
             }
             write!(f, "{diagnostic}")?;
+        }
+        if let Some(first) = self.0.first() {
+            write!(f, "\n`{Program} explain {}` says more", first.code)?;
         }
         Ok(())
     }

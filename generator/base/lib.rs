@@ -1,5 +1,6 @@
 //! Fixed-point formats, intervals, diagnostics, names, text and input: what all other modules use.
 
+pub mod codes;
 pub mod cone;
 pub mod diagnostic;
 pub mod fixed;

@@ -83,7 +83,7 @@ commands! {
     Generate generate; Cosim cosim; Merge merge; Worst worst; Mutate mutate; Eval eval; Setup setup;
     Describe describe; Schedule schedule; Synth synth; Tune tune; Certify certify;
     Datasheet datasheet; Compare compare; Render render; Report report; Verify verify;
-    List list; New new; Schema schema;
+    List list; New new; Schema schema; Explain explain;
 }
 
 #[derive(Args, Clone, Copy)]

@@ -7,6 +7,7 @@ pub mod cosim;
 pub mod datasheet;
 pub mod describe;
 pub mod eval;
+pub mod explain;
 pub mod generate;
 pub mod list;
 pub mod main_job;
@@ -152,13 +153,15 @@ fn load_one(registry: &Registry, schemas: &[config::Schema], path: &Path) -> Res
         let found = error.downcast_ref::<Diagnostics>().map_or(&[][..], |found| &found.0);
         for it in found {
             if let Some((key, remedy)) = &it.key {
-                problems.push(key, format!("{} ({})", it.message, it.location), remedy);
+                let message = format!("{} ({}, {})", it.message, it.code, it.location);
+                problems.push(key, message, remedy);
             }
         }
         if problems.is_empty() { error.context(format!("`{name}`")) } else { problems.into() }
     })?;
     for warning in &core.design.warnings {
-        failure::warn(&format!("{name}: {} ({})", warning.message, warning.location));
+        let (code, place) = (warning.code, warning.location);
+        failure::warn(&format!("{name}: {} ({code}, {place})", warning.message));
     }
     Ok(Loaded { path: name, core, locations })
 }

@@ -5,6 +5,7 @@
 //! first. What is left is the exact remainder, so the quotient is exact to its last bit.
 
 use crate::dsl::{Counter, Designer, Mux, Register, Setting, Signal};
+use glint_base::codes;
 use glint_base::fixed::{Format, Overflow, Rounding};
 
 /// `dividend / divisor`, truncated to a fraction `u0.Q`; neither may be negative, and the dividend
@@ -58,12 +59,15 @@ impl<'d> Divider<'d> {
     ) -> Self {
         let part = |suffix: &str| format!("{name}_{suffix}");
         if bits < 2 {
-            d.error(format!("divider `{name}` gives {bits} bits: ask for two or more"));
+            d.error(
+                codes::WIDE,
+                format!("divider `{name}` gives {bits} bits: ask for two or more"),
+            );
         }
         for operand in [dividend, divisor] {
             let (low, high) = operand.range();
             if low < 0 {
-                d.error(format!(
+                d.error(codes::SIGN, format!(
                     "divider `{name}`: `{}` has values from {low} to {high} ulp: divide magnitudes, or narrow it to a format \
                      without a sign, which saturates at 0",
                     operand.name()

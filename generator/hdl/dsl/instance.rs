@@ -13,6 +13,7 @@ use super::{Designer, Inner, Signal};
 use crate::netlist::{
     Design, Driver, Field, FieldId, FieldKind, Net, NetId, Op, RegisterKind, Role, Rom, Sequence,
 };
+use glint_base::codes;
 use glint_base::cone;
 use glint_base::diagnostic::{Diagnostic, Diagnostics, SourceLocation};
 use glint_base::fixed::Format;
@@ -38,11 +39,10 @@ impl<'d> Instance<'d> {
         }
         if self.outputs.is_some() {
             let names: Vec<&str> = outputs.iter().map(|(name, _)| name.as_str()).collect();
-            self.designer.error(format!(
-                "`{}` has no output `{output}`: it has {}",
-                self.name,
-                names.join(", ")
-            ));
+            self.designer.error(
+                codes::PART,
+                format!("`{}` has no output `{output}`: it has {}", self.name, names.join(", ")),
+            );
         }
         self.designer.raw_constant("nothing", 0, Format::BIT)
     }
@@ -87,14 +87,14 @@ impl Designer {
     ) -> Instance<'d> {
         let wrong = Instance { designer: self, name: name.to_owned(), outputs: None };
         if self.depth == DEEPEST {
-            self.error(format!(
+            self.error(codes::PART, format!(
                 "`{name}` is a part of a part, {DEEPEST} deep: is a description an instance of itself?"
             ));
             return wrong;
         }
         let load = format!("{name}_operands_load");
         if self.with(|inner| inner.names.contains(&load)) {
-            self.error(format!("two parts are named `{name}`"));
+            self.error(codes::NAME_TWICE, format!("two parts are named `{name}`"));
             return wrong;
         }
         let part = Designer { depth: self.depth + 1, ..Designer::new(name) };
@@ -112,7 +112,7 @@ impl Designer {
             }
         };
         if let Some(why) = unfit(&design) {
-            self.error(format!("`{name}` is no part: {why}"));
+            self.error(codes::PART, format!("`{name}` is no part: {why}"));
             return wrong;
         }
         let given: Vec<&str> = operands.iter().map(|(operand, _)| *operand).collect();
@@ -120,11 +120,14 @@ impl Designer {
         let asked: Vec<&str> = asked.map(|it| design.net(it.net).name.as_str()).collect();
         let same = given.len() == asked.len() && asked.iter().all(|it| given.contains(it));
         if !same {
-            self.error(format!(
-                "`{name}` has the operands {}, and is given {}",
-                asked.join(", "),
-                given.join(", ")
-            ));
+            self.error(
+                codes::PART,
+                format!(
+                    "`{name}` has the operands {}, and is given {}",
+                    asked.join(", "),
+                    given.join(", ")
+                ),
+            );
             return wrong;
         }
         let mut signals = HashMap::new();
@@ -165,7 +168,7 @@ impl Designer {
             program.steps = parts;
         } else if let Some(first) = parts.get(2) {
             let message = "a description with parts has a microprogram of its own: state `dataflow()` in its place";
-            let found = Diagnostic::new(message.to_owned(), program.location);
+            let found = Diagnostic::new(codes::PART, message.to_owned(), program.location);
             self.report(found.note("the first part".to_owned(), first.location));
         }
     }
@@ -184,7 +187,7 @@ fn delayed(inner: &mut Inner) -> Vec<Diagnostic> {
              register out, or make a part of it",
             net.name
         );
-        Diagnostic::new(message, net.location)
+        Diagnostic::new(codes::PART, message, net.location)
     });
     found.collect()
 }

@@ -106,6 +106,7 @@ pub use crate::netlist::{About, Note, Topic};
 use crate::netlist::{
     Design, Driver, FieldId, NetId, Op, Partition, RegisterKind, Role, Rom as NetRom,
 };
+use glint_base::codes;
 use glint_base::diagnostic::{Diagnostic, Diagnostics};
 use glint_base::fixed::Format;
 use glint_base::interval;
@@ -228,7 +229,10 @@ impl Designer {
         let format = self.sound(name, format);
         let raw = format.quantise(value);
         if format.to_f64(raw) != value {
-            self.error(format!("constant `{name}`: {value} is not representable in {format}"));
+            self.error(
+                codes::FORMAT,
+                format!("constant `{name}`: {value} is not representable in {format}"),
+            );
         }
         let id = self.add_wiring(name, format, (raw, raw), Driver::Constant(format.bits(raw)));
         self.signal(id)
@@ -239,7 +243,7 @@ impl Designer {
     pub fn raw_constant(&self, name: &str, mut raw: i128, format: Format) -> Signal<'_> {
         let format = self.sound(name, format);
         if !format.holds(raw) {
-            self.error(format!("constant `{name}`: {raw} does not fit {format}"));
+            self.error(codes::FORMAT, format!("constant `{name}`: {raw} does not fit {format}"));
             raw = 0;
         }
         let id = self.add_wiring(name, format, (raw, raw), Driver::Constant(format.bits(raw)));
@@ -259,6 +263,7 @@ impl Designer {
         let (format, net) = (wire.format(), self.net(wire.id()));
         if net.driver != Driver::Undriven {
             self.error_at(
+                codes::TWO_DRIVERS,
                 format!("`{}` has two drivers: `{}` is the second", net.name, source.name()),
                 [("the first is here", net.location)],
             );
@@ -288,7 +293,7 @@ impl Designer {
         let format = self.sound(&format!("{name}_word"), format);
         let (low, high) = address.range();
         if address.format().frac != 0 || low < 0 || high >= words.len() as i128 {
-            self.error(format!(
+            self.error(codes::MEMORY, format!(
                 "ROM `{name}` has {} words, but its address `{}` ({}) runs from {low} to {high}",
                 words.len(),
                 address.name(),
@@ -299,7 +304,10 @@ impl Designer {
         let first = synchronous.then_some(0);
         let mut range = interval::of_values(words.iter().copied().chain(first)).unwrap_or((0, 0));
         if let Some((at, raw)) = words.iter().enumerate().find(|(_, raw)| !format.holds(**raw)) {
-            self.error(format!("ROM `{name}`: word {at} is {raw}, which does not fit {format}"));
+            self.error(
+                codes::FORMAT,
+                format!("ROM `{name}`: word {at} is {raw}, which does not fit {format}"),
+            );
             range = format.range();
         }
         let data = self.add_net(&format!("{name}_word"), format, range, Driver::Undriven, true);
@@ -346,7 +354,7 @@ impl Designer {
     fn program(&self, steps: Vec<Step>, of_parts: bool) {
         let program = Program { steps, of_parts, location: Location::caller() };
         if self.inner.borrow_mut().program.replace(program).is_some() {
-            self.error("a second microprogram".to_owned());
+            self.error(codes::MICROPROGRAM, "a second microprogram".to_owned());
         }
     }
 
@@ -358,9 +366,15 @@ impl Designer {
     pub fn valid_after(&self, signal: Signal<'_>, clocks: u32) {
         let signal = self.own(signal);
         if signal.format().width() != 1 {
-            self.error(format!("valid follows `{}`, which has more than one bit", signal.name()));
+            self.error(
+                codes::VALID,
+                format!("valid follows `{}`, which has more than one bit", signal.name()),
+            );
         } else if self.inner.borrow_mut().valid.replace((signal.id(), clocks)).is_some() {
-            self.error(format!("valid follows `{}` and another signal", signal.name()));
+            self.error(
+                codes::VALID,
+                format!("valid follows `{}` and another signal", signal.name()),
+            );
         }
     }
 
@@ -388,7 +402,10 @@ impl Designer {
     #[track_caller]
     pub fn buffer_operands(&self) {
         if self.with(|inner| inner.design.ports.iter().any(|it| it.role == Role::Strobe)) {
-            self.error("an operand is declared before its buffer is asked for".to_owned());
+            self.error(
+                codes::BUFFER,
+                "an operand is declared before its buffer is asked for".to_owned(),
+            );
             return;
         }
         let taken = Driver::Op(Op::And(self.start, self.idle));
@@ -433,7 +450,7 @@ impl Designer {
                 Some(_) => "nothing executes the parts: state `dataflow()` behind them",
                 None => "the design has no microprogram",
             };
-            self.report(Diagnostic::new(message.to_owned(), location));
+            self.report(Diagnostic::new(codes::MICROPROGRAM, message.to_owned(), location));
         }
         let inner = self.inner.into_inner();
         let registers_operand_logic = inner.registers_operand_logic;

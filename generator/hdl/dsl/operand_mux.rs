@@ -10,6 +10,7 @@ use std::cmp::Ordering;
 
 use super::{Designer, Select, SelectedProduct, Setting, Signal};
 use crate::netlist::{Driver, FieldId, Op};
+use glint_base::codes;
 use glint_base::fixed::Format;
 use glint_base::interval::{self, Interval, hull};
 
@@ -78,7 +79,7 @@ impl Designer {
     ) -> SharedProduct<'d> {
         let (alike, other) = ((first.field, first.delay), (second.field, second.delay));
         if alike != other || first.inputs.len() != second.inputs.len() {
-            self.error(format!(
+            self.error(codes::PRODUCT, format!(
                 "multiplier `{name}`: `{}` and `{}` must have as many inputs under the same select lines, both held or neither",
                 first.name, second.name
             ));
@@ -198,12 +199,15 @@ impl<'d> SharedProduct<'d> {
             let found =
                 self.pairs.iter().position(|(a, b)| a.id() == first.id() && b.id() == second.id());
             let Some(at) = found else {
-                d.error(format!(
-                    "`{}` never multiplies `{}` by `{}`",
-                    self.out.name(),
-                    first.name(),
-                    second.name()
-                ));
+                d.error(
+                    codes::PRODUCT,
+                    format!(
+                        "`{}` never multiplies `{}` by `{}`",
+                        self.out.name(),
+                        first.name(),
+                        second.name()
+                    ),
+                );
                 continue;
             };
             values.push(at as u64);
@@ -215,7 +219,7 @@ impl<'d> SharedProduct<'d> {
             return self.out;
         };
         if points.iter().any(|point| *point != frac) {
-            d.error(format!(
+            d.error(codes::POINT, format!(
                 "the products of `{}` that are taken together have {points:?} fraction bits: append zeros to an operand",
                 self.out.name()
             ));

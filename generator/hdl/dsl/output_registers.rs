@@ -6,6 +6,7 @@
 use super::program::{Kind, Program, Step};
 use super::{Designer, Setting, hold, step, valid};
 use crate::netlist::{Design, Driver, FieldKind, NetId, Op, RegisterKind, Role};
+use glint_base::codes;
 use glint_base::diagnostic::Diagnostic;
 
 /// Inserts the registers, and the microinstructions that they take.
@@ -85,7 +86,7 @@ fn loaded(d: &Designer, steps: &mut Vec<Step>, load: &Setting) {
                      registers before it goes on. Let another microinstruction decide, or leave output.registered out",
                     steps[at].name
                 );
-                d.report(Diagnostic::new(message, steps[at].location));
+                d.report(Diagnostic::new(codes::OUTPUT_REGISTER, message, steps[at].location));
                 return;
             }
             let after = steps[at].divided();

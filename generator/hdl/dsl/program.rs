@@ -8,6 +8,7 @@ use super::{Designer, Signal};
 use crate::netlist::{
     Driver, FieldId, FieldKind, Microinstruction, NetId, Op, Partition, Sequence,
 };
+use glint_base::codes;
 use glint_base::diagnostic::{Diagnostic, SourceLocation};
 
 /// The setting of one field, or of the successor, in a microinstruction.
@@ -103,7 +104,7 @@ impl Setting {
     fn picked(d: &Designer, field: FieldId, mux: &str, input: Signal<'_>, found: &[usize]) -> Self {
         let [at] = found else {
             let how = if found.is_empty() { "is no input" } else { "is more than one input" };
-            d.error(format!("`{}` {how} of `{mux}`", input.name()));
+            d.error(codes::PICK, format!("`{}` {how} of `{mux}`", input.name()));
             return Self::sequence(Kind::Wrong);
         };
         let what = format!("{mux}.pick({})", input.name());
@@ -188,7 +189,7 @@ pub(crate) fn assemble(d: &Designer, program: &Program) {
     let steps = &program.steps;
     if steps.len() < 2 {
         d.report(Diagnostic::new(
-            "a microprogram needs at least two microinstructions: one that waits for start, one that ends"
+            codes::MICROPROGRAM, "a microprogram needs at least two microinstructions: one that waits for start, one that ends"
                 .to_owned(),
             program.location,
         ));
@@ -264,7 +265,7 @@ fn foreign(d: &Designer, steps: &[Step]) -> bool {
                 "microinstruction `{}`: {what} belongs to the designer of `{name}`, not to that of `{}`",
                 step.name, own.1
             );
-            d.report(Diagnostic::new(message, setting.location));
+            d.report(Diagnostic::new(codes::FOREIGN, message, setting.location));
             any = true;
         }
     }
@@ -295,7 +296,7 @@ fn sequence(d: &Designer, steps: &[Step], step: &Step) -> Sequence {
                          computation alone empties: leave operands.buffered out",
                         step.name
                     );
-                    d.report(Diagnostic::new(message, setting.location));
+                    d.report(Diagnostic::new(codes::BUFFER, message, setting.location));
                 }
                 Sequence::WaitStart
             }
@@ -304,6 +305,7 @@ fn sequence(d: &Designer, steps: &[Step], step: &Step) -> Sequence {
                 if d.net(*condition).format.width() != 1 {
                     let name = d.net(*condition).name;
                     d.report(Diagnostic::new(
+                        codes::WIDTH,
                         format!(
                             "microinstruction `{}`: the condition `{name}` has more than one bit",
                             step.name
@@ -315,7 +317,7 @@ fn sequence(d: &Designer, steps: &[Step], step: &Step) -> Sequence {
                     Some(to) => Sequence::LoopWhile { condition: *condition, to },
                     None => {
                         d.report(Diagnostic::new(
-                            format!(
+                            codes::SUCCESSOR, format!(
                                 "microinstruction `{}` goes to `{to}`, but no microinstruction has that name",
                                 step.name
                             ),
@@ -332,6 +334,7 @@ fn sequence(d: &Designer, steps: &[Step], step: &Step) -> Sequence {
         {
             d.report(
                 Diagnostic::new(
+                    codes::SUCCESSOR,
                     format!("microinstruction `{}` states two successors", step.name),
                     setting.location,
                 )
@@ -359,6 +362,7 @@ fn microinstructions(
         {
             d.report(
                 Diagnostic::new(
+                    codes::NAME_TWICE,
                     format!("two microinstructions are named `{}`", step.name),
                     step.location,
                 )
@@ -383,7 +387,7 @@ fn microinstructions(
                     Some(field) => (field, 1, "valid"),
                     None => {
                         d.report(Diagnostic::new(
-                            format!(
+                            codes::VALID, format!(
                                 "microinstruction `{}` raises valid, which follows a signal in this design",
                                 step.name
                             ),
@@ -399,7 +403,7 @@ fn microinstructions(
             {
                 d.report(
                     Diagnostic::new(
-                        format!("microinstruction `{}`: `{what}` clashes with `{other_what}`: they share select lines", step.name),
+                        codes::CLASH, format!("microinstruction `{}`: `{what}` clashes with `{other_what}`: they share select lines", step.name),
                         setting.location,
                     )
                     .note("the other".to_owned(), location),

@@ -2,6 +2,7 @@
 
 use super::{Designer, Setting, Signal};
 use crate::netlist::{Driver, FieldId, FieldKind, NetId, Op, RegisterKind, Role};
+use glint_base::codes;
 use glint_base::fixed::Format;
 use glint_base::interval::Interval;
 
@@ -283,6 +284,7 @@ impl<'d> Register<'d> {
         let taken = |id| d.with(|inner| inner.design.register(id).data.is_some());
         if matches!(net.driver, Driver::Register(id) if taken(id)) {
             d.error_at(
+                codes::TWO_DRIVERS,
                 format!("`{}` has two drivers: `{}` is the second", net.name, data.name()),
                 [("the register", net.location)],
             );
@@ -345,9 +347,12 @@ impl<'d> Select<'d> {
     pub(crate) fn check_inputs(self, name: &str, inputs: usize) {
         let choices = self.choices().len();
         if inputs != choices {
-            self.designer.error(format!(
-                "mux `{name}` has {inputs} inputs, but its select lines have {choices} choices"
-            ));
+            self.designer.error(
+                codes::WIDTH,
+                format!(
+                    "mux `{name}` has {inputs} inputs, but its select lines have {choices} choices"
+                ),
+            );
         }
     }
 }

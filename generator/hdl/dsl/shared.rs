@@ -6,6 +6,7 @@ use super::{Designer, Inner, Signal};
 use crate::netlist::{
     Driver, Field, FieldId, FieldKind, Net, NetId, Partition, Port, RegisterKind, Role,
 };
+use glint_base::codes::{self, Code};
 use glint_base::diagnostic::{Diagnostic, SourceLocation};
 use glint_base::fixed::{Format, MAX_POINT, MAX_WIDTH};
 use glint_base::interval::Interval;
@@ -78,11 +79,14 @@ impl Designer {
         let width = i64::from(format.int) + i64::from(format.frac) + i64::from(format.signed);
         let point = format.frac.clamp(-MAX_POINT, MAX_POINT);
         if !(1..=i64::from(MAX_WIDTH)).contains(&width) {
-            self.error(format!(
-                "`{name}` would be {width} bits wide ({format}); a net has 1 to {MAX_WIDTH}"
-            ));
+            self.error(
+                codes::WIDE,
+                format!(
+                    "`{name}` would be {width} bits wide ({format}); a net has 1 to {MAX_WIDTH}"
+                ),
+            );
         } else if point != format.frac {
-            self.error(format!(
+            self.error(codes::WIDE, format!(
                 "`{name}` would have {} fraction bits ({format}); -{MAX_POINT} to {MAX_POINT} are possible",
                 format.frac
             ));
@@ -168,12 +172,15 @@ impl Designer {
             return self.signal(signal.id());
         }
         let name = |designer: &Self| designer.with(|inner| inner.design.name.clone());
-        self.error(format!(
-            "`{}` is a signal of the designer of `{}`, and not of that of `{}`",
-            signal.name(),
-            name(other),
-            name(self)
-        ));
+        self.error(
+            codes::FOREIGN,
+            format!(
+                "`{}` is a signal of the designer of `{}`, and not of that of `{}`",
+                signal.name(),
+                name(other),
+                name(self)
+            ),
+        );
         let driver = Driver::Constant(0);
         self.signal(self.add_wiring(&signal.name(), signal.format(), signal.range(), driver))
     }
@@ -193,7 +200,7 @@ impl Designer {
     pub(crate) fn fitted(&self, source: Signal<'_>, format: Format, what: &str) -> Option<NetId> {
         let (low, high) = source.range();
         if source.format().frac != format.frac || !format.holds(low) || !format.holds(high) {
-            self.error(format!(
+            self.error(codes::FORMAT, format!(
                 "{what} is {format}, but `{}` is {} with values from {low} to {high} ulp: narrow it or change the format",
                 source.name(),
                 source.format(),
@@ -204,17 +211,18 @@ impl Designer {
     }
 
     #[track_caller]
-    pub(crate) fn error(&self, message: String) {
-        self.report(Diagnostic::new(message, Location::caller()));
+    pub(crate) fn error(&self, code: Code, message: String) {
+        self.report(Diagnostic::new(code, message, Location::caller()));
     }
 
     #[track_caller]
     pub(crate) fn error_at<const N: usize>(
         &self,
+        code: Code,
         message: String,
         notes: [(&str, SourceLocation); N],
     ) {
-        let mut diagnostic = Diagnostic::new(message, Location::caller());
+        let mut diagnostic = Diagnostic::new(code, message, Location::caller());
         for (note, location) in notes {
             diagnostic = diagnostic.note(note.to_owned(), location);
         }

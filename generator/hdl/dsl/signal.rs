@@ -2,6 +2,7 @@
 
 use super::{Designer, Setting};
 use crate::netlist::{Driver, FieldId, NetId, Op, Topic};
+use glint_base::codes;
 use glint_base::fixed::Format;
 use glint_base::interval::{self, Interval, hull};
 
@@ -101,10 +102,13 @@ impl<'d> Signal<'d> {
             return self;
         }
         if places < 0 {
-            self.designer.error(format!(
-                "`{}` is {format}: {frac} fraction bits would drop some; narrow it",
-                self.name()
-            ));
+            self.designer.error(
+                codes::POINT,
+                format!(
+                    "`{}` is {format}: {frac} fraction bits would drop some; narrow it",
+                    self.name()
+                ),
+            );
             return self;
         }
         let name = format!("{}_scaled", self.name());
@@ -131,11 +135,14 @@ impl<'d> Signal<'d> {
         let name = format!("{}_bits", self.name());
         let format = self.designer.sound(&name, format);
         if low.saturating_add(format.width()) > have {
-            self.designer.error(format!(
-                "bits {low} to {} of `{}`, which has {have}",
-                u64::from(low) + u64::from(format.width()) - 1,
-                self.name()
-            ));
+            self.designer.error(
+                codes::WIDTH,
+                format!(
+                    "bits {low} to {} of `{}`, which has {have}",
+                    u64::from(low) + u64::from(format.width()) - 1,
+                    self.name()
+                ),
+            );
             return self.designer.raw_constant("zeros", 0, format);
         }
         // All bits of a value that is never negative are still within its range.
@@ -162,11 +169,14 @@ impl<'d> Signal<'d> {
         let name = format!("{}_above", self.name());
         let format = self.designer.sound(&name, format);
         if width != format.width() {
-            self.designer.error(format!(
-                "`{}` above `{}` is {width} bits, which is not {format}",
-                self.name(),
-                low.name()
-            ));
+            self.designer.error(
+                codes::WIDTH,
+                format!(
+                    "`{}` above `{}` is {width} bits, which is not {format}",
+                    self.name(),
+                    low.name()
+                ),
+            );
             return self.designer.raw_constant("zeros", 0, format);
         }
         let op = Op::Concat(vec![self.id, low.id]);
@@ -261,7 +271,7 @@ impl Designer {
         let (a, b, carry) = (self.own(a), self.own(b), self.own_all(carry.as_slice()).pop());
         let format = a.format();
         if format != b.format() {
-            self.error(format!(
+            self.error(codes::WIDTH, format!(
                 "`{name}` adds `{}` ({format}) and `{}` ({}) modulo the width: the formats must be equal",
                 a.name(),
                 b.name(),
@@ -321,7 +331,7 @@ impl Designer {
         for part in [&mut high, &mut low] {
             let have = part.format();
             if have.signed {
-                self.error(format!(
+                self.error(codes::SIGN, format!(
                     "`{name}` puts `{}`, which is {have}, beside other bits as a number without a sign: read its bits as one \
                      (`read_as`), or join them (`join`)",
                     part.name()
@@ -358,10 +368,10 @@ impl Designer {
         let width: u32 = parts.iter().map(|part| part.format().width()).sum();
         let format = self.sound(name, format);
         if width != format.width() {
-            self.error(format!(
-                "`{name}` joins {width} bits to a word of {} ({format})",
-                format.width()
-            ));
+            self.error(
+                codes::WIDTH,
+                format!("`{name}` joins {width} bits to a word of {} ({format})", format.width()),
+            );
             return self.raw_constant("zeros", 0, format);
         }
         // Side by side, unsigned parts are the larger the larger each is.
@@ -463,12 +473,12 @@ impl Designer {
     fn mux_of<'d>(&'d self, name: &str, select: NetId, inputs: &[Signal<'d>]) -> Signal<'d> {
         let inputs = self.own_all(inputs);
         let Some(first) = inputs.first() else {
-            self.error(format!("mux `{name}` has no inputs"));
+            self.error(codes::WIDTH, format!("mux `{name}` has no inputs"));
             return self.raw_constant("zeros", 0, Format::BIT);
         };
         let frac = first.format().frac;
         if let Some(other) = inputs.iter().find(|input| input.format().frac != frac) {
-            self.error(format!(
+            self.error(codes::POINT, format!(
                 "mux `{name}`: `{}` is {} and `{}` is {}; their points differ (with_fraction aligns them, a bus carries both)",
                 first.name(),
                 first.format(),
@@ -488,7 +498,10 @@ impl Designer {
     fn one_bit(&self, a: Signal<'_>) -> NetId {
         let a = self.own(a);
         if a.format().width() != 1 {
-            self.error(format!("`{}` is {}: one bit is wanted here", a.name(), a.format()));
+            self.error(
+                codes::WIDTH,
+                format!("`{}` is {}: one bit is wanted here", a.name(), a.format()),
+            );
         }
         a.id()
     }

@@ -5,6 +5,7 @@
 use std::collections::HashMap;
 
 use super::{Design, Driver, FieldKind, NetId, Op, Role, Sequence};
+use glint_base::codes;
 use glint_base::diagnostic::{Diagnostic, SourceLocation};
 use glint_base::fixed::{MAX_WIDTH, mask};
 use glint_base::identifier;
@@ -43,7 +44,7 @@ impl Design {
         let mut missing = |index: usize, count: usize, what: &str, location: SourceLocation| {
             if index >= count {
                 let message = format!("{what} {index} is referred to, but there are {count}");
-                found.push(Diagnostic::new(message, location));
+                found.push(Diagnostic::new(codes::REFERENCE, message, location));
             }
         };
         let nets = self.nets.len();
@@ -84,7 +85,7 @@ impl Design {
             if !(1..=i64::from(MAX_WIDTH)).contains(&width) {
                 let message =
                     format!("`{}` is {width} bits wide; {MAX_WIDTH} is the most", net.name);
-                found.push(Diagnostic::new(message, net.location));
+                found.push(Diagnostic::new(codes::WIDE, message, net.location));
             }
         }
     }
@@ -96,14 +97,14 @@ impl Design {
         for (name, location) in nets.chain(roms) {
             if name == "clk" {
                 let message = "`clk` is the clock of every design; choose another name";
-                found.push(Diagnostic::new(message.to_owned(), location));
+                found.push(Diagnostic::new(codes::NAME, message.to_owned(), location));
             } else if let Err(why) = identifier::check(name) {
                 let message = format!("`{name}` cannot be a Verilog name: {why}");
-                found.push(Diagnostic::new(message, location));
+                found.push(Diagnostic::new(codes::NAME, message, location));
             }
             if let Some(first) = seen.insert(name, location) {
                 let message = format!("the name `{name}` is used twice");
-                let diagnostic = Diagnostic::new(message, location);
+                let diagnostic = Diagnostic::new(codes::NAME_TWICE, message, location);
                 found.push(diagnostic.note("the first".to_owned(), first));
             }
         }
@@ -111,7 +112,7 @@ impl Design {
             && let Some(net) = self.nets.first()
         {
             let message = format!("`{}` cannot be the name of a Verilog module: {why}", self.name);
-            found.push(Diagnostic::new(message, net.location));
+            found.push(Diagnostic::new(codes::NAME, message, net.location));
         }
     }
 
@@ -139,18 +140,20 @@ impl Design {
                 }
                 _ => None,
             };
-            found.extend(wrong.map(|message| Diagnostic::new(message, net.location)));
+            found.extend(
+                wrong.map(|message| Diagnostic::new(codes::UNDRIVEN, message, net.location)),
+            );
         }
         let has_reset = self.port(|role| role == Role::Reset).is_some();
         for register in &self.registers {
             let net = self.net(register.q);
             if register.data.is_none() {
                 let message = format!("nothing drives the data input of register `{}`", net.name);
-                found.push(Diagnostic::new(message, net.location));
+                found.push(Diagnostic::new(codes::UNDRIVEN, message, net.location));
             }
             if register.reset.is_some() && !has_reset {
                 let message = format!("`{}` is reset, but no port is the reset", net.name);
-                found.push(Diagnostic::new(message, net.location));
+                found.push(Diagnostic::new(codes::REFERENCE, message, net.location));
             }
         }
     }
@@ -161,7 +164,7 @@ impl Design {
                 path.iter().rev().map(|&id| self.net(id).name.as_str()).collect();
             names.extend(names.first().copied());
             let message = format!("combinational loop: `{}`", names.join("` -> `"));
-            found.push(Diagnostic::new(message, self.net(path[0]).location));
+            found.push(Diagnostic::new(codes::LOOP, message, self.net(path[0]).location));
         }
     }
 
@@ -173,7 +176,7 @@ impl Design {
                     "`{}` is {}, but takes values from {low} to {high} ulp",
                     net.name, net.format
                 );
-                found.push(Diagnostic::new(message, net.location));
+                found.push(Diagnostic::new(codes::FORMAT, message, net.location));
             }
             if let Driver::Op(op) = &net.driver
                 && let Err(why) = self.cell(id, op)
@@ -191,18 +194,18 @@ impl Design {
                     op.mnemonic(),
                     operands.join(", ")
                 );
-                found.push(Diagnostic::new(message, net.location));
+                found.push(Diagnostic::new(codes::WIDTH, message, net.location));
             }
         }
         for register in &self.registers {
             let net = self.net(register.q);
             if register.data.is_some_and(|data| self.width(data) != self.width(register.q)) {
                 let message = format!("register `{}` and its data differ in width", net.name);
-                found.push(Diagnostic::new(message, net.location));
+                found.push(Diagnostic::new(codes::WIDTH, message, net.location));
             }
             if register.enable.is_some_and(|enable| self.width(enable) != 1) {
                 let message = format!("the enable of register `{}` is not one bit", net.name);
-                found.push(Diagnostic::new(message, net.location));
+                found.push(Diagnostic::new(codes::WIDTH, message, net.location));
             }
         }
     }
@@ -262,16 +265,16 @@ impl Design {
             let width = self.width(rom.data);
             if let Some(at) = rom.words.iter().position(|&word| word & !mask(width) != 0) {
                 let message = format!("ROM `{}`: word {at} does not fit {width} bits", rom.name);
-                found.push(Diagnostic::new(message, rom.location));
+                found.push(Diagnostic::new(codes::FORMAT, message, rom.location));
             }
             if rom.enable.is_some_and(|enable| self.width(enable) != 1) {
                 let message = format!("the enable of ROM `{}` is not one bit", rom.name);
-                found.push(Diagnostic::new(message, rom.location));
+                found.push(Diagnostic::new(codes::WIDTH, message, rom.location));
             }
             let (comments, words) = (rom.comments.len(), rom.words.len());
             if comments != 0 && comments != words {
                 let message = format!("ROM `{}`: {comments} comments for {words} words", rom.name);
-                found.push(Diagnostic::new(message, rom.location));
+                found.push(Diagnostic::new(codes::REFERENCE, message, rom.location));
             }
         }
         let fields = self.control.fields.iter();
@@ -281,7 +284,7 @@ impl Design {
             let word = self.width(rom.data);
             if wide > word {
                 let message = format!("the fields take {wide} bits of a control word of {word}");
-                found.push(Diagnostic::new(message, rom.location));
+                found.push(Diagnostic::new(codes::WIDTH, message, rom.location));
             }
         }
     }
@@ -296,7 +299,7 @@ impl Design {
                 if let Some(last) = microprogram.last() {
                     let message =
                         format!("the last microinstruction, `{}`, does not end", last.name);
-                    found.push(Diagnostic::new(message, last.location));
+                    found.push(Diagnostic::new(codes::SUCCESSOR, message, last.location));
                 }
                 continue;
             };
@@ -308,7 +311,7 @@ impl Design {
             if !reached {
                 let message =
                     format!("microinstruction `{}` cannot be reached", microinstruction.name);
-                found.push(Diagnostic::new(message, microinstruction.location));
+                found.push(Diagnostic::new(codes::SUCCESSOR, message, microinstruction.location));
             }
         }
         if let Some(idle) = microprogram.first() {
@@ -317,7 +320,7 @@ impl Design {
                     "microinstruction `{}`, in which the device waits for start, must go on to the next",
                     idle.name
                 );
-                found.push(Diagnostic::new(message, idle.location));
+                found.push(Diagnostic::new(codes::IDLE, message, idle.location));
             }
             for (field, value) in control.fields.iter().zip(&idle.values) {
                 if *value != 0 && matches!(field.kind, FieldKind::Enable | FieldKind::Flag) {
@@ -325,7 +328,7 @@ impl Design {
                         "microinstruction `{}` sets `{}`, but the device also waits for start in it",
                         idle.name, field.name
                     );
-                    found.push(Diagnostic::new(message, idle.location));
+                    found.push(Diagnostic::new(codes::IDLE, message, idle.location));
                 }
             }
         }
@@ -334,7 +337,11 @@ impl Design {
                 && microprogram.iter().all(|microinstruction| microinstruction.values[at] == 0)
             {
                 let message = format!("no microinstruction sets `{}`", field.name);
-                found.push(Diagnostic::new(message, self.net(field.net).location));
+                found.push(Diagnostic::new(
+                    codes::UNUSED_CONTROL,
+                    message,
+                    self.net(field.net).location,
+                ));
             }
         }
     }

@@ -22,6 +22,7 @@ use super::graph::{Cell, Graph, Label, NodeId, Op};
 use super::possible;
 use super::settle::settled;
 use crate::netlist::{Design, Net, NetId, RegId, RegisterKind, Role, Sequence};
+use glint_base::codes;
 use glint_base::diagnostic::{Diagnostic, Diagnostics};
 use glint_base::fixed::Format;
 
@@ -120,6 +121,7 @@ fn executed(
         let place =
             design.control.microprogram.last().map_or(design.nets[0].location, |it| it.location);
         return Err(Diagnostic::new(
+            codes::UNROLL,
             "no microinstruction sets `valid`: a pipeline needs to know when the results are there"
                 .to_owned(),
             place,
@@ -413,6 +415,7 @@ impl<'a> Executor<'a> {
     fn cannot(&self, address: usize, why: &str) -> Diagnostic {
         let microinstruction = &self.design.control.microprogram[address];
         Diagnostic::new(
+            codes::UNROLL,
             format!(
                 "`{}` cannot be a pipeline: the microinstruction `{}` {why}",
                 self.design.name, microinstruction.name
@@ -428,6 +431,7 @@ impl<'a> Executor<'a> {
             for id in graph.cone([value]) {
                 if let Cell::Unknown(register) = &graph.node(id).cell {
                     return Err(Diagnostic::new(
+                        codes::UNROLL,
                         format!(
                             "`{}` {what}: `{}` depends on what `{register}` held before the computation; load \
                              `{register}` in each before it is read",

@@ -3,7 +3,9 @@
 mod instances;
 mod microprogram;
 
+use std::fs;
 use std::panic::Location;
+use std::path::PathBuf;
 
 use glint::config::Config;
 use glint::dsl::{Designer, Setting, end, loop_while, step, valid};
@@ -54,6 +56,48 @@ fn mistakes(wrong: impl FnOnce(&Designer)) -> Found {
         wrong(d);
         vec![step("idle", []), step("load", [load]), step("result", [valid(), end()])]
     })
+}
+
+/// Each code has its page and is reported somewhere; no page is left over.
+#[test]
+fn every_code_has_its_page() {
+    let declared = fs::read_to_string("generator/base/codes.rs").expect("the codes");
+    let codes = declared.lines().filter_map(|line| {
+        let (name, number) = line.strip_prefix("pub const ")?.split_once(": Code = Code(")?;
+        Some((name, format!("G{:0>4}", number.strip_suffix(");")?)))
+    });
+    let codes: Vec<_> = codes.collect();
+    let pages: Vec<_> = glint::base::codes::pages().collect();
+    let paged: Vec<&str> = pages.iter().map(|page| page.0).collect();
+    assert_eq!(codes.iter().map(|it| it.1.as_str()).collect::<Vec<_>>(), paged);
+    assert!(pages.len() > 20 && pages.iter().all(|page| page.2.len() > 100), "{pages:?}");
+    let sources = sources("generator/hdl");
+    for (name, code) in codes {
+        assert!(sources.contains(&format!("codes::{name},")), "{code} is never reported");
+    }
+}
+
+/// The Rust below a directory, one file behind the other.
+fn sources(directory: &str) -> String {
+    let entries = fs::read_dir(directory).expect("a directory");
+    let paths = entries.map(|entry| entry.expect("an entry").path());
+    let text = |path: PathBuf| match path.is_dir() {
+        true => sources(&path.display().to_string()),
+        false => fs::read_to_string(path).unwrap_or_default(),
+    };
+    paths.map(text).collect()
+}
+
+#[test]
+fn a_mistake_names_its_code_and_the_command_that_explains_it() {
+    let d = Designer::new("device");
+    let wrong = d.finish().expect_err("no microprogram");
+    let text = wrong.to_string();
+    assert!(
+        text.starts_with("error[G0401]: the design has no microprogram\n  --> tests/"),
+        "{text}"
+    );
+    assert!(text.ends_with("\n`glint explain G0401` says more"), "{text}");
 }
 
 #[test]

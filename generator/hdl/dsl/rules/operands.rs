@@ -3,6 +3,7 @@
 use std::collections::HashSet;
 
 use crate::netlist::{Design, Driver, NetId, Role};
+use glint_base::codes;
 use glint_base::cone::reached;
 use glint_base::diagnostic::Diagnostic;
 
@@ -14,7 +15,7 @@ pub(super) fn check(design: &Design) -> Vec<Diagnostic> {
         if !used.contains(&port.net) {
             let net = design.net(port.net);
             let message = format!("operand `{}` is not used: no output depends on it", net.name);
-            found.push(Diagnostic::new(message, net.location));
+            found.push(Diagnostic::new(codes::UNUSED, message, net.location));
         }
     }
     found

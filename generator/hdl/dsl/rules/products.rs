@@ -4,6 +4,7 @@ use std::collections::{HashMap, HashSet};
 
 use super::SelectedProduct;
 use crate::netlist::{Design, Driver, FieldKind, NetId, Op, setting_of};
+use glint_base::codes;
 use glint_base::diagnostic::Diagnostic;
 
 /// Registers of `design` that are loaded with a product under a selection that means another one; `views` are the
@@ -106,6 +107,6 @@ impl Checker<'_> {
             wanted.join(") or ("),
             choice(under.values[view.field.index()]),
         );
-        Diagnostic::new(message, under.location)
+        Diagnostic::new(codes::PRODUCT, message, under.location)
     }
 }

@@ -7,6 +7,7 @@ use crate::netlist::{
     Control, Design, Driver, FieldId, FieldKind, NetId, Op, RegId, RegisterKind, Role, Sequence,
     setting_of,
 };
+use glint_base::codes;
 use glint_base::cone::reached;
 use glint_base::diagnostic::Diagnostic;
 
@@ -32,7 +33,7 @@ fn silent(design: &Design) -> Option<Diagnostic> {
              it is",
             design.net(result.net).name
         );
-        Diagnostic::new(message, design.rom(control.rom).location)
+        Diagnostic::new(codes::VALID, message, design.rom(control.rom).location)
     })
 }
 
@@ -49,7 +50,11 @@ fn unpicked(design: &Design, picked: &HashSet<FieldId>) -> Vec<Diagnostic> {
                 field.name,
                 choices.join("`, `")
             );
-            found.push(Diagnostic::new(message, design.net(field.net).location));
+            found.push(Diagnostic::new(
+                codes::UNUSED_CONTROL,
+                message,
+                design.net(field.net).location,
+            ));
         }
     }
     found
@@ -82,7 +87,7 @@ fn early(design: &Design) -> Vec<Diagnostic> {
                 design.net(port.net).name
             );
             found.push(
-                Diagnostic::new(message, microinstruction.location)
+                Diagnostic::new(codes::VALID, message, microinstruction.location)
                     .note("the register".to_owned(), q.location),
             );
             break;
@@ -178,7 +183,7 @@ fn endless(design: &Design) -> Vec<Diagnostic> {
             microinstruction.name, control.microprogram[to].name, condition.name
         );
         found.push(
-            Diagnostic::new(message, microinstruction.location)
+            Diagnostic::new(codes::ENDLESS, message, microinstruction.location)
                 .note("the condition".to_owned(), condition.location),
         );
     }

@@ -4,6 +4,7 @@ use std::collections::HashSet;
 
 use super::operands::{read_by, used};
 use crate::netlist::{Design, Driver, FieldId, FieldKind, Net, NetId, Op, Partition};
+use glint_base::codes;
 use glint_base::cone::reached;
 use glint_base::diagnostic::Diagnostic;
 
@@ -31,7 +32,7 @@ fn dead(design: &Design) -> Vec<Diagnostic> {
         .into_iter()
         .filter(|(id, net)| matches!(net.driver, Driver::Register(_)) || !read.contains(id));
     let message = |net: &Net| format!("`{}` is not used: no output depends on it", net.name);
-    ends.map(|(_, net)| Diagnostic::new(message(net), net.location)).collect()
+    ends.map(|(_, net)| Diagnostic::new(codes::UNUSED, message(net), net.location)).collect()
 }
 
 /// Muxes that are selected by a constant, or whose inputs are all the same.
@@ -47,7 +48,7 @@ fn constant(design: &Design) -> Vec<Diagnostic> {
         if let Some(passed) = passed {
             let name = &design.net(*passed).name;
             let message = format!("`{}` always passes `{name}` on: it is no mux", net.name);
-            found.push(Diagnostic::new(message, net.location));
+            found.push(Diagnostic::new(codes::UNUSED, message, net.location));
         }
     }
     found
@@ -68,7 +69,11 @@ fn unmade(design: &Design, partly_used: &HashSet<FieldId>) -> Vec<Diagnostic> {
         if !names.is_empty() {
             let names = names.join("`, `");
             let message = format!("no microinstruction selects `{names}` by `{}`", field.name);
-            found.push(Diagnostic::new(message, design.net(field.net).location));
+            found.push(Diagnostic::new(
+                codes::UNUSED_CONTROL,
+                message,
+                design.net(field.net).location,
+            ));
         }
     }
     found

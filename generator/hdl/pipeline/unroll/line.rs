@@ -12,6 +12,7 @@
 use super::{Clock, Executor, Iterations, State, Unrolled};
 use crate::netlist::{Design, NetId, RegisterKind, Role, Sequence};
 use crate::pipeline::graph::{Cell, NodeId};
+use glint_base::codes;
 use glint_base::cone::reached;
 use glint_base::diagnostic::{Diagnostic, Diagnostics};
 
@@ -221,6 +222,7 @@ impl Points<'_> {
     fn cannot(&self, address: usize, why: &str) -> Diagnostic {
         let microinstruction = &self.executor.design.control.microprogram[address];
         Diagnostic::new(
+            codes::UNROLL,
             format!(
                 "the points of `{}` are not alike: the microinstruction `{}` {why}",
                 self.executor.design.name, microinstruction.name

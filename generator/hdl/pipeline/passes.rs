@@ -1,0 +1,78 @@
+//! The passes between an unrolled computation and its schedule: each makes the same values in other cells.
+//!
+//! A pass has its tests as files, `passes/<name>/*.txt`: a computation as text, and what the pass is to make of it.
+
+use super::Options;
+use super::gates::gated;
+use super::split::split;
+use super::unroll::Unrolled;
+use glint_base::target::Timing;
+
+/// A pass.
+pub struct Pass {
+    /// Its name, and that of the directory of its tests.
+    pub name: &'static str,
+    /// Whether a pipeline with these options has it.
+    pub applies: fn(&Options) -> bool,
+    /// Makes the computation anew.
+    pub run: fn(&Unrolled, &Timing) -> Unrolled,
+}
+
+/// All passes, in the order in which they run.
+pub static PASSES: [Pass; 2] = [
+    // Products no wider than the multipliers of the target, and sums as short as they can be.
+    Pass { name: "split", applies: |_| true, run: split },
+    // Gates in place of muxes with constants, where products have registers of their own.
+    Pass { name: "gates", applies: |options| options.registered, run: |it, _| gated(it) },
+];
+
+/// Runs the passes that the options ask for.
+pub fn applied(unrolled: Unrolled, options: &Options) -> Unrolled {
+    let passes = PASSES.iter().filter(|pass| (pass.applies)(options));
+    passes.fold(unrolled, |unrolled, pass| (pass.run)(&unrolled, options.target))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+    use std::path::Path;
+
+    use super::super::text::{computed, parsed, printed};
+    use super::PASSES;
+    use glint_base::target::TIMINGS;
+
+    /// Combinations of operands that are computed of a test.
+    const MOST: u64 = 1 << 16;
+
+    /// Every file: the pass makes what stands behind the arrow, and the results are the same for every operand.
+    #[test]
+    fn passes_make_what_their_files_say() {
+        let place = Path::new(env!("CARGO_MANIFEST_DIR")).join("pipeline/passes");
+        for pass in &PASSES {
+            let entries = fs::read_dir(place.join(pass.name)).expect("a directory of tests");
+            let mut count = 0;
+            for entry in entries {
+                let path = entry.expect("a file").path();
+                let text = fs::read_to_string(&path).expect("a test").replace("\r\n", "\n");
+                let at = path.display();
+                let (heading, rest) = text.split_once('\n').expect("a heading");
+                let target = heading.strip_prefix("target ").expect("a target");
+                let target = TIMINGS.iter().find(|it| it.name == target).expect("a target");
+                let (given, wanted) = rest.split_once("\n->\n").expect("an arrow");
+                let given = parsed(given).unwrap_or_else(|wrong| panic!("{at}: {wrong}"));
+                let made = (pass.run)(&given, target);
+                let said = printed(&made);
+                assert_eq!(said.trim(), wanted.trim(), "{at}: the pass makes\n{said}");
+                let operands = computed(&given, 0).1;
+                assert!(operands <= MOST, "{at}: {operands} combinations of operands are too many");
+                for combination in 0..operands {
+                    let (before, after) =
+                        (computed(&given, combination).0, computed(&made, combination).0);
+                    assert_eq!(before, after, "{at}: combination {combination}");
+                }
+                count += 1;
+            }
+            assert!(count > 0, "{} has no tests", pass.name);
+        }
+    }
+}

@@ -1,0 +1,171 @@
+//! Computations as text, for the tests of passes: a value a line, `name format [low, high] = operation operands`.
+//!
+//! A line without an operation is an operand; `constant` is followed by a bit pattern, `slice` by its value and the lowest bit,
+//! `mux` by the select and its inputs, `add` by a third operand where a carry comes in. The range stands there where it is not that
+//! of the format. The last lines are `result name`.
+
+use std::collections::{HashMap, HashSet};
+use std::fmt::Write;
+use std::panic::Location;
+
+use super::graph::{Cell, Graph, Label, NodeId, Op};
+use super::unroll::Unrolled;
+use crate::netlist::{NetId, eval};
+use glint_base::fixed::{Format, mask};
+
+/// Prints what the results need.
+pub fn printed(unrolled: &Unrolled) -> String {
+    let graph = &unrolled.graph;
+    let results = unrolled.results.iter().map(|it| it.1);
+    let (mut names, mut taken) = (HashMap::new(), HashSet::new());
+    let mut text = String::new();
+    for id in graph.cone(results.clone()) {
+        let node = graph.node(id);
+        let mut name = node.label.name.clone();
+        let mut number = 2;
+        while !taken.insert(name.clone()) {
+            name = format!("{}.{number}", node.label.name);
+            number += 1;
+        }
+        let operands = node.cell.operands().into_iter();
+        let operands: String = operands.map(|it| format!(" {}", names[&it])).collect();
+        let _ = write!(text, "{name} {}", node.format);
+        if node.range != node.format.range() && !matches!(node.cell, Cell::Constant(_)) {
+            let _ = write!(text, " [{}, {}]", node.range.0, node.range.1);
+        }
+        let _ = match &node.cell {
+            Cell::Op(Op::Slice { low, .. }) => writeln!(text, " = slice{operands} {low}"),
+            Cell::Op(op) => writeln!(text, " = {}{operands}", op.mnemonic()),
+            Cell::Constant(bits) => writeln!(text, " = constant {bits}"),
+            Cell::Read { rom, .. } => writeln!(text, " = read {}{operands}", rom.index()),
+            Cell::Operand(_) | Cell::Unknown(_) => writeln!(text),
+        };
+        names.insert(id, name);
+    }
+    for id in results {
+        let _ = writeln!(text, "result {}", names[&id]);
+    }
+    text
+}
+
+/// Reads a computation.
+///
+/// # Errors
+/// The line that is none.
+#[track_caller]
+pub fn parsed(text: &str) -> Result<Unrolled, String> {
+    let mut graph = Graph::default();
+    let mut names: HashMap<&str, NodeId> = HashMap::new();
+    let mut unrolled = Unrolled {
+        graph: Graph::default(),
+        operands: Vec::new(),
+        results: Vec::new(),
+        steps: Vec::new(),
+    };
+    for line in text.lines().filter(|line| !line.is_empty() && !line.starts_with('#')) {
+        let wrong = |what: &str| format!("`{line}`: {what}");
+        if let Some(name) = line.strip_prefix("result ") {
+            let id = *names.get(name).ok_or_else(|| wrong("no such value"))?;
+            unrolled.results.push((NetId(unrolled.results.len() as u32), id));
+            continue;
+        }
+        let (value, operation) = line.split_once(" = ").unwrap_or((line, ""));
+        let (value, range) = match value.split_once(" [") {
+            Some((value, range)) => {
+                let (low, high) = range
+                    .trim_end_matches(']')
+                    .split_once(", ")
+                    .ok_or_else(|| wrong("no range"))?;
+                (value, low.parse().ok().zip(high.parse().ok()))
+            }
+            None => (value, None),
+        };
+        let (name, format) = value.split_once(' ').ok_or_else(|| wrong("no format"))?;
+        let format: Format = format.parse()?;
+        let range = range.unwrap_or_else(|| format.range());
+        let label = Label {
+            name: name.to_owned(),
+            doc: String::new(),
+            block: None,
+            named: true,
+            part_of: None,
+            location: Location::caller(),
+        };
+        let mut words = operation.split_whitespace();
+        let operation = words.next();
+        let numbers: Vec<Option<u64>> = words.clone().map(|word| word.parse().ok()).collect();
+        let operands: Vec<Option<NodeId>> = words.map(|word| names.get(word).copied()).collect();
+        let of =
+            |at: usize| operands.get(at).copied().flatten().ok_or_else(|| wrong("no such value"));
+        let number =
+            |at: usize| numbers.get(at).copied().flatten().ok_or_else(|| wrong("no number"));
+        let op = match operation {
+            None => {
+                let cell = Cell::Operand(unrolled.operands.len());
+                unrolled.operands.push(NetId(unrolled.operands.len() as u32));
+                names.insert(name, graph.leaf(cell, format, range, &label));
+                continue;
+            }
+            Some("constant") => {
+                names.insert(name, graph.constant(number(0)?, format, &label));
+                continue;
+            }
+            Some("relabel") => Op::Relabel(of(0)?),
+            Some("extend") => Op::Extend(of(0)?),
+            Some("slice") => Op::Slice { of: of(0)?, low: number(1)? as u32 },
+            Some("concat") => Op::Concat((0..operands.len()).map(of).collect::<Result<_, _>>()?),
+            Some("not") => Op::Not(of(0)?),
+            Some("and") => Op::And(of(0)?, of(1)?),
+            Some("or") => Op::Or(of(0)?, of(1)?),
+            Some("xor") => Op::Xor(of(0)?, of(1)?),
+            Some("add") => {
+                let carry = (operands.len() > 2).then(|| of(2)).transpose()?;
+                Op::Add { a: of(0)?, b: of(1)?, carry }
+            }
+            Some("sub") => Op::Sub(of(0)?, of(1)?),
+            Some("mul") => Op::Mul(of(0)?, of(1)?),
+            Some("equal") => Op::Equal(of(0)?, of(1)?),
+            Some("less") => Op::Less(of(0)?, of(1)?),
+            Some("any") => Op::Any(of(0)?),
+            Some("all") => Op::All(of(0)?),
+            Some("mux") => Op::Mux {
+                select: of(0)?,
+                inputs: (1..operands.len()).map(of).collect::<Result<_, _>>()?,
+            },
+            Some(_) => return Err(wrong("no such operation")),
+        };
+        let id = graph.op(op, format, &label);
+        names.insert(name, graph.refine(id, range));
+    }
+    unrolled.graph = graph;
+    Ok(unrolled)
+}
+
+/// Returns the results for a combination of operands, by its number, as bit patterns, and how many combinations there are.
+/// Operands outside their ranges are taken from within.
+pub fn computed(unrolled: &Unrolled, combination: u64) -> (Vec<u64>, u64) {
+    let graph = &unrolled.graph;
+    let mut values: HashMap<NodeId, [u64; 1]> = HashMap::new();
+    let mut combinations = 1;
+    for (at, node) in graph.nodes.iter().enumerate() {
+        let id = NodeId(at as u32);
+        let bits = match &node.cell {
+            Cell::Operand(_) => {
+                let (low, high) = node.range;
+                let count = (high - low + 1) as u64;
+                let raw = low + i128::from(combination / combinations % count);
+                combinations *= count;
+                node.format.bits(raw)
+            }
+            Cell::Constant(bits) => *bits,
+            Cell::Op(op) => {
+                let width = node.format.width();
+                eval::cell(op, width, &|it| graph.node(it).format, &|it| &values[&it])[0]
+                    & mask(width)
+            }
+            Cell::Read { .. } | Cell::Unknown(_) => 0,
+        };
+        values.insert(id, [bits]);
+    }
+    (unrolled.results.iter().map(|(_, id)| values[id][0]).collect(), combinations)
+}
