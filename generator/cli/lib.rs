@@ -82,7 +82,7 @@ macro_rules! commands {
 commands! {
     Generate generate; Cosim cosim; Merge merge; Worst worst; Mutate mutate; Eval eval; Setup setup;
     Describe describe; Schedule schedule; Synth synth; Tune tune; Certify certify;
-    Datasheet datasheet; Compare compare; Render render; Report report; Verify verify;
+    Datasheet datasheet; Compare compare; Render render; Verify verify;
     List list; New new; Schema schema; Explain explain;
 }
 

@@ -25,6 +25,7 @@ mod multipliers;
 mod operand_buffers;
 mod output_registers;
 mod pages;
+mod papers;
 mod pipelines;
 mod proofs;
 mod registers;

@@ -31,10 +31,7 @@ const EVERYWHERE: [&str; 10] = [
 ];
 
 /// Where devices may be known by name.
-const NAMING: [&str; 5] = ["keys/", "catalogue/", "golden/", "core/registry.rs", "show/evidence/"];
-
-/// And with them: what the report says of Schlick's function.
-const ALSO_NAMING: [&str; 1] = ["show/pages/report.rs"];
+const NAMING: [&str; 4] = ["keys/", "catalogue/", "golden/", "core/registry.rs"];
 
 #[test]
 fn rooms_of_a_crate_import_only_what_stands_below_them() {
@@ -112,8 +109,7 @@ fn devices_are_known_by_name_where_they_are_described_predicted_and_weighed() {
     // The examples in the help of a command.
     let examples = Regex::new(r#"(?s)#\[command\(after_help = ".*?"\)\]"#).unwrap();
     for (file, code) in sources() {
-        let naming = NAMING.iter().any(|place| file.starts_with(place));
-        if naming || ALSO_NAMING.contains(&file.as_str()) {
+        if NAMING.iter().any(|place| file.starts_with(place)) {
             continue;
         }
         // cosⁿγ is Blinn's function, whichever device computes it.

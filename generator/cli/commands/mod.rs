@@ -16,7 +16,6 @@ mod mismatch;
 pub mod mutate;
 pub mod new;
 pub mod render;
-pub mod report;
 mod rows;
 pub mod schedule;
 pub mod schema;

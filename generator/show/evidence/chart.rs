@@ -1,4 +1,4 @@
-//! A chart as data: what is plotted, tabulated and written to `report.json`.
+//! A chart as data: what is plotted and tabulated.
 
 use serde::Serialize;
 

@@ -1,15 +1,14 @@
-//! Pages for people: the page of a device, its datasheet, the report.
+//! Pages for people: the page of a device, its datasheet.
 
 pub mod account;
 pub mod datasheet;
 pub mod diagram;
 pub mod drawing;
 pub mod figure;
-mod formula;
+pub mod formula;
 mod markdown;
 mod markup;
 pub mod plots;
-pub mod report;
 pub mod stages;
 
 pub use account::PageInputs;

@@ -150,10 +150,9 @@ fn the_compiler_of_verilator_ends() {
 
 #[test]
 fn every_command_ends_with_its_tools() {
-    let commands: [(&[&str], &str, Signal, i32); 8] = [
+    let commands: [(&[&str], &str, Signal, i32); 7] = [
         (&["cosim", "core.toml", "--simulator", "icarus"], "iverilog", Signal::TERM, 143),
         (&["compare"], "yosys", Signal::HUP, 129),
-        (&["report"], "yosys", Signal::INT, 130),
         (&["certify", "core.toml"], "gappa", Signal::INT, 130),
         (&["synth", "core.toml"], "yosys", Signal::TERM, 143),
         (&["verify", "core.toml"], "verilator", Signal::INT, 130),

@@ -14,7 +14,6 @@ mod output;
 mod questions;
 pub mod refusals;
 mod render;
-mod report;
 mod schedule;
 mod setup;
 mod transcripts;

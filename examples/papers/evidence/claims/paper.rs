@@ -2,11 +2,11 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use super::super::measure::{self, Function, Region};
 use super::{
     Claim, EPICENTRE, Measured, Verdict, claim, error, exceeding, found, instance, key, plain,
     runs, schlick, to_inflection, upper, w,
 };
-use crate::evidence::measure::{self, Function, Region};
 
 /// The exponents over which the paper's figures come out.
 const PAPER: std::ops::RangeInclusive<u32> = 16..=250;

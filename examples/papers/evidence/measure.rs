@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use glint_golden::formulas;
+use glint::golden::formulas;
 
 /// Angles at which an error is looked for, from the peak to the end of the region, which is one of them.
 const ANGLES: u32 = 64;

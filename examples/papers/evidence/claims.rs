@@ -10,7 +10,7 @@ use std::sync::LazyLock;
 use serde::{Deserialize, Serialize};
 
 use super::measure::{self, Function, Region, Worst};
-use glint_golden::formulas;
+use glint::golden::formulas;
 
 /// The level down to which the paper's errors "before the inflection point" come out.
 const EPICENTRE: Region = Region::Level(0.46);
@@ -92,14 +92,6 @@ pub struct Claim {
     pub verdict: Verdict,
     /// The verdict in a sentence or two.
     pub words: String,
-}
-
-impl Claim {
-    /// Our figure under a definition.
-    pub fn figure(&self, key: &str) -> Option<f64> {
-        let found = self.ours.iter().find(|measured| measured.key == key)?;
-        Some(found.value)
-    }
 }
 
 /// The texts of a claim, in `claims.toml`.

@@ -1,9 +1,9 @@
 //! The claims of seed 001, the patent of `rough`.
 
 use super::{Claim, Measured, Verdict, claim, found, plain};
+use glint::core::Core;
+use glint::registry::Registry;
 use glint_config::Config;
-use glint_core::core::Core;
-use glint_core::registry::Registry;
 
 /// Words of eight bits, of which all pairs are tried.
 const WORDS: u32 = 256;

@@ -1,10 +1,10 @@
 //! The claims of seed 000, the patent of `quad-cosine`.
 
+use super::super::measure;
 use super::{
     Claim, EPICENTRE, Verdict, claim, exceeding, found, key, largest, quad, runs, stretched,
     to_inflection,
 };
-use crate::evidence::measure;
 
 /// The claims, in the order of the patent.
 pub fn claims() -> Vec<Claim> {

@@ -2,10 +2,10 @@
 
 use anyhow::{Result, bail};
 
-use super::chart::{Chart, ChartAxis, Series};
-use super::comparison;
-use super::curves::{AtExponent, DeviceCurves, EXPONENTS};
-use glint_core::registry::Registry;
+use glint::evidence::chart::{Chart, ChartAxis, Series};
+use glint::evidence::comparison;
+use glint::evidence::curves::{AtExponent, DeviceCurves, EXPONENTS};
+use glint::registry::Registry;
 
 /// Smaller errors are shown at the bottom of the axis.
 const FLOOR: f64 = 1e-5;

@@ -9,6 +9,14 @@ fn find(id: &str) -> &'static Claim {
     found.unwrap_or_else(|| panic!("no claim `{id}`"))
 }
 
+impl Claim {
+    /// Our figure under a definition.
+    fn figure(&self, key: &str) -> Option<f64> {
+        let found = self.ours.iter().find(|measured| measured.key == key)?;
+        Some(found.value)
+    }
+}
+
 #[test]
 fn claims_are_as_stated() {
     let lines = include_str!("stated.txt").lines().filter(|line| !line.starts_with('#'));

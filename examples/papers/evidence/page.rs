@@ -3,24 +3,20 @@
 use anyhow::Result;
 use glint_base::template::Template;
 
-use super::figure::{Figure, figures, scientific};
-use super::formula;
-use crate::evidence::Evidence;
-use crate::evidence::benchmark::Benchmark;
-use crate::evidence::chart::Chart;
-use crate::evidence::claims::{Claim, Verdict, percent};
-use crate::evidence::curves::DeviceCurves;
-use crate::evidence::seed_plots::{RequiredPowers, Rom9Word};
+use super::Evidence;
+use super::benchmark::Benchmark;
+use super::claims::{Claim, Verdict, percent};
+use super::seed_plots::{RequiredPowers, Rom9Word};
+use glint::evidence::chart::Chart;
+use glint::evidence::curves::DeviceCurves;
+use glint::pages::figure::{Figure, figures, scientific};
+use glint::pages::formula;
 
 /// The words of ROM 9 in a row of its table.
 const WORDS: usize = 10;
 
-/// The mark of a page that Glint wrote: nothing else is overwritten.
-pub const MARKER: &str = "<meta name=\"generator\" content=\"glint report\">";
-
 #[glint_base::template::template("report.html")]
 struct Page<'a> {
-    marker: &'static str,
     schlick: String,
     w: String,
     evidence: &'a Evidence,
@@ -71,7 +67,6 @@ pub fn page(evidence: &Evidence, benchmark: Option<&Benchmark>) -> Result<String
         evidence.plots.iter().map(|plot| (&plot.chart, plot.figure.as_str())).collect();
     let overview: Vec<(&Chart, &str)> = evidence.overview.iter().map(|chart| (chart, "")).collect();
     let page = Page {
-        marker: MARKER,
         schlick: formula::typeset("S(n, gamma) = cos(gamma) / (n - n * cos(gamma) + cos(gamma))"),
         w: formula::typeset("W(n, gamma) = (n/m * (cos(gamma) - 1) + 1)^m"),
         evidence,

@@ -3,10 +3,10 @@
 use anyhow::{Context, Result, bail};
 use serde::{Deserialize, Serialize};
 
-use super::chart::{Chart, ChartAxis, Mark, Series, even, exponents};
 use super::claims::{percent, quad, schlick, stretched, w};
 use super::measure::{self, Region};
-use glint_golden::formulas;
+use glint::evidence::chart::{Chart, ChartAxis, Mark, Series, even, exponents};
+use glint::golden::formulas;
 
 /// The largest exponent of the patent.
 pub const LARGEST: u32 = 1000;
@@ -277,7 +277,7 @@ mod tests {
         let plots = plots()?;
         assert_eq!(plots.len(), 12);
         for SeedPlot { chart, .. } in plots {
-            assert!(chart.series.len() <= crate::pages::plots::STYLES, "{}", chart.id);
+            assert!(chart.series.len() <= glint::pages::plots::STYLES, "{}", chart.id);
             for series in &chart.series {
                 assert_eq!(series.values.len(), chart.places.len());
                 assert!(series.values.iter().all(|value| value.is_finite()), "{}", chart.id);

@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use super::chart::even;
+use glint::evidence::chart::even;
 
 /// Cosines in the array that a kernel goes over; it stays in the first-level cache.
 const COSINES: u32 = 1023;
@@ -228,7 +228,7 @@ fn words(pairs: &[Pair]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glint_golden::formulas;
+    use glint::golden::formulas;
 
     #[test]
     fn kernels_compute_the_formulas() {
