@@ -31,7 +31,7 @@ fn both(registry: &Registry, texts: &[(&str, String)]) -> Result<Vec<Vec<OutputF
     all.map(|(path, text)| generate(registry, path, text)).collect()
 }
 
-/// The most memory that the process has had, where the system tells.
+/// Returns the most memory that the process has had, where the system tells.
 fn peak_memory() -> Option<String> {
     let status = fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
@@ -50,7 +50,7 @@ fn all(criterion: &mut Criterion) {
     });
 }
 
-/// A chain of sums and narrowings between two registers: about 20 000 nets, as unrolled arithmetic has them.
+/// Returns a chain of sums and narrowings between two registers: about 20 000 nets, as unrolled arithmetic has them.
 fn long_chain() -> Design {
     let d = Designer::new("chain");
     let format = Format::unsigned(8, 0);

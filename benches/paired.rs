@@ -104,7 +104,7 @@ fn main() -> Result<()> {
     Ok(())
 }
 
-/// The defaults of every device, and the pipelines of `configs/`.
+/// Returns the defaults of every device, and the pipelines of `configs/`.
 fn cores() -> Result<Vec<Core>> {
     let registry = Registry::catalogue();
     let mut cores = Vec::new();
@@ -192,7 +192,7 @@ impl Streams {
         CLOCKS.div_ceil(self.clocks())
     }
 
-    /// All streams, side by side: the seconds it took, and the sum of the results.
+    /// Returns all streams, side by side: the seconds it took, and the sum of the results.
     fn replay(&self, design: &glint::hdl::netlist::Design, passes: usize) -> Result<(f64, u64)> {
         let clocks = self.inputs[0].len();
         let inputs = self.inputs[0][0].len();
@@ -232,7 +232,7 @@ impl Streams {
         on_one_thread(core, |lockstep| lockstep.replay(&self.inputs, clocks as u64))
     }
 
-    /// All streams one after the other, with the outputs before each edge.
+    /// Returns all streams one after the other, with the outputs before each edge.
     fn vectors(&self, core: &Core) -> Result<Vectors> {
         let mut simulator: Simulator = Simulator::new(&core.design)?;
         let outputs: Vec<NetId> = core.design.outputs().map(|port| port.net).collect();

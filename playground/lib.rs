@@ -75,13 +75,13 @@ pub extern "C" fn answer() -> *const u8 {
     ROOM.with_borrow(|room| room.as_ptr())
 }
 
-/// The bytes of the last answer.
+/// Returns the bytes of the last answer.
 #[unsafe(no_mangle)]
 pub extern "C" fn answer_len() -> usize {
     ROOM.with_borrow(Vec::len)
 }
 
-/// The problems of a configuration, each with its line, or a message.
+/// Returns the problems of a configuration, each with its line, or a message.
 fn failed(error: &anyhow::Error) -> Value {
     match error.downcast_ref::<Problems>() {
         Some(problems) => json!({ "ok": false, "problems": problems.to_json() }),
@@ -153,7 +153,7 @@ fn of(toml: &str, ask: impl FnOnce(&Core) -> Result<Value>) -> Result<Value> {
     })
 }
 
-/// A value of a key for JSON.
+/// Returns a value of a key for JSON.
 fn plain(value: &config::Value) -> Value {
     match value {
         config::Value::Integer(value) => json!(value),
@@ -164,7 +164,7 @@ fn plain(value: &config::Value) -> Value {
     }
 }
 
-/// A key for the form.
+/// Returns a key for the form.
 fn key(core: &Core, key: &Key) -> Value {
     let kind = match &key.kind {
         Kind::Integer { min, max } => json!({ "is": "integer", "min": min, "max": max }),

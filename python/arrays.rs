@@ -118,7 +118,7 @@ impl<'a> Operands<'a> {
         Ok(Self { columns: taken, points: points.unwrap_or(1) })
     }
 
-    /// The number of points.
+    /// Returns the number of points.
     pub fn len(&self) -> usize {
         self.points
     }
@@ -197,7 +197,7 @@ impl Computed {
         }))
     }
 
-    /// An array for each output.
+    /// Returns an array for each output.
     pub fn into_arrays(self, py: Python<'_>) -> Vec<Bound<'_, PyAny>> {
         match self {
             Self::Integers(all) => {
@@ -210,7 +210,7 @@ impl Computed {
     }
 }
 
-/// The nearest integer, ties upward, as of [`Format::quantise`]; without a call of `floor`, which processors without SSE4.1 need.
+/// Returns the nearest integer, ties upward, as of [`Format::quantise`]; without a call of `floor`, which processors without SSE4.1 need.
 #[inline]
 fn nearest(value: f64) -> i64 {
     let above = value + 0.5;
@@ -218,12 +218,12 @@ fn nearest(value: f64) -> i64 {
     whole - i64::from(whole as f64 > above)
 }
 
-/// The values of the last places of the outputs.
+/// Returns the values of the last places of the outputs.
 fn units(contract: &dyn Contract) -> Vec<f64> {
     contract.outputs().iter().map(|it| it.format.to_f64(1)).collect()
 }
 
-/// A column for each output of what `of` appends for points: a number for each output, point after point.
+/// Returns a column for each output of what `of` appends for points: a number for each output, point after point.
 fn each<T: Copy + Default + Send>(
     contract: &dyn Contract,
     operands: &Operands,

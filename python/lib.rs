@@ -28,13 +28,13 @@ struct PyCore {
     core: Core,
 }
 
-/// An error of Python with the causes of one of Rust, a line each.
+/// Returns an error of Python with the causes of one of Rust, a line each.
 fn wrong(error: anyhow::Error) -> PyErr {
     let causes: Vec<String> = error.chain().map(ToString::to_string).collect();
     PyValueError::new_err(causes.join("\n  caused by: "))
 }
 
-/// A value of TOML.
+/// Returns a value of TOML.
 fn toml(value: &Bound<'_, PyAny>) -> Result<String> {
     if let Ok(flag) = value.cast::<PyBool>() {
         return Ok(flag.is_true().to_string());
@@ -75,7 +75,7 @@ impl PyCore {
         self.core.device.name
     }
 
-    /// The operands: name, fraction bits, integer bits, sign, domain in raw integers, colour, a sentence.
+    /// Returns the operands: name, fraction bits, integer bits, sign, domain in raw integers, colour, a sentence.
     fn operands<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
         let of = |operand: &glint::golden::Operand| {
             let it = port(py, &operand.name, operand.format)?;
@@ -92,13 +92,13 @@ impl PyCore {
         outputs.iter().map(|output| port(py, &output.name, output.format)).collect()
     }
 
-    /// The operand that says how many results a computation has.
+    /// Returns the operand that says how many results a computation has.
     #[getter]
     fn length(&self) -> Option<&str> {
         self.core.contract.length()
     }
 
-    /// The bound in units of the outputs' last place, whether it is proved, and its terms.
+    /// Returns the bound in units of the outputs' last place, whether it is proved, and its terms.
     fn bound<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let bound = self.core.contract.bound();
         let it = PyDict::new(py);
@@ -154,7 +154,7 @@ impl PyCore {
         pipeline.stages.iter().enumerate().map(of).collect()
     }
 
-    /// An estimate of what a family's chip takes, and the clock in MHz.
+    /// Returns an estimate of what a family's chip takes, and the clock in MHz.
     fn estimate<'py>(&self, py: Python<'py>, target: &str) -> PyResult<Bound<'py, PyDict>> {
         let named = |it: &&Target| it.family().is_some_and(|it| it.name() == target);
         let target = TARGETS.iter().find(named).ok_or_else(|| {
@@ -171,7 +171,7 @@ impl PyCore {
         Ok(it)
     }
 
-    /// The outputs of many points: `what` is `golden`, `exact` or `error`. A column of operands each, in the order of
+    /// Returns the outputs of many points: `what` is `golden`, `exact` or `error`. A column of operands each, in the order of
     /// [`PyCore::operands`]; of values, or of raw integers.
     fn compute<'py>(
         &self,
@@ -230,7 +230,7 @@ impl PyCore {
         Ok(outcome.mismatch.map(|it| it.to_string()))
     }
 
-    /// A picture through the golden model: rows of pixels from the top, red, green and blue.
+    /// Returns a picture through the golden model: rows of pixels from the top, red, green and blue.
     fn render<'py>(
         &self,
         py: Python<'py>,

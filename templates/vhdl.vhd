@@ -11,7 +11,7 @@
 library ieee;
 use ieee.std_logic_1164.all;
 
-package ${ name }$_components is
+package ${ package }$ is
 <%- for component in components %>
 
   -- ${ component.what }$
@@ -37,9 +37,9 @@ library ieee;
 use ieee.std_logic_1164.all;
 use ieee.fixed_pkg.all;
 
-use work.${ name }$_components.all;
+use work.${ package }$.all;
 
-entity ${ name }$_fixed is
+entity ${ entity }$ is
 <%- if !generics.is_empty() %>
   generic (
 <%- for line in generics %>
@@ -54,13 +54,13 @@ entity ${ name }$_fixed is
   );
 end entity;
 
-architecture wrapped of ${ name }$_fixed is
+architecture wrapped of ${ entity }$ is
 <%- for (signal, kind, _) in outputs %>
   signal ${ signal }$ : ${ kind }$;
 <%- endfor %>
 begin
 
-  core : component ${ name }$
+  ${ label }$ : component ${ component }$
 <%- if !passed.is_empty() %>
     generic map (
 <%- for line in passed %>

@@ -49,19 +49,19 @@ impl Fresnel {
         self.rounded.apply(exact + fifth * self.complement(f0, self.keys.reflectance))
     }
 
-    /// The formats of c, f0 and f.
+    /// Returns the formats of c, f0 and f.
     fn formats(&self) -> [Format; 3] {
         [(1, self.keys.cosine), (0, self.keys.reflectance), (0, self.keys.power)]
             .map(|(int, fraction)| Format::unsigned(int, fraction as i32))
     }
 }
 
-/// The colours, which f multiplies.
+/// Returns the colours, which f multiplies.
 fn products(it: &Fresnel) -> Products {
     Products::colours(it.formats()[2], it.keys.colour_bits, it.keys.output_rounding)
 }
 
-/// The golden model: operands and registers, and what each microinstruction does to them.
+/// Returns the golden model: operands and registers, and what each microinstruction does to them.
 pub fn model(config: &Config) -> Box<dyn Model> {
     let it = Arc::new(Fresnel::new(config));
     let [cosine, reflectance, powers] = it.formats();
@@ -79,7 +79,7 @@ pub fn model(config: &Config) -> Box<dyn Model> {
     Box::new(products(&it).behind(frame, f, program))
 }
 
-/// The function that the device computes, and its error bound.
+/// Returns the function that the device computes, and its error bound.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     let it = Fresnel::new(config);
     let [cosine, reflectance, _] = it.formats();

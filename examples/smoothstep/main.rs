@@ -73,7 +73,7 @@ fn describe(d: &Designer, config: &Config) {
     ]);
 }
 
-/// The golden model: registers, and what each microinstruction does to them.
+/// Returns the golden model: registers, and what each microinstruction does to them.
 fn device(config: &Config) -> device::Device {
     let (fraction, kept) = bits(config);
     let [wide, result] = [kept + GUARD, kept].map(|fraction| Format::unsigned(1, fraction));

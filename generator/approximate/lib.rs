@@ -149,7 +149,7 @@ pub struct Piecewise {
 }
 
 impl Function {
-    /// The limits of the value of a raw operand, in units of the last place of the result.
+    /// Returns the limits of the value of a raw operand, in units of the last place of the result.
     ///
     /// # Errors
     /// The part of the formula that has no value there.
@@ -186,12 +186,12 @@ impl Function {
         None
     }
 
-    /// Whether there are more operands than can be computed.
+    /// Returns whether there are more operands than can be computed.
     pub fn is_wide(&self) -> bool {
         self.domain.1.abs_diff(self.domain.0) >> MOST_BITS != 0
     }
 
-    /// How the bound was proved, as the beginning of a sentence.
+    /// Returns how the bound was proved, as the beginning of a sentence.
     pub fn proof(&self) -> &'static str {
         match &self.curve {
             Curve::Samples(_) => {
@@ -204,7 +204,7 @@ impl Function {
         }
     }
 
-    /// The raw operand whose number is 0, and the bits of a number.
+    /// Returns the raw operand whose number is 0, and the bits of a number.
     fn numbering(&self) -> (i64, u32) {
         let span = (self.domain.1 - self.domain.0) as u64;
         let bits = (u64::BITS - span.leading_zeros()).max(1);
@@ -215,45 +215,45 @@ impl Function {
 }
 
 impl Piecewise {
-    /// The names of the registers with the sums, the polynomial's first.
+    /// Returns the names of the registers with the sums, the polynomial's first.
     pub fn registers(&self) -> [&'static str; 3] {
         [if self.reduction.is_some() { "polynomial" } else { "result" }, "sum1", "sum2"]
     }
 
-    /// The polynomial's degree.
+    /// Returns the polynomial's degree.
     pub fn degree(&self) -> usize {
         self.coefficients.len() - 1
     }
 
-    /// The polynomial's operand for a raw operand of the domain, and how its result comes of the polynomial.
+    /// Returns the polynomial's operand for a raw operand of the domain, and how its result comes of the polynomial.
     fn reduced(&self, raw: i64) -> (i64, Restore) {
         self.reduction.as_ref().map_or((raw, Restore::default()), |it| it.reduce(raw))
     }
 
-    /// The number of a raw operand within the domain.
+    /// Returns the number of a raw operand within the domain.
     pub fn number(&self, raw: i64) -> u64 {
         (self.reduced(raw).0 - self.origin) as u64 & ((1 << self.segments.bits) - 1)
     }
 
-    /// Where a raw operand lies. Beyond the words that the domain reads it is the last.
+    /// Returns where a raw operand lies. Beyond the words that the domain reads it is the last.
     pub fn place(&self, raw: i64) -> Place {
         let Place { word, offset } = self.segments.place(self.number(raw));
         Place { word: word.min(self.words.len() - 1), offset }
     }
 
-    /// The sum from coefficient k on, of which `above` is the one from k + 1 on; whole.
+    /// Returns the sum from coefficient k on, of which `above` is the one from k + 1 on; whole.
     pub fn sum(&self, k: usize, place: Place, above: i64) -> i64 {
         let coefficient = self.words[place.word][k];
         let Some(step) = self.steps.get(k) else { return coefficient };
         coefficient + step.product(above, place.offset, self.segments.rest())
     }
 
-    /// The fraction bits that the sum with the constant has beyond the result.
+    /// Returns the fraction bits that the sum with the constant has beyond the result.
     pub fn guard(&self) -> u32 {
         (self.coefficients[0].frac - self.sums[0].frac) as u32
     }
 
-    /// All sums of a raw operand, with nothing cut off at the top: the polynomial first.
+    /// Returns all sums of a raw operand, with nothing cut off at the top: the polynomial first.
     fn sums_of(&self, raw: i64) -> [i64; MOST_SUMS] {
         let place = self.place(raw);
         let mut sums = [0; MOST_SUMS];
@@ -266,17 +266,17 @@ impl Piecewise {
         sums
     }
 
-    /// The result of a raw operand.
+    /// Returns the result of a raw operand.
     pub fn result(&self, raw: i64) -> i64 {
         self.restored(raw, self.sums_of(raw)[0])
     }
 
-    /// The result of a raw operand, of the polynomial there.
+    /// Returns the result of a raw operand, of the polynomial there.
     pub fn restored(&self, raw: i64, polynomial: i64) -> i64 {
         self.reduced(raw).1.result(polynomial)
     }
 
-    /// Bits of the table.
+    /// Returns bits of the table.
     pub fn rom_bits(&self) -> u64 {
         let width: u32 = self.coefficients.iter().map(|format| format.width()).sum();
         self.words.len() as u64 * u64::from(width)
@@ -298,7 +298,7 @@ impl Piecewise {
         }
     }
 
-    /// The largest error of the result of a raw operand.
+    /// Returns the largest error of the result of a raw operand.
     fn error_at(&self, function: &Function, raw: i64) -> Result<f64, Refusal> {
         let sums = self.sums_of(raw);
         let result = self.restored(raw, sums[0]);
@@ -320,7 +320,7 @@ impl Piecewise {
 }
 
 impl Function {
-    /// A place where the formula has no value, as a refusal of the formula.
+    /// Returns a place where the formula has no value, as a refusal of the formula.
     fn refusal(&self, raw: i64, fault: &Fault) -> Refusal {
         let x = self.operand.to_f64(raw.into());
         Refusal {
@@ -335,7 +335,7 @@ impl Function {
 
 type Found = Result<Arc<Piecewise>, Refusal>;
 
-/// The approximation of a function with least cost, and proved; what was found before is not searched again.
+/// Returns the approximation of a function with least cost, and proved; what was found before is not searched again.
 ///
 /// # Errors
 /// Why there is none.

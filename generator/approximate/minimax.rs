@@ -6,7 +6,7 @@ const MOST: usize = 4;
 /// Exchanges until the largest error is that of the reference.
 const EXCHANGES: usize = 30;
 
-/// The coefficients, from the constant on, of the polynomial of `degree` whose largest distance from `values` at the
+/// Returns the coefficients, from the constant on, of the polynomial of `degree` whose largest distance from `values` at the
 /// points `at` is least, and that distance. Points rise. With no more points than coefficients the degree is lowered.
 pub fn minimax(at: &[f64], values: &[f64], degree: usize) -> ([f64; MOST], f64) {
     let count = degree.min(at.len().saturating_sub(1)) + 1;
@@ -45,7 +45,7 @@ pub fn minimax(at: &[f64], values: &[f64], degree: usize) -> ([f64; MOST], f64) 
     best
 }
 
-/// The value of a polynomial.
+/// Returns the value of a polynomial.
 pub fn at_point(coefficients: &[f64], at: f64) -> f64 {
     coefficients.iter().rev().fold(0.0, |sum, coefficient| sum * at + coefficient)
 }
@@ -76,7 +76,7 @@ fn exchange(reference: &mut Vec<usize>, worst: usize, error: &dyn Fn(usize) -> f
     }
 }
 
-/// The polynomial through the values at the points of the reference, or `levelled`: off by the same height at each, on
+/// Returns the polynomial through the values at the points of the reference, or `levelled`: off by the same height at each, on
 /// one side and the other.
 fn level(at: &[f64], values: &[f64], reference: &[usize], levelled: bool) -> ([f64; MOST], f64) {
     let count = reference.len();
@@ -101,7 +101,7 @@ fn level(at: &[f64], values: &[f64], reference: &[usize], levelled: bool) -> ([f
     (coefficients, if levelled { solution[columns] } else { 0.0 })
 }
 
-/// The solution of linear equations, each a row with its right side last.
+/// Returns the solution of linear equations, each a row with its right side last.
 fn solve(mut rows: Vec<Vec<f64>>) -> Vec<f64> {
     let count = rows.len();
     for column in 0..count {

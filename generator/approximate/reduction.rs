@@ -28,7 +28,7 @@ glint_config::choices! {
 }
 
 impl Identity {
-    /// The word that a configuration has for it.
+    /// Returns the word that a configuration has for it.
     pub fn word(self) -> &'static str {
         Self::WORDS[self as usize]
     }
@@ -86,7 +86,7 @@ pub struct Restore {
 }
 
 impl Restore {
-    /// The result.
+    /// Returns the result.
     pub fn result(self, polynomial: i64) -> i64 {
         if self.zero {
             return 0;
@@ -96,7 +96,7 @@ impl Restore {
         self.centre.map_or(result, |centre| centre - result)
     }
 
-    /// The polynomials, lowest and highest, whose results are within limits.
+    /// Returns the polynomials, lowest and highest, whose results are within limits.
     pub(super) fn polynomials(self, (low, high): (i64, i64)) -> (i64, i64) {
         const MOST: i128 = 1 << 60;
         if self.zero {
@@ -113,7 +113,7 @@ impl Restore {
 }
 
 impl Reduction {
-    /// The number of a raw operand, and how its result comes of the polynomial there.
+    /// Returns the number of a raw operand, and how its result comes of the polynomial there.
     pub fn reduce(&self, raw: i64) -> (i64, Restore) {
         let mask = (1i64 << self.bits) - 1;
         let mirrored = |low: i64| if low == 0 { mask } else { mask + 1 - low };
@@ -148,7 +148,7 @@ impl Reduction {
         }
     }
 
-    /// The places by which the integer of an operand's exponent shifts.
+    /// Returns the places by which the integer of an operand's exponent shifts.
     pub fn places(&self, raw: i64) -> u32 {
         match self.rule {
             Rule::Exponent { scale, whole, .. } => {
@@ -158,7 +158,7 @@ impl Reduction {
         }
     }
 
-    /// The reduction of a function by an identity, and the function of its numbers. With `wider` the number of a size holds the
+    /// Returns the reduction of a function by an identity, and the function of its numbers. With `wider` the number of a size holds the
     /// largest of them.
     ///
     /// # Errors
@@ -205,7 +205,7 @@ impl Reduction {
     }
 }
 
-/// The exponent of two of an operand, with as many fraction bits as a number has.
+/// Returns the exponent of two of an operand, with as many fraction bits as a number has.
 fn exponent(scale: Option<(i64, u32)>, raw: i64) -> i64 {
     scale.map_or(raw, |(factor, cut)| ((i128::from(raw) * i128::from(factor)) >> cut) as i64)
 }
@@ -226,7 +226,7 @@ fn refused<T>(message: &str, remedy: &str) -> Result<T, Refusal> {
     Err(Refusal::new(KEY, message.to_owned(), remedy))
 }
 
-/// The formula is not as the identity wants it.
+/// Returns the formula is not as the identity wants it.
 fn unlike<T>(wanted: &str) -> Result<T, Refusal> {
     refused(&format!("the formula has no such identity: {wanted}"), "\"none\", or another")
 }

@@ -16,7 +16,7 @@ impl Layout {
     pub const NAMES: [(&str, Self); 3] =
         [("uniform", Self::Uniform), ("octaves", Self::Octaves), ("halving", Self::Halving)];
 
-    /// The name.
+    /// Returns the name.
     pub fn name(self) -> &'static str {
         Self::NAMES.iter().find(|(_, layout)| *layout == self).map_or("", |(name, _)| name)
     }
@@ -46,22 +46,22 @@ pub struct Place {
 }
 
 impl Segments {
-    /// Bits of the way through the longest segment.
+    /// Returns bits of the way through the longest segment.
     pub fn rest(&self) -> u32 {
         self.bits - self.prefix - u32::from(self.octaves > 0)
     }
 
-    /// Bits of the way through a segment of a block: number 0 lies below the octaves, and the last is the highest.
+    /// Returns bits of the way through a segment of a block: number 0 lies below the octaves, and the last is the highest.
     pub fn rest_of(&self, block: u32) -> u32 {
         (self.bits + block.max(1) - 1) - self.octaves - self.prefix
     }
 
-    /// Words of the whole table.
+    /// Returns words of the whole table.
     pub fn words(&self) -> usize {
         (self.octaves as usize + 1) << self.prefix
     }
 
-    /// An operand's number, counted from the end toward which octaves are shorter.
+    /// Returns an operand's number, counted from the end toward which octaves are shorter.
     fn turned(&self, number: u64) -> u64 {
         match self.layout {
             Layout::Halving => ((1 << self.bits) - 1) - number,
@@ -69,7 +69,7 @@ impl Segments {
         }
     }
 
-    /// Where the operand of a number lies.
+    /// Returns where the operand of a number lies.
     #[inline]
     pub fn place(&self, number: u64) -> Place {
         let number = self.turned(number);
@@ -88,7 +88,7 @@ impl Segments {
         Place { word, offset: ((low << places) as i64) - middle }
     }
 
-    /// The numbers that read a word: the lowest and how many there are.
+    /// Returns the numbers that read a word: the lowest and how many there are.
     pub fn numbers(&self, word: usize) -> (u64, u64) {
         let block = (word >> self.prefix) as u32;
         let rest = self.rest_of(block);

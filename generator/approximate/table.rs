@@ -48,7 +48,7 @@ pub(super) struct Widths {
 }
 
 impl Widths {
-    /// The cuts of the products; none if one would have to gain bits.
+    /// Returns the cuts of the products; none if one would have to gain bits.
     fn steps(&self) -> Option<Vec<Step>> {
         let of = |(k, &offset): (usize, &u32)| {
             let dropped = self.guard[k + 1] + offset as i32 - self.guard[k];
@@ -57,7 +57,7 @@ impl Widths {
         self.offset.iter().enumerate().map(of).collect()
     }
 
-    /// One bit fewer or more of variable number `at`, if that may be.
+    /// Returns one bit fewer or more of variable number `at`, if that may be.
     fn with(&self, at: usize, change: i32) -> Option<Self> {
         let mut other = self.clone();
         match other.guard.get_mut(at) {
@@ -83,7 +83,7 @@ impl Widths {
         self
     }
 
-    /// How many variables there are.
+    /// Returns how many variables there are.
     fn count(&self) -> usize {
         self.guard.len() + self.offset.len()
     }
@@ -106,14 +106,14 @@ impl<'s> Table<'s> {
         table
     }
 
-    /// The words that operands of the domain read, and those before them.
+    /// Returns the words that operands of the domain read, and those before them.
     fn words(&self) -> impl IndexedParallelIterator<Item = usize> {
         let (first, last) = self.seen.function.domain;
         let ends = [first, last].map(|raw| self.cut.place(self.seen.number(raw)).word);
         (0..ends[0].max(ends[1]) + 1).into_par_iter()
     }
 
-    /// The samples in the segment of a word; none without an operand of the domain.
+    /// Returns the samples in the segment of a word; none without an operand of the domain.
     fn piece(&self, word: usize) -> Option<Piece> {
         let Self { seen, cut, .. } = self;
         let (first, last) = seen.function.domain;
@@ -144,7 +144,7 @@ impl<'s> Table<'s> {
         })
     }
 
-    /// Whether polynomials of unlimited precision are so near to the function that a rounding to the nearest may be. The segment
+    /// Returns whether polynomials of unlimited precision are so near to the function that a rounding to the nearest may be. The segment
     /// of the operand `worst` is looked at first, and one that is too long leaves an operand there: where one cut is too coarse, others
     /// mostly are.
     pub(super) fn may_fit(
@@ -168,7 +168,7 @@ impl<'s> Table<'s> {
         found.is_none()
     }
 
-    /// The narrowest coefficients and offsets, none wider than these, if any are right.
+    /// Returns the narrowest coefficients and offsets, none wider than these, if any are right.
     pub(super) fn narrowest(&self, generous: &Widths) -> Option<(Widths, Words)> {
         let mut words = self.fitted(generous)?;
         // How far each can go alone; together they need about a bit more.
@@ -210,7 +210,7 @@ impl<'s> Table<'s> {
         (widths, words)
     }
 
-    /// The widths with which the search begins.
+    /// Returns the widths with which the search begins.
     pub(super) fn generous(&self, degree: usize) -> Widths {
         let guard = if degree == 0 { 0 } else { GENEROUS };
         Widths { guard: vec![guard; degree + 1], offset: vec![self.cut.rest(); degree] }
@@ -241,7 +241,7 @@ impl<'s> Table<'s> {
         }
     }
 
-    /// The words of a table with these widths, if there are such with which every operand that is looked at is right.
+    /// Returns the words of a table with these widths, if there are such with which every operand that is looked at is right.
     fn fitted(&self, widths: &Widths) -> Option<Words> {
         let steps = widths.steps()?;
         let fit = |piece: &Option<Piece>| match piece {
@@ -295,7 +295,7 @@ impl<'s> Table<'s> {
         })
     }
 
-    /// The constant with which every operand of the segment is right: the middle of all such. `above` are the other
+    /// Returns the constant with which every operand of the segment is right: the middle of all such. `above` are the other
     /// coefficients.
     fn constant(&self, piece: &Piece, above: &[i64], steps: &[Step], guard: u32) -> Option<i64> {
         let (mut least, mut most) = (i64::MIN, i64::MAX);
@@ -318,7 +318,7 @@ impl<'s> Table<'s> {
         Some(if least == i64::MIN { 0 } else { least + (most - least) / 2 })
     }
 
-    /// The formats of the coefficients, the constant first.
+    /// Returns the formats of the coefficients, the constant first.
     fn formats(&self, widths: &Widths, words: &Words) -> Vec<Format> {
         let fraction = self.seen.function.fraction as i32;
         let format = |(k, guard): (usize, &i32)| {
@@ -336,7 +336,7 @@ impl<'s> Table<'s> {
         formats.iter().skip(1).map(move |format| signed(format).saturating_sub(FACTOR))
     }
 
-    /// The cost of table and partial products in look-up tables.
+    /// Returns the cost of table and partial products in look-up tables.
     pub(super) fn cost(&self, widths: &Widths, words: &Words) -> f64 {
         let formats = self.formats(widths, words);
         let width: u32 = formats.iter().map(|format| format.width()).sum();
@@ -364,7 +364,7 @@ impl<'s> Table<'s> {
         is_wide.then_some(generous)
     }
 
-    /// The approximation with these words, if its nets are not too wide.
+    /// Returns the approximation with these words, if its nets are not too wide.
     pub(super) fn finished(&self, widths: &Widths, words: Words) -> Option<Piecewise> {
         let Seen { result: polynomial, whole, .. } = self.seen;
         let function = whole.map_or(self.seen.function, |it| it.0);

@@ -4,7 +4,7 @@ use super::{Curve, Function, Identity, Layout, Outside, Samples, Wish, find};
 use glint_base::fixed::{Format, exp2};
 use glint_formula::parse;
 
-/// A function with as many fraction bits in its result as its operand has, from one value to another that does not belong
+/// Returns a function with as many fraction bits in its result as its operand has, from one value to another that does not belong
 /// to it.
 fn function(text: &str, (from, to): (f64, f64), fraction: i32, error: f64) -> Function {
     let raw = |value: f64| (value * exp2(fraction)) as i64;

@@ -28,7 +28,7 @@ pub(super) struct Walk {
 }
 
 impl Piecewise {
-    /// The operands of the domain that read a word, first and last.
+    /// Returns the operands of the domain that read a word, first and last.
     fn operands_of(&self, word: usize) -> Option<(i64, i64)> {
         let (from, count) = self.segments.numbers(word);
         let low = (self.origin + from as i64).max(self.domain.0);
@@ -41,7 +41,7 @@ impl Piecewise {
         self.coefficients[k].frac - self.sums[0].frac
     }
 
-    /// The sums of all operands that read a word, if there are any.
+    /// Returns the sums of all operands that read a word, if there are any.
     pub(super) fn walk(&self, word: usize) -> Option<Walk> {
         let (low, high) = self.operands_of(word)?;
         let [a, b] = [low, high].map(|raw| self.place(raw).offset);
@@ -70,12 +70,12 @@ impl Piecewise {
         Some(Walk { sums, lag: lag + last })
     }
 
-    /// The way through a segment that an offset stands for, from its middle, of its length.
+    /// Returns the way through a segment that an offset stands for, from its middle, of its length.
     fn way(&self, offset: i64) -> Enclosure {
         Enclosure::exactly(offset as f64 * exp2(-(self.segments.rest() as i32)))
     }
 
-    /// The polynomial of a word and its derivative, in units of the result.
+    /// Returns the polynomial of a word and its derivative, in units of the result.
     fn polynomial(&self, word: usize, way: Enclosure) -> (Enclosure, Enclosure) {
         let zero = Enclosure::exactly(0.0);
         let words = self.words[word].iter().enumerate().rev();
@@ -125,7 +125,7 @@ impl Piecewise {
         (0..self.words.len()).into_par_iter().map(of).try_reduce(|| 0.0, |a, b| Ok(a.max(b)))
     }
 
-    /// The largest error of some operands of a word; none where the formula may jump among them or have no derivative, or where a
+    /// Returns the largest error of some operands of a word; none where the formula may jump among them or have no derivative, or where a
     /// result may leave its format.
     fn error_between(
         &self,
@@ -158,7 +158,7 @@ impl Piecewise {
     }
 }
 
-/// The proof takes too long.
+/// Returns the proof takes too long.
 fn unproved() -> Refusal {
     let message = format!("the bound is not proved with 2^{} intervals", MOST.ilog2());
     Refusal::new("result.error", message, "allow a larger error, or fewer operand.fraction bits")

@@ -19,7 +19,7 @@ pub fn needed<I: IntoIterator<Item = usize>>(
     needed
 }
 
-/// Where steps lead, from any of these on, themselves too.
+/// Returns where steps lead, from any of these on, themselves too.
 pub fn reached<T: Copy + Eq + Hash, I: IntoIterator<Item = T>>(
     from: impl IntoIterator<Item = T>,
     steps: impl Fn(T) -> I,

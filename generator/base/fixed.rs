@@ -61,34 +61,34 @@ impl Format {
         u32::try_from(self.int + self.frac + i32::from(self.signed)).expect("a positive width")
     }
 
-    /// The smallest raw value; of a format that no net can have, of those of an `i128`.
+    /// Returns the smallest raw value; of a format that no net can have, of those of an `i128`.
     pub fn min_raw(self) -> i128 {
         if self.signed { i128::MIN >> 128u32.saturating_sub(self.width()) } else { 0 }
     }
 
-    /// The largest raw value; of a format that no net can have, of those of an `i128`.
+    /// Returns the largest raw value; of a format that no net can have, of those of an `i128`.
     pub fn max_raw(self) -> i128 {
         i128::MAX >> 127u32.saturating_sub(self.width().saturating_sub(u32::from(self.signed)))
     }
 
-    /// The smallest and the largest raw value.
+    /// Returns the smallest and the largest raw value.
     pub fn range(self) -> (i128, i128) {
         (self.min_raw(), self.max_raw())
     }
 
-    /// Whether `raw` is representable.
+    /// Returns whether `raw` is representable.
     pub fn holds(self, raw: i128) -> bool {
         (self.min_raw()..=self.max_raw()).contains(&raw)
     }
 
-    /// The value of `raw` as a real number (exact up to 53 significant bits).
+    /// Returns the value of `raw` as a real number (exact up to 53 significant bits).
     pub fn to_f64(self, raw: i128) -> f64 {
         // Processors convert 64 bits, and round as well.
         let value = i64::try_from(raw).map_or(raw as f64, |raw| raw as f64);
         value * exp2(-self.frac)
     }
 
-    /// The raw value nearest to `x`, ties upward, saturated to the format.
+    /// Returns the raw value nearest to `x`, ties upward, saturated to the format.
     pub fn quantise(self, x: f64) -> i128 {
         let scaled = (x * exp2(self.frac) + 0.5).floor();
         let (low, high) = (self.min_raw(), self.max_raw());
@@ -101,12 +101,12 @@ impl Format {
         }
     }
 
-    /// The bit pattern of `raw`, wrapped to the width.
+    /// Returns the bit pattern of `raw`, wrapped to the width.
     pub fn bits(self, raw: i128) -> u64 {
         raw as u64 & mask(self.width())
     }
 
-    /// The raw value that a bit pattern denotes; bits above the width are ignored.
+    /// Returns the raw value that a bit pattern denotes; bits above the width are ignored.
     pub fn raw(self, bits: u64) -> i128 {
         let width = self.width();
         let bits = bits & mask(width);
@@ -185,7 +185,7 @@ pub enum Overflow {
     Saturate,
 }
 
-/// The mask of `width` low bits.
+/// Returns the mask of `width` low bits.
 pub const fn mask(width: u32) -> u64 {
     if width >= 64 { u64::MAX } else { (1 << width) - 1 }
 }

@@ -10,7 +10,7 @@ use serde::de::DeserializeOwned;
 /// The path that stands for standard input.
 pub const STDIN: &str = "-";
 
-/// The name by which written files know the file `path`: without directories, so that they are the same wherever their
+/// Returns the name by which written files know the file `path`: without directories, so that they are the same wherever their
 /// user stands. What could end a comment or a string is `%` with the byte in hexadecimal, as in a URL.
 pub fn label(path: &str) -> String {
     let name = path.rsplit('/').next().unwrap_or(path);
@@ -39,7 +39,7 @@ pub fn open(path: &Path) -> io::Result<Box<dyn Read>> {
     Ok(Box::new(File::open(path)?))
 }
 
-/// The text of a file, if there is one.
+/// Returns the text of a file, if there is one.
 ///
 /// # Errors
 /// As of [`open`], but for a file that is not there.
@@ -52,7 +52,7 @@ pub fn text(path: &Path) -> Result<Option<String>> {
     }
 }
 
-/// The records in a directory: its files `*.json` that are a `T`, in the order of their names. Other files are left
+/// Returns the records in a directory: its files `*.json` that are a `T`, in the order of their names. Other files are left
 /// alone, and a directory that is not there has none.
 ///
 /// # Errors
@@ -83,7 +83,7 @@ pub fn records<T: DeserializeOwned>(directory: &Path) -> Result<Vec<(PathBuf, T)
     Ok(records)
 }
 
-/// The message on a record that cannot be understood.
+/// Returns the message on a record that cannot be understood.
 pub fn damaged(path: &Path) -> String {
     format!(
         "the record `{}` is damaged: restore it, move it away, or make it again with the command that wrote it",

@@ -5,12 +5,12 @@ use super::fixed::Format;
 /// The smallest and the largest raw value.
 pub type Interval = (i128, i128);
 
-/// The smallest interval with all values of these, if there are any.
+/// Returns the smallest interval with all values of these, if there are any.
 pub fn hull(intervals: impl IntoIterator<Item = Interval>) -> Option<Interval> {
     intervals.into_iter().reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
 }
 
-/// The smallest interval with all these values, if there are any.
+/// Returns the smallest interval with all these values, if there are any.
 pub fn of_values(raws: impl IntoIterator<Item = i128>) -> Option<Interval> {
     hull(raws.into_iter().map(|raw| (raw, raw)))
 }
@@ -21,19 +21,19 @@ pub fn common(a: Interval, b: Interval) -> Option<Interval> {
     (both.0 <= both.1).then_some(both)
 }
 
-/// The products of two intervals. Of more than 64 bits, which no net can have, they are not exact.
+/// Returns the products of two intervals. Of more than 64 bits, which no net can have, they are not exact.
 pub fn product(a: Interval, b: Interval) -> Interval {
     let corners = [(a.0, b.0), (a.0, b.1), (a.1, b.0), (a.1, b.1)];
     let [first, rest @ ..] = corners.map(|(a, b)| a.saturating_mul(b));
     rest.into_iter().fold((first, first), |all, raw| (all.0.min(raw), all.1.max(raw)))
 }
 
-/// Whether a format holds all these values.
+/// Returns whether a format holds all these values.
 pub fn fits(interval: Interval, format: Format) -> bool {
     format.holds(interval.0) && format.holds(interval.1)
 }
 
-/// The multiple of the modulus that brings numbers of this range into the format, as hardware that drops what is
+/// Returns the multiple of the modulus that brings numbers of this range into the format, as hardware that drops what is
 /// above its bits does; `None` if it is not one for all.
 pub fn wrap((low, high): Interval, format: Format) -> Option<i128> {
     let (least, most) = format.range();

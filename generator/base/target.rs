@@ -34,7 +34,7 @@ pub struct DelayMemory {
 }
 
 impl DelayMemory {
-    /// Whether a line with its counter takes fewer look-up tables and registers than it takes the place of.
+    /// Returns whether a line with its counter takes fewer look-up tables and registers than it takes the place of.
     pub fn pays(self, words: usize, bits: u32) -> bool {
         let words = words as u32;
         let memories = bits.div_ceil(self.width) * words.div_ceil(self.words);
@@ -157,7 +157,7 @@ pub struct Family {
 }
 
 impl Family {
-    /// The commands of Yosys that map the module `top`, and what it instantiates, to cells of the family.
+    /// Returns the commands of Yosys that map the module `top`, and what it instantiates, to cells of the family.
     pub fn script(&self, top: &str) -> String {
         format!(
             "{}hierarchy -check -top {top}; {}{} -top {top}",
@@ -339,7 +339,7 @@ pub const TIMING_NAMES: [&str; 4] =
     [TIMINGS[0].name, TIMINGS[1].name, TIMINGS[2].name, TIMINGS[3].name];
 
 impl Timing {
-    /// The target of this name.
+    /// Returns the target of this name.
     pub fn named(name: &str) -> Option<&'static Self> {
         TIMINGS.iter().find(|timing| timing.name == name)
     }

@@ -1,6 +1,6 @@
 //! Numbers in sentences.
 
-/// An integer with spaces between the thousands.
+/// Returns an integer with spaces between the thousands.
 pub fn grouped(number: u64) -> String {
     let digits = number.to_string();
     let mut text = String::new();
@@ -13,7 +13,7 @@ pub fn grouped(number: u64) -> String {
     text
 }
 
-/// The number with its noun: `1 net`, `12 nets`.
+/// Returns the number with its noun: `1 net`, `12 nets`.
 pub fn counted(number: usize, thing: &str) -> String {
     let plural = if number == 1 { "" } else { "s" };
     format!("{} {thing}{plural}", grouped(number as u64))

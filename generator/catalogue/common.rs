@@ -6,20 +6,20 @@ use glint_rtl::blocks::colour::Colours;
 use glint_rtl::blocks::line::{LineBlocks, OperandBlocks};
 use glint_rtl::dsl::{Designer, Note, Operand, Signal, Step, Topic, end, step, valid};
 
-/// The operand `cos_gamma`, limited to 0 … 1.0.
+/// Returns the operand `cos_gamma`, limited to 0 … 1.0.
 #[track_caller]
 pub fn cosine<'d>(d: &'d Designer, keys: &keys::Cosine) -> Operand<'d> {
     d.operand_clamped("cos_gamma", keys.format(), 0.0, 1.0)
         .doc("cosine of the angle between normal and half vector")
 }
 
-/// The operand `exponent`, of so many bits.
+/// Returns the operand `exponent`, of so many bits.
 #[track_caller]
 pub fn exponent(d: &Designer, bits: u32) -> Operand<'_> {
     d.operand("exponent", Format::unsigned(bits as i32, 0)).doc("specular exponent n")
 }
 
-/// The outputs of colours by as many multipliers as the keys say, and the microinstructions that make
+/// Returns the outputs of colours by as many multipliers as the keys say, and the microinstructions that make
 /// them, which stand before the one with the result.
 #[track_caller]
 pub fn colour_products<'d>(

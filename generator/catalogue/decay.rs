@@ -138,7 +138,7 @@ pub fn describe<'d>(
     d.microprogram(steps.into_iter().chain(outputs));
 }
 
-/// The decay as an operand of the multiplier, and whether it is a large one.
+/// Returns the decay as an operand of the multiplier, and whether it is a large one.
 ///
 /// A small decay, below ¼, meets large n and needs all its fraction bits; its three upper bits are zeros. Any other needs few,
 /// and has an octave number in front. So both are of about one width, and which it was decides only where the point of the

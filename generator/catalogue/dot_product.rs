@@ -91,7 +91,7 @@ pub fn describe(d: &Designer, config: &Config) {
     ]);
 }
 
-/// A number without its sign.
+/// Returns a number without its sign.
 fn size<'d>(d: &'d Designer, number: Signal<'d>) -> Signal<'d> {
     let format = number.format();
     let zero = d.constant("none", 0.0, format);
@@ -101,7 +101,7 @@ fn size<'d>(d: &'d Designer, number: Signal<'d>) -> Signal<'d> {
     d.choose("without_sign", is_negative, [number, negated])
 }
 
-/// The products times 2^places, half of it. A bit that no place to come can bring into the result is dropped.
+/// Returns the products times 2^places, half of it. A bit that no place to come can bring into the result is dropped.
 fn shifted<'d>(d: &'d Designer, sum: Signal<'d>, places: Signal<'d>, keys: &Keys) -> Signal<'d> {
     let mut row = sum;
     for bit in (0..places.format().width()).rev() {

@@ -60,14 +60,14 @@ pub fn describe(d: &Designer, config: &Config) {
     d.microprogram(steps);
 }
 
-/// An operand's raw value.
+/// Returns an operand's raw value.
 fn whole(x: Signal) -> Signal {
     let Format { signed, .. } = x.format();
     let int = x.format().width() as i32 - i32::from(signed);
     x.read_as(Format { int, frac: 0, ..x.format() })
 }
 
-/// The operand's number within the domain, without a sign.
+/// Returns the operand's number within the domain, without a sign.
 fn number<'d>(d: &'d Designer, x: Signal<'d>, it: &Piecewise) -> Signal<'d> {
     let width = x.format().width() as i32;
     let integer = |bits: i32| Format::unsigned(bits, 0);
@@ -91,7 +91,7 @@ fn number<'d>(d: &'d Designer, x: Signal<'d>, it: &Piecewise) -> Signal<'d> {
 /// The fewest bits of a table that a family of FPGAs has a block memory for.
 const BLOCK: u64 = 2048;
 
-/// Whether each coefficient has a table of its own: in a pipeline the address then waits in place of the coefficient, which
+/// Returns whether each coefficient has a table of its own: in a pipeline the address then waits in place of the coefficient, which
 /// is wider. A block memory has all.
 fn is_split(config: &Config, it: &Piecewise) -> bool {
     Shared::of(config).architecture == "pipelined" && it.rom_bits() < BLOCK

@@ -124,7 +124,7 @@ fn rounded_distance<'d>(d: &'d Designer, keys: &Keys, sum: Signal<'d>) -> Signal
     )
 }
 
-/// The patent's scaling: a register that shifts one place a clock, under the counter.
+/// Returns the patent's scaling: a register that shifts one place a clock, under the counter.
 ///
 /// It starts from half of D²/2^(s+1), by wiring, so that it shifts once at least. What has left the
 /// range stays at the largest word, above 1.0.
@@ -164,7 +164,7 @@ fn by_shift<'d>(d: &'d Designer, keys: &Keys, distance: Distance<'d>) -> Scaled<
     Scaled { value: register.q(), steps, squarings }
 }
 
-/// The exact β: a multiplier of ours, and n/2^(s+1) by wiring.
+/// Returns the exact β: a multiplier of ours, and n/2^(s+1) by wiring.
 fn by_multiplier<'d>(d: &'d Designer, keys: &Keys, distance: Distance<'d>) -> Scaled<'d> {
     let count = keys.squarings();
     let exponent = common::exponent(d, keys.exponent_bits).q();

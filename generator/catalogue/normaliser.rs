@@ -5,7 +5,7 @@ use glint_config::Config;
 use glint_keys::normaliser::Keys;
 use glint_rtl::dsl::{About, Designer, Signal, end, step, valid};
 
-/// An unsigned integer of so many bits.
+/// Returns an unsigned integer of so many bits.
 fn integer(bits: i32) -> Format {
     Format::unsigned(bits, 0)
 }
@@ -73,7 +73,7 @@ pub fn describe(d: &Designer, config: &Config) {
     ]);
 }
 
-/// A word shifted left by pairs of places until one of its two top bits is 1, and by how many pairs.
+/// Returns a word shifted left by pairs of places until one of its two top bits is 1, and by how many pairs.
 pub(super) fn by_pairs<'d>(d: &'d Designer, mut word: Signal<'d>) -> (Signal<'d>, Signal<'d>) {
     let width = word.format().width();
     let mut places = Vec::new();
@@ -129,7 +129,7 @@ pub(super) fn inverse_root<'d>(
     d.narrow("inverse_kept", left, format, Rounding::Truncate, Overflow::Wrap)
 }
 
-/// A component times 2^places, half of it: in −2 … 2 with one fraction bit more. Its square is at most the mantissa,
+/// Returns a component times 2^places, half of it: in −2 … 2 with one fraction bit more. Its square is at most the mantissa,
 /// so that the bits that are dropped at the top are copies of the sign.
 fn shifted<'d>(d: &'d Designer, x: Signal<'d>, places: Signal<'d>, fraction: i32) -> Signal<'d> {
     let wide = Format::signed(2, fraction);

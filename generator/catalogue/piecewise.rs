@@ -100,12 +100,12 @@ impl<'d, 'p> Polynomial<'d, 'p> {
         Self { d, it, prefix: prefix.to_owned(), coefficients, offsets, registers }
     }
 
-    /// The steps, in the order in which they are carried out; the last is number 0.
+    /// Returns the steps, in the order in which they are carried out; the last is number 0.
     pub fn steps(&self) -> impl Iterator<Item = usize> + use<> {
         (0..self.registers.len()).rev()
     }
 
-    /// The factors of the product that a step adds to its coefficient: the sum of the step before, and the offset. A table of
+    /// Returns the factors of the product that a step adds to its coefficient: the sum of the step before, and the offset. A table of
     /// results has none.
     fn factors(&self, step: usize) -> Option<[Signal<'d>; 2]> {
         let offset = *self.offsets.get(step)?;
@@ -131,13 +131,13 @@ impl<'d, 'p> Polynomial<'d, 'p> {
         register.load()
     }
 
-    /// The polynomial, once all steps are carried out.
+    /// Returns the polynomial, once all steps are carried out.
     pub fn q(&self) -> Signal<'d> {
         self.registers[0].q()
     }
 }
 
-/// The bits of a word with the top one inverted, in a format of the same width: a sign added or taken away.
+/// Returns the bits of a word with the top one inverted, in a format of the same width: a sign added or taken away.
 pub(super) fn flipped<'d>(
     d: &'d Designer,
     name: &str,
@@ -152,7 +152,7 @@ pub(super) fn flipped<'d>(
     d.join(name, &[top, word.bits(0, Format::unsigned(low as i32, 0))], format)
 }
 
-/// The word of the table, and the offset from the middle of the segment, on which a polynomial depends.
+/// Returns the word of the table, and the offset from the middle of the segment, on which a polynomial depends.
 fn place<'d>(
     d: &'d Designer,
     prefix: &str,
@@ -199,7 +199,7 @@ fn place<'d>(
     (word, way.map(|way| flipped(d, &format!("{prefix}offset"), way, format)))
 }
 
-/// The coefficients of the segment, the constant first.
+/// Returns the coefficients of the segment, the constant first.
 fn table<'d>(
     d: &'d Designer,
     prefix: &str,

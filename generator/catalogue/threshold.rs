@@ -73,7 +73,7 @@ pub fn describe(d: &Designer, config: &Config) {
     d.microprogram(steps.into_iter().chain(outputs));
 }
 
-/// The square, or 0 where it is below ROM(n) or the surface faces away.
+/// Returns the square, or 0 where it is below ROM(n) or the surface faces away.
 fn gates<'d>(
     d: &'d Designer,
     keys: &Keys,
@@ -109,14 +109,14 @@ fn level_rom<'d>(d: &'d Designer, keys: &Keys, exponent: Signal<'d>) -> Rom<'d> 
         .comments(comments)
 }
 
-/// The level for n: that of its octave.
+/// Returns the level for n: that of its octave.
 fn hundredths(keys: &Keys, n: i64) -> u32 {
     let levels = &keys.levels;
     let octave = n.max(1).ilog2() as usize;
     levels[octave.min(levels.len() - 1)]
 }
 
-/// The smallest word of f, but the largest word at most, whose product with the largest colour reaches a level.
+/// Returns the smallest word of f, but the largest word at most, whose product with the largest colour reaches a level.
 fn level_word(keys: &Keys, hundredths: u32) -> i128 {
     let unit = 100 * ((1 << keys.operands.colours.bits) - 1);
     let words = 1i128 << keys.f.fraction;
@@ -146,7 +146,7 @@ fn about(keys: &Keys) -> About {
     }
 }
 
-/// Whether the comparator ever matters beyond the clamp.
+/// Returns whether the comparator ever matters beyond the clamp.
 fn comparator_note(keys: &Keys) -> String {
     let largest = (1i128 << keys.operands.colours.bits) - 1;
     let blocked = (0..1i64 << keys.operands.exponent_bits)

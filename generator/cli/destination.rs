@@ -74,7 +74,7 @@ impl Destination {
         Self::open(path)
     }
 
-    /// The file to write.
+    /// Returns the file to write.
     ///
     /// # Errors
     /// The system has no more files.
@@ -88,7 +88,7 @@ impl Destination {
         file.with_context(|| cannot(&self.path))
     }
 
-    /// Where the file will be.
+    /// Returns where the file will be.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -123,7 +123,7 @@ pub fn replace(path: &Path, contents: impl AsRef<[u8]>) -> Result<()> {
     Destination::open(path)?.write(contents)
 }
 
-/// The message when it cannot be written.
+/// Returns the message when it cannot be written.
 fn cannot(path: &Path) -> String {
     format!("cannot write `{}`", path.display())
 }

@@ -39,7 +39,7 @@ impl fmt::Display for Several {
 
 impl std::error::Error for Several {}
 
-/// The exit code that stands for an error.
+/// Returns the exit code that stands for an error.
 pub fn exit_code(error: &anyhow::Error) -> ExitCode {
     // Also when a context was put around it.
     if let Some(interrupted) = error.downcast_ref::<Interrupted>() {
@@ -66,7 +66,7 @@ pub fn print_problems(problems: Vec<Value>) {
     super::tables::print_json(&json!({ "ok": false, "problems": problems }));
 }
 
-/// A problem that is none of a configuration's text, with the keys of those that are.
+/// Returns a problem that is none of a configuration's text, with the keys of those that are.
 pub fn problem(message: &str) -> Value {
     json!({ "file": null, "line": null, "column": null, "key": null, "message": message, "remedy": null })
 }

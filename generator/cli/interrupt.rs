@@ -42,7 +42,7 @@ impl Deferred {
         Self(())
     }
 
-    /// Whether a signal has come.
+    /// Returns whether a signal has come.
     pub fn noted(&self) -> bool {
         NOTED.load(Ordering::SeqCst) != 0
     }
@@ -102,7 +102,7 @@ pub fn listen() -> std::io::Result<()> {
     Ok(())
 }
 
-/// The signals that this process was told to ignore, a bit each. Where the system does not say: none.
+/// Returns the signals that this process was told to ignore, a bit each. Where the system does not say: none.
 #[cfg(unix)]
 fn ignored() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();

@@ -43,7 +43,7 @@ impl OwnFile {
         Ok(Self { path, destination })
     }
 
-    /// The record `<name>.json`, if there is a directory for records.
+    /// Returns the record `<name>.json`, if there is a directory for records.
     ///
     /// # Errors
     /// As [`OwnFile::new`].
@@ -51,7 +51,7 @@ impl OwnFile {
         directory.map(|it| Self::new(it, &format!("{name}.json"), Self::JSON)).transpose()
     }
 
-    /// Its name, when it is written.
+    /// Returns its name, when it is written.
     ///
     /// # Errors
     /// It cannot be written.

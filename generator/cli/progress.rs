@@ -24,7 +24,7 @@ const USUAL: u16 = 80;
 /// Between two lines about progress where there is no terminal, as in a log.
 const EVERY: Duration = Duration::from_secs(60);
 
-/// A bar over `total` steps; hidden when output is for scripts or on request, and a line a minute without a terminal.
+/// Returns a bar over `total` steps; hidden when output is for scripts or on request, and a line a minute without a terminal.
 pub fn bar(output: Output, total: u64, what: &str) -> ProgressBar {
     let target = if output.json || output.quiet {
         ProgressDrawTarget::hidden()
@@ -54,7 +54,7 @@ fn told(bar: &WeakProgressBar, what: &str) {
     }
 }
 
-/// The bar with a line that fits into `width`.
+/// Returns the bar with a line that fits into `width`.
 fn styled(bar: ProgressBar, width: usize, what: &str) -> ProgressBar {
     if let Ok(style) = ProgressStyle::with_template(&template(width)) {
         let rate = |state: &ProgressState, out: &mut dyn Write| {
@@ -94,7 +94,7 @@ fn rounded(number: f64) -> String {
     format!("{number:.decimals$}{unit}")
 }
 
-/// The time that is left at the pace so far; nothing before the first step, when nobody knows.
+/// Returns the time that is left at the pace so far; nothing before the first step, when nobody knows.
 fn remaining(elapsed: Duration, done: u64, all: u64) -> Option<String> {
     if done == 0 || done >= all {
         return None;

@@ -65,7 +65,7 @@ pub fn write(out: &Path, name: &str, files: &[OutputFile], force: bool) -> Resul
     Ok(Written::Replaced)
 }
 
-/// The files below `out` that differ from `files` or are missing, and those of Glint's that are none of `files`
+/// Returns the files below `out` that differ from `files` or are missing, and those of Glint's that are none of `files`
 /// any more.
 ///
 /// # Errors
@@ -88,7 +88,7 @@ pub fn write_sealed(path: &Path, text: &str, seal: Seal, force: bool) -> Result<
     Ok(Written::Replaced)
 }
 
-/// Whether [`write_sealed`] would refuse to replace what is there, which it returns.
+/// Returns whether [`write_sealed`] would refuse to replace what is there, which it returns.
 ///
 /// # Errors
 /// A file that Glint did not write or that was edited since, unless `force`; one that cannot be read.
@@ -105,7 +105,7 @@ pub fn may_write(path: &Path, seal: Seal, force: bool) -> Result<Option<Vec<u8>>
     }
 }
 
-/// Whether a file below `out` is not as it would be written, or missing.
+/// Returns whether a file below `out` is not as it would be written, or missing.
 ///
 /// # Errors
 /// It cannot be read.
@@ -124,7 +124,7 @@ pub fn differs(out: &Path, file: &OutputFile) -> Result<bool> {
     }
 }
 
-/// The directories of a configuration.
+/// Returns the directories of a configuration.
 fn directories(out: &Path, name: &str) -> [PathBuf; 3] {
     ["rtl_out", "testbench", "software"].map(|top| out.join(top).join(name))
 }

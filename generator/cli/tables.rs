@@ -21,7 +21,7 @@ struct Column<'a> {
 }
 
 impl<'a> Column<'a> {
-    /// The columns of some headings, which bars part. The cells below one with a colon behind it are numbers, others words, which
+    /// Returns the columns of some headings, which bars part. The cells below one with a colon behind it are numbers, others words, which
     /// may be broken into lines; a digit behind the colon, or behind a semicolon, is when a column goes where there is no
     /// room for all.
     fn all(headings: &'a str) -> Vec<Self> {
@@ -41,7 +41,7 @@ pub fn print(headings: &str, rows: impl IntoIterator<Item = Vec<String>>) {
     print_line(&text(&Column::all(headings), &rows, width()));
 }
 
-/// How wide a line may be: what `COLUMNS` says, or the terminal; without either, as wide as it likes.
+/// Returns how wide a line may be: what `COLUMNS` says, or the terminal; without either, as wide as it likes.
 fn width() -> Option<usize> {
     let said = std::env::var("COLUMNS").ok().and_then(|text| text.parse().ok());
     let terminal = || Some(usize::from(console::Term::stdout().size_checked()?.1));
@@ -70,7 +70,7 @@ fn text(columns: &[Column<'_>], rows: &[Vec<String>], room: Option<usize>) -> St
     }
 }
 
-/// The widths of the columns shown, if the table has room; numbers and words stay whole.
+/// Returns the widths of the columns shown, if the table has room; numbers and words stay whole.
 fn fit(
     columns: &[Column<'_>],
     rows: &[Vec<String>],
@@ -138,7 +138,7 @@ fn drawn(
     table.to_string()
 }
 
-/// Each row as a paragraph: its first cell, and the others below it with their headings.
+/// Returns each row as a paragraph: its first cell, and the others below it with their headings.
 fn stacked(columns: &[Column<'_>], rows: &[Vec<String>], room: Option<usize>) -> String {
     let row = |row: &Vec<String>| {
         let mut lines = vec![format!("{}:", row[0])];
@@ -150,7 +150,7 @@ fn stacked(columns: &[Column<'_>], rows: &[Vec<String>], room: Option<usize>) ->
     rows.iter().map(row).collect::<Vec<_>>().join("\n")
 }
 
-/// A line, broken between words where it is wider than there is room; what goes on is indented.
+/// Returns a line, broken between words where it is wider than there is room; what goes on is indented.
 fn folded(line: &str, room: Option<usize>) -> String {
     let Some(room) = room else {
         return line.to_owned();
@@ -230,7 +230,7 @@ mod tests {
         vec![row.map(str::to_owned).to_vec()]
     }
 
-    /// The most that a line takes; numbers are whole.
+    /// Returns the most that a line takes; numbers are whole.
     fn widest(text: &str) -> usize {
         text.lines().map(length).max().expect("a line")
     }

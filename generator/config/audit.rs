@@ -58,7 +58,7 @@ impl Schema {
 }
 
 impl Key {
-    /// Whether some accepted value displays as `bare`.
+    /// Returns whether some accepted value displays as `bare`.
     fn can_be(&self, bare: &str) -> bool {
         match &self.kind {
             Kind::Choice(options) => options.contains(&bare),

@@ -11,7 +11,7 @@ use super::problems::Problems;
 use super::schema::{Key, Kind, Schema};
 use super::values::{Config, Value};
 
-/// The configuration with the keys that are not in `given` moved, key after key, each so that as many conditions as possible
+/// Returns the configuration with the keys that are not in `given` moved, key after key, each so that as many conditions as possible
 /// are met. What then is left to complain of, only the keys in `given` can mend.
 pub fn follow(schema: &Schema, config: &Config, given: &BTreeSet<&str>) -> Config {
     let mut config = config.clone();
@@ -33,7 +33,7 @@ pub fn follow(schema: &Schema, config: &Config, given: &BTreeSet<&str>) -> Confi
     config
 }
 
-/// The nearest value of a key that leaves the fewest complaints, if those are fewer than `limit`: their number, the key and
+/// Returns the nearest value of a key that leaves the fewest complaints, if those are fewer than `limit`: their number, the key and
 /// the configuration.
 fn best<'k>(
     schema: &Schema,
@@ -56,14 +56,14 @@ fn best<'k>(
     best
 }
 
-/// The keys under which the device complains, one for each complaint.
+/// Returns the keys under which the device complains, one for each complaint.
 fn complaints(schema: &Schema, config: &Config) -> Vec<String> {
     let mut problems = Problems::default();
     (schema.check)(config, &mut problems);
     problems.iter().map(|problem| problem.key.clone()).collect()
 }
 
-/// The values of a key, those near its default first: of two that are as near, the smaller.
+/// Returns the values of a key, those near its default first: of two that are as near, the smaller.
 fn neighbours(key: &Key) -> Vec<Value> {
     match (&key.kind, &key.default) {
         (Kind::Integer { min, max }, Value::Integer(default)) => {

@@ -5,7 +5,7 @@ use serde_json::{Map, Value as Json, json};
 use super::schema::{Key, Kind, Schema};
 use super::values::Value;
 
-/// A JSON Schema (draft 7) of a configuration of any of these devices: names, types, ranges, defaults and what
+/// Returns a JSON Schema (draft 7) of a configuration of any of these devices: names, types, ranges, defaults and what
 /// each key governs. Conditions between keys are in the descriptions alone; reading the file checks them.
 pub fn json_schema(schemas: &[Schema]) -> Json {
     let names: Vec<&str> = schemas.iter().map(|schema| schema.device).collect();
@@ -51,7 +51,7 @@ fn of_device(schema: &Schema) -> Json {
     device
 }
 
-/// A table without keys, which takes no others.
+/// Returns a table without keys, which takes no others.
 fn table() -> Json {
     json!({ "type": "object", "additionalProperties": false, "properties": {} })
 }
@@ -103,7 +103,7 @@ fn of_key(key: &Key) -> Json {
     entry
 }
 
-/// A choice as a file writes it.
+/// Returns a choice as a file writes it.
 fn choice(key: &Key, option: &str) -> Json {
     match option.parse::<i64>() {
         Ok(number) if key.kind.takes_integers() => json!(number),

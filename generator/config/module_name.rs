@@ -45,7 +45,7 @@ fn complaint(name: &str) -> Option<String> {
     }
 }
 
-/// A legal name that resembles the given one.
+/// Returns a legal name that resembles the given one.
 fn legalised(name: &str) -> String {
     let file = name.rsplit(['/', '\\']).find(|part| !part.is_empty()).unwrap_or("");
     let stem = file.split('.').find(|part| !part.is_empty()).unwrap_or("");

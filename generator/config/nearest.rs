@@ -1,6 +1,6 @@
 //! The valid word that somebody meant.
 
-/// The candidate closest to `word`, if it is close enough to be a slip of the pen; else the first that begins with `word`.
+/// Returns the candidate closest to `word`, if it is close enough to be a slip of the pen; else the first that begins with `word`.
 ///
 /// Case and the choice between `-` and `_` do not count. Among equals the first wins.
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
@@ -20,7 +20,7 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
     slip.or_else(|| candidates.iter().find(begins)).copied()
 }
 
-/// Words for a sentence: `a, b and c`.
+/// Returns words for a sentence: `a, b and c`.
 pub fn listed<S: AsRef<str>>(words: &[S]) -> String {
     match words {
         [] => String::new(),

@@ -100,7 +100,7 @@ impl Reader<'_> {
         self.problems.push_at(span, "", message, remedy);
     }
 
-    /// The line of an offset, counted from 0.
+    /// Returns the line of an offset, counted from 0.
     fn line(&self, offset: usize) -> usize {
         self.newlines.partition_point(|newline| *newline < offset)
     }
@@ -141,7 +141,7 @@ impl Reader<'_> {
         }
     }
 
-    /// The schema of the device that the file names, or else the one that it seems to mean.
+    /// Returns the schema of the device that the file names, or else the one that it seems to mean.
     fn device<'s>(&mut self, document: &DeTable, schemas: &'s [Schema]) -> Option<&'s Schema> {
         let devices: Vec<&str> = schemas.iter().map(|schema| schema.device).collect();
         let remedy = format!("devices: {}", devices.join(", "));
@@ -344,7 +344,7 @@ impl Reader<'_> {
     }
 }
 
-/// A value as its key wants it, or all that is wrong with it.
+/// Returns a value as its key wants it, or all that is wrong with it.
 fn converted(key: &Key, value: &Spanned<DeValue>) -> Result<Value, Vec<Violation>> {
     let wrong_type = || vec![key.wrong_type(&described(value))];
     let too_large = || vec![key.violation(out_of_range(key.name, written(value)))];
@@ -395,13 +395,13 @@ fn converted(key: &Key, value: &Spanned<DeValue>) -> Result<Value, Vec<Violation
     if violations.is_empty() { Ok(converted) } else { Err(violations) }
 }
 
-/// The value of an integer that fits 64 bits.
+/// Returns the value of an integer that fits 64 bits.
 fn integer(value: &Spanned<DeValue>) -> Option<i64> {
     let integer = value.get_ref().as_integer()?;
     i64::from_str_radix(integer.as_str(), integer.radix()).ok()
 }
 
-/// A number as the file writes it.
+/// Returns a number as the file writes it.
 fn written(value: &Spanned<DeValue>) -> String {
     match value.get_ref() {
         DeValue::Integer(integer) => integer.to_string(),

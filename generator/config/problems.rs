@@ -95,7 +95,7 @@ impl Problems {
         self.locations.insert(key.to_owned(), span);
     }
 
-    /// Whether the file gives a key.
+    /// Returns whether the file gives a key.
     pub fn gives(&self, key: &str) -> bool {
         self.locations.contains_key(key)
     }
@@ -105,7 +105,7 @@ impl Problems {
         Problems { list: Vec::new(), further: 0, refused: self.is_refused(), ..self.clone() }
     }
 
-    /// Whether the file is refused whatever else a check finds: what takes long is then not worth it.
+    /// Returns whether the file is refused whatever else a check finds: what takes long is then not worth it.
     pub fn is_refused(&self) -> bool {
         self.refused || !self.is_empty()
     }
@@ -129,22 +129,22 @@ impl Problems {
         }
     }
 
-    /// Whether there are none.
+    /// Returns whether there are none.
     pub fn is_empty(&self) -> bool {
         self.list.is_empty()
     }
 
-    /// How many there are.
+    /// Returns how many there are.
     pub fn len(&self) -> usize {
         self.list.len() + self.further
     }
 
-    /// The problems, in the order of their locations; those without one last.
+    /// Returns the problems, in the order of their locations; those without one last.
     pub fn iter(&self) -> impl Iterator<Item = &Problem> {
         self.list.iter()
     }
 
-    /// The name of the file, as it was given; empty if there is none.
+    /// Returns the name of the file, as it was given; empty if there is none.
     pub fn file(&self) -> &str {
         &self.file
     }
@@ -166,7 +166,7 @@ impl Problems {
         Some((line, before[line_start..].chars().count() + 1))
     }
 
-    /// A list with one object per problem: `file`, `line`, `column` (null without a location), `key`
+    /// Returns a list with one object per problem: `file`, `line`, `column` (null without a location), `key`
     /// (null for the whole file), `message`, `remedy`.
     pub fn to_json(&self) -> Json {
         let each = |problem: &Problem| {
@@ -183,7 +183,7 @@ impl Problems {
         Json::Array(self.list.iter().map(each).collect())
     }
 
-    /// The human report; a styled renderer adds colours.
+    /// Returns the human report; a styled renderer adds colours.
     pub fn render(&self, renderer: &Renderer) -> String {
         let each = |problem: &Problem| {
             let title = Level::ERROR.primary_title(&problem.message);
@@ -208,7 +208,7 @@ impl Problems {
 }
 
 impl Problem {
-    /// The problem with its message in other words.
+    /// Returns the problem with its message in other words.
     pub(super) fn told(self, words: impl FnOnce(&str) -> String) -> Self {
         Self { message: words(&self.message), ..self }
     }
@@ -238,7 +238,7 @@ pub(super) fn out_of_range(name: &str, given: impl std::fmt::Display) -> String 
     format!("`{name}` = {} is out of range", shown(&given.to_string()))
 }
 
-/// A text that may be of any length, fit for a message.
+/// Returns a text that may be of any length, fit for a message.
 pub(super) fn shown(text: &str) -> String {
     const LIMIT: usize = 40;
     match text.char_indices().nth(LIMIT) {
@@ -247,7 +247,7 @@ pub(super) fn shown(text: &str) -> String {
     }
 }
 
-/// A string from a file, fit for a message: quoted, control characters escaped.
+/// Returns a string from a file, fit for a message: quoted, control characters escaped.
 pub(super) fn quoted(text: &str) -> String {
     format!("\"{}\"", shown(&text.escape_debug().to_string()))
 }

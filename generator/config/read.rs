@@ -57,7 +57,7 @@ pub fn read_located(path: &Path, schemas: &[Schema]) -> Result<(Config, Problems
     }
 }
 
-/// The bytes of a file, or message and remedy.
+/// Returns the bytes of a file, or message and remedy.
 fn contents(path: &Path) -> Result<Vec<u8>, (String, String)> {
     let mut bytes = Vec::new();
     let read = input::open(path).and_then(|file| file.take(LARGEST + 1).read_to_end(&mut bytes));
@@ -88,7 +88,7 @@ fn contents(path: &Path) -> Result<Vec<u8>, (String, String)> {
     }
 }
 
-/// The path of the file in the same directory whose name is nearest to one that is not there.
+/// Returns the path of the file in the same directory whose name is nearest to one that is not there.
 fn neighbour(path: &Path) -> Option<String> {
     let wanted = path.file_name()?.to_str()?;
     let parent = path.parent()?;

@@ -12,7 +12,7 @@ const DRAWS: usize = 1000;
 /// Attempts to mend one draw by drawing again the keys that the check complains about.
 const REPAIRS: usize = 100;
 
-/// A valid configuration drawn from the whole stated ranges; the same for the same seed.
+/// Returns a valid configuration drawn from the whole stated ranges; the same for the same seed.
 ///
 /// Ends of ranges come up far more often than a uniform draw would give. Keys that do not apply
 /// keep their defaults. Combinations that the device refuses are drawn again, the offending key
@@ -84,7 +84,7 @@ fn draw(key: &Key, rng: &mut ChaCha8Rng) -> Value {
     }
 }
 
-/// The smallest and the largest each once in eight draws, otherwise uniform.
+/// Returns the smallest and the largest each once in eight draws, otherwise uniform.
 fn integer(min: i64, max: i64, rng: &mut ChaCha8Rng) -> i64 {
     match rng.next_u32() % 8 {
         0 => min,

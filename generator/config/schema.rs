@@ -163,7 +163,7 @@ impl Key {
         Self { drawn: Some((min, max)), ..self }
     }
 
-    /// The table and the last part of the name: `("cosine", "fraction")`. The table of a key at
+    /// Returns the table and the last part of the name: `("cosine", "fraction")`. The table of a key at
     /// the top is empty.
     pub fn table_and_leaf(&self) -> (&'static str, &'static str) {
         self.name.rsplit_once('.').unwrap_or(("", self.name))
@@ -171,12 +171,12 @@ impl Key {
 }
 
 impl Kind {
-    /// Whether this is a choice among integers, which TOML writes without quotes.
+    /// Returns whether this is a choice among integers, which TOML writes without quotes.
     pub fn is_integer_choice(&self) -> bool {
         matches!(self, Kind::Choice(options) if options.iter().all(|option| is_integer(option)))
     }
 
-    /// Whether a file may write an integer: of a choice among words and integers, those without quotes.
+    /// Returns whether a file may write an integer: of a choice among words and integers, those without quotes.
     pub(super) fn takes_integers(&self) -> bool {
         matches!(self, Kind::Choice(options) if options.iter().any(|option| is_integer(option)))
             || *self == Kind::Text(TextPattern::Formula)

@@ -9,7 +9,7 @@ use super::schema::{Key, Schema};
 use super::text_pattern::TextPattern;
 use glint_base::target::TIMING_NAMES;
 
-/// The shared keys, in the order in which a written file shows them, after those of the device.
+/// Returns the shared keys, in the order in which a written file shows them, after those of the device.
 pub fn shared_keys() -> &'static [Key] {
     &KEYS
 }
@@ -131,12 +131,12 @@ keys! {
 }
 
 impl Schema {
-    /// The key of this name, the device's own or one of [`shared_keys`].
+    /// Returns the key of this name, the device's own or one of [`shared_keys`].
     pub fn key(&self, name: &str) -> Option<&Key> {
         self.all_keys().find(|key| key.name == name)
     }
 
-    /// The keys of the device, then those that every device shares.
+    /// Returns the keys of the device, then those that every device shares.
     pub fn all_keys(&self) -> impl Iterator<Item = &Key> {
         self.keys.iter().chain(shared_keys())
     }

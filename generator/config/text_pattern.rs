@@ -30,7 +30,7 @@ const LONGEST: usize = 60;
 const DIGITS: usize = 4;
 
 impl TextPattern {
-    /// Whether a text has this pattern.
+    /// Returns whether a text has this pattern.
     pub fn fits(self, text: &str) -> bool {
         let more = |also: &str| {
             let good = |c: char| c.is_ascii_alphanumeric() || also.contains(c);

@@ -54,7 +54,7 @@ impl Key {
         }
     }
 
-    /// The violation of a value of another type, which `found` describes.
+    /// Returns the violation of a value of another type, which `found` describes.
     pub(super) fn wrong_type(&self, found: &str) -> Violation {
         let wanted = match self.kind {
             Kind::Integer { .. } => "an integer",
@@ -70,7 +70,7 @@ impl Key {
         self.violation(format!("`{}` must be {wanted}, not {found}", self.name))
     }
 
-    /// A violation with the usual remedy: what the key accepts.
+    /// Returns a violation with the usual remedy: what the key accepts.
     pub(super) fn violation(&self, message: String) -> Violation {
         Violation {
             entry: None,
@@ -98,7 +98,7 @@ impl Key {
         }
     }
 
-    /// The values that the key accepts, in words: `an integer from 4 to 30`.
+    /// Returns the values that the key accepts, in words: `an integer from 4 to 30`.
     pub fn accepts(&self) -> String {
         match &self.kind {
             Kind::Integer { min, max } => format!("an integer from {min} to {max}"),
@@ -136,7 +136,7 @@ impl Key {
         }
     }
 
-    /// Values that stand in for one that is not known, to see what a check says of each.
+    /// Returns values that stand in for one that is not known, to see what a check says of each.
     fn stand_ins(&self) -> Vec<Value> {
         let ends: Vec<Value> = match &self.kind {
             Kind::Integer { min, max } => vec![Value::Integer(*min), Value::Integer(*max)],
@@ -267,13 +267,13 @@ fn check(schema: &Schema, draft: &Draft, problems: &mut Problems) {
     problems.extend(found);
 }
 
-/// A message about a key that was not given: which it is, and where its value comes from.
+/// Returns a message about a key that was not given: which it is, and where its value comes from.
 fn of_default(key: &Key, draft: &Draft, message: &str) -> String {
     let value = draft.config.value(key.name).toml();
     format!("`{}` = {value}, its default, since it is not given: {message}", key.name)
 }
 
-/// The keys that decide whether `key` applies, nearest first, with the values that it needs.
+/// Returns the keys that decide whether `key` applies, nearest first, with the values that it needs.
 fn chain(schema: &Schema, key: &Key) -> Vec<(&'static str, &'static str)> {
     let mut conditions = Vec::new();
     let mut condition = key.only_when;
@@ -288,7 +288,7 @@ fn chain(schema: &Schema, key: &Key) -> Vec<(&'static str, &'static str)> {
     conditions
 }
 
-/// The configuration with its doubtful values replaced by each of their stand-ins in turn.
+/// Returns the configuration with its doubtful values replaced by each of their stand-ins in turn.
 fn trials(schema: &Schema, draft: &Draft) -> Vec<Config> {
     let stand_ins: Vec<(&str, Vec<Value>)> = schema
         .all_keys()
@@ -318,7 +318,7 @@ impl Config {
         }
     }
 
-    /// The defaults with some values replaced, under the same rules as a file.
+    /// Returns the defaults with some values replaced, under the same rules as a file.
     ///
     /// # Errors
     /// The problems that a file with these values would have, without positions.
@@ -347,7 +347,7 @@ impl Config {
         draft.finish(schema, problems)
     }
 
-    /// Whether the key of this name has an effect with the other values as they are.
+    /// Returns whether the key of this name has an effect with the other values as they are.
     pub fn applies(&self, schema: &Schema, key: &str) -> bool {
         match schema.key(key).and_then(|key| key.only_when) {
             None => true,
@@ -395,7 +395,7 @@ impl<'a> Draft<'a> {
     }
 }
 
-/// A list of the keys of a table, for a remedy; the table of the keys at the top is empty.
+/// Returns a list of the keys of a table, for a remedy; the table of the keys at the top is empty.
 pub(super) fn keys_of(schema: &Schema, table: &str) -> String {
     let mut keys: Vec<&str> = schema
         .all_keys()

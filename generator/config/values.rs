@@ -16,7 +16,7 @@ pub enum Value {
 }
 
 impl Value {
-    /// The text that [`super::Key::only_when`] compares with: the value without quotes.
+    /// Returns the text that [`super::Key::only_when`] compares with: the value without quotes.
     pub fn bare(&self) -> String {
         match self {
             Value::Integer(value) => value.to_string(),
@@ -31,7 +31,7 @@ impl Value {
         }
     }
 
-    /// The value as TOML: [`Value::bare`], with quotes around a word.
+    /// Returns the value as TOML: [`Value::bare`], with quotes around a word.
     pub fn toml(&self) -> String {
         match self {
             Value::Text(text) if !is_integer(text) => format!("\"{text}\""),
@@ -56,7 +56,7 @@ pub struct Config {
 }
 
 impl Config {
-    /// The value of an integer key, or of a choice among integers.
+    /// Returns the value of an integer key, or of a choice among integers.
     ///
     /// # Panics
     /// If the device has no such key, or it is of another kind: a mistake in the caller.
@@ -71,7 +71,7 @@ impl Config {
         }
     }
 
-    /// The value of a number key.
+    /// Returns the value of a number key.
     ///
     /// # Panics
     /// As [`Config::integer`].
@@ -82,7 +82,7 @@ impl Config {
         }
     }
 
-    /// The value of a choice.
+    /// Returns the value of a choice.
     ///
     /// # Panics
     /// As [`Config::integer`].
@@ -93,7 +93,7 @@ impl Config {
         }
     }
 
-    /// The value of a text.
+    /// Returns the value of a text.
     ///
     /// # Panics
     /// As [`Config::integer`].
@@ -104,7 +104,7 @@ impl Config {
         }
     }
 
-    /// The value of a flag.
+    /// Returns the value of a flag.
     ///
     /// # Panics
     /// As [`Config::integer`].
@@ -115,7 +115,7 @@ impl Config {
         }
     }
 
-    /// The value of a list of integers.
+    /// Returns the value of a list of integers.
     ///
     /// # Panics
     /// As [`Config::integer`].
@@ -126,12 +126,12 @@ impl Config {
         }
     }
 
-    /// Every key with its value, in the order of the schema.
+    /// Returns every key with its value, in the order of the schema.
     pub fn values(&self) -> impl Iterator<Item = (&'static str, &Value)> {
         self.values.iter().map(|(name, value)| (*name, value))
     }
 
-    /// The value of a key of any kind.
+    /// Returns the value of a key of any kind.
     ///
     /// # Panics
     /// If the device has no such key: a mistake in the caller.
@@ -154,7 +154,7 @@ impl Config {
     }
 }
 
-/// Whether a word is an integer as it is displayed: `007` and `+7` are not.
+/// Returns whether a word is an integer as it is displayed: `007` and `+7` are not.
 pub(super) fn is_integer(word: &str) -> bool {
     word.parse::<i64>().is_ok_and(|value| value.to_string() == word)
 }

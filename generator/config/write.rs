@@ -7,7 +7,7 @@ use super::values::{Config, Value};
 /// The widest line of a comment.
 const WIDTH: usize = 90;
 
-/// The file that `glint new` writes: every key with its default, what it governs and what it
+/// Returns the file that `glint new` writes: every key with its default, what it governs and what it
 /// accepts. It reads back as the defaults; keys that do not apply to them are commented out.
 pub fn commented(schema: &Schema, name: &str) -> String {
     commented_values(schema, &Config::defaults(schema, name))
@@ -56,14 +56,14 @@ pub fn commented_values(schema: &Schema, config: &Config) -> String {
 }
 
 impl Config {
-    /// The configuration as a TOML file that reads back as the same: every key of the device that
+    /// Returns the configuration as a TOML file that reads back as the same: every key of the device that
     /// applies, and of those that joined later or that every device shares the ones that differ from their defaults.
     pub fn to_toml(&self, schema: &Schema) -> String {
         plain(schema, self)
     }
 }
 
-/// The keys of a configuration that apply, without comments; of those that joined later or that every device shares,
+/// Returns the keys of a configuration that apply, without comments; of those that joined later or that every device shares,
 /// the ones that differ from their defaults.
 fn plain(schema: &Schema, config: &Config) -> String {
     let mut text = String::new();
@@ -88,7 +88,7 @@ fn is_written(schema: &Schema, config: &Config, key: &Key) -> bool {
     config.applies(schema, key.name) && !(is_quiet && *config.value(key.name) == key.default)
 }
 
-/// The keys that every device has, in the order of [`super::COMMON`], with their values as TOML.
+/// Returns the keys that every device has, in the order of [`super::COMMON`], with their values as TOML.
 fn common(config: &Config) -> [(&'static str, String); 3] {
     [
         ("device", toml::Value::from(config.device.as_str()).to_string()),
@@ -97,7 +97,7 @@ fn common(config: &Config) -> [(&'static str, String); 3] {
     ]
 }
 
-/// The keys by table, that of the keys at the top first; otherwise in the order of the schema.
+/// Returns the keys by table, that of the keys at the top first; otherwise in the order of the schema.
 fn tables(schema: &Schema) -> Vec<(&'static str, Vec<&Key>)> {
     let mut tables: Vec<(&str, Vec<&Key>)> = vec![("", Vec::new())];
     for key in schema.all_keys() {
@@ -110,7 +110,7 @@ fn tables(schema: &Schema) -> Vec<(&'static str, Vec<&Key>)> {
     tables
 }
 
-/// A text as comment lines.
+/// Returns a text as comment lines.
 fn comment(text: &str) -> String {
     let mut lines = String::new();
     let mut line = String::from("#");
@@ -126,7 +126,7 @@ fn comment(text: &str) -> String {
     lines + &line + "\n"
 }
 
-/// A text with a capital at its start and a full stop at its end.
+/// Returns a text with a capital at its start and a full stop at its end.
 fn sentence(text: &str) -> String {
     let text = text.trim_end_matches('.');
     let mut letters = text.chars();

@@ -137,7 +137,7 @@ impl Core {
         Lockstep::new(&self.design, model, self.contract.as_ref(), seed)
     }
 
-    /// The exhaustive check: the proof of the contract and, where they are not too many, every
+    /// Returns the exhaustive check: the proof of the contract and, where they are not too many, every
     /// combination of operands clock by clock.
     ///
     /// # Errors
@@ -154,7 +154,7 @@ impl Core {
         Ok(Job::of_sweep(self.contract.as_ref(), sweep).with(self.clocks()?))
     }
 
-    /// Every combination of operands, golden model against built-in simulator.
+    /// Returns every combination of operands, golden model against built-in simulator.
     ///
     /// # Errors
     /// Model and design do not name the same signals.
@@ -171,7 +171,7 @@ impl Core {
         trial::timing(&self.design, self.contract.as_ref())
     }
 
-    /// One computation with all its numbers.
+    /// Returns one computation with all its numbers.
     ///
     /// # Errors
     /// A device that does not end.
@@ -179,7 +179,7 @@ impl Core {
         trial::example(&self.design, self.contract.as_ref())
     }
 
-    /// The clocks of a line in terms of its length, where the device walks lines.
+    /// Returns the clocks of a line in terms of its length, where the device walks lines.
     ///
     /// # Errors
     /// A device that does not end.
@@ -244,7 +244,7 @@ impl Core {
         Ok(wanted.then(|| self.device.sequential(&self.config)).transpose()?)
     }
 
-    /// Every file of the configuration, which the command line knows as `config`, a path; without vectors there are no benches.
+    /// Returns every file of the configuration, which the command line knows as `config`, a path; without vectors there are no benches.
     ///
     /// # Errors
     /// Golden model and simulation do not agree, or the design cannot be written as Verilog.

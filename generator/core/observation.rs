@@ -38,12 +38,12 @@ pub struct Linear {
 }
 
 impl Linear {
-    /// The number for a length.
+    /// Returns the number for a length.
     pub fn at(self, length: i64) -> i64 {
         self.constant + self.each * length
     }
 
-    /// The formula with the length by its name, as `4 + length`.
+    /// Returns the formula with the length by its name, as `4 + length`.
     pub fn text(self, length: &str) -> String {
         match self.each {
             0 => self.constant.to_string(),
@@ -107,7 +107,7 @@ pub struct Computation {
 }
 
 impl Computation {
-    /// Whether the last result comes with `done`.
+    /// Returns whether the last result comes with `done`.
     pub fn ends_with_result(&self) -> bool {
         let last = self.results.last();
         last.is_some_and(|result| result.clock == self.done)

@@ -48,7 +48,7 @@ impl Device {
         Config::defaults(&schema, &schema.module())
     }
 
-    /// The design that a configuration asks for.
+    /// Returns the design that a configuration asks for.
     ///
     /// # Errors
     /// The mistakes of the description; a pipeline that cannot be made.
@@ -63,7 +63,7 @@ impl Device {
         }
     }
 
-    /// The design with the microprogram, of which a pipeline is made too.
+    /// Returns the design with the microprogram, of which a pipeline is made too.
     ///
     /// # Errors
     /// The mistakes of the description.
@@ -83,7 +83,7 @@ impl Device {
         designer.finish()
     }
 
-    /// The golden model of the design with the microprogram.
+    /// Returns the golden model of the design with the microprogram.
     pub fn golden(&self, config: &Config) -> Box<dyn Model> {
         let mut model = (self.model)(config);
         // What does not know how differs from the design, and that is reported.
@@ -209,17 +209,17 @@ impl Registry {
         self
     }
 
-    /// All devices, in order.
+    /// Returns all devices, in order.
     pub fn devices(&self) -> &[Device] {
         &self.0
     }
 
-    /// The device of a configuration, which was read with the schemas of this registry.
+    /// Returns the device of a configuration, which was read with the schemas of this registry.
     pub fn device(&self, name: &str) -> Option<&Device> {
         self.0.iter().find(|device| device.name == name)
     }
 
-    /// The keys of all devices.
+    /// Returns the keys of all devices.
     pub fn schemas(&self) -> Vec<Schema> {
         self.0.iter().map(|device| (device.schema)()).collect()
     }

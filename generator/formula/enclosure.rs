@@ -27,17 +27,17 @@ impl Enclosure {
         Self { low, high }
     }
 
-    /// The middle.
+    /// Returns the middle.
     pub fn middle(self) -> f64 {
         self.low + (self.high - self.low) / 2.0
     }
 
-    /// Whether both limits are numbers.
+    /// Returns whether both limits are numbers.
     pub fn is_finite(self) -> bool {
         self.low.is_finite() && self.high.is_finite()
     }
 
-    /// Whether it holds a number.
+    /// Returns whether it holds a number.
     pub fn holds(self, value: f64) -> bool {
         (self.low..=self.high).contains(&value)
     }
@@ -54,7 +54,7 @@ impl Enclosure {
         Self { low: low - margin(low), high: high + margin(high) }
     }
 
-    /// The hull of what `of` gives for the corners of two enclosures: the limits of a function that is monotone in each.
+    /// Returns the hull of what `of` gives for the corners of two enclosures: the limits of a function that is monotone in each.
     fn corners(self, other: Self, of: impl Fn(f64, f64) -> Self) -> Self {
         let first = of(self.low, other.low);
         if self.low == self.high && other.low == other.high {
@@ -65,13 +65,13 @@ impl Enclosure {
         a.hull(b).hull(c.hull(d))
     }
 
-    /// The values of a function of `libm` that never falls.
+    /// Returns the values of a function of `libm` that never falls.
     pub(super) fn rising(self, of: fn(f64) -> f64) -> Self {
         let low = of(self.low);
         Self::near(low, if self.low == self.high { low } else { of(self.high) })
     }
 
-    /// The values of a sine or a cosine, which is never steeper than 1.
+    /// Returns the values of a sine or a cosine, which is never steeper than 1.
     pub(super) fn wave(self, of: fn(f64) -> f64) -> Self {
         let middle = self.middle();
         let reach = ((self.high - middle).max(middle - self.low)).next_up();
@@ -120,7 +120,7 @@ impl Enclosure {
     }
 }
 
-/// The enclosure of a number of which the nearest f64 is `value`, and whose difference from it has the sign of `error`.
+/// Returns the enclosure of a number of which the nearest f64 is `value`, and whose difference from it has the sign of `error`.
 fn directed(value: f64, error: f64) -> Enclosure {
     if value.abs() < SMALL && (value != 0.0 || error != 0.0) || !error.is_finite() {
         return Enclosure { low: value.next_down(), high: value.next_up() };

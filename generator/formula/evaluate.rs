@@ -6,7 +6,7 @@ use super::{Comparison, Enclosure, Fault, Formula, Function, Kind, Operator};
 const PRODUCTS: f64 = 64.0;
 
 impl Formula {
-    /// The limits of the value where operands are within theirs. What errors of f64 and of `libm` may be is in them.
+    /// Returns the limits of the value where operands are within theirs. What errors of f64 and of `libm` may be is in them.
     ///
     /// # Errors
     /// A part that has no value: a pole, a root of a negative number, an operand without limits, a word of a ROM.
@@ -122,7 +122,7 @@ pub(super) fn binary(operator: Operator, a: Enclosure, b: Enclosure) -> Result<E
     })
 }
 
-/// A number, or between which two it is.
+/// Returns a number, or between which two it is.
 fn words(a: Enclosure) -> String {
     let middle = a.middle();
     if (a.high - a.low).abs() <= middle.abs() * 1e-12 {

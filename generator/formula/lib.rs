@@ -110,7 +110,7 @@ impl Fault {
         Self { span, message: message.into() }
     }
 
-    /// The text in a line, carets under the place in the next, and what is wrong behind them.
+    /// Returns the text in a line, carets under the place in the next, and what is wrong behind them.
     pub fn under(&self, text: &str) -> String {
         let count = |range: Range<usize>| text.get(range).map_or(0, |it| it.chars().count());
         let carets = count(self.span.clone()).max(1);
@@ -131,7 +131,7 @@ impl Formula {
         Self { kind: Kind::Operand(name.to_owned()), span: 0..0 }
     }
 
-    /// The parts that it is made of.
+    /// Returns the parts that it is made of.
     pub fn parts(&self) -> Vec<&Self> {
         match &self.kind {
             Kind::Number(..) | Kind::Constant(..) | Kind::Operand(_) => Vec::new(),

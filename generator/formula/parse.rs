@@ -80,7 +80,7 @@ pub fn parse(text: &str) -> Result<Formula, Fault> {
     }
 }
 
-/// The places of names, numbers and signs.
+/// Returns the places of names, numbers and signs.
 fn tokens(text: &str) -> Result<Vec<Range<usize>>, Fault> {
     let mut tokens = Vec::new();
     let mut at = 0;
@@ -114,7 +114,7 @@ fn tokens(text: &str) -> Result<Vec<Range<usize>>, Fault> {
     Ok(tokens)
 }
 
-/// The length of the number at the beginning of a text: digits with a point, and a power of ten.
+/// Returns the length of the number at the beginning of a text: digits with a point, and a power of ten.
 fn number(text: &str) -> usize {
     let digits = |from: usize, also: char| {
         let rest = &text[from..];
@@ -138,7 +138,7 @@ struct Parser<'t> {
 }
 
 impl Parser<'_> {
-    /// The token that follows, or no text.
+    /// Returns the token that follows, or no text.
     fn peek(&self) -> &str {
         self.tokens.get(self.at).map_or("", |token| &self.text[token.clone()])
     }
@@ -161,7 +161,7 @@ impl Parser<'_> {
         if self.taken(&[token]) { Ok(()) } else { self.fault(format!("`{token}` is missing")) }
     }
 
-    /// A part from the token `from` to the last that was read.
+    /// Returns a part from the token `from` to the last that was read.
     fn made(&self, from: usize, kind: Kind) -> Formula {
         Formula { kind, span: self.tokens[from].start..self.tokens[self.at - 1].end }
     }
@@ -222,7 +222,7 @@ impl Parser<'_> {
         self.chain(&signs, Self::signed)
     }
 
-    /// A power with a sign before it, which is weaker.
+    /// Returns a power with a sign before it, which is weaker.
     fn signed(&mut self) -> Result<Formula, Fault> {
         let from = self.at;
         let mut signs = 0;
@@ -288,7 +288,7 @@ impl Parser<'_> {
         self.call(from, &token)
     }
 
-    /// A function with its parentheses, of which the first is read.
+    /// Returns a function with its parentheses, of which the first is read.
     fn call(&mut self, from: usize, name: &str) -> Result<Formula, Fault> {
         if name == "if" {
             let comparison = self.comparison()?;
@@ -332,7 +332,7 @@ impl Parser<'_> {
     }
 }
 
-/// Whether a number is that of its text, and not the nearest to it. Of a text with a power of ten nothing is claimed.
+/// Returns whether a number is that of its text, and not the nearest to it. Of a text with a power of ten nothing is claimed.
 fn is_exact(text: &str, value: f64) -> bool {
     // All digits of a number that few binary places have; more digits of the text than these are not exact.
     let trimmed = |text: &str| match text.split_once('.') {

@@ -10,14 +10,14 @@ const POWER: u8 = 3;
 const ATOM: u8 = 4;
 
 impl Formula {
-    /// The text as [`super::parse()`] reads it, and Python with `from math import *`.
+    /// Returns the text as [`super::parse()`] reads it, and Python with `from math import *`.
     pub fn python(&self) -> String {
         python(self).0
     }
 }
 
 impl Formula {
-    /// The calls of the functions of `templates/recompute.c`, which take and give limits.
+    /// Returns the calls of the functions of `templates/recompute.c`, which take and give limits.
     pub fn c(&self) -> String {
         let call = |name: &str, parts: &[&Self]| {
             let parts: Vec<String> = parts.iter().map(|it| it.c()).collect();
@@ -56,7 +56,7 @@ impl Formula {
     }
 }
 
-/// A part in parentheses where it holds together less than `least`.
+/// Returns a part in parentheses where it holds together less than `least`.
 fn within((text, rank): (String, u8), least: u8) -> String {
     if rank < least { format!("({text})") } else { text }
 }
@@ -98,7 +98,7 @@ fn python(formula: &Formula) -> (String, u8) {
 }
 
 impl Function {
-    /// The name as formulas have it.
+    /// Returns the name as formulas have it.
     pub fn name(self) -> &'static str {
         super::FUNCTIONS.iter().find(|(_, own)| *own == self).map_or("-", |(name, _)| name)
     }

@@ -11,7 +11,8 @@ struct Pair {
 }
 
 impl Formula {
-    /// The limits of the value and of the derivative to an operand within its limits. At a corner the derivative is between those of
+    /// Returns the limits of the value and of the derivative to an operand within its limits. At a corner the
+    /// derivative is between those of
     /// both sides.
     ///
     /// # Errors

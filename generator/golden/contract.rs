@@ -12,23 +12,23 @@ pub const EXPONENT: &str = "exponent";
 /// One contribution to the error of `f`: its configuration key, what it is, and its size.
 pub type ErrorShare = (&'static str, &'static str, f64);
 
-/// The operand cos γ.
+/// Returns the operand cos γ.
 pub fn cosine_operand(format: Format, domain: (i64, i64)) -> Operand {
     let doc = "cosine of the angle between the normal and the half vector";
     control(COSINE, format, domain, doc)
 }
 
-/// The operand n.
+/// Returns the operand n.
 pub fn exponent_operand(format: Format, domain: (i64, i64)) -> Operand {
     control(EXPONENT, format, domain, "specular exponent n")
 }
 
-/// An operand that f depends on.
+/// Returns an operand that f depends on.
 pub fn control(name: &str, format: Format, domain: (i64, i64), doc: &str) -> Operand {
     Operand { name: name.to_owned(), format, domain, colour: false, doc: doc.to_owned() }
 }
 
-/// The bound from the errors of `f`, a word with `frac` fraction bits.
+/// Returns the bound from the errors of `f`, a word with `frac` fraction bits.
 ///
 /// `f` and the formula both lie in 0 … 1, so that no word is off by more than 1.0: where the shares
 /// exceed it, they are scaled down to it. An output is `f` times a colour, which multiplies the error
@@ -63,17 +63,17 @@ pub fn bound(
     Bound { f, ..Bound::of(terms) }
 }
 
-/// An expression of Python, 0 where it would be negative.
+/// Returns an expression of Python, 0 where it would be negative.
 pub fn clamped_at_0(expression: &str) -> String {
     format!("max({expression}, 0)")
 }
 
-/// An expression of Python, 0 where the surface faces away.
+/// Returns an expression of Python, 0 where the surface faces away.
 pub fn where_it_faces(expression: &str) -> String {
     format!("{expression} if {COSINE} > 0 else 0")
 }
 
-/// The raw value of the operand for the exponent `n`; `None` where its domain or its format has none.
+/// Returns the raw value of the operand for the exponent `n`; `None` where its domain or its format has none.
 pub fn exponent_at(operand: &Operand, n: f64) -> Option<i64> {
     let raw = operand.format.quantise(n);
     let held = operand.format.to_f64(raw) == n;
@@ -81,7 +81,7 @@ pub fn exponent_at(operand: &Operand, n: f64) -> Option<i64> {
     (held && (low..=high).contains(&raw)).then_some(raw)
 }
 
-/// The control operands among `operands` for an angle `gamma` (in radians) and an exponent: `cos_gamma` and
+/// Returns the control operands among `operands` for an angle `gamma` (in radians) and an exponent: `cos_gamma` and
 /// `exponent`, both of which must be there. Others take their value in `neutral`, or else the value of
 /// their domain that is nearest to 0.
 ///

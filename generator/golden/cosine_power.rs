@@ -42,7 +42,7 @@ impl Arithmetic {
         self.scaled.apply((self.keys.operands.cosine.one() - cosine) * exponent)
     }
 
-    /// The inverse of the accumulator, `1.0 − ulp − accumulator`; 0 for a surface that faces away.
+    /// Returns the inverse of the accumulator, `1.0 − ulp − accumulator`; 0 for a surface that faces away.
     #[inline]
     fn base(&self, cosine: i64, accumulator: i64) -> i64 {
         if cosine == 0 { 0 } else { self.largest - accumulator }
@@ -54,12 +54,12 @@ impl Arithmetic {
     }
 }
 
-/// The golden model.
+/// Returns the golden model.
 pub fn model(config: &Config) -> Box<dyn Model> {
     Box::new(clocked(Arithmetic::new(Keys::of(config))))
 }
 
-/// The device, clock by clock.
+/// Returns the device, clock by clock.
 fn clocked(it: Arithmetic) -> Clocked {
     let it = Arc::new(it);
     let mut frame = Frame::default();
@@ -89,7 +89,7 @@ fn clocked(it: Arithmetic) -> Clocked {
     highlight::products(&it.keys.operands.colours, &it.keys.f).behind(frame, accumulator, program)
 }
 
-/// The accuracy contract. Control operands: `cos_gamma`, `exponent`.
+/// Returns the accuracy contract. Control operands: `cos_gamma`, `exponent`.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     let it = Arithmetic::new(Keys::of(config));
     let operands = highlight::operands(&it.keys.operands, &it.keys.domain);
@@ -130,7 +130,7 @@ impl Reflectance for Arithmetic {
         Some(Variation { slope: most as f64, jump: libm::pow(base, power) })
     }
 
-    /// Every quantity here lies in 0 … 1, hardware's and formula's alike, so by the mean value
+    /// Returns every quantity here lies in 0 … 1, hardware's and formula's alike, so by the mean value
     /// theorem an error ε before a power p grows to at most p·ε.
     ///
     /// - Base: the inverse stands for 1.0 − ulp − t where 1.0 − t is meant. With t rounded by an error
@@ -186,7 +186,7 @@ impl Reflectance for Arithmetic {
     }
 }
 
-/// The largest difference between W and cosⁿγ over the cosines from 0 to 1, on a fine grid.
+/// Returns the largest difference between W and cosⁿγ over the cosines from 0 to 1, on a fine grid.
 fn formula_error(n: i64, power: u32) -> f64 {
     const GRID: u32 = 512;
     (1..=GRID)

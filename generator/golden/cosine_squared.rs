@@ -24,32 +24,32 @@ impl Arithmetic {
         Self { table: CosineTable::new(2, keys.table_address, keys.fraction), keys }
     }
 
-    /// The address of ROM 12 for a stretched angle.
+    /// Returns the address of ROM 12 for a stretched angle.
     #[inline]
     fn step_of(&self, angle: i64) -> i64 {
         magnitude(angle, self.keys.angle_fraction, self.keys.table_address)
             .unwrap_or(self.table.words.len() as i64 - 1)
     }
 
-    /// The word of ROM 12 for a stretched angle.
+    /// Returns the word of ROM 12 for a stretched angle.
     #[inline]
     fn cosine_of(&self, angle: i64) -> i64 {
         self.table.words[self.step_of(angle) as usize]
     }
 }
 
-/// The golden model.
+/// Returns the golden model.
 pub fn model(config: &Config) -> Box<dyn Model> {
     Box::new(clocked(Keys::of(config)))
 }
 
-/// The product of the word of ROM 12 with the amplitude.
+/// Returns the product of the word of ROM 12 with the amplitude.
 fn products(keys: &Keys) -> Products {
     Products::amplitude(keys.f_format(), keys.colour_bits, keys.output_rounding)
         .at_edges(keys.stages > 2)
 }
 
-/// The device, clock by clock.
+/// Returns the device, clock by clock.
 fn clocked(keys: Keys) -> Clocked {
     let mut frame = Frame::default();
     let Keys { length_bits, stages, .. } = keys;
@@ -75,7 +75,7 @@ fn clocked(keys: Keys) -> Clocked {
     frame.model(program)
 }
 
-/// The accuracy contract. Control operands: `delta_zeta`, `zeta_start`, `length`; those of a point have its
+/// Returns the accuracy contract. Control operands: `delta_zeta`, `zeta_start`, `length`; those of a point have its
 /// angle for `zeta_start`.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     Box::new(highlight(Keys::of(config)))
@@ -114,14 +114,14 @@ impl Reflectance for Arithmetic {
         vec![line::interval(angle, last[1], length, first[0]), angle, length]
     }
 
-    /// A line of one point, its angle stretched by `√(n/2)` as the host does it. What the operand denotes is
+    /// Returns a line of one point, its angle stretched by `√(n/2)` as the host does it. What the operand denotes is
     /// an angle and n together, so that it has no cosine.
     fn at(&self, operands: &[Operand], gamma: f64, n: f64) -> Option<Vec<i64>> {
         let stretched = (n / 2.0).sqrt() * gamma;
         Some(vec![0, line::raw_angle(&operands[1], stretched), 0])
     }
 
-    /// The operand denotes an angle and n together.
+    /// Returns the operand denotes an angle and n together.
     fn cosine(&self, _: &[Operand], _: &[i64]) -> Option<f64> {
         None
     }
@@ -130,14 +130,14 @@ impl Reflectance for Arithmetic {
         Some("length")
     }
 
-    /// Every angle that a line can come to, by the step of ROM 12 that it is in. Beyond a right angle the
+    /// Returns every angle that a line can come to, by the step of ROM 12 that it is in. Beyond a right angle the
     /// word is the table's last, 0, and so is the formula.
     fn sweep(&self) -> Option<Sweep> {
         let last = (1 << self.keys.table_address) - 1;
         Some(Sweep::ranges([("step of the table", (0, last))]))
     }
 
-    /// The worst over the step's angles of either sign: the formula falls from one end to the other.
+    /// Returns the worst over the step's angles of either sign: the formula falls from one end to the other.
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let step = place[0];
         let word = self.table.words[step as usize];
@@ -147,7 +147,7 @@ impl Reflectance for Arithmetic {
         Some((end(step) - f).max(f - end(step + 1)))
     }
 
-    /// How far ROM 12 is from the formula within a step: the angle itself is exact, and so is its step.
+    /// Returns how far ROM 12 is from the formula within a step: the angle itself is exact, and so is its step.
     fn shares(&self) -> Vec<ErrorShare> {
         let table = &self.table;
         vec![

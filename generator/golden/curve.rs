@@ -55,7 +55,7 @@ pub struct Curve {
 }
 
 impl Curve {
-    /// The table of `function`, of u as an integer: increasing from 0 to 1.
+    /// Returns the table of `function`, of u as an integer: increasing from 0 to 1.
     pub fn new(params: &Params, function: impl Fn(f64) -> f64) -> Self {
         let mut curve = Self {
             params: params.clone(),
@@ -136,12 +136,12 @@ impl Curve {
         self.pieces.push(Piece { start, last: start + steps - 1, error, shape });
     }
 
-    /// Every segment.
+    /// Returns every segment.
     pub fn pieces(&self) -> &[Piece] {
         &self.pieces
     }
 
-    /// The value for u.
+    /// Returns the value for u.
     #[inline]
     pub fn at(&self, u: i64) -> i64 {
         let length = 64 - (u as u64).leading_zeros();

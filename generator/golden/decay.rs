@@ -61,7 +61,7 @@ impl Arithmetic {
         }
     }
 
-    /// How often c doubles before it is at least one half, and the distance less an ulp of what has become of c.
+    /// Returns how often c doubles before it is at least one half, and the distance less an ulp of what has become of c.
     ///
     /// Without a fraction (c = 0 and 1.0) the hardware counts all ones; f does not depend on either.
     #[inline]
@@ -101,7 +101,7 @@ impl Arithmetic {
         narrow.apply(factor * exponent)
     }
 
-    /// The operand of the table of 2^−x.
+    /// Returns the operand of the table of 2^−x.
     #[inline]
     fn argument(&self, halvings: i64) -> i64 {
         halvings & ((1 << self.keys.argument) - 1)
@@ -120,7 +120,7 @@ impl Arithmetic {
         }
     }
 
-    /// The decay of a distance from 0 to 1.0, exactly.
+    /// Returns the decay of a distance from 0 to 1.0, exactly.
     fn exact_decay(&self, distance: f64) -> f64 {
         match self.of {
             Decay::Logarithm => -libm::log2(1.0 - distance),
@@ -131,7 +131,7 @@ impl Arithmetic {
         }
     }
 
-    /// The error of f from the decays of distances from one to another, in an octave: that of the ratio, that of the rounding of
+    /// Returns the error of f from the decays of distances from one to another, in an octave: that of the ratio, that of the rounding of
     /// the decay, and what the product does not see.
     fn of_distances(&self, (from, to): (i64, i64), octave: f64) -> [f64; 3] {
         let keys = &self.keys;
@@ -155,12 +155,12 @@ impl Arithmetic {
     }
 }
 
-/// The golden model of one of the devices.
+/// Returns the golden model of one of the devices.
 pub fn model(config: &Config, of: Decay) -> Box<dyn Model> {
     Box::new(clocked(Arithmetic::new(of, Keys::of(config))))
 }
 
-/// The device, clock by clock.
+/// Returns the device, clock by clock.
 fn clocked(it: Arithmetic) -> Clocked {
     let it = Arc::new(it);
     let keys = &it.keys;
@@ -195,7 +195,7 @@ fn clocked(it: Arithmetic) -> Clocked {
     highlight::products(&keys.operands.colours, &keys.f).behind(frame, reflectance, program)
 }
 
-/// The accuracy contract of one of the devices. Control operands: `cos_gamma`, `exponent`.
+/// Returns the accuracy contract of one of the devices. Control operands: `cos_gamma`, `exponent`.
 pub fn contract(config: &Config, of: Decay) -> Box<dyn Contract> {
     let it = Arithmetic::new(of, Keys::of(config));
     let operands = highlight::operands(&it.keys.operands, &it.keys.domain);
@@ -204,7 +204,7 @@ pub fn contract(config: &Config, of: Decay) -> Box<dyn Contract> {
 }
 
 impl Arithmetic {
-    /// The formula in f64.
+    /// Returns the formula in f64.
     #[inline]
     fn formula(&self, cosine: f64, exponent: f64) -> f64 {
         match self.of {

@@ -53,7 +53,7 @@ pub struct Device {
 }
 
 impl Frame {
-    /// The device at power-up, as [`Frame::model`] takes it.
+    /// Returns the device at power-up, as [`Frame::model`] takes it.
     ///
     /// # Panics
     /// If there is no microinstruction.
@@ -71,7 +71,7 @@ impl Frame {
         Device { model: self.model(program), operands, outputs }
     }
 
-    /// The device that executes its parts in the order in which they were stated, and has its outputs in registers.
+    /// Returns the device that executes its parts in the order in which they were stated, and has its outputs in registers.
     ///
     /// # Panics
     /// Never: registers can be put behind a program without conditions on its results.
@@ -86,7 +86,7 @@ impl Frame {
 }
 
 impl Device {
-    /// Its clock model.
+    /// Returns its clock model.
     pub fn model(self) -> Box<dyn Model> {
         Box::new(self.model)
     }
@@ -102,7 +102,7 @@ impl Device {
         self
     }
 
-    /// Its contract. Results are those of the model.
+    /// Returns its contract. Results are those of the model.
     pub fn contract(self, formula: impl Formula + 'static) -> Box<dyn Contract> {
         let shown = |output: &Output| self.model.signals().iter().position(|it| *it == output.name);
         let shown = self.outputs.iter().filter_map(shown).collect();
@@ -112,7 +112,7 @@ impl Device {
 
 /// The formula that a device approximates, with the proved bound of its error.
 pub trait Formula: Send + Sync {
-    /// The outputs in f64, unrounded, for the values (not raw) of the operands, in the order of the frame.
+    /// Returns the outputs in f64, unrounded, for the values (not raw) of the operands, in the order of the frame.
     fn exact(&self, operands: &[f64]) -> Vec<f64>;
 
     /// Appends the raw outputs at raw operands, where they are had without going through the microprogram: quickly, for pictures
@@ -122,7 +122,7 @@ pub trait Formula: Send + Sync {
         false
     }
 
-    /// The terms of an output's error, each a proven upper limit; none where the bound is not known yet.
+    /// Returns the terms of an output's error, each a proven upper limit; none where the bound is not known yet.
     fn terms(&self) -> Vec<Term> {
         Vec::new()
     }
@@ -169,7 +169,7 @@ struct OfModel<F> {
 }
 
 impl<F> OfModel<F> {
-    /// The raw outputs with the result of a number, from power-up; none if it is never shown.
+    /// Returns the raw outputs with the result of a number, from power-up; none if it is never shown.
     fn shown(&self, operands: &[i64], index: u64) -> Option<Vec<i64>> {
         let mut model = self.device.model.clone();
         let strobes = |strobe: u64| {

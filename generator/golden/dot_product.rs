@@ -11,7 +11,7 @@ use glint_base::fixed::{Format, Rounding, exp2};
 use glint_config::Config;
 use glint_keys::dot_product::Keys;
 
-/// The operations of each microinstruction.
+/// Returns the operations of each microinstruction.
 fn device(config: &Config) -> device::Device {
     let it = Arc::new(Cosine::new(config));
     let Keys { fraction, other, kept, .. } = it.keys;
@@ -57,12 +57,12 @@ fn device(config: &Config) -> device::Device {
     ["hx", "hy", "hz"].into_iter().fold(device, |device, name| device.domain(name, -one, one))
 }
 
-/// The golden model.
+/// Returns the golden model.
 pub fn model(config: &Config) -> Box<dyn Model> {
     device(config).model()
 }
 
-/// The function that the device computes, and its error bound.
+/// Returns the function that the device computes, and its error bound.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     device(config).contract(Cosine::new(config))
 }
@@ -92,12 +92,12 @@ impl Cosine {
         }
     }
 
-    /// The products of both vectors, for a length from 1 to 2; from both sides without their sign.
+    /// Returns the products of both vectors, for a length from 1 to 2; from both sides without their sign.
     fn distance(&self, sum: i64, shift: i64) -> i64 {
         self.distance.apply(if self.keys.two_sided { sum.abs() } else { sum } << shift)
     }
 
-    /// The errors, as values, of a cosine by the inverse root, by its factors, and by its rounding.
+    /// Returns the errors, as values, of a cosine by the inverse root, by its factors, and by its rounding.
     ///
     /// Let m be the squares shifted to 1 ≤ m < 4, f = 1/√m, and t the products as far, of which the cosine is t·f. What
     /// stands for f is off by `Root::error`, which counts √m times, and by what its own rounding leaves, half a place
@@ -129,7 +129,7 @@ impl Formula for Cosine {
         ]
     }
 
-    /// A unit vector, and another close to it, or close to a right angle with it: highlights are near a product of 1,
+    /// Returns a unit vector, and another close to it, or close to a right angle with it: highlights are near a product of 1,
     /// and at 0 the result begins to be clamped.
     fn hint(&self, unit: &mut dyn FnMut() -> f64) -> Option<Vec<i64>> {
         let mut centred = || [(); 3].map(|()| 2.0 * unit() - 1.0);
@@ -154,7 +154,7 @@ impl Formula for Cosine {
         Some([raw(normal.map(|it| length * it), fraction), raw(unit_vector(half), other)].concat())
     }
 
-    /// The sum of squares determines the inverse root.
+    /// Returns the sum of squares determines the inverse root.
     fn sweep(&self) -> Option<Sweep> {
         Some(self.root.sweep())
     }

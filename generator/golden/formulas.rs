@@ -13,7 +13,7 @@ pub fn blinn(c: f64, n: f64) -> f64 {
     if c <= 0.0 { 0.0 } else { libm::pow(c, n) }
 }
 
-/// The cosine of `γ + dγ`, or of `γ − dγ` when `dgamma_negative`, from `c = cos γ` and `cd = cos dγ`
+/// Returns the cosine of `γ + dγ`, or of `γ − dγ` when `dgamma_negative`, from `c = cos γ` and `cd = cos dγ`
 /// with both angles in 0 … 90°.
 #[inline]
 pub fn turned_cosine(c: f64, cd: f64, dgamma_negative: bool) -> f64 {
@@ -26,7 +26,7 @@ pub fn turned_cosine(c: f64, cd: f64, dgamma_negative: bool) -> f64 {
     }
 }
 
-/// The base of `rough`, `n/2·(cos(γ ± dγ) − 1) + 1`, before clamp and square.
+/// Returns the base of `rough`, `n/2·(cos(γ ± dγ) − 1) + 1`, before clamp and square.
 #[inline]
 fn rough_base(c: f64, cd: f64, dgamma_negative: bool, n: f64) -> f64 {
     n / 2.0 * (turned_cosine(c, cd, dgamma_negative) - 1.0) + 1.0
@@ -87,7 +87,7 @@ pub fn quadratic(c: f64, a: f64) -> f64 {
     (c * (1.0 - a * (1.0 - c))).max(0.0)
 }
 
-/// The paper's W (seed 002): `(n/m·(c − 1) + 1)^m`, 0 where the base is negative.
+/// Returns the paper's W (seed 002): `(n/m·(c − 1) + 1)^m`, 0 where the base is negative.
 ///
 /// `m` is a power of two, 2 … 16 in the seed.
 #[inline]
@@ -99,7 +99,7 @@ pub fn cosine_power(c: f64, n: f64, m: u32) -> f64 {
     (0..m.ilog2()).fold(base, |power, _| power * power)
 }
 
-/// The power k with which `quad-cosine` (seed 000) serves an exponent: 1, 2 and 4 for n = 1, n = 2 and
+/// Returns the power k with which `quad-cosine` (seed 000) serves an exponent: 1, 2 and 4 for n = 1, n = 2 and
 /// n = 3 to 6, 16 for all others, 0 among them.
 #[inline]
 pub fn quad_power(n: i64) -> u32 {
@@ -140,7 +140,7 @@ pub fn cosine_squared(stretched: f64) -> f64 {
     lobe(stretched, 2)
 }
 
-/// The Gaussian of the angle (seed 002): `exp(−n·γ²/2)`, γ = arccos c.
+/// Returns the Gaussian of the angle (seed 002): `exp(−n·γ²/2)`, γ = arccos c.
 #[inline]
 pub fn gauss(c: f64, n: f64) -> f64 {
     if c <= 0.0 {

@@ -39,7 +39,7 @@ fn device(it: &Arc<Piecewise>) -> device::Device {
     frame.device(program.collect::<Vec<_>>()).domain("x", first, last)
 }
 
-/// The golden model.
+/// Returns the golden model.
 ///
 /// # Panics
 /// If the check of the schema has not accepted the configuration.
@@ -47,7 +47,7 @@ pub fn model(config: &Config) -> Box<dyn Model> {
     device(&found(config).expect("a configuration that is checked").1).model()
 }
 
-/// The accuracy contract.
+/// Returns the accuracy contract.
 ///
 /// # Panics
 /// As [`model`].
@@ -57,13 +57,13 @@ pub fn contract(config: &Config) -> Box<dyn Contract> {
     device(&it).contract(Stated { function, bound, polynomials: it.clone() })
 }
 
-/// The value of a formula of x, in f64.
+/// Returns the value of a formula of x, in f64.
 pub(super) fn at(formula: &str, x: f64) -> f64 {
     let value = parse(formula).and_then(|it| it.enclose(&[("x", Enclosure::exactly(x))]));
     value.map_or(f64::NAN, Enclosure::middle)
 }
 
-/// A proven limit of the formula's slope over its domain, from interval derivatives; none where it may jump or be infinitely steep.
+/// Returns a proven limit of the formula's slope over its domain, from interval derivatives; none where it may jump or be infinitely steep.
 pub(super) fn slope(config: &Config) -> Option<f64> {
     let (function, it) = found(config).ok()?;
     let Curve::Formula(formula) = &function.curve else { return None };

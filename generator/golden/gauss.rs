@@ -5,12 +5,12 @@ use super::{Contract, Model};
 use glint_config::Config;
 use glint_keys::decay::Decay;
 
-/// The golden model.
+/// Returns the golden model.
 pub fn model(config: &Config) -> Box<dyn Model> {
     decay::model(config, Decay::Angle)
 }
 
-/// The accuracy contract.
+/// Returns the accuracy contract.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     decay::contract(config, Decay::Angle)
 }

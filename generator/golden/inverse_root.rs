@@ -37,12 +37,12 @@ impl Root {
         }
     }
 
-    /// Bits of that count.
+    /// Returns bits of that count.
     pub fn pair_bits(&self) -> u32 {
         (self.width - 1).ilog2()
     }
 
-    /// The sum shifted by so many pairs.
+    /// Returns the sum shifted by so many pairs.
     pub fn mantissa(&self, sum: i64, pairs: i64) -> i64 {
         if sum == 0 { 0 } else { sum << (2 * pairs) }
     }
@@ -59,7 +59,7 @@ impl Root {
         self.ends[at] - (((self.ends[at] - self.ends[at + 1]) * rest) >> along)
     }
 
-    /// The errors of √m·f by the chords and by roundings, as values. Let m be the mantissa, 1 ≤ m < 4, f = 1/√m and r what
+    /// Returns the errors of √m·f by the chords and by roundings, as values. Let m be the mantissa, 1 ≤ m < 4, f = 1/√m and r what
     /// stands for it, u the last place of r.
     ///
     /// - f is convex, so that a chord lies above it, by at most h²/8·max f″ = h²/8·¾·a^(−5/2) in the segment from
@@ -78,7 +78,7 @@ impl Root {
         [chord, 4.0 * exp2(-(self.fraction as i32))]
     }
 
-    /// Every sum of squares, which determines the inverse root.
+    /// Returns every sum of squares, which determines the inverse root.
     pub fn sweep(&self) -> Sweep {
         Sweep::ranges([("sum of squares", (1, FARTHEST << (self.width - 4)))])
     }

@@ -45,11 +45,11 @@ use glint_base::text;
 /// Values are bit patterns. All state is zero before the first clock, as the built-in simulator's is.
 /// A run has many instances; tables are best shared among them (`Arc`).
 pub trait Model: CloneModel + Send + Sync {
-    /// The names of the inputs, in the order in which [`Model::clock`] takes them: `rst_n`, `start`,
+    /// Returns the names of the inputs, in the order in which [`Model::clock`] takes them: `rst_n`, `start`,
     /// and `<operand>` and `<operand>_write` for each operand. The order is the model's own.
     fn inputs(&self) -> &[String];
 
-    /// The names of everything predicted, in any order.
+    /// Returns the names of everything predicted, in any order.
     ///
     /// Nothing that a device shows may be missing: the outputs (`valid`, `busy`, `done`, results and
     /// flags); the sequencer's registers `run` and `word_address`; the register `<operand>_reg` of each
@@ -78,15 +78,15 @@ pub trait Model: CloneModel + Send + Sync {
         None
     }
 
-    /// The model of a [`frame::Frame`], which alone can be a part of another.
+    /// Returns the model of a [`frame::Frame`], which alone can be a part of another.
     fn clocked(&self) -> Option<&frame::Clocked> {
         None
     }
 
-    /// The values after the latest edge, in the order of [`Model::signals`].
+    /// Returns the values after the latest edge, in the order of [`Model::signals`].
     fn values(&self) -> &[u64];
 
-    /// The value of one signal.
+    /// Returns the value of one signal.
     fn value(&self, name: &str) -> Option<u64> {
         let at = self.signals().iter().position(|signal| signal == name)?;
         Some(self.values()[at])
@@ -95,7 +95,7 @@ pub trait Model: CloneModel + Send + Sync {
 
 /// The clone of a [`Model`], which it has by being [`Clone`].
 pub trait CloneModel {
-    /// A copy, with the state that it has now.
+    /// Returns a copy, with the state that it has now.
     fn boxed_clone(&self) -> Box<dyn Model>;
 }
 
@@ -140,10 +140,10 @@ pub struct Output {
 /// It may have any number of outputs, with or without a sign. A device that multiplies by a reflectance has
 /// a [`Highlight`] for its contract.
 pub trait Contract: Send + Sync {
-    /// The operands, in the order in which values are passed.
+    /// Returns the operands, in the order in which values are passed.
     fn operands(&self) -> &[Operand];
 
-    /// The outputs, in the order in which results are given.
+    /// Returns the outputs, in the order in which results are given.
     fn outputs(&self) -> &[Output];
 
     /// Appends the raw outputs that the device computes from raw operands: of result number `index` (from 0),
@@ -163,17 +163,17 @@ pub trait Contract: Send + Sync {
     /// sides. An error is taken from the nearer.
     fn exact(&self, operands: &[i64], index: u64, values: &mut Vec<[f64; 2]>);
 
-    /// A proven bound on the error, stated before anything is simulated. One without terms is not stated:
+    /// Returns a proven bound on the error, stated before anything is simulated. One without terms is not stated:
     /// `glint certify` may find one.
     fn bound(&self) -> Bound;
 
-    /// The formula of each output, as an expression of Python, as in
+    /// Returns the formula of each output, as an expression of Python, as in
     /// [`highlight::Reflectance::expressions`]; none where nobody wrote them. A [`Highlight`] has its own.
     fn expressions(&self) -> Vec<String> {
         Vec::new()
     }
 
-    /// The contract of a device that multiplies by a reflectance.
+    /// Returns the contract of a device that multiplies by a reflectance.
     fn highlight(&self) -> Option<&Highlight> {
         None
     }
@@ -189,23 +189,23 @@ pub trait Contract: Send + Sync {
         None
     }
 
-    /// The operand that says how many results a computation has, when one does.
+    /// Returns the operand that says how many results a computation has, when one does.
     fn length(&self) -> Option<&str> {
         None
     }
 
-    /// The places of an exhaustive check: by default every combination of the operands.
+    /// Returns the places of an exhaustive check: by default every combination of the operands.
     fn sweep(&self) -> Sweep {
         Sweep::all(self.operands().iter())
     }
 
-    /// The error at a place of the sweep: by default a place has the operands, and the error is the largest of an
+    /// Returns the error at a place of the sweep: by default a place has the operands, and the error is the largest of an
     /// output, in units.
     fn sweep_error(&self, place: &[i64]) -> f64 {
         self.largest_error(place)
     }
 
-    /// The largest error of an output at raw operands, in units.
+    /// Returns the largest error of an output at raw operands, in units.
     fn largest_error(&self, operands: &[i64]) -> f64 {
         let (mut raw, mut exact) = (Vec::new(), Vec::new());
         self.results(operands, 0, &mut raw);
@@ -280,7 +280,7 @@ impl Sweep {
         Self { axes: axes.collect(), omits: String::new() }
     }
 
-    /// Its axes in a sentence.
+    /// Returns its axes in a sentence.
     pub fn words(&self) -> String {
         let axes: Vec<String> = self.axes.iter().map(Axis::to_string).collect();
         axes.join(" x ")
@@ -297,7 +297,7 @@ impl fmt::Display for Axis {
 }
 
 impl Values {
-    /// How many.
+    /// Returns how many.
     pub fn count(&self) -> u64 {
         match self {
             Self::Range(low, high) => low.abs_diff(*high) + 1,
@@ -354,17 +354,17 @@ impl Bound {
         if self.is_stated() { text::rounded_up(self.units, 3) } else { "not stated".to_owned() }
     }
 
-    /// Whether the accuracy contract is kept.
+    /// Returns whether the accuracy contract is kept.
     pub fn keeps(&self) -> bool {
         self.units < self.limit
     }
 
-    /// Whether its author has stated one.
+    /// Returns whether its author has stated one.
     pub fn is_stated(&self) -> bool {
         self.units.is_finite()
     }
 
-    /// The largest contribution: the key to change first.
+    /// Returns the largest contribution: the key to change first.
     pub fn limiting(&self) -> Option<&Term> {
         self.terms.iter().max_by(|a, b| a.units.total_cmp(&b.units))
     }

@@ -9,7 +9,7 @@ use super::contract::control;
 use super::frame::{Frame, Microinstruction, Slot, idle, step};
 use glint_base::fixed::{Format, MAX_WIDTH, exp2};
 
-/// The raw value of an angle operand that is nearest to `angle`, in radians, or the end of its domain.
+/// Returns the raw value of an angle operand that is nearest to `angle`, in radians, or the end of its domain.
 pub fn raw_angle(operand: &Operand, angle: f64) -> i64 {
     let (low, high) = operand.domain;
     let raw = operand.format.quantise(angle / FRAC_PI_2) as i64;
@@ -61,25 +61,25 @@ fn length_format(length_bits: u32) -> Format {
     Format::unsigned(length_bits as i32, 0)
 }
 
-/// An angle as the accumulator holds it.
+/// Returns an angle as the accumulator holds it.
 #[inline]
 fn wrapped(format: Format, raw: i64) -> i64 {
     let above = MAX_WIDTH - format.width();
     raw << above >> above
 }
 
-/// The angle of point number `index` of a line, as the accumulator holds it.
+/// Returns the angle of point number `index` of a line, as the accumulator holds it.
 #[inline]
 pub fn angle_at(format: Format, start: i64, delta: i64, index: u64) -> i64 {
     wrapped(format, start.wrapping_add(delta.wrapping_mul(index as i64)))
 }
 
-/// The step of a line of `length` intervals from an angle to another; of none that given.
+/// Returns the step of a line of `length` intervals from an angle to another; of none that given.
 pub fn interval(first: i64, last: i64, length: i64, given: i64) -> i64 {
     if length == 0 { given } else { (last - first) / length }
 }
 
-/// The angle of the point `index` of a line, in right angles, as an expression of Python.
+/// Returns the angle of the point `index` of a line, in right angles, as an expression of Python.
 pub fn angle_expression(format: Format) -> String {
     let turn = exp2(format.width() as i32 - format.frac);
     let half = turn / 2.0;
@@ -103,7 +103,7 @@ pub fn length_operand(length_bits: u32) -> Operand {
     control("length", format, (0, format.max_raw() as i64), doc)
 }
 
-/// The leading `kept` fraction bits of an angle's magnitude, complement for a negative one; `None`
+/// Returns the leading `kept` fraction bits of an angle's magnitude, complement for a negative one; `None`
 /// outside −90° ≤ angle < 90°.
 #[inline]
 pub fn magnitude(angle: i64, fraction: u32, kept: u32) -> Option<i64> {
@@ -156,7 +156,7 @@ impl CosineTable {
         table
     }
 
-    /// The word for an angle with `fraction` fraction bits, in right angles; the last one beyond them.
+    /// Returns the word for an angle with `fraction` fraction bits, in right angles; the last one beyond them.
     #[inline]
     pub fn address(scaled: i64, fraction: u32, address: u32) -> usize {
         let most = (1usize << address) - 1;
@@ -164,7 +164,7 @@ impl CosineTable {
     }
 }
 
-/// The largest slope of `cosᵏ`, per right angle: where `tan² = 1/(k − 1)`.
+/// Returns the largest slope of `cosᵏ`, per right angle: where `tan² = 1/(k − 1)`.
 fn slope(power: u32) -> f64 {
     let k = f64::from(power);
     if power == 1 {

@@ -29,7 +29,7 @@ impl Keys {
         Format::signed(1, self.vector_fraction as i32)
     }
 
-    /// The format of n, or of log₂ n, which is `exponent.bits` at most.
+    /// Returns the format of n, or of log₂ n, which is `exponent.bits` at most.
     fn scale_format(&self) -> Format {
         match self.scale {
             Scale::Shift => Format::unsigned(self.exponent_bits.ilog2() as i32 + 1, 0),
@@ -37,7 +37,7 @@ impl Keys {
         }
     }
 
-    /// The operand `shift` or `exponent` for an exponent: log₂ n to the nearest, or n itself.
+    /// Returns the operand `shift` or `exponent` for an exponent: log₂ n to the nearest, or n itself.
     fn scale_operand(&self, n: i64) -> i64 {
         match self.scale {
             Scale::Multiplier => n,
@@ -57,12 +57,12 @@ impl Keys {
         }
     }
 
-    /// The domain of that operand.
+    /// Returns the domain of that operand.
     fn scale_domain(&self) -> (i64, i64) {
         (self.scale_operand(self.domain.least), self.scale_operand(self.domain.most))
     }
 
-    /// The exponent that an operand `shift` or `exponent` stands for.
+    /// Returns the exponent that an operand `shift` or `exponent` stands for.
     fn exponent(&self, operand: i64) -> i64 {
         match self.scale {
             Scale::Shift => 1 << operand,
@@ -117,7 +117,7 @@ impl Arithmetic {
         self.distance.apply(x * x + y * y + z * z)
     }
 
-    /// One place of the shift register.
+    /// Returns one place of the shift register.
     #[inline]
     fn shifted(&self, word: i64) -> i64 {
         (2 * word).min(self.shifted_most)
@@ -154,12 +154,12 @@ impl Arithmetic {
     }
 }
 
-/// The golden model.
+/// Returns the golden model.
 pub fn model(config: &Config) -> Box<dyn Model> {
     Box::new(clocked(Keys::of(config)))
 }
 
-/// The device, clock by clock.
+/// Returns the device, clock by clock.
 fn clocked(keys: Keys) -> Clocked {
     let it = Arc::new(Arithmetic::new(keys));
     let (keys, squarings) = (&it.keys, it.squarings);

@@ -32,14 +32,14 @@ impl Narrow {
         }
     }
 
-    /// The raw value of the result.
+    /// Returns the raw value of the result.
     #[inline]
     pub fn apply(&self, raw: i64) -> i64 {
         (((raw + self.half) >> self.right) << self.left).clamp(self.min, self.max)
     }
 }
 
-/// The largest error of rounding away fraction bits, in the value's own unit: from `from_frac`
+/// Returns the largest error of rounding away fraction bits, in the value's own unit: from `from_frac`
 /// fraction bits to `frac`, saturation not counted.
 pub fn rounding_error(from_frac: u32, frac: u32, rounding: Rounding) -> f64 {
     let ulp = glint_base::fixed::exp2(-(frac as i32));

@@ -37,7 +37,7 @@ impl Normaliser {
         Format::signed(1, self.keys.kept as i32)
     }
 
-    /// A component of the unit vector.
+    /// Returns a component of the unit vector.
     fn scaled(&self, component: i64, pairs: i64, inverse: i64) -> i64 {
         let shifted = if component == 0 { 0 } else { component << pairs };
         self.rounded.apply(shifted * inverse)
@@ -50,7 +50,7 @@ impl Normaliser {
     }
 }
 
-/// The operations of each microinstruction.
+/// Returns the operations of each microinstruction.
 fn device(config: &Config) -> device::Device {
     let it = Arc::new(Normaliser::new(config));
     let mut frame = Frame::default();
@@ -89,12 +89,12 @@ fn device(config: &Config) -> device::Device {
     ])
 }
 
-/// The golden model.
+/// Returns the golden model.
 pub fn model(config: &Config) -> Box<dyn Model> {
     device(config).model()
 }
 
-/// The function that the device computes, and its error bound.
+/// Returns the function that the device computes, and its error bound.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     device(config).contract(Normaliser::new(config))
 }
@@ -104,7 +104,7 @@ impl Formula for Normaliser {
         unit_vector([vector[0], vector[1], vector[2]]).into()
     }
 
-    /// The shifted component x has x² ≤ m, so that the error of the product is at most √m times that of r: [`Root::error`]. The
+    /// Returns the shifted component x has x² ≤ m, so that the error of the product is at most √m times that of r: [`Root::error`]. The
     /// product is rounded once. It does not saturate: |x·f| ≤ 1, and the rest is far below 1.
     ///
     /// The zero vector has zeros, as the formula has it here.
@@ -126,7 +126,7 @@ impl Formula for Normaliser {
         Some((0..3).map(|_| ((2.0 * unit() - 1.0) * most).round() as i64).collect())
     }
 
-    /// The sum of squares determines the inverse root, and the largest error of any component with it.
+    /// Returns the sum of squares determines the inverse root, and the largest error of any component with it.
     fn sweep(&self) -> Option<Sweep> {
         Some(self.root.sweep())
     }

@@ -20,33 +20,33 @@ impl<P> Occupancy<P> {
         Self { stages: (0..latency).map(|_| None).collect(), interval, slot: 0 }
     }
 
-    /// Whether a point that is offered is taken: `in_ready`.
+    /// Returns whether a point that is offered is taken: `in_ready`.
     pub fn takes(&self, out_ready: bool) -> bool {
         self.moves(out_ready) && self.slot == 0
     }
 
-    /// Whether all points move on.
+    /// Returns whether all points move on.
     fn moves(&self, out_ready: bool) -> bool {
         out_ready || self.last().is_none()
     }
 
-    /// The point whose results are on the outputs; there is one exactly if `out_valid` is high.
+    /// Returns the point whose results are on the outputs; there is one exactly if `out_valid` is high.
     pub fn last(&self) -> Option<&P> {
         self.stages.back().and_then(Option::as_ref)
     }
 
-    /// The point in a stage, which counts from 1.
+    /// Returns the point in a stage, which counts from 1.
     pub fn stage(&self, stage: usize) -> Option<&P> {
         self.stages.get(stage.checked_sub(1)?).and_then(Option::as_ref)
     }
 
-    /// The points with their stages, from 1 on.
+    /// Returns the points with their stages, from 1 on.
     pub fn points(&self) -> impl Iterator<Item = (usize, &P)> {
         let stages = self.stages.iter().enumerate();
         stages.filter_map(|(at, point)| point.as_ref().map(|point| (at + 1, point)))
     }
 
-    /// A rising edge. The point whose results were taken.
+    /// Returns a rising edge. The point whose results were taken.
     pub fn clock(&mut self, rst_n: bool, offered: Option<P>, out_ready: bool) -> Option<P> {
         let taken = if self.moves(out_ready) {
             self.stages.push_front(offered.filter(|_| self.slot == 0));

@@ -22,7 +22,7 @@ impl Polynomial {
         Self { it: it.clone(), sums }
     }
 
-    /// The polynomial's register.
+    /// Returns the polynomial's register.
     pub fn q(&self) -> Slot {
         self.sums[0]
     }

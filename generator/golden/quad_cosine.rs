@@ -14,7 +14,7 @@ use glint_base::fixed::Format;
 use glint_config::Config;
 use glint_keys::quad_cosine::Keys;
 
-/// The power that serves n, as a number of a table: the seed's ranges.
+/// Returns the power that serves n, as a number of a table: the seed's ranges.
 #[inline]
 fn range_of(n: i64) -> usize {
     if n == 1 {
@@ -58,14 +58,14 @@ impl Arithmetic {
         magnitude(angle, self.keys.angle_fraction, self.keys.angle_multiplied)
     }
 
-    /// The word of ROM 12 for n, the magnitude, and ROM 9's word.
+    /// Returns the word of ROM 12 for n, the magnitude, and ROM 9's word.
     #[inline]
     fn cosine_of(&self, n: i64, magnitude: Option<i64>, root: i64) -> i64 {
         let scaled = magnitude.map_or(i64::MAX, |magnitude| magnitude * root);
         self.tables[range_of(n)].words[self.step_of(scaled)]
     }
 
-    /// The step of a table for an angle times ROM 9's word.
+    /// Returns the step of a table for an angle times ROM 9's word.
     #[inline]
     fn step_of(&self, scaled: i64) -> usize {
         let fraction = self.keys.angle_multiplied + self.keys.root_fraction;
@@ -87,18 +87,18 @@ fn root(n: i64, k: i64, fraction: u32) -> i64 {
     floor + i64::from(middle * middle * i128::from(k) <= 4 * i128::from(square))
 }
 
-/// The golden model.
+/// Returns the golden model.
 pub fn model(config: &Config) -> Box<dyn Model> {
     Box::new(clocked(Keys::of(config)))
 }
 
-/// The product of the word of ROM 12 with the amplitude.
+/// Returns the product of the word of ROM 12 with the amplitude.
 fn products(keys: &Keys) -> Products {
     Products::amplitude(keys.f_format(), keys.colour_bits, keys.output_rounding)
         .at_edges(keys.stages > 2)
 }
 
-/// The device, clock by clock.
+/// Returns the device, clock by clock.
 fn clocked(keys: Keys) -> Clocked {
     let mut frame = Frame::default();
     let Keys { length_bits, stages, exponent_bits, .. } = keys;

@@ -64,12 +64,12 @@ fn difference_format(fraction: u32) -> Format {
     Format::signed(-2, fraction as i32)
 }
 
-/// The golden model.
+/// Returns the golden model.
 pub fn model(config: &Config) -> Box<dyn Model> {
     Box::new(clocked(Arithmetic::new(Keys::of(config))))
 }
 
-/// The device, clock by clock.
+/// Returns the device, clock by clock.
 fn clocked(it: Arithmetic) -> Clocked {
     let it = Arc::new(it);
     let mut frame = Frame::default();
@@ -86,7 +86,7 @@ fn clocked(it: Arithmetic) -> Clocked {
     highlight::products(&it.keys.operands.colours, &it.keys.f).behind(frame, intensity, program)
 }
 
-/// The accuracy contract. Control operands: `cos_gamma`, `exponent`.
+/// Returns the accuracy contract. Control operands: `cos_gamma`, `exponent`.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     let it = Arithmetic::new(Keys::of(config));
     let operands = highlight::operands(&it.keys.operands, &it.keys.domain);
@@ -121,7 +121,7 @@ impl Reflectance for Arithmetic {
         Some(Variation { slope: 1.0 + exact.fold(0.0, |a: f64, it| a.max(it.abs())), jump: 0.0 })
     }
 
-    /// The coefficient of the least largest error has no closed form; ROM(n) holds it.
+    /// Returns the coefficient of the least largest error has no closed form; ROM(n) holds it.
     fn expressions(&self) -> Vec<String> {
         let coefficient = match self.keys.scheme {
             Scheme::Taylor => "(max(exponent, 1) - 1)",
@@ -131,7 +131,7 @@ impl Reflectance for Arithmetic {
         vec![contract::where_it_faces(&contract::clamped_at_0(&f))]
     }
 
-    /// The error of `c − a·g`, with g = c − c² in 0 … 1/4. Where formula and hardware are both clamped there is
+    /// Returns the error of `c − a·g`, with g = c − c² in 0 … 1/4. Where formula and hardware are both clamped there is
     /// none; otherwise `a·g ≤ c`, that is `1 − c ≤ 1/a`, for one of the two, and g is at most 1/a.
     ///
     /// - An error of the word a(n) is multiplied by g.
@@ -163,7 +163,7 @@ impl Reflectance for Arithmetic {
         ]
     }
 
-    /// The error by n − 1 beside that of the minimax table.
+    /// Returns the error by n − 1 beside that of the minimax table.
     fn remarks(&self) -> Vec<String> {
         if self.keys.scheme != Scheme::Taylor {
             return Vec::new();
@@ -182,7 +182,7 @@ impl Reflectance for Arithmetic {
     }
 }
 
-/// The largest difference between the parabola and cⁿ, on a grid that the highlight fills.
+/// Returns the largest difference between the parabola and cⁿ, on a grid that the highlight fills.
 fn formula_error(n: i64, a: f64) -> f64 {
     const GRID: u32 = 2048;
     let n = n as f64;

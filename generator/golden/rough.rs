@@ -39,7 +39,7 @@ impl Keys {
         exp2(-(self.operands.cosine.fraction as i32))
     }
 
-    /// The domain of cos dγ: from the smallest cosine whose angle is within the deviation.
+    /// Returns the domain of cos dγ: from the smallest cosine whose angle is within the deviation.
     fn cos_dgamma_domain(&self) -> (i64, i64) {
         let largest = self.largest_cosine();
         let cosine = libm::cos(self.deviation.to_radians());
@@ -87,7 +87,7 @@ impl Keys {
         }
     }
 
-    /// The format of cos γ, which may have a sign.
+    /// Returns the format of cos γ, which may have a sign.
     fn cos_gamma_format(&self) -> Format {
         Format { signed: self.operands.cosine.signed, ..self.cos_dgamma_format() }
     }
@@ -97,12 +97,12 @@ impl Keys {
         Format::unsigned(int, self.operands.cosine.fraction as i32)
     }
 
-    /// The largest raw cosine that a register holds: 1.0, or in the patent's words an ulp less.
+    /// Returns the largest raw cosine that a register holds: 1.0, or in the patent's words an ulp less.
     fn largest_cosine(&self) -> i64 {
         (1 << self.operands.cosine.fraction) - i64::from(self.patent())
     }
 
-    /// The format of register 13.
+    /// Returns the format of register 13.
     fn result_format(&self) -> Format {
         let frac = self.f.fraction as i32;
         match (self.arithmetic, self.clamp) {
@@ -164,7 +164,7 @@ impl Arithmetic {
         Self { sine: Sine::new(&keys.sine()), kind, keys }
     }
 
-    /// The next value of register 11: cos γ·cos dγ.
+    /// Returns the next value of register 11: cos γ·cos dγ.
     #[inline]
     fn cos_cos(&self, cos_gamma: i64, cos_dgamma: i64) -> i64 {
         match &self.kind {
@@ -173,7 +173,7 @@ impl Arithmetic {
         }
     }
 
-    /// The next value of register 12: sin γ·sin dγ.
+    /// Returns the next value of register 12: sin γ·sin dγ.
     #[inline]
     fn sin_sin(&self, sin_gamma: i64, sin_dgamma: i64) -> i64 {
         match &self.kind {
@@ -202,7 +202,7 @@ impl Arithmetic {
         }
     }
 
-    /// The first value of register 13: n/2·(cos(γ ± dγ) − 1), or −1.0 for a surface that faces away.
+    /// Returns the first value of register 13: n/2·(cos(γ ± dγ) − 1), or −1.0 for a surface that faces away.
     #[inline]
     fn scaled(&self, adder_15: i64, exponent: i64, cos_gamma: i64) -> i64 {
         match &self.kind {
@@ -214,7 +214,7 @@ impl Arithmetic {
         }
     }
 
-    /// The second value of register 13: the square of adder 16, which is register 13 + 1.0.
+    /// Returns the second value of register 13: the square of adder 16, which is register 13 + 1.0.
     #[inline]
     fn squared(&self, result: i64, cos_gamma: i64) -> i64 {
         match &self.kind {
@@ -231,7 +231,7 @@ impl Arithmetic {
         }
     }
 
-    /// The word f that the colour multipliers see in register 13.
+    /// Returns the word f that the colour multipliers see in register 13.
     ///
     /// With the clamp, its low bits: the square is below 1.0. Without, register 13 has an integer bit,
     /// and is brought to 0 … 1.0 − ulp.

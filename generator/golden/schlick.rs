@@ -23,7 +23,7 @@ impl Arithmetic {
     }
 }
 
-/// The first `bits` bits of the quotient, and the remainder that they leave. A quotient of 1.0 is the
+/// Returns the first `bits` bits of the quotient, and the remainder that they leave. A quotient of 1.0 is the
 /// largest fraction.
 #[inline]
 fn divide(dividend: i64, divisor: i64, bits: u32) -> (i64, i64) {
@@ -37,12 +37,12 @@ fn products(keys: &Keys) -> Products {
         .in_turn(colours.in_turn())
 }
 
-/// The golden model.
+/// Returns the golden model.
 pub fn model(config: &Config) -> Box<dyn Model> {
     Box::new(clocked(Arithmetic(Keys::of(config))))
 }
 
-/// The device, clock by clock.
+/// Returns the device, clock by clock.
 ///
 /// The divider's registers are predicted from the division as a whole: after k steps the quotient ends
 /// in the first k bits of the true one, and the remainder is what these leave.
@@ -80,7 +80,7 @@ fn clocked(it: Arithmetic) -> Clocked {
     products.behind(frame, quotient, program)
 }
 
-/// The accuracy contract. Control operands: `cos_gamma`, `exponent`.
+/// Returns the accuracy contract. Control operands: `cos_gamma`, `exponent`.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     let keys = Keys::of(config);
     let operands = highlight::operands(&keys.operands, &keys.domain);

@@ -17,7 +17,7 @@ use glint_config::Config;
 use glint_formula::{Kind, parse};
 use glint_keys::shading::{Highlight, Keys, Parts};
 
-/// The parts, one after the other, and the sum behind them.
+/// Returns the parts, one after the other, and the sum behind them.
 fn device(keys: &Keys, parts: &Parts) -> device::Device {
     let mut frame = Frame::default();
     let mut vector = |name: &str, suffix: &str, format| {
@@ -32,7 +32,7 @@ fn device(keys: &Keys, parts: &Parts) -> device::Device {
             .map(|it| frame.operand(&format!("{kind}_{it}"), keys.colour_format()))
     });
 
-    /// An operand of a part: a value so many places to the left.
+    /// Returns an operand of a part: a value so many places to the left.
     fn left(
         (name, slot, places): (&'static str, Slot, u32),
     ) -> (&'static str, impl Fn(&State) -> i64 + Send + Sync) {
@@ -120,7 +120,7 @@ fn parts(keys: &Keys) -> Parts {
     keys.parts().unwrap_or_else(|(part, _)| panic!("`{part}` is checked"))
 }
 
-/// The golden model.
+/// Returns the golden model.
 ///
 /// # Panics
 /// If the check of the schema has not accepted the configuration.
@@ -129,7 +129,7 @@ pub fn model(config: &Config) -> Box<dyn Model> {
     device(&keys, &parts(&keys)).model()
 }
 
-/// The accuracy contract.
+/// Returns the accuracy contract.
 ///
 /// # Panics
 /// As [`model`].
@@ -154,7 +154,7 @@ pub fn contract(config: &Config) -> Box<dyn Contract> {
     device.contract(Shading { highlight, errors, keys })
 }
 
-/// The proved bound of a part, as a value.
+/// Returns the proved bound of a part, as a value.
 fn error(contract: &dyn Contract) -> f64 {
     contract.bound().units * exp2(-contract.outputs()[0].format.frac)
 }
@@ -180,7 +180,7 @@ struct Shading {
 }
 
 impl Shading {
-    /// The highlight's formula of a cosine that is not quantised.
+    /// Returns the highlight's formula of a cosine that is not quantised.
     fn f(&self, cosine: f64, exponent: i64) -> f64 {
         match self.highlight.highlight() {
             Some(highlight) => highlight.at_cosine(cosine, exponent).unwrap_or(f64::NAN),
@@ -207,7 +207,7 @@ impl Formula for Shading {
         (0..3).map(|at| colour(at).clamp(0.0, most)).collect()
     }
 
-    /// An error of an operand of a part grows by the part's slope in it, and the part adds its own; each light adds its own.
+    /// Returns an error of an operand of a part grows by the part's slope in it, and the part adds its own; each light adds its own.
     ///
     /// - A colour is diffuse·cosine + specular·f(cosine), saturated: its slopes are at most the largest colour, and that times
     ///   the slope of f. Where f jumps, cosine and exact cosine may lie on both sides.
@@ -283,12 +283,13 @@ impl Formula for Shading {
             .collect()
     }
 
-    /// A unit of each light, and half a one that the result is rounded by.
+    /// Returns a unit of each light, and half a one that the result is rounded by.
     fn limit(&self) -> f64 {
         f64::from(self.keys.lights) + 0.5
     }
 
-    /// A light anywhere, a half vector as near to the normal as the exponent asks for, and dull colours, whose sum does not saturate.
+    /// Returns a light anywhere, a half vector as near to the normal as the exponent asks for, and dull colours, whose
+    /// sum does not saturate.
     fn hint(&self, unit: &mut dyn FnMut() -> f64) -> Option<Vec<i64>> {
         let Keys { normal, light, colour_bits, most, lights, .. } = self.keys;
         let mut centred = || [(); 3].map(|()| 2.0 * unit() - 1.0);

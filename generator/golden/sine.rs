@@ -92,7 +92,7 @@ impl Sine {
         Self { operand_fraction: operand, fraction, table }
     }
 
-    /// The raw sine of the raw operand `x`, 0 … 2^C.
+    /// Returns the raw sine of the raw operand `x`, 0 … 2^C.
     #[inline]
     pub fn at(&self, x: i64) -> i64 {
         let one = 1i64 << self.operand_fraction;
@@ -155,13 +155,13 @@ fn sine_of(operand: u32, u: i64) -> f64 {
     ((one * one - x * x) as f64).sqrt() * exp2(-(operand as i32))
 }
 
-/// The raw u0.S nearest to a sine, saturated.
+/// Returns the raw u0.S nearest to a sine, saturated.
 fn to_raw(sine: f64, fraction: u32) -> i64 {
     let raw = (sine * exp2(fraction as i32) + 0.5).floor() as i64;
     raw.clamp(0, (1 << fraction) - 1)
 }
 
-/// The sine at the middle of bucket `a`.
+/// Returns the sine at the middle of bucket `a`.
 fn direct_entry(a: i64, address: u32, fraction: u32) -> i64 {
     let x = (a as f64 + 0.5) * exp2(-(address as i32));
     to_raw((1.0 - x * x).sqrt(), fraction)

@@ -48,7 +48,7 @@ impl Arithmetic {
         it
     }
 
-    /// The least word of f that is shown, an entry an octave of n: `levels / 100` units, rounded up to a
+    /// Returns the least word of f that is shown, an entry an octave of n: `levels / 100` units, rounded up to a
     /// word. There is none above 1.0 − ulp.
     fn thresholds(keys: &Keys) -> Vec<i64> {
         // 100 · largest · word ≥ level · 2^F, for the least word; less than 2^30 · 2^24.
@@ -74,7 +74,7 @@ impl Arithmetic {
         self.thresholds[octave.min(self.thresholds.len() - 1)]
     }
 
-    /// The square of the base, if it is shown.
+    /// Returns the square of the base, if it is shown.
     #[inline]
     fn gated(&self, cosine: i64, exponent: i64, scaled: i64) -> i64 {
         let base = scaled + self.base_one;
@@ -82,7 +82,7 @@ impl Arithmetic {
         if cosine == 0 || square < self.threshold(exponent) { 0 } else { square }
     }
 
-    /// The ungated parabola's square in f64, and ROM(n).
+    /// Returns the ungated parabola's square in f64, and ROM(n).
     #[inline]
     fn square_and_level(&self, control: &[i64]) -> (f64, f64) {
         let ulp = exp2(-(self.keys.f.fraction as i32));
@@ -91,12 +91,12 @@ impl Arithmetic {
     }
 }
 
-/// The golden model.
+/// Returns the golden model.
 pub fn model(config: &Config) -> Box<dyn Model> {
     Box::new(clocked(Arithmetic::new(Keys::of(config))))
 }
 
-/// The device, clock by clock.
+/// Returns the device, clock by clock.
 fn clocked(it: Arithmetic) -> Clocked {
     let it = Arc::new(it);
     let mut frame = Frame::default();
@@ -112,7 +112,7 @@ fn clocked(it: Arithmetic) -> Clocked {
     highlight::products(&it.keys.operands.colours, &it.keys.f).behind(frame, intensity, program)
 }
 
-/// The accuracy contract. Control operands: `cos_gamma`, `exponent`.
+/// Returns the accuracy contract. Control operands: `cos_gamma`, `exponent`.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     Box::new(highlight(Arithmetic::new(Keys::of(config))))
 }
@@ -153,7 +153,7 @@ impl Reflectance for Arithmetic {
         Some(Variation { slope: most as f64, jump: (least..=most).map(jump).fold(0.0, f64::max) })
     }
 
-    /// Where the exact square is within the bound on its error of ROM(n), the word may be on either side.
+    /// Returns where the exact square is within the bound on its error of ROM(n), the word may be on either side.
     #[inline]
     fn references(&self, control: &[i64]) -> [f64; 2] {
         let (square, level) = self.square_and_level(control);
@@ -177,7 +177,7 @@ impl Reflectance for Arithmetic {
             .to_vec()
     }
 
-    /// All of base, square and formula lie in 0 … 1, so that an error ε of the base is at most 2·ε in the square.
+    /// Returns all of base, square and formula lie in 0 … 1, so that an error ε of the base is at most 2·ε in the square.
     ///
     /// The product is rounded into the base, and limited to −1.0 where the formula is clamped. The square
     /// is rounded; the square of 1.0 is an ulp low. The gates add nothing: within the sum of these of
@@ -195,7 +195,7 @@ impl Reflectance for Arithmetic {
         ]
     }
 
-    /// A level above what rounds to 0 is seen as an edge around the highlight.
+    /// Returns a level above what rounds to 0 is seen as an edge around the highlight.
     fn remarks(&self) -> Vec<String> {
         let largest = (1 << self.keys.operands.colours.bits) - 1;
         let (first, last) = self.keys.domain.exponents();

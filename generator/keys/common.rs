@@ -14,7 +14,7 @@ glint_config::keys! {
 }
 
 impl Cosine {
-    /// The format of cos γ.
+    /// Returns the format of cos γ.
     pub fn format(&self) -> Format {
         Format { signed: self.signed, int: 1, frac: self.fraction as i32 }
     }
@@ -24,18 +24,18 @@ impl Cosine {
         1 << self.fraction
     }
 
-    /// An ulp of the cosine.
+    /// Returns an ulp of the cosine.
     pub fn ulp(&self) -> f64 {
         exp2(-(self.fraction as i32))
     }
 
-    /// A raw cosine as the register takes it.
+    /// Returns a raw cosine as the register takes it.
     #[inline]
     pub fn clamped(&self, raw: i64) -> i64 {
         raw.clamp(0, self.one())
     }
 
-    /// Its value.
+    /// Returns its value.
     #[inline]
     pub fn value(&self, raw: i64) -> f64 {
         self.clamped(raw) as f64 * self.ulp()
@@ -53,7 +53,7 @@ glint_config::keys! {
 }
 
 impl Colours {
-    /// Whether one multiplier makes the products with all colours.
+    /// Returns whether one multiplier makes the products with all colours.
     pub fn in_turn(&self) -> bool {
         self.multipliers == 1
     }
@@ -75,7 +75,7 @@ glint_config::keys! {
 }
 
 impl Operands {
-    /// The format of n.
+    /// Returns the format of n.
     pub fn exponent_format(&self) -> Format {
         Format::unsigned(self.exponent_bits as i32, 0)
     }
@@ -102,7 +102,7 @@ glint_config::keys! {
 }
 
 impl Intensity {
-    /// The format of f.
+    /// Returns the format of f.
     pub fn format(&self) -> Format {
         Format::unsigned(0, self.fraction as i32)
     }
@@ -126,7 +126,7 @@ glint_config::keys! {
 }
 
 impl Domain {
-    /// The smallest and the largest.
+    /// Returns the smallest and the largest.
     pub fn exponents(&self) -> (i64, i64) {
         (self.least, self.most)
     }
@@ -254,7 +254,7 @@ pub fn check_rom_size(
     }
 }
 
-/// Every range of `key`, each a quarter of the one before it, has as many of the `bits` bits of 1 − cos as it is cut by. The
+/// Returns every range of `key`, each a quarter of the one before it, has as many of the `bits` bits of 1 − cos as it is cut by. The
 /// most bits that a segment is left with, up to a range that has too few.
 pub fn check_segments(segments: &[u32], key: &str, bits: u32, problems: &mut Problems) -> u32 {
     let mut most = 0;

@@ -13,7 +13,7 @@ glint_config::keys! {
     }
 }
 
-/// The keys of the device.
+/// Returns the keys of the device.
 pub fn schema() -> Schema {
     Schema { device: "cosine-power", keys: Keys::keys(), check }
 }

@@ -20,18 +20,18 @@ glint_config::keys! {
 }
 
 impl Keys {
-    /// The format of an angle.
+    /// Returns the format of an angle.
     pub fn angle_format(&self) -> Format {
         Format::signed(self.angle_integer as i32, self.angle_fraction as i32)
     }
 
-    /// The format of f.
+    /// Returns the format of f.
     pub fn f_format(&self) -> Format {
         Format::unsigned(0, self.fraction as i32)
     }
 }
 
-/// The keys of the device.
+/// Returns the keys of the device.
 pub fn schema() -> Schema {
     Schema { device: "cosine-squared", keys: Keys::keys(), check }
 }

@@ -28,7 +28,7 @@ glint_config::keys! {
     }
 }
 
-/// The degree of a table's polynomials.
+/// Returns the degree of a table's polynomials.
 fn degree(name: &'static str) -> Key {
     Key::choice(
         name,
@@ -48,7 +48,7 @@ pub enum Decay {
 }
 
 impl Decay {
-    /// The decay over the distance v = 1 − c, a formula of a v.
+    /// Returns the decay over the distance v = 1 − c, a formula of a v.
     fn over_distance(self, v: &str) -> String {
         match self {
             Self::Logarithm => format!("-log2(1 - {v}) / {v}"),
@@ -56,7 +56,7 @@ impl Decay {
         }
     }
 
-    /// The most that the decay over the distance rises for a rise of the distance: its slope at the last distance, since it is
+    /// Returns the most that the decay over the distance rises for a rise of the distance: its slope at the last distance, since it is
     /// convex. That is 1/(ln 2·(1 − v)·v) + log₂(1 − v)/v² at v = ½, and (π − π²/4)/(2 ln 2) at 1.
     pub fn steepest(self) -> f64 {
         match self {
@@ -65,35 +65,35 @@ impl Decay {
         }
     }
 
-    /// Bits of the distance of which the first is always 0.
+    /// Returns bits of the distance of which the first is always 0.
     fn known(self) -> u32 {
         u32::from(self == Self::Logarithm)
     }
 }
 
 impl Keys {
-    /// Bits of u, the distance 1 − c less an ulp of the cosine.
+    /// Returns bits of u, the distance 1 − c less an ulp of the cosine.
     pub fn distance(&self, decay: Decay) -> u32 {
         self.operands.cosine.fraction - decay.known()
     }
 
-    /// The format of the decay, or of what octaves add to: below 2.0.
+    /// Returns the format of the decay, or of what octaves add to: below 2.0.
     pub fn decay_format(&self) -> Format {
         Format::unsigned(1, self.decay_fraction as i32)
     }
 
-    /// Bits of the integer of a decay: of the number of an octave, and one more.
+    /// Returns bits of the integer of a decay: of the number of an octave, and one more.
     fn whole_bits(&self, decay: Decay) -> u32 {
         let octave = (self.operands.cosine.fraction - 1).ilog2() + 1;
         1 + octave * decay.known()
     }
 
-    /// Bits of a decay as a factor: of a small one, below ¼, all that are not 0, of others the integer and the coarse fraction.
+    /// Returns bits of a decay as a factor: of a small one, below ¼, all that are not 0, of others the integer and the coarse fraction.
     pub fn factor_bits(&self, decay: Decay) -> u32 {
         (self.decay_fraction - 2).max(self.whole_bits(decay) + self.coarse_fraction)
     }
 
-    /// The format of n·decay.
+    /// Returns the format of n·decay.
     pub fn halvings(&self, decay: Decay) -> Format {
         let whole = self.operands.exponent_bits + self.whole_bits(decay);
         Format::unsigned(whole as i32, self.argument as i32)
@@ -104,7 +104,7 @@ impl Keys {
         self.operands.cosine.fraction.saturating_sub(self.ratio_fraction + 1)
     }
 
-    /// The table of the decay over the distance, whose operand is u without the bits that are not seen: a value for the middle
+    /// Returns the table of the decay over the distance, whose operand is u without the bits that are not seen: a value for the middle
     /// of the distances that it stands for.
     ///
     /// # Errors
@@ -120,7 +120,7 @@ impl Keys {
         table(&formula, (last, of), self.ratio_fraction, &self.ratio_degree, "ratio.fraction")
     }
 
-    /// The table of 2^−x of the fraction x of n·decay: a value for the middle of what is cut to x.
+    /// Returns the table of 2^−x of the fraction x of n·decay: a value for the middle of what is cut to x.
     ///
     /// # Errors
     /// Why there is none.
@@ -131,7 +131,7 @@ impl Keys {
     }
 }
 
-/// The approximation of a formula over operands from 0 to the last, of so many bits before and behind the point.
+/// Returns the approximation of a formula over operands from 0 to the last, of so many bits before and behind the point.
 fn table(
     formula: &str,
     (last, (int, frac)): (i64, (i32, i32)),
@@ -151,7 +151,7 @@ fn table(
     find(&function, wish).map_err(|refusal| Refusal { key, place: None, ..refusal })
 }
 
-/// The keys of one of the devices.
+/// Returns the keys of one of the devices.
 pub(super) fn schema(device: &'static str, check: fn(&Config, &mut Problems)) -> Schema {
     let mut keys = Keys::keys();
     for key in &mut keys {

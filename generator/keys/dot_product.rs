@@ -35,18 +35,18 @@ impl Keys {
         self.fraction + self.other
     }
 
-    /// The format of the product of both vectors where the normal's length is from 1 to 2.
+    /// Returns the format of the product of both vectors where the normal's length is from 1 to 2.
     pub fn distance(&self) -> Format {
         Format::unsigned(1, self.factor as i32 - 1)
     }
 
-    /// The format of the inverse of that length.
+    /// Returns the format of the inverse of that length.
     pub fn shortened(&self) -> Format {
         Format::unsigned(0, self.factor as i32)
     }
 }
 
-/// The keys of the device.
+/// Returns the keys of the device.
 pub fn schema() -> Schema {
     Schema { device: "dot-product", keys: Keys::keys(), check }
 }

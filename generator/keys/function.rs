@@ -46,7 +46,7 @@ glint_config::keys! {
     }
 }
 
-/// The keys of the device.
+/// Returns the keys of the device.
 pub fn schema() -> Schema {
     Schema { device: "function", keys: Keys::keys(), check }
 }
@@ -70,7 +70,7 @@ fn check(config: &Config, problems: &mut Problems) {
     }
 }
 
-/// The function that a configuration states, and its approximation.
+/// Returns the function that a configuration states, and its approximation.
 ///
 /// # Errors
 /// A formula or domain that is wrong, or no approximation, with the reason.
@@ -128,7 +128,7 @@ fn function(keys: &Keys) -> Result<Function, Refusal> {
     })
 }
 
-/// An end of the domain.
+/// Returns an end of the domain.
 fn end(key: &'static str, text: &str) -> Result<Enclosure, Refusal> {
     let value = parse(text).and_then(|formula| formula.enclose(&[]));
     let value = value.map_err(|fault| misread(key, fault))?;

@@ -5,7 +5,7 @@ pub use super::decay::Keys;
 use super::decay::{self, Decay};
 use glint_config::Schema;
 
-/// The keys of the device.
+/// Returns the keys of the device.
 pub fn schema() -> Schema {
     decay::schema("gauss", |config, problems| decay::check(config, Decay::Angle, problems))
 }

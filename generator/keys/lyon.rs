@@ -42,13 +42,13 @@ impl Keys {
         self.power.ilog2()
     }
 
-    /// Whether one multiplier squares all components.
+    /// Returns whether one multiplier squares all components.
     pub fn squares_in_turn(&self) -> bool {
         self.distance_multipliers == 1
     }
 }
 
-/// The keys of the device.
+/// Returns the keys of the device.
 pub fn schema() -> Schema {
     Schema { device: "lyon", keys: Keys::keys(), check }
 }

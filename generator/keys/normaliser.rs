@@ -16,18 +16,18 @@ glint_config::keys! {
     }
 }
 
-/// The bits that choose a segment of the table of inverse roots.
+/// Returns the bits that choose a segment of the table of inverse roots.
 pub(super) fn address() -> Key {
     let doc = "Leading bits of the sum of squares that choose a segment.";
     Key::integer("table.address", 9, 3..=12, doc)
 }
 
-/// The width of a word of that table.
+/// Returns the width of a word of that table.
 pub(super) fn inverse() -> Key {
     Key::integer("inverse.fraction", 20, 6..=24, "Fraction bits of the inverse root, u1.R.")
 }
 
-/// The keys of the device.
+/// Returns the keys of the device.
 pub fn schema() -> Schema {
     Schema { device: "normaliser", keys: Keys::keys(), check }
 }

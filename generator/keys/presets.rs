@@ -28,12 +28,12 @@ const PRESETS: [Preset; 16] = [
     ("gamma", "x^(1 / 2.2)", ["0", "1"], "clamp", [12, 12], "none"),
 ];
 
-/// All names.
+/// Returns all names.
 pub fn names() -> impl Iterator<Item = &'static str> {
     PRESETS.iter().map(|preset| preset.0)
 }
 
-/// The values of the keys of a name.
+/// Returns the values of the keys of a name.
 pub fn values(name: &str) -> Option<Vec<(String, Value)>> {
     let (_, formula, [from, to], outside, [operand, result], reduction) =
         PRESETS.into_iter().find(|preset| preset.0 == name)?;

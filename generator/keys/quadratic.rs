@@ -38,7 +38,7 @@ impl Keys {
     }
 }
 
-/// The keys of the device.
+/// Returns the keys of the device.
 pub fn schema() -> Schema {
     Schema { device: "quadratic", keys: Keys::keys(), check }
 }

@@ -71,13 +71,13 @@ fn exact_of(keys: Vec<Key>, names: &[&str]) -> Vec<Key> {
 }
 
 impl Keys {
-    /// Whether numbers are kept as the patent does.
+    /// Returns whether numbers are kept as the patent does.
     pub fn patent(&self) -> bool {
         self.arithmetic == Arithmetic::Patent
     }
 }
 
-/// The keys of the device.
+/// Returns the keys of the device.
 pub fn schema() -> Schema {
     Schema { device: "rough", keys: Keys::keys(), check }
 }

@@ -19,13 +19,13 @@ glint_config::keys! {
 }
 
 impl Keys {
-    /// The format of f.
+    /// Returns the format of f.
     pub fn f_format(&self) -> Format {
         Format::unsigned(0, self.fraction as i32)
     }
 }
 
-/// The keys of the device.
+/// Returns the keys of the device.
 pub fn schema() -> Schema {
     Schema { device: "schlick", keys: Keys::keys(), check }
 }

@@ -51,7 +51,7 @@ glint_config::keys! {
     }
 }
 
-/// The keys of the device.
+/// Returns the keys of the device.
 pub fn schema() -> Schema {
     Schema { device: "shading", keys: Keys::keys(), check }
 }
@@ -86,22 +86,22 @@ pub struct Parts {
 }
 
 impl Keys {
-    /// The format of a component of the normal.
+    /// Returns the format of a component of the normal.
     pub fn normal_format(&self) -> Format {
         Format::signed(1, self.normal as i32)
     }
 
-    /// The format of a component of the light and the half vector.
+    /// Returns the format of a component of the light and the half vector.
     pub fn light_format(&self) -> Format {
         Format::signed(1, self.light as i32)
     }
 
-    /// The format of a coefficient of the material, and of a result.
+    /// Returns the format of a coefficient of the material, and of a result.
     pub fn colour_format(&self) -> Format {
         Format::unsigned(self.colour_bits as i32, 0)
     }
 
-    /// The format of n.
+    /// Returns the format of n.
     pub fn exponent_format(&self) -> Format {
         Format::unsigned(self.exponent_bits as i32, 0)
     }
@@ -116,7 +116,7 @@ impl Keys {
         self.cosine.min(self.colour_bits + 6)
     }
 
-    /// The smallest n for which the accuracy contract is stated: below it the formula jumps at a right angle.
+    /// Returns the smallest n for which the accuracy contract is stated: below it the formula jumps at a right angle.
     pub fn least(&self) -> i64 {
         match self.highlight {
             Highlight::CosinePower => self.power.into(),
@@ -126,7 +126,7 @@ impl Keys {
         }
     }
 
-    /// Whether the highlight has an exponent.
+    /// Returns whether the highlight has an exponent.
     pub fn has_exponent(&self) -> bool {
         self.highlight != Highlight::Function
     }
@@ -136,7 +136,7 @@ impl Keys {
         SUFFIXES.into_iter().take(self.lights as usize)
     }
 
-    /// The parts.
+    /// Returns the parts.
     ///
     /// # Errors
     /// The part that refuses its configuration, and why.

@@ -14,7 +14,7 @@ glint_config::keys! {
     }
 }
 
-/// The keys of the device.
+/// Returns the keys of the device.
 pub fn schema() -> Schema {
     Schema { device: "threshold", keys: Keys::keys(), check }
 }

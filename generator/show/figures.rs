@@ -45,7 +45,7 @@ impl Target {
         self.family().map_or("0.18 µm cells", |family| family.title)
     }
 
-    /// The family as Yosys knows it; none of standard cells.
+    /// Returns the family as Yosys knows it; none of standard cells.
     pub fn family(self) -> Option<&'static Family> {
         FAMILIES.iter().find(|family| family.name() == self.name())
     }
@@ -148,7 +148,7 @@ impl Figures {
         }
     }
 
-    /// The longest path as `first 0.4 → second 3.1 → third 7.9 ns`.
+    /// Returns the longest path as `first 0.4 → second 3.1 → third 7.9 ns`.
     pub fn path_in_words(&self) -> String {
         let steps = self.critical_path.iter().map(|step| format!("{} {:.1}", step.name, step.ns));
         format!("{} ns", Vec::from_iter(steps).join(" → "))

@@ -162,7 +162,7 @@ impl BuiltBench {
         Ok(Self { simulator, top: top.to_owned(), program, build, dir })
     }
 
-    /// Where it runs: beside its files, and those that it writes.
+    /// Returns where it runs: beside its files, and those that it writes.
     pub fn directory(&self) -> &Path {
         self.dir.path()
     }
@@ -220,7 +220,7 @@ fn write_files<'a, N: AsRef<str>, C: AsRef<[u8]>>(
     Ok(sources)
 }
 
-/// Whether there is a PASS line and no FAIL line; `None` when there is neither.
+/// Returns whether there is a PASS line and no FAIL line; `None` when there is neither.
 fn verdict(transcript: &str) -> Option<bool> {
     let says = |word| {
         let first = |line: &str| line.split(|c: char| !c.is_alphanumeric()).next() == Some(word);

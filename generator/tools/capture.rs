@@ -46,7 +46,7 @@ impl Capture {
         String::from_utf8_lossy(&bytes).into_owned()
     }
 
-    /// The end of what has been kept, as [`quote`] gives it.
+    /// Returns the end of what has been kept, as [`quote`] gives it.
     pub(super) fn quote(&self) -> String {
         quote(&self.text())
     }
@@ -63,7 +63,7 @@ impl Kept {
     }
 }
 
-/// The last lines of `output` as the end of an error message, indented and without control
+/// Returns the last lines of `output` as the end of an error message, indented and without control
 /// characters.
 pub(super) fn quote(output: &str) -> String {
     let lines: Vec<&str> = output.lines().filter(|line| !line.trim().is_empty()).collect();

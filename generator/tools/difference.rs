@@ -25,7 +25,7 @@ pub struct BenchDifference {
 }
 
 impl BenchDifference {
-    /// The first in what a bench printed, if there is one.
+    /// Returns the first in what a bench printed, if there is one.
     pub fn first(transcript: &str) -> Option<Self> {
         transcript.lines().find_map(Self::of_line)
     }

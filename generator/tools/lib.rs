@@ -108,17 +108,17 @@ impl Tool {
             .ok_or_else(|| anyhow!("`{name}` is not on PATH; {}", remedy(name)))
     }
 
-    /// The name by which the tool was looked for.
+    /// Returns the name by which the tool was looked for.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Where it was found.
+    /// Returns where it was found.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// The first line of what the tool says of its version.
+    /// Returns the first line of what the tool says of its version.
     ///
     /// # Errors
     /// The tool does not start, does not end, fails, or says nothing.
@@ -245,7 +245,7 @@ fn limit_memory(process: u32, bytes: u64) {
 #[cfg(not(target_os = "linux"))]
 fn limit_memory(_process: u32, _bytes: u64) {}
 
-/// How to install a tool, for those who have no checkout of Glint and for those who have.
+/// Returns how to install a tool, for those who have no checkout of Glint and for those who have.
 fn remedy(name: &str) -> String {
     let package = match name {
         "vvp" => "iverilog",

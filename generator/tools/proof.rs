@@ -54,7 +54,7 @@ pub fn prove(directory: &Path, name: &str, limits: impl Into<Limits>) -> Result<
     Ok(())
 }
 
-/// How Yosys, Python and Z3 say it; a solver that dies of it says nothing, and yosys-smtbmc finds its pipes closed.
+/// Returns how Yosys, Python and Z3 say it; a solver that dies of it says nothing, and yosys-smtbmc finds its pipes closed.
 fn ran_out_of_memory(output: &str) -> bool {
     const SIGNS: [&str; 5] = [
         "out of memory",

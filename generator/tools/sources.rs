@@ -42,7 +42,7 @@ impl<'a> Sources<'a> {
             .with_context(|| format!("cannot write `{name}` for synthesis"))
     }
 
-    /// The directory.
+    /// Returns the directory.
     pub fn path(&self) -> &Path {
         self.directory.path()
     }

@@ -57,7 +57,7 @@ impl Tool {
     }
 }
 
-/// Whether the words are there: not at the end of another, as in `unsat`.
+/// Returns whether the words are there: not at the end of another, as in `unsat`.
 fn says(output: &str, words: &str) -> bool {
     let before = |at: usize| output[..at].chars().next_back();
     let mut found = output.match_indices(words);

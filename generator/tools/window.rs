@@ -9,7 +9,7 @@ pub const WINDOW_FILE: &str = "window.vcd";
 /// Units of time in which the bench has a clock.
 const CLOCK: u64 = 10;
 
-/// The Verilog of a module `name` around the module `bench`, which `glint_core::package::emit` made: it writes the
+/// Returns the Verilog of a module `name` around the module `bench`, which `glint_core::package::emit` made: it writes the
 /// waveform of clocks `from` to `to` to [`WINDOW_FILE`], and ends the run as one that fails.
 ///
 /// # Errors

@@ -100,7 +100,7 @@ impl Bench {
     }
 }
 
-/// The contents of a memory with one bit of one word inverted.
+/// Returns the contents of a memory with one bit of one word inverted.
 ///
 /// # Panics
 /// There is no such word or bit.

@@ -13,7 +13,7 @@ use tempfile::TempDir;
 /// Pairs of a plain file name and contents.
 pub type Files = Vec<(String, String)>;
 
-/// The configurations in `configs/` and `configs/studies/` that have a microprogram, by path, sorted.
+/// Returns the configurations in `configs/` and `configs/studies/` that have a microprogram, by path, sorted.
 ///
 /// # Panics
 /// There are none, or one of them is wrong.
@@ -22,7 +22,7 @@ pub fn configurations() -> Vec<(String, Core)> {
     all_configurations().into_iter().filter(sequential).collect()
 }
 
-/// The configurations in `configs/` and `configs/studies/`, pipelines too, by path, sorted.
+/// Returns the configurations in `configs/` and `configs/studies/`, pipelines too, by path, sorted.
 ///
 /// # Panics
 /// There are none, or one of them is wrong.
@@ -37,7 +37,7 @@ pub fn all_configurations() -> Vec<(String, Core)> {
     paths.into_iter().map(with_unit).collect()
 }
 
-/// The paths of the configurations in a directory.
+/// Returns the paths of the configurations in a directory.
 fn configurations_in(directory: &str) -> Vec<String> {
     let entries = fs::read_dir(directory).unwrap_or_else(|error| panic!("{directory}: {error}"));
     let paths = entries.map(|entry| entry.expect("a directory entry").path());
@@ -49,7 +49,7 @@ fn configurations_in(directory: &str) -> Vec<String> {
     paths
 }
 
-/// The configuration of that path.
+/// Returns the configuration of that path.
 ///
 /// # Panics
 /// It is wrong.
@@ -63,7 +63,7 @@ fn of_config(path: &str, config: Result<Config, Problems>) -> Core {
     Core::new(device, config).unwrap_or_else(|error| panic!("{path}: {error:?}"))
 }
 
-/// The configuration of that path with more TOML: a table, whose keys join those that the file has of it.
+/// Returns the configuration of that path with more TOML: a table, whose keys join those that the file has of it.
 ///
 /// # Panics
 /// It is wrong.
@@ -79,7 +79,7 @@ pub fn configuration_with(path: &str, more: &str) -> Core {
     parsed(path, &text)
 }
 
-/// The configuration of that path with other TOML in place of its tables `package` and `interface`, which stand last.
+/// Returns the configuration of that path with other TOML in place of its tables `package` and `interface`, which stand last.
 ///
 /// # Panics
 /// It is wrong.
@@ -90,7 +90,7 @@ pub fn configuration_between(path: &str, interface: &str) -> Core {
     parsed(path, &format!("{own}\n[interface]\n{interface}"))
 }
 
-/// The configuration that a text states, by the name of its file.
+/// Returns the configuration that a text states, by the name of its file.
 ///
 /// # Panics
 /// It is wrong.
@@ -98,7 +98,7 @@ pub fn parsed(path: &str, text: &str) -> Core {
     of_config(path, config::parse(path, text, &Registry::shipped().schemas()))
 }
 
-/// The core of a device, of the catalogue or changed, by its defaults and more keys, as TOML.
+/// Returns the core of a device, of the catalogue or changed, by its defaults and more keys, as TOML.
 ///
 /// # Errors
 /// It has no such core.
@@ -111,7 +111,7 @@ pub fn with_keys(device: Device, more: &str) -> anyhow::Result<Core> {
     Core::new(device, config.unwrap_or_else(|problems| panic!("{problems}")))
 }
 
-/// The computations that are listed of a core.
+/// Returns the computations that are listed of a core.
 ///
 /// # Panics
 /// Golden model and simulation differ.
@@ -129,7 +129,7 @@ pub fn assert_agrees(core: &Core, points: u64, what: &str) {
     assert!(failures.is_empty(), "{what}: {failures:?}");
 }
 
-/// A valid configuration drawn at random, as TOML for messages, and its unit.
+/// Returns a valid configuration drawn at random, as TOML for messages, and its unit.
 ///
 /// # Panics
 /// The description does not make a design of it.
@@ -161,7 +161,7 @@ impl Emitted {
         Self { files, name }
     }
 
-    /// The module that tests the device.
+    /// Returns the module that tests the device.
     pub fn bench(&self) -> String {
         format!("{}_tb", self.name)
     }
@@ -171,7 +171,7 @@ impl Emitted {
         self.below("rtl_out/")
     }
 
-    /// The files for a family of FPGAs, its own in place of portable ones.
+    /// Returns the files for a family of FPGAs, its own in place of portable ones.
     pub fn rtl_for(&self, family: &str) -> Files {
         let rtl = self.files.iter().filter(|file| file.path.starts_with("rtl_out/"));
         sources_for(rtl.cloned().collect(), family)
@@ -182,7 +182,7 @@ impl Emitted {
         self.below("")
     }
 
-    /// All files in a directory, each where it would be written.
+    /// Returns all files in a directory, each where it would be written.
     pub fn tree(&self) -> TempDir {
         let dir = tempfile::tempdir().expect("a directory");
         for file in &self.files {
@@ -193,7 +193,7 @@ impl Emitted {
         dir
     }
 
-    /// The files of which the path begins so, beside each other in a directory. A form of a file for one target has the
+    /// Returns the files of which the path begins so, beside each other in a directory. A form of a file for one target has the
     /// name of the portable one, and is left out.
     pub fn beside(&self, start: &str) -> TempDir {
         let dir = tempfile::tempdir().expect("a directory");

@@ -32,7 +32,7 @@ pub fn synthesise(directory: &Path, emitted: &Emitted, family: &Family) {
     yosys(directory, &commands);
 }
 
-/// The bench of the source around a netlist, ROM contents within.
+/// Returns the bench of the source around a netlist, ROM contents within.
 ///
 /// # Panics
 /// Icarus Verilog refuses it, or the models of the cells are not where Yosys has them.

@@ -26,7 +26,7 @@ impl Random {
         self.below(100) < percent
     }
 
-    /// A pattern; often one of the ends.
+    /// Returns a pattern; often one of the ends.
     pub fn bits(&mut self, width: u32) -> u64 {
         let ends = [0, 1, mask(width), mask(width) >> 1, 1 << (width - 1)];
         if self.chance(30) {
@@ -54,7 +54,7 @@ pub struct Size {
 /// A design that the tools outside go through in an instant.
 pub const SMALL: Size = Size { widest: 20, registers: 4, fields: 2 };
 
-/// The design of a seed.
+/// Returns the design of a seed.
 pub fn design(seed: u64, size: Size) -> Design {
     let (random, partition) = (Random::new(seed), Partition::Control);
     let mut build = Build { random, size, design: skeleton(seed), partition };
@@ -246,7 +246,7 @@ impl Build {
         }
     }
 
-    /// A slice of it may be known beforehand.
+    /// Returns a slice of it may be known beforehand.
     fn is_partly_constant(&self, id: NetId) -> bool {
         let net = self.design.net(id);
         match &net.driver {

@@ -10,7 +10,7 @@ pub struct Case {
     pub said: Vec<&'static str>,
 }
 
-/// The cases of a text: a file, the lines that are said of it, and an empty line; with headings, which begin with `## `, and
+/// Returns the cases of a text: a file, the lines that are said of it, and an empty line; with headings, which begin with `## `, and
 /// comments, which begin with `#`.
 pub fn cases(text: &'static str) -> Vec<Case> {
     let (mut cases, mut heading) = (Vec::new(), "");

@@ -13,7 +13,7 @@ use glint::tools::{BenchOutcome, Simulator, Tool, lint, run_bench};
 /// The time limit of any tool.
 pub const LIMIT: Duration = Duration::from_secs(1200);
 
-/// The tool of that name: from the Python environment that `tools/install` makes, or from `PATH`.
+/// Returns the tool of that name: from the Python environment that `tools/install` makes, or from `PATH`.
 ///
 /// # Panics
 /// It is in neither.
@@ -82,7 +82,7 @@ pub fn yosys(directory: &Path, commands: &str) -> String {
         .unwrap_or_else(|error| panic!("{}: {error:#}", directory.display()))
 }
 
-/// The names of the Verilog files in `directory`, sorted.
+/// Returns the names of the Verilog files in `directory`, sorted.
 ///
 /// # Panics
 /// It cannot be read, or there are none.

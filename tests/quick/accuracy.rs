@@ -26,12 +26,12 @@ const POINTS: usize = 2000;
 /// The rounding of f64 itself, in units.
 const F64: f64 = 1e-6;
 
-/// The contract of a device with these settings, lines of TOML, and defaults elsewhere.
+/// Returns the contract of a device with these settings, lines of TOML, and defaults elsewhere.
 fn of(device: &str, settings: &str) -> Box<dyn Contract> {
     parsed("settings.toml", &format!("device = \"{device}\"\n{settings}\n")).contract
 }
 
-/// A point of the domain, more often than not within the highlight: cosines anywhere, small, or such
+/// Returns a point of the domain, more often than not within the highlight: cosines anywhere, small, or such
 /// that γ is near dγ, as near as n makes the highlight narrow.
 fn random_point(contract: &dyn Contract, rng: &mut ChaCha8Rng) -> Vec<i64> {
     let mut unit = || rng.next_u32() as f64 / exp2(32);

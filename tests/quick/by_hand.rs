@@ -15,7 +15,7 @@ use crate::common::host::Host;
 /// More clocks than any computation there takes.
 const LIMIT: u32 = 1000;
 
-/// The schema without lower limits and conditions, so that words can be small enough to follow by hand.
+/// Returns the schema without lower limits and conditions, so that words can be small enough to follow by hand.
 fn widened(mut schema: Schema) -> Schema {
     schema.check = |_, _| ();
     for key in &mut schema.keys {

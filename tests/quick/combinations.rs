@@ -90,7 +90,7 @@ impl Model for Wrong {
     }
 }
 
-/// The job of a configuration whose model is wrong.
+/// Returns the job of a configuration whose model is wrong.
 fn job(core: &Core, aim: Aim) -> Job<'_> {
     let model = Wrong::new(core.device.golden(&core.config), aim);
     let contract = core.contract.as_ref();
@@ -98,7 +98,7 @@ fn job(core: &Core, aim: Aim) -> Job<'_> {
     Job::new(contract).with(clocks)
 }
 
-/// A shard, broken off and resumed after every look.
+/// Returns a shard, broken off and resumed after every look.
 fn done(job: &Job<'_>, shard: Shard) -> State {
     let mut state = State::new("digest", shard);
     while job.remaining(&state) > 0 {
@@ -111,7 +111,7 @@ fn done(job: &Job<'_>, shard: Shard) -> State {
     state
 }
 
-/// A job without a break.
+/// Returns a job without a break.
 fn whole(job: &Job<'_>) -> State {
     part(job, Shard::WHOLE)
 }
@@ -127,7 +127,7 @@ fn part(job: &Job<'_>, shard: Shard) -> State {
 /// In how many parts combinations are gone through.
 const PARTS: u64 = 4;
 
-/// All of them in a run of both tiers; of the quick one alone a part, which the commit draws.
+/// Returns all of them in a run of both tiers; of the quick one alone a part, which the commit draws.
 fn parts(what: &str) -> Vec<Shard> {
     sampled_alone(what, (1..=PARTS).map(|number| Shard { number, of: PARTS }), 1)
 }
@@ -181,7 +181,7 @@ fn every_combination_of_every_pipeline_agrees() {
     }
 }
 
-/// The combination of which a model errs, in a pipeline: found, had again, and no other.
+/// Returns the combination of which a model errs, in a pipeline: found, had again, and no other.
 /// The one combination that differs; no other does.
 fn the_one(core: &Core) -> Difference {
     let job = job(core, ONE);
@@ -279,7 +279,7 @@ fn wrong(directory: &Path, arguments: &str) -> String {
     text
 }
 
-/// The JSON among what the test program prints.
+/// Returns the JSON among what the test program prints.
 fn json(text: &str) -> Value {
     let (from, to) = (text.find('{'), text.rfind('}'));
     let text = &text[from.expect("JSON")..=to.expect("JSON")];

@@ -37,7 +37,7 @@ fn answer(text: &str, schemas: &[Schema]) -> Result<Option<Config>, TestCaseErro
     Ok(None)
 }
 
-/// A value as it stands in a file: right, too large, of another type, or nested.
+/// Returns a value as it stands in a file: right, too large, of another type, or nested.
 fn value() -> impl Strategy<Value = String> {
     let leaves = r#"0 1 -1 8 16 22 25 1000 4096 9223372036854775807 -9223372036854775808
         99999999999999999999999 0xffff_ffff 1.5 -0.0 nan -inf 1e400 5e-324 true false
@@ -52,7 +52,7 @@ fn value() -> impl Strategy<Value = String> {
     })
 }
 
-/// A file for a device of the catalogue in which keys have any values; seldom for a function, whose widths the reader
+/// Returns a file for a device of the catalogue in which keys have any values; seldom for a function, whose widths the reader
 /// searches for.
 fn settings() -> impl Strategy<Value = String> {
     let is_function = |schema: &Schema| schema.device == FUNCTION;

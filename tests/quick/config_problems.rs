@@ -23,7 +23,7 @@ fn of_file(name: &str, text: &str) -> Vec<String> {
     }
 }
 
-/// The problems of a file for `lamp` whose further lines are given; they start at line 2.
+/// Returns the problems of a file for `lamp` whose further lines are given; they start at line 2.
 fn of_lamp(text: &str) -> Vec<String> {
     of_file("lamp.toml", &format!("device = \"lamp\"\n{text}"))
 }

@@ -34,7 +34,7 @@ fn make(path: &str, core: &Core) -> Datasheet {
     datasheet(&subject, &|| ()).unwrap_or_else(|error| panic!("{path}: {error:?}"))
 }
 
-/// The pages are XML as well.
+/// Returns the pages are XML as well.
 fn parse(page: &str) -> Document<'_> {
     let options = ParsingOptions { allow_dtd: true, ..ParsingOptions::default() };
     Document::parse_with_options(page, options).unwrap_or_else(|error| panic!("{error}"))
@@ -157,7 +157,7 @@ fn diagram<'a>(document: &'a Document) -> Node<'a, 'a> {
 
 type Point = (i32, i32);
 
-/// The corners of a path of absolute lines.
+/// Returns the corners of a path of absolute lines.
 fn corners(path: &str) -> Vec<Point> {
     let mut corners: Vec<Point> = Vec::new();
     let (mut x, mut y) = (0, 0);
@@ -231,7 +231,7 @@ fn wires_are_clear(path: &str, document: &Document) {
     }
 }
 
-/// The numbers that stand in the diagram.
+/// Returns the numbers that stand in the diagram.
 fn drawn(document: &Document) -> BTreeSet<u16> {
     let texts = diagram(document).descendants().filter(|node| node.tag_name().name() == "text");
     // The value of a constant is no number of a block.
@@ -357,7 +357,7 @@ fn has_every_word(path: &str, document: &Document, core: &Core) {
     assert_eq!(bits, expected, "{path}");
 }
 
-/// The cells of a table, row by row, the heading among them.
+/// Returns the cells of a table, row by row, the heading among them.
 fn rows(document: &Document, label: &str) -> Vec<Vec<String>> {
     let mut tables = elements(document, "div");
     let table = tables.find(|div| div.attribute("aria-label") == Some(label)).expect("a table");
@@ -470,7 +470,7 @@ fn the_same_bytes_twice() {
     assert_eq!(first.wavedrom, second.wavedrom);
 }
 
-/// The worked example of a page: port, integer, value.
+/// Returns the worked example of a page: port, integer, value.
 fn example(path: &str) -> Vec<(String, i64, f64)> {
     let core = configuration(path);
     let page = make(path, &core).page;

@@ -27,7 +27,7 @@ fn default(device: Device) -> Core {
     Core::new(device, config).unwrap_or_else(|error| panic!("{error:#}"))
 }
 
-/// The raw results and the error of each in last places, by the formula given.
+/// Returns the raw results and the error of each in last places, by the formula given.
 fn errors(contract: &dyn Contract, operands: &[i64], formula: impl Fn(&[f64]) -> Vec<f64>) -> f64 {
     let mut raw = Vec::new();
     contract.results(operands, 0, &mut raw);

@@ -8,7 +8,7 @@ use glint::hdl::netlist::Design;
 
 use crate::common::host::Host;
 
-/// A device that divides two operands.
+/// Returns a device that divides two operands.
 fn ratio(dividend: Format, divisor: Format, bits: i32) -> Design {
     let d = Designer::new("ratio");
     let a = d.operand("a", dividend);

@@ -33,7 +33,7 @@ impl<'a> Bench<'a> {
         Self { core, host: Host::new(&core.design) }
     }
 
-    /// The outputs of a line, which must come one a clock from the fourth clock on, the last with `done`.
+    /// Returns the outputs of a line, which must come one a clock from the fourth clock on, the last with `done`.
     fn line(&mut self, operands: &[(&str, i64)]) -> Vec<i64> {
         self.host.start(operands);
         let mut points = Vec::new();
@@ -212,7 +212,7 @@ fn set_ups(count: usize) -> impl Iterator<Item = Line> {
     .take(count)
 }
 
-/// The largest difference over a line between the outputs that the contract gives for its operands and the
+/// Returns the largest difference over a line between the outputs that the contract gives for its operands and the
 /// unquantised formula.
 fn drift(core: &Core, line: &Line, f: impl Fn(f64) -> f64) -> f64 {
     let highlight = core.contract.highlight().expect("a highlight");

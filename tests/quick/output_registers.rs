@@ -13,7 +13,7 @@ const POINTS: u64 = 2000;
 
 const REGISTERED: &str = "[output]\nregistered = true\n";
 
-/// Whether a port shows a register, whatever it is called on the way.
+/// Returns whether a port shows a register, whatever it is called on the way.
 fn shows_register(design: &Design, mut net: NetId) -> bool {
     while let Driver::Op(Op::Relabel(of)) = design.net(net).driver {
         net = of;
@@ -72,7 +72,7 @@ fn lines_with_stages_have_them_too() {
     }
 }
 
-/// The squarer of the builder's documentation with this program's last microinstructions.
+/// Returns the squarer of the builder's documentation with this program's last microinstructions.
 fn squarer(last: impl Fn(glint::dsl::Signal<'_>) -> Vec<Step>) -> Result<Design, String> {
     let d = Designer::new("squarer");
     let x = d.operand("x", Format::unsigned(0, 8));

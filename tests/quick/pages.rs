@@ -13,7 +13,7 @@ fn read(path: &str) -> String {
     fs::read_to_string(path).unwrap_or_else(|error| panic!("{path}: {error}"))
 }
 
-/// The default configurations and their pipelines, each with the name of its module.
+/// Returns the default configurations and their pipelines, each with the name of its module.
 fn names() -> Vec<(String, String)> {
     let catalogue = Registry::shipped();
     let devices = catalogue.devices().iter();
@@ -62,7 +62,7 @@ fn there_are_no_other_pages() {
     assert_eq!(found, wanted);
 }
 
-/// The cells of the rows of a page's table that begin with a number, from the heading on.
+/// Returns the cells of the rows of a page's table that begin with a number, from the heading on.
 fn rows(page: &str, heading: &str) -> Vec<Vec<String>> {
     let section = page.split(&format!("\n## {heading}\n")).nth(1).expect("a heading");
     let section = section.split("\n## ").next().expect("a section");

@@ -58,7 +58,7 @@ fn timings_stand_apart() {
     }
 }
 
-/// Values of an attribute, in order.
+/// Returns values of an attribute, in order.
 fn attributes<'a>(page: &'a str, name: &str) -> Vec<&'a str> {
     let opening = format!(" {name}=\"");
     page.split(&opening).skip(1).filter_map(|rest| rest.split('"').next()).collect()

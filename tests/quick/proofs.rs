@@ -20,7 +20,7 @@ use serde_json::{Value, json};
 /// Places that are checked again of each proof, about.
 const AGAIN: u64 = 20_000_000;
 
-/// The records, by configuration.
+/// Returns the records, by configuration.
 fn records() -> Vec<Value> {
     let mut paths: Vec<_> = fs::read_dir("proofs")
         .expect("proofs/")
@@ -90,7 +90,7 @@ fn the_records_hold_today() {
     }
 }
 
-/// Every `stride`-th block.
+/// Returns every `stride`-th block.
 fn every(places: &Places<'_>, stride: u64) -> Vec<u64> {
     (0..places.blocks()).step_by(stride as usize).collect()
 }

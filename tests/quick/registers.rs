@@ -12,7 +12,7 @@ use crate::common::cores::with_keys;
 
 const BYTE: Format = Format::unsigned(0, 8);
 
-/// A device that hands its operand on.
+/// Returns a device that hands its operand on.
 fn device(operand: &str, result: &str) -> Design {
     let d = Designer::new("device");
     let x = d.operand(operand, BYTE);

@@ -119,7 +119,7 @@ fn devices_are_known_by_name_where_they_are_described_predicted_and_weighed() {
     }
 }
 
-/// Every file of the library by its path in `generator/`, without comments and tests.
+/// Returns every file of the library by its path in `generator/`, without comments and tests.
 fn sources() -> Vec<(String, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("generator");
     let mut files = Vec::new();
@@ -150,7 +150,7 @@ fn sources() -> Vec<(String, String)> {
     files
 }
 
-/// The paths behind `root`, with each name of a group in braces apart.
+/// Returns the paths behind `root`, with each name of a group in braces apart.
 fn imports(code: &str, root: &str) -> Vec<String> {
     let path = format!(r"\b{root}((?:\w+::)*)(?:(\w+)|\{{([^}}]*)\}})");
     let path = Regex::new(&path).unwrap();

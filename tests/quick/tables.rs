@@ -156,7 +156,7 @@ fn function(row: &mut Row) {
     }
 }
 
-/// The name that a row begins with.
+/// Returns the name that a row begins with.
 fn key(row: &Row) -> &str {
     row[0].trim_start_matches('`').split(['`', ' ']).next().expect("a name")
 }
@@ -170,7 +170,7 @@ fn number(value: &Value) -> u64 {
     value.as_u64().unwrap_or_else(|| panic!("{value} is no number"))
 }
 
-/// The core of a configuration, a study or not.
+/// Returns the core of a configuration, a study or not.
 fn core(name: &str) -> Core {
     let studies = format!("configs/studies/{name}.toml");
     let path = format!("configs/{name}.toml");
@@ -252,7 +252,7 @@ fn area_and_speed(rows: &mut Vec<Row>) {
     *rows = records.iter().map(row).collect();
 }
 
-/// The pipeline of a configuration in which the line of the clock is another, or the same.
+/// Returns the pipeline of a configuration in which the line of the clock is another, or the same.
 fn pipeline(name: &str, clock: Option<&str>) -> Pipeline {
     let text = read(&format!("configs/{name}_pipelined.toml"));
     let line = text.lines().find(|line| line.starts_with("clock_mhz")).expect("a clock");
@@ -328,7 +328,7 @@ fn record(name: &str) -> Record {
     serde_json::from_str(&read(&path)).unwrap_or_else(|error| panic!("{path}: {error}"))
 }
 
-/// The core of a record, which is of today's configuration.
+/// Returns the core of a record, which is of today's configuration.
 fn today<T>(record: &Record<T>) -> Core {
     let core = configuration(&record.config);
     assert_eq!(core.core_digest(), record.core, "{}: another configuration", record.name);
@@ -345,7 +345,7 @@ fn area(figures: &Figures) -> String {
     format!("{}, {}, {}", usage.luts, usage.dsps, usage.block_rams)
 }
 
-/// The median, the lowest and the highest.
+/// Returns the median, the lowest and the highest.
 fn frequency(figures: &Figures) -> String {
     let Frequency { lowest, median, highest, .. } = figures.frequency.expect("a frequency");
     format!("{median:.1} ({lowest:.1}–{highest:.1})")
@@ -437,7 +437,7 @@ impl Faults {
     }
 }
 
-/// The records of faults, of pipelines or of sequential cores, by name.
+/// Returns the records of faults, of pipelines or of sequential cores, by name.
 fn mutation_records(pipelined: bool) -> Vec<(String, Value)> {
     let records = input::records::<Value>(Path::new("mutation")).expect("records").into_iter();
     let named = records.map(|(path, record)| {
@@ -496,7 +496,7 @@ fn faults_in_verilog() -> Vec<Row> {
     })
 }
 
-/// The shares of the faults that any check notices which the shipped bench notices: noticed and all, in the netlist, in the
+/// Returns the shares of the faults that any check notices which the shipped bench notices: noticed and all, in the netlist, in the
 /// upper bits of ROM words, in the Verilog.
 fn noticed_by_shipped_bench(record: &Value) -> [Option<[u64; 2]>; 3] {
     let tally = |tally: &Value| {

@@ -32,7 +32,7 @@ fn sine(x: u64) -> i64 {
     sine_of_bucket(if x == ONE { 1023 } else { x >> 7 }).min(ONE as i64 - 1)
 }
 
-/// The definition of `rough`, step by step in integers.
+/// Returns the definition of `rough`, step by step in integers.
 fn expected(point: &Point) -> [u64; 3] {
     let (c, d) = (point.cos_gamma.min(ONE), point.cos_dgamma.min(ONE));
     let cos_cos = (c * d) as i64 >> COSINE;

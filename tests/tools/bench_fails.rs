@@ -23,7 +23,7 @@ fn squarer() -> Design {
     d.finish().unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// A reset, one point with x = 12/16, and what comes of it: floor(144/16) = 9.
+/// Returns a reset, one point with x = 12/16, and what comes of it: floor(144/16) = 9.
 fn vectors() -> Vectors {
     // Inputs rst_n, start, x, x_write; outputs valid, busy, done, y_out.
     let clocks = [

@@ -56,7 +56,7 @@ fn all_accepted(statements: &[Statement]) -> bool {
     statements.iter().all(|statement| statement.scripts.iter().any(|script| accepted(script)))
 }
 
-/// The script with a bound of half a unit, which the rounding of the outputs alone may take.
+/// Returns the script with a bound of half a unit, which the rounding of the outputs alone may take.
 fn smaller(script: &str) -> String {
     let Some((before, after)) = script.split_once("| <= ") else { return script.to_owned() };
     let (_, after) = after.split_once(" }").expect("the end of the goal");
@@ -107,7 +107,7 @@ fn a_device_without_records_is_certified() {
     assert!(!all_accepted(&smaller));
 }
 
-/// The bound that Gappa finds.
+/// Returns the bound that Gappa finds.
 fn found(design: &Design, contract: &dyn Contract) -> (f64, Vec<Statement>) {
     let gappa = Tool::find("gappa").unwrap_or_else(|error| panic!("{error}"));
     let asked = questions(design, contract, Duration::MAX).expect("questions");
@@ -281,7 +281,7 @@ fn what_cannot_be_stated_says_which_step() {
     assert_eq!(step, "the function `sqrt` has no translation");
 }
 
-/// The certificates of a configuration, with the statements of today.
+/// Returns the certificates of a configuration, with the statements of today.
 fn committed(name: &str) -> Vec<(String, Statement)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let Core { design, contract, .. } = configuration(&format!("configs/{name}.toml"));

@@ -23,7 +23,7 @@ const OF_BUFFERED: &str = "computations_are_exact writes_while_busy_are_for_the_
 const OF_PIPELINE: &str = "points_are_exact bubbles_and_stalls_change_nothing reset_drops_every_point \
     random_points_follow_the_formula worked_example";
 
-/// Its tests.
+/// Returns its tests.
 fn tests(core: &Core) -> Vec<&'static str> {
     let tests = match &core.design {
         design if design.pipeline.is_some() => OF_PIPELINE,
@@ -135,7 +135,7 @@ fn benches_of_wrappers_pass() {
     });
 }
 
-/// The files of a configuration where the bench expects them.
+/// Returns the files of a configuration where the bench expects them.
 fn dir(core: &Core) -> tempfile::TempDir {
     let mut emitted = Emitted::new(core, 1, 1);
     emitted.files.push(package::driver());

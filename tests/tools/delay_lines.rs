@@ -16,7 +16,7 @@ fn passes(simulator: Simulator, files: &Files, bench: &str) -> bool {
     outcome.unwrap_or_else(|error| panic!("{error:?}")).passed
 }
 
-/// The files with a change in the text of the module, which the change must find.
+/// Returns the files with a change in the text of the module, which the change must find.
 fn changed(emitted: &Emitted, change: &dyn Fn(&str) -> String) -> Files {
     let mut files = emitted.simulated();
     let module = format!("{}.v", emitted.name);
@@ -27,7 +27,7 @@ fn changed(emitted: &Emitted, change: &dyn Fn(&str) -> String) -> Files {
     files
 }
 
-/// The words of every memory.
+/// Returns the words of every memory.
 fn slots(text: &str) -> Vec<usize> {
     let counts = text.split("_delay #(").skip(1).filter_map(|it| it.split(".WORDS(").nth(1));
     let digits = counts.filter_map(|it| it.split(')').next());

@@ -48,7 +48,7 @@ fn every_pipeline_is_proved_equal_to_its_sequential_core() {
     assert_eq!(proved, 11, "pipelines");
 }
 
-/// Every way to plant one kind of fault in a design.
+/// Returns every way to plant one kind of fault in a design.
 fn faulty(design: &Design, plant: impl Fn(&mut Design, NetId) -> Option<()>) -> Vec<Design> {
     let planted = design.iter().filter_map(|(id, _)| {
         let mut faulty = design.clone();
@@ -117,7 +117,7 @@ fn a_fault_in_a_pipeline_is_refuted() {
     }
 }
 
-/// A square, or with a fault something else for one number.
+/// Returns a square, or with a fault something else for one number.
 fn square(faulty: bool) -> Design {
     let d = Designer::new("square");
     let x = d.operand("x", Format::unsigned(20, 0));

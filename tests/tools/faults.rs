@@ -41,7 +41,7 @@ pub fn faults(heading: &str) -> Vec<Fault> {
 }
 
 impl Fault {
-    /// A text with the fault, wherever it can be.
+    /// Returns a text with the fault, wherever it can be.
     ///
     /// # Panics
     /// It can be nowhere.

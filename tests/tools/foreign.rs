@@ -60,7 +60,7 @@ impl Foreign {
     }
 }
 
-/// The packages, unpacked, each in place of the one in the registry.
+/// Returns the packages, unpacked, each in place of the one in the registry.
 fn packages() -> String {
     let said = Command::new("bash").arg(root().join("tools/package")).output().expect("bash runs");
     assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
@@ -94,7 +94,7 @@ fn a_program_made_of_the_packages_generates_and_simulates() {
     }
 }
 
-/// How many crates the workspace publishes: all but those that are built for Python and for a page.
+/// Returns how many crates the workspace publishes: all but those that are built for Python and for a page.
 fn published() -> usize {
     let manifest = fs::read_to_string(root().join("Cargo.toml")).expect("a manifest");
     let manifest: toml::Table = manifest.parse().expect("TOML");

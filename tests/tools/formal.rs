@@ -45,7 +45,7 @@ fn starts_in_the_last_clock_are_proved() {
     faults("buffered").par_iter().for_each(|fault| assert_breaks(&core, fault));
 }
 
-/// A device whose operands have buffers.
+/// Returns a device whose operands have buffers.
 fn buffered(device: &str) -> Core {
     parsed("test.toml", &format!("device = \"{device}\"\n[operands]\nbuffered = true\n"))
 }
@@ -57,7 +57,7 @@ fn faults_of_a_pipeline_break_the_proof() {
     });
 }
 
-/// The pipeline of `cosine-power` with these keys.
+/// Returns the pipeline of `cosine-power` with these keys.
 fn pipeline(keys: &str) -> Core {
     let text = "device = \"cosine-power\"\narchitecture = \"pipelined\"\n[pipeline]\n";
     parsed("test.toml", &format!("{text}{keys}\n"))
@@ -120,7 +120,7 @@ fn a_proof_that_takes_too_much_says_so() {
     }
 }
 
-/// The files of a configuration in a directory of their own, and its name.
+/// Returns the files of a configuration in a directory of their own, and its name.
 fn emitted(core: &Core) -> (tempfile::TempDir, String) {
     let emitted = Emitted::new(core, 1, 1);
     (emitted.beside(""), emitted.name)

@@ -90,7 +90,7 @@ fn an_unknown_mode_is_refused() {
     }
 }
 
-/// The text with another hexadecimal digit at a place.
+/// Returns the text with another hexadecimal digit at a place.
 fn with_digit(text: &str, at: usize, change: impl Fn(u32) -> u32) -> String {
     let digit = text[at..].chars().next().and_then(|digit| digit.to_digit(16));
     let changed = char::from_digit(change(digit.expect("a digit")), 16).expect("a digit");

@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use serde_json::Value;
 
 use crate::common::Sure;
-use crate::common::cores::{Emitted, configuration_between};
+use crate::common::cores::{Emitted, configuration_between, parsed};
 use crate::common::tools::{LIMIT, ran, tool, yosys};
 
 /// Numbers with a sign, of more than 32 bits, and of one; both architectures; all wrappers.
@@ -73,10 +73,22 @@ fn the_entity_in_vhdl_is_the_core() {
     });
 }
 
+/// Names that VHDL takes as extended identifiers alone.
+#[test]
+fn names_that_vhdl_reserves_are_analysed() {
+    for name in ["entity", "out__put", "Upper", "ends_"] {
+        let text = format!(
+            "device = \"schlick\"\nname = \"{name}\"\n[interface]\nstream = true\n[package]\nvhdl = true\n"
+        );
+        let dir = Emitted::new(&parsed("core.toml", &text), 1, 1).beside("rtl_out/");
+        ran("ghdl", ["-a", "--std=08", &format!("{name}.vhd")], dir.path());
+    }
+}
+
 /// The ports of a module: direction and width.
 type Ports = BTreeMap<String, (String, u64)>;
 
-/// Those that Yosys finds in the Verilog.
+/// Returns those that Yosys finds in the Verilog.
 fn ports_of_verilog(dir: &Path, name: &str, top: &str) -> Ports {
     yosys(
         dir,
@@ -92,7 +104,7 @@ fn ports_of_verilog(dir: &Path, name: &str, top: &str) -> Ports {
     ports.map(port).collect()
 }
 
-/// Those of each component of a package in VHDL.
+/// Returns those of each component of a package in VHDL.
 fn ports_of_components(text: &str) -> BTreeMap<String, Ports> {
     let components = text.split("\n  component ").skip(1);
     let of = |component: &str| {
@@ -130,7 +142,7 @@ fn components_of_vhdl_have_the_ports_of_the_verilog() {
     assert_eq!(compared, 12);
 }
 
-/// The operands or the results of a core, with their formats.
+/// Returns the operands or the results of a core, with their formats.
 fn numbers(design: &Design, is: impl Fn(Role) -> bool) -> Vec<(String, Format)> {
     let ports = design.ports.iter().filter(|port| is(port.role));
     ports.map(|port| design.net(port.net)).map(|net| (net.name.clone(), net.format)).collect()
@@ -210,7 +222,7 @@ fn types_of_systemverilog_hold_the_numbers() {
     });
 }
 
-/// A raw integer of a format, drawn at random, often at its limits.
+/// Returns a raw integer of a format, drawn at random, often at its limits.
 fn drawn(format: Format, random: &mut ChaCha8Rng) -> i128 {
     match random.next_u32() % 4 {
         0 => format.min_raw(),

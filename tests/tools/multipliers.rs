@@ -19,7 +19,7 @@ const CONFIGURATION: &str = "configs/studies/threshold_dsp.toml";
 /// The two forms side by side at all widths, with and without a sign, while factors and enable change.
 const TWINS: &str = include_str!("benches/twins.v");
 
-/// The files of the configuration, and the text of its multiplier for ECP5.
+/// Returns the files of the configuration, and the text of its multiplier for ECP5.
 fn emitted() -> (Emitted, String) {
     let emitted = Emitted::new(&configuration(CONFIGURATION), POINTS, 1);
     let own = emitted.files.iter().find(|file| file.path.contains("/ecp5/")).expect("a file");
@@ -27,7 +27,7 @@ fn emitted() -> (Emitted, String) {
     (emitted, own)
 }
 
-/// The bench of both forms, with this text for ECP5, at every so many widths from 1 to 18.
+/// Returns the bench of both forms, with this text for ECP5, at every so many widths from 1 to 18.
 fn twins(emitted: &Emitted, own: &str, step: u32) -> Bench {
     let module = format!("{}_multiplier", emitted.name);
     let file = format!("{module}.v");

@@ -28,7 +28,7 @@ const PROVED: usize = 40;
 /// The seed of that test.
 const SEED: u64 = 77;
 
-/// The default configuration of every device, with its path.
+/// Returns the default configuration of every device, with its path.
 fn defaults() -> Vec<(String, Core)> {
     let registry = Registry::catalogue();
     let devices = registry.devices().iter();

@@ -22,7 +22,7 @@ const SIMULATED_DRAWN: usize = 120;
 /// Configurations of a function that are drawn: each takes a search of seconds.
 const FUNCTIONS_DRAWN: usize = 4;
 
-/// Every device, with how many of its configurations are drawn where others have `drawn`.
+/// Returns every device, with how many of its configurations are drawn where others have `drawn`.
 fn devices(drawn: usize) -> Vec<(Device, usize)> {
     let registry = Registry::catalogue();
     let drawn_of = |device: &Device| if device.name == FUNCTION { FUNCTIONS_DRAWN } else { drawn };

@@ -7,7 +7,7 @@ use std::process::Command;
 
 use crate::common::tools::{LIMIT, tool};
 
-/// Every configuration of the repository.
+/// Returns every configuration of the repository.
 fn configurations() -> Vec<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut found = vec![root.join("examples/soc/shade.toml")];
@@ -20,7 +20,7 @@ fn configurations() -> Vec<PathBuf> {
     found
 }
 
-/// A directory with the schema, by `glint schema`.
+/// Returns a directory with the schema, by `glint schema`.
 fn with_schema() -> tempfile::TempDir {
     let dir = tempfile::tempdir().expect("a directory");
     let glint = Command::new(env!("CARGO_BIN_EXE_glint")).arg("schema").output().expect("glint");

@@ -13,7 +13,7 @@ use crate::common::tools::{LIMIT, assert_bench_passes};
 use crate::faults::{Fault, faults};
 use glint::tools::{Simulator, run_bench};
 
-/// The committed Verilog and memories of a core and of its bench.
+/// Returns the committed Verilog and memories of a core and of its bench.
 fn shipped(core: &str) -> Files {
     let mut files = Files::new();
     for directory in ["rtl_out", "testbench"] {

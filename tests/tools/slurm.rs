@@ -28,7 +28,7 @@ fn run(command: &mut Command) -> String {
     text[0].clone()
 }
 
-/// The configuration, written into a directory.
+/// Returns the configuration, written into a directory.
 fn config(dir: &Path) -> String {
     let path = dir.join("core.toml");
     fs::create_dir_all(dir).expect("a directory");
@@ -47,7 +47,7 @@ fn submit_with(dir: &Path, program: &str) -> Command {
     command
 }
 
-/// The record of one process, without an engine.
+/// Returns the record of one process, without an engine.
 fn whole(dir: &Path) -> String {
     run(Command::new(env!("CARGO_BIN_EXE_glint")).args([
         "--quiet",

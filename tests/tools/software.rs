@@ -208,7 +208,7 @@ impl Model {
         bytes.chunks_exact(8).map(raw).collect()
     }
 
-    /// A program that reads operands and writes results, 64 bits each in the contract's order.
+    /// Returns a program that reads operands and writes results, 64 bits each in the contract's order.
     fn driver(&self) -> String {
         let (name, contract) = (&self.core.config.name, self.core.contract.as_ref());
         let ports = self.core.design.inputs();
@@ -252,7 +252,7 @@ fn run_program(program: &Path, dir: &Path) -> String {
     ran("env", [program], dir)
 }
 
-/// How many results a computation has.
+/// Returns how many results a computation has.
 fn results_of(contract: &dyn Contract, operands: &[i64]) -> usize {
     let length = contract.length().map(|name| {
         let at = contract.operands().iter().position(|operand| operand.name == name);

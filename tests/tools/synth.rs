@@ -21,7 +21,7 @@ const PAIRS: usize = 4;
 /// Runs of place and route that are made again.
 const RUNS: usize = 1;
 
-/// The flow of a target, its tools from the Python environment that `tools/install` makes, or from `PATH`.
+/// Returns the flow of a target, its tools from the Python environment that `tools/install` makes, or from `PATH`.
 fn flow(target: Target) -> Flow {
     let venv = Path::new(env!("CARGO_MANIFEST_DIR")).join("target/tools/venv/bin");
     let path = env::var_os("PATH").unwrap_or_default();
@@ -38,7 +38,7 @@ fn measured(target: Target, design: &Design, seeds: u32) -> Figures {
     flow(target).measure(&subject, &|| ()).unwrap_or_else(|error| panic!("{error:#}"))
 }
 
-/// A register, a product of 16 by 16 bits, a register.
+/// Returns a register, a product of 16 by 16 bits, a register.
 fn square() -> Design {
     let d = Designer::new("square_of_x");
     let x = d.operand("x", Format::unsigned(0, 16));
@@ -125,7 +125,7 @@ fn frequencies_are_those_of_the_record() {
     }
 }
 
-/// Every configuration with a record, and its figures for each target.
+/// Returns every configuration with a record, and its figures for each target.
 fn recorded() -> Vec<(String, Figures)> {
     let directory = Path::new(env!("CARGO_MANIFEST_DIR")).join(synth::DIRECTORY);
     let records = input::records::<Record>(&directory).expect("records");

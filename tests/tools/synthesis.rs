@@ -22,7 +22,7 @@ use rayon::prelude::*;
 /// Pairs of a configuration and a family that are synthesised.
 const PAIRS: usize = 15;
 
-/// The prefixes of the names of the initial values of a family's block RAMs, before so many hexadecimal
+/// Returns the prefixes of the names of the initial values of a family's block RAMs, before so many hexadecimal
 /// digits.
 fn initial(family: &Family) -> (&'static [&'static str], usize) {
     match family.name() {
@@ -178,14 +178,14 @@ impl<'a> Cells<'a> {
         self.0.iter().copied().filter(move |cell| Self::kind(cell) == kind)
     }
 
-    /// How many there are of some kinds, each with its weight.
+    /// Returns how many there are of some kinds, each with its weight.
     fn count_all(&self, kinds: Kinds) -> u64 {
         let weighed = kinds.iter().map(|(kind, weight)| self.of(kind).count() as u64 * weight);
         weighed.sum()
     }
 }
 
-/// Bits of a synchronous ROM from which on it is in block RAM; a smaller one may well be logic.
+/// Returns bits of a synchronous ROM from which on it is in block RAM; a smaller one may well be logic.
 fn warrants_block_ram(family: &Family) -> u64 {
     if family.command.starts_with("synth_xilinx") {
         // A look-up table is a ROM of 64 bits, and a block RAM has 18 432.
@@ -225,7 +225,7 @@ fn memories_are_whole(design: &Design, cells: &Cells, family: &Family, what: &st
     );
 }
 
-/// The ones in the initial values of a block RAM. Bits that are not given are `x` or 0.
+/// Returns the ones in the initial values of a block RAM. Bits that are not given are `x` or 0.
 fn ones(cell: &serde_json::Value, (prefixes, digits): (&[&str], usize)) -> u64 {
     let is_number =
         |rest: &str| rest.len() == digits && rest.chars().all(|c| c.is_ascii_hexdigit());

@@ -151,7 +151,7 @@ fn notices_every_output(core: &Core, emitted: &Emitted, bench: &Bench) {
     bench.assert_passes();
 }
 
-/// One wrong bit in one word of a ROM, of each ROM in turn, fails the bench. Returns how many ROMs there are.
+/// Returns one wrong bit in one word of a ROM, of each ROM in turn, fails the bench. Returns how many ROMs there are.
 fn notices_every_rom(core: &Core, emitted: &Emitted, bench: &Bench) -> usize {
     // Words in the Verilog have no file; `vendor` has wrong ones noticed.
     if core.config.choice("package.memories") != "files" {
@@ -176,7 +176,7 @@ fn notices_every_rom(core: &Core, emitted: &Emitted, bench: &Bench) -> usize {
     design.roms.len()
 }
 
-/// A word of a ROM whose top bit is seen on the outputs over the bench's stimulus: of those the one that is
+/// Returns a word of a ROM whose top bit is seen on the outputs over the bench's stimulus: of those the one that is
 /// addressed most often while the microprogram runs.
 fn telling_word(core: &Core, id: RomId) -> usize {
     let design: &Design = &core.design;
@@ -200,7 +200,7 @@ fn telling_word(core: &Core, id: RomId) -> usize {
     words.into_iter().find(is_seen).expect("a word that is seen")
 }
 
-/// The outputs after every clock, of which `watch` is told.
+/// Returns the outputs after every clock, of which `watch` is told.
 fn outputs(design: &Design, inputs: &[Vec<u64>], mut watch: impl FnMut(&Simulator)) -> Vec<u64> {
     let mut simulator: Simulator = Simulator::new(design).expect("a simulator");
     let mut values = Vec::new();

@@ -91,7 +91,7 @@ macro_rules! kernels {
                 }
             }
 
-            /// Each argument has bits of the result before it; the mask is 0, which the compiler does not know.
+            /// Returns each argument has bits of the result before it; the mask is 0, which the compiler does not know.
             #[inline(never)]
             pub fn dependent(
                 f: impl Fn($float, $float) -> $float,
@@ -123,7 +123,7 @@ fn time(run: &mut dyn FnMut()) -> f64 {
     start.elapsed().as_nanos() as f64 / (PASSES as f64 * f64::from(COSINES + 1))
 }
 
-/// The quartiles of values, which are not empty.
+/// Returns the quartiles of values, which are not empty.
 fn quartiles(mut values: Vec<f64>) -> [f64; 3] {
     values.sort_by(f64::total_cmp);
     [1, 2, 3].map(|quarter| values[(values.len() - 1) * quarter / 4])

@@ -130,7 +130,7 @@ fn instance(
     Claim { id: id.to_owned(), source, claim, seed, ours, verdict, words }
 }
 
-/// An error in per cent: two digits after the point below 10 %, one from there on.
+/// Returns an error in per cent: two digits after the point below 10 %, one from there on.
 pub fn percent(value: f64) -> String {
     let value = 100.0 * value;
     match value {
@@ -139,12 +139,12 @@ pub fn percent(value: f64) -> String {
     }
 }
 
-/// A figure that is not an error.
+/// Returns a figure that is not an error.
 fn plain(key: &str, definition: &str, value: f64, text: String) -> Measured {
     Measured { key: key.to_owned(), definition: definition.to_owned(), value, text, n: None }
 }
 
-/// The key of a definition.
+/// Returns the key of a definition.
 fn key(region: Region) -> String {
     match region {
         Region::Inflection => "inflection".to_owned(),
@@ -187,7 +187,7 @@ pub fn quad(delta: f64, n: f64) -> f64 {
     formulas::quad_cosine(delta, n as i64)
 }
 
-/// The ledger: what the paper says, then what the patents say.
+/// Returns the ledger: what the paper says, then what the patents say.
 pub fn ledger() -> Vec<Claim> {
     [paper::claims(), patent::claims(), rough::claims()].concat()
 }
@@ -211,7 +211,7 @@ fn runs(exponents: &[u32]) -> String {
     texts.join(", ")
 }
 
-/// The exponents at which the error to the inflection point exceeds a limit.
+/// Returns the exponents at which the error to the inflection point exceeds a limit.
 fn exceeding(function: Function, exponents: impl IntoIterator<Item = u32>, limit: f64) -> Vec<u32> {
     exponents
         .into_iter()
@@ -221,7 +221,7 @@ fn exceeding(function: Function, exponents: impl IntoIterator<Item = u32>, limit
         .collect()
 }
 
-/// The largest error in a region over exponents.
+/// Returns the largest error in a region over exponents.
 fn largest(
     function: Function,
     exponents: std::ops::RangeInclusive<u32>,
@@ -236,7 +236,7 @@ fn largest(
     Some(Measured { n: found.n.filter(|_| !alone), ..found })
 }
 
-/// The largest error to the inflection point over exponents.
+/// Returns the largest error to the inflection point over exponents.
 fn to_inflection(
     function: Function,
     exponents: std::ops::RangeInclusive<u32>,

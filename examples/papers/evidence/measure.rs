@@ -20,7 +20,7 @@ pub enum Region {
 }
 
 impl Region {
-    /// The angle at which it ends; `None` for n = 1, where a cosine has no inflection before 90°.
+    /// Returns the angle at which it ends; `None` for n = 1, where a cosine has no inflection before 90°.
     pub fn edge(self, n: f64) -> Option<f64> {
         match self {
             Self::Inflection if n > 1.0 => Some(libm::atan(1.0 / (n - 1.0).sqrt())),
@@ -49,13 +49,13 @@ pub struct Worst {
     pub gamma: f64,
 }
 
-/// The relative error at one point. `cosⁿγ` must not be 0 there.
+/// Returns the relative error at one point. `cosⁿγ` must not be 0 there.
 pub fn relative(function: Function, gamma: f64, n: f64) -> f64 {
     let exact = formulas::blinn(libm::cos(gamma), n);
     ((function(gamma, n) - exact) / exact).abs()
 }
 
-/// The largest relative error from γ = 0 to `edge`.
+/// Returns the largest relative error from γ = 0 to `edge`.
 fn to_edge(function: Function, n: u32, edge: f64) -> Worst {
     let mut worst = Worst { error: 0.0, n, gamma: 0.0 };
     for step in 1..=ANGLES {
@@ -68,12 +68,12 @@ fn to_edge(function: Function, n: u32, edge: f64) -> Worst {
     worst
 }
 
-/// The largest relative error at one exponent; `None` where the region has no end.
+/// Returns the largest relative error at one exponent; `None` where the region has no end.
 pub fn at(function: Function, n: u32, region: Region) -> Option<Worst> {
     Some(to_edge(function, n, region.edge(f64::from(n))?))
 }
 
-/// The largest relative error over exponents; those at which the region has no end do not count.
+/// Returns the largest relative error over exponents; those at which the region has no end do not count.
 pub fn over(
     function: Function,
     exponents: impl IntoIterator<Item = u32>,
@@ -85,7 +85,7 @@ pub fn over(
         .reduce(|worst, other| if other.error > worst.error { other } else { worst })
 }
 
-/// The level of `cosⁿγ` down to which the largest relative error over exponents is `error`, to four digits;
+/// Returns the level of `cosⁿγ` down to which the largest relative error over exponents is `error`, to four digits;
 /// `None` when it stays below it down to 0.01. The error must grow with the angle.
 pub fn level_of(
     function: Function,

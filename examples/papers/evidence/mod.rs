@@ -82,7 +82,7 @@ pub fn gather(registry: &Registry, synthesis: Option<&dyn Synthesis>) -> Result<
     })
 }
 
-/// The claim of simplicity, with what synthesis says.
+/// Returns the claim of simplicity, with what synthesis says.
 fn simpler(hardware: Option<&Hardware>) -> Claim {
     let (verdict, words) = match hardware {
         Some(hardware) if hardware.simpler => (Verdict::Holds, hardware.words.clone()),
@@ -96,7 +96,7 @@ fn simpler(hardware: Option<&Hardware>) -> Claim {
     claims::claim("simpler", ours, verdict, &[("words", words)])
 }
 
-/// The claim of speed, whose figures stand apart.
+/// Returns the claim of speed, whose figures stand apart.
 fn faster() -> Claim {
     claims::claim("faster", Vec::new(), Verdict::Elsewhere, &[])
 }

@@ -16,7 +16,7 @@ const HIGHLIGHTS: u32 = 8;
 /// Bits of a ROM that take about the area of one bit of a register.
 const ROM_BITS: u64 = 8;
 
-/// The charts of all devices that have curves.
+/// Returns the charts of all devices that have curves.
 ///
 /// # Errors
 /// The description of a device is refused with its default keys.
@@ -52,7 +52,7 @@ fn over_exponents<'a>(devices: impl Iterator<Item = &'a DeviceCurves>) -> Chart 
     }
 }
 
-/// The largest error over the exponents of highlights.
+/// Returns the largest error over the exponents of highlights.
 fn largest(device: &DeviceCurves) -> f64 {
     let highlights = device.exponents.iter().filter(|at| at.n >= HIGHLIGHTS);
     highlights.map(|at| at.whole).fold(FLOOR, f64::max)

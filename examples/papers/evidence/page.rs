@@ -58,7 +58,7 @@ struct BenchmarkView<'a> {
     rows: Vec<[String; 6]>,
 }
 
-/// The page. The benchmark's section is there only if it was run.
+/// Returns the page. The benchmark's section is there only if it was run.
 ///
 /// # Errors
 /// A chart cannot be plotted.
@@ -87,7 +87,7 @@ pub fn page(evidence: &Evidence, benchmark: Option<&Benchmark>) -> Result<String
     Ok(text)
 }
 
-/// The class of a verdict in the style sheet.
+/// Returns the class of a verdict in the style sheet.
 fn class(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Holds => "holds",
@@ -98,7 +98,7 @@ fn class(verdict: Verdict) -> &'static str {
     }
 }
 
-/// How many claims have each verdict that occurs.
+/// Returns how many claims have each verdict that occurs.
 fn counts(claims: &[Claim]) -> Vec<(&'static str, &'static str, usize)> {
     let counts = Verdict::ALL.into_iter().map(|verdict| {
         let count = claims.iter().filter(|claim| claim.verdict == verdict).count();

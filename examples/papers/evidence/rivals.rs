@@ -43,7 +43,7 @@ pub struct Rival {
 }
 
 impl Hardware {
-    /// The figures for the ledger.
+    /// Returns the figures for the ledger.
     pub fn measured(&self) -> Vec<Measured> {
         let pair = |key: String, definition: String, value: &dyn Fn(&Rival) -> f64| {
             let values: Vec<f64> = self.devices.iter().map(value).collect();
@@ -93,7 +93,7 @@ pub fn synthesised(registry: &Registry, synthesis: &dyn Synthesis) -> Result<Har
     Ok(Hardware { tool: synthesis.version()?, devices, simpler, words })
 }
 
-/// Whether W takes no more of anything, and that in words.
+/// Returns whether W takes no more of anything, and that in words.
 fn outcome(w: &Rival, schlick: &Rival) -> (bool, String) {
     let pairs = || w.usage.iter().zip(&schlick.usage);
     let more: Vec<String> = pairs()

@@ -179,7 +179,7 @@ impl Stated {
     }
 }
 
-/// The height of `cosⁿγ` at its inflection point.
+/// Returns the height of `cosⁿγ` at its inflection point.
 fn inflection_mark(n: f64) -> Mark {
     let edge = Region::Inflection.edge(n).unwrap_or(0.0);
     Mark {
@@ -199,7 +199,7 @@ fn largest(series: &[Series], places: &[u32]) -> String {
     format!("The largest: {}.", all.join("; "))
 }
 
-/// All plots, in the order of the seeds.
+/// Returns all plots, in the order of the seeds.
 ///
 /// # Errors
 /// A mistake in `seed_plots.toml`.
@@ -208,7 +208,7 @@ pub fn plots() -> Result<Vec<SeedPlot>> {
     list.plot.into_iter().map(Stated::plot).collect()
 }
 
-/// The patent's table 1: for each required accuracy the smallest k by n, where the error counts to the
+/// Returns the patent's table 1: for each required accuracy the smallest k by n, where the error counts to the
 /// inflection point. n = 1 has none, and k = 1 is exact there.
 pub fn power_table() -> Vec<RequiredPowers> {
     [0.005, 0.006, 0.01, 0.02, 0.03, 0.05]

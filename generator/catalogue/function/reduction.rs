@@ -24,7 +24,7 @@ fn integer(bits: u32) -> Format {
     Format::unsigned(bits as i32, 0)
 }
 
-/// The number of an operand, and what makes its result of the polynomial.
+/// Returns the number of an operand, and what makes its result of the polynomial.
 pub(super) fn reduced<'d>(
     d: &'d Designer,
     x: Signal<'d>,
@@ -107,7 +107,7 @@ pub(super) fn reduced<'d>(
 }
 
 impl<'d> Restoring<'d> {
-    /// The result in a format, rounded to the nearest.
+    /// Returns the result in a format, rounded to the nearest.
     pub(super) fn result(
         &self,
         d: &'d Designer,

@@ -8,7 +8,7 @@ pub fn taylor(n: u32) -> f64 {
     f64::from(n.max(1) - 1)
 }
 
-/// The a(n) with the least largest error over 0 ≤ c ≤ 1: the one with both errors equal.
+/// Returns the a(n) with the least largest error over 0 ≤ c ≤ 1: the one with both errors equal.
 ///
 /// Each place x where the slopes agree belongs to one a; the equal errors are found by bisecting x.
 pub fn minimax(n: u32) -> f64 {
@@ -34,12 +34,12 @@ pub fn minimax(n: u32) -> f64 {
     }
 }
 
-/// The a whose parabola has the slope of cⁿ at 1 − x.
+/// Returns the a whose parabola has the slope of cⁿ at 1 − x.
 fn touching(n: f64, x: f64) -> f64 {
     (n * libm::exp((n - 1.0) * libm::log1p(-x)) - 1.0) / (1.0 - 2.0 * x)
 }
 
-/// The error at the zero of the parabola: the largest below cⁿ, and for [`taylor`] and [`minimax`] the
+/// Returns the error at the zero of the parabola: the largest below cⁿ, and for [`taylor`] and [`minimax`] the
 /// largest of all. 0 for n ≤ 2 and for a ≤ 1, whose zero is not within 0 < c < 1.
 pub fn error(a: f64, n: u32) -> f64 {
     if n <= 2 || a <= 1.0 { 0.0 } else { libm::exp(f64::from(n) * libm::log1p(-1.0 / a)) }
@@ -49,7 +49,7 @@ pub fn error(a: f64, n: u32) -> f64 {
 mod tests {
     use super::*;
 
-    /// The largest error on a grid that is fine where the highlight is.
+    /// Returns the largest error on a grid that is fine where the highlight is.
     fn on_a_grid(a: f64, n: u32) -> f64 {
         (1..20_000)
             .map(|step| {

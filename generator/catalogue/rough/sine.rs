@@ -35,7 +35,7 @@ pub(super) fn sine_rom<'d>(
         .doc("sine of the addressed cosine")
 }
 
-/// The patent's own: one entry for each bucket of the cosine, the sine at its middle.
+/// Returns the patent's own: one entry for each bucket of the cosine, the sine at its middle.
 fn direct_sine<'d>(
     d: &'d Designer,
     keys: &Keys,

@@ -219,7 +219,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     Ok(whole)
 }
 
-/// The statements of a contract without a bound, with the one that Gappa finds.
+/// Returns the statements of a contract without a bound, with the one that Gappa finds.
 fn found(
     design: &Design,
     contract: &dyn Contract,
@@ -301,7 +301,7 @@ fn write(
     Ok(())
 }
 
-/// Whether a file that Glint wrote has the script that it was written with.
+/// Returns whether a file that Glint wrote has the script that it was written with.
 fn is_unedited(text: &str) -> bool {
     let Some((head, script)) = text.split_once("\n\n") else { return false };
     head.lines().nth(1).and_then(|line| line.strip_prefix(DIGEST))

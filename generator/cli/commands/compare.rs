@@ -167,7 +167,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     Ok(failures.is_empty())
 }
 
-/// The device's defaults with these keys replaced, where it has them and accepts the value.
+/// Returns the device's defaults with these keys replaced, where it has them and accepts the value.
 fn with_widths(device: &Device, widths: &[(&str, Option<i64>)], notes: &mut Vec<String>) -> Config {
     let schema: Schema = (device.schema)();
     let name = schema.module();
@@ -253,7 +253,7 @@ fn outside(entry: &Entry, n: u32) -> String {
     }
 }
 
-/// The least and the largest exponent of a device that has one for an operand.
+/// Returns the least and the largest exponent of a device that has one for an operand.
 fn domain(core: &Core) -> Option<(f64, f64)> {
     let operands = core.contract.operands();
     let exponent = operands.iter().find(|operand| operand.name == contract::EXPONENT)?;

@@ -81,7 +81,7 @@ pub struct SweepValues {
 }
 
 impl SweepValues {
-    /// The sweep of a configuration's core.
+    /// Returns the sweep of a configuration's core.
     pub fn of(&self, one: &Loaded) -> Result<Sweep> {
         let sweep = axis::sweep(one.core.contract.as_ref(), &self.others);
         sweep.map_err(|error| WrongUsage(format!("--values for `{}`: {error}", one.path)).into())
@@ -193,7 +193,7 @@ fn outcome(
     mismatch::traced(one, &lockstep, destination, points, 0)
 }
 
-/// The operands of the largest error, as values.
+/// Returns the operands of the largest error, as values.
 pub fn worst_operands(one: &Loaded, worst: &Worst) -> String {
     let operands = one.core.contract.operands();
     let values: Vec<String> = worst
@@ -207,13 +207,13 @@ pub fn worst_operands(one: &Loaded, worst: &Worst) -> String {
     format!("{} for {}", worst.output, values.join(" "))
 }
 
-/// The terms of a bound for scripts.
+/// Returns the terms of a bound for scripts.
 pub(super) fn terms(bound: &Bound) -> Vec<Value> {
     let one = |term: &Term| json!({ "key": term.key, "what": term.what, "units": term.units });
     bound.terms.iter().map(one).collect()
 }
 
-/// An outcome for scripts. What differs leaves a waveform.
+/// Returns an outcome for scripts. What differs leaves a waveform.
 pub fn as_json(one: &Loaded, outcome: &Outcome, bound: &Bound, failed: &[String]) -> Result<Value> {
     let mismatch = outcome.mismatch.as_ref().map(|mismatch| {
         let reproducer = Reproducer::of_run(one, mismatch)?;

@@ -115,7 +115,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     Ok(true)
 }
 
-/// The page of a configuration.
+/// Returns the page of a configuration.
 fn path(arguments: &Arguments, one: &Loaded, single: bool) -> PathBuf {
     if single {
         arguments.out.clone()

@@ -58,7 +58,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     }
 }
 
-/// The operands that are outside the domain for which the contract is stated, in words.
+/// Returns the operands that are outside the domain for which the contract is stated, in words.
 fn outside(operands: &[Operand], raw: &[i64]) -> Vec<String> {
     let outside = operands.iter().zip(raw).filter_map(|(operand, raw)| {
         let (low, high) = operand.domain;
@@ -76,7 +76,7 @@ fn outside(operands: &[Operand], raw: &[i64]) -> Vec<String> {
     outside.collect()
 }
 
-/// One point, with every signal of the golden model.
+/// Returns one point, with every signal of the golden model.
 fn point(output: Output, one: &Loaded, given: &[Option<i64>]) -> Result<bool> {
     let contract = one.core.contract.as_ref();
     let operands = contract.operands();
@@ -192,7 +192,7 @@ fn print_values(what: &str, values: Vec<Signal>) {
     tables::print(&format!("{what} | format | raw: | value:"), values.into_iter().map(row));
 }
 
-/// All signals in the clock in which `valid` is high.
+/// Returns all signals in the clock in which `valid` is high.
 fn signals(model: Box<dyn Model>, operands: &[Operand], raw: &[i64]) -> Result<Vec<(String, u64)>> {
     let mut model = Driven::new(model, operands.iter().map(|operand| operand.name.as_str()))?;
     let pairs = operands.iter().zip(raw);

@@ -71,7 +71,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     Ok(true)
 }
 
-/// Every file of each configuration, made in parallel.
+/// Returns every file of each configuration, made in parallel.
 pub fn all_files(output: Output, loaded: &[Loaded]) -> Result<Vec<Vec<OutputFile>>> {
     let bar = progress::bar(output, loaded.len() as u64, "generating");
     let known = Known::default();
@@ -90,7 +90,7 @@ pub fn all_files(output: Output, loaded: &[Loaded]) -> Result<Vec<Vec<OutputFile
     Ok(made)
 }
 
-/// Every file of a configuration, with its bench.
+/// Returns every file of a configuration, with its bench.
 fn files(one: &Loaded, known: &Known) -> Result<Vec<OutputFile>> {
     let vectors = one.core.shipped_vectors_of(known);
     let vectors = vectors.with_context(|| format!("`{}`", one.path))?;

@@ -25,7 +25,7 @@ struct Finding {
     failures: Vec<String>,
 }
 
-/// The main job. With `details` it says of each configuration where the largest error is, and what its formula is no good for.
+/// Returns the main job. With `details` it says of each configuration where the largest error is, and what its formula is no good for.
 pub fn run(registry: &Registry, output: Output, details: bool) -> Result<bool> {
     let loaded = load(registry, &[])?;
     for one in &loaded {
@@ -108,13 +108,13 @@ fn print(loaded: &[Loaded], findings: &[Finding], details: bool) -> Result<()> {
     Ok(())
 }
 
-/// The name that tells a configuration in `configs/` from the others there.
+/// Returns the name that tells a configuration in `configs/` from the others there.
 fn short(path: &str) -> &str {
     let name = path.strip_prefix(CONFIGS).and_then(|name| name.strip_prefix('/'));
     name.and_then(|name| name.strip_suffix(".toml")).unwrap_or(path)
 }
 
-/// How many hold, how many are outside the contract, how many fail.
+/// Returns how many hold, how many are outside the contract, how many fail.
 fn counts(findings: &[Finding]) -> String {
     let verdicts = findings.iter().map(|finding| verdict(&finding.bound, &finding.failures));
     let count = |wanted| verdicts.clone().filter(|verdict| *verdict == wanted).count();

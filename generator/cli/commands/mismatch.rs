@@ -82,7 +82,7 @@ impl Reproducer {
     }
 }
 
-/// A difference for scripts. Values are bit patterns and may have 64 bits, which not every reader's
+/// Returns a difference for scripts. Values are bit patterns and may have 64 bits, which not every reader's
 /// numbers hold: they are text.
 pub fn as_json(mismatch: &Mismatch) -> Value {
     json!({
@@ -95,22 +95,22 @@ pub fn as_json(mismatch: &Mismatch) -> Value {
     })
 }
 
-/// The file for the waveform of a difference, and the clock at which it begins.
+/// Returns the file for the waveform of a difference, and the clock at which it begins.
 fn window(one: &Loaded, mismatch: &Mismatch) -> (PathBuf, u64) {
     (waveform_of(one), first_clock(mismatch.clock))
 }
 
-/// The file for the waveform of a difference, in the working directory.
+/// Returns the file for the waveform of a difference, in the working directory.
 pub fn waveform_of(one: &Loaded) -> PathBuf {
     PathBuf::from(format!("{}_mismatch.vcd", one.core.config.name))
 }
 
-/// The clock at which the waveform of a difference begins that ends at `clock`.
+/// Returns the clock at which the waveform of a difference begins that ends at `clock`.
 pub fn first_clock(clock: u64) -> u64 {
     clock.saturating_sub(WINDOW)
 }
 
-/// A run with a waveform from clock `from` on: written beside its place and moved there when it is whole.
+/// Returns a run with a waveform from clock `from` on: written beside its place and moved there when it is whole.
 ///
 /// # Errors
 /// As of [`Lockstep::trace`]; the file cannot be written.

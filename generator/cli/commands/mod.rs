@@ -54,7 +54,7 @@ pub struct Loaded {
     locations: Problems,
 }
 
-/// The configurations named, or all in `configs/`, sorted.
+/// Returns the configurations named, or all in `configs/`, sorted.
 fn paths(named: &[PathBuf]) -> Result<Vec<PathBuf>> {
     if !named.is_empty() {
         return Ok(named.to_vec());
@@ -193,7 +193,7 @@ fn verdict(bound: &Bound, failures: &[String]) -> &'static str {
 }
 
 impl Loaded {
-    /// Every file of the configuration. A key that asks for what the core cannot have is shown where the file gives it.
+    /// Returns every file of the configuration. A key that asks for what the core cannot have is shown where the file gives it.
     fn files(&self, vectors: Vectors) -> Result<Vec<OutputFile>> {
         self.core.files(&self.path, vectors).map_err(|error| match error.downcast_ref::<Unfit>() {
             Some(unfit) => {

@@ -69,7 +69,7 @@ struct Scored {
 }
 
 impl Scored {
-    /// The share of all faults, of the netlist and of the Verilog, that is undecided.
+    /// Returns the share of all faults, of the netlist and of the Verilog, that is undecided.
     fn share_undecided(&self) -> f64 {
         let verilog = self.verilog.as_ref();
         let (planted, undecided) =
@@ -170,7 +170,7 @@ fn list(output: Output, loaded: &[Loaded], faults: &[Faults]) {
     }
 }
 
-/// One fault, with what reproduces it.
+/// Returns one fault, with what reproduces it.
 fn only(output: Output, one: &Loaded, id: &str) -> Result<bool> {
     let faults = Faults::of(&one.core.design);
     let Some(fault) = faults.find(id) else {

@@ -247,7 +247,7 @@ fn scene(arguments: &Arguments, coarse: bool) -> Result<Scene> {
     Ok(scene)
 }
 
-/// A whole file, within reason.
+/// Returns a whole file, within reason.
 fn read(path: &Path) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
     input::open(path)?.take(LARGEST_FILE + 1).read_to_end(&mut bytes)?;

@@ -46,7 +46,7 @@ pub fn read<C, T>(
     Ok(rows)
 }
 
-/// The line of a record that is said to begin here: empty lines before it count as a part of it.
+/// Returns the line of a record that is said to begin here: empty lines before it count as a part of it.
 fn line(text: &str, start: usize) -> usize {
     let record = text[start..].trim_start_matches(['\r', '\n']);
     1 + text[..text.len() - record.len()].matches('\n').count()

@@ -118,7 +118,7 @@ fn print(one: &Loaded, pipeline: &Pipeline) {
     tables::print(&headings.join(" | "), rows);
 }
 
-/// The values that a stage computes, by name.
+/// Returns the values that a stage computes, by name.
 fn computed<'a>(design: &'a Design, pipeline: &'a Pipeline, stage: usize) -> Vec<&'a str> {
     pipeline.computed(design, stage).map(|(value, _)| value).collect()
 }

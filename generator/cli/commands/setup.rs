@@ -181,7 +181,7 @@ impl<'a> Host<'a> {
         }
     }
 
-    /// The place of an input, and of a component where the name is that of one.
+    /// Returns the place of an input, and of a component where the name is that of one.
     fn place(&self, name: &str) -> Result<(usize, Option<usize>), String> {
         let all = &self.inputs;
         let at = |name: &str| all.iter().position(|it| it.name == name && self.concerns(name));
@@ -238,13 +238,13 @@ impl<'a> Host<'a> {
         given[at][0]
     }
 
-    /// A number that there must be.
+    /// Returns a number that there must be.
     fn needed(&self, given: &Given, name: &str) -> Result<f64, String> {
         let missing = || format!("input `{name}` is missing; give it as {name}=…, or as a column");
         self.number(given, name).ok_or_else(missing)
     }
 
-    /// A whole number from `least` on, that there must be.
+    /// Returns a whole number from `least` on, that there must be.
     fn whole(&self, given: &Given, name: &str, least: u32) -> Result<u32, String> {
         let value = self.needed(given, name)?;
         if value.fract() != 0.0 || !(f64::from(least)..=f64::from(u32::MAX)).contains(&value) {
@@ -253,7 +253,7 @@ impl<'a> Host<'a> {
         Ok(value as u32)
     }
 
-    /// A share of the light.
+    /// Returns a share of the light.
     fn share(&self, given: &Given, name: &str) -> Result<f64, String> {
         let value = self.number(given, name).unwrap_or(1.0);
         let inside = (0.0..=1.0).contains(&value);
@@ -262,7 +262,7 @@ impl<'a> Host<'a> {
         })
     }
 
-    /// An angle in radians, that there must be.
+    /// Returns an angle in radians, that there must be.
     fn angle(&self, given: &Given, name: &str, (low, high): (f64, f64)) -> Result<f64, String> {
         let degrees = self.needed(given, name)?;
         let inside = (low..=high).contains(&degrees);
@@ -307,7 +307,7 @@ impl<'a> Host<'a> {
         Ok((normal, toward))
     }
 
-    /// Whether angles are given; an error where vectors are, too.
+    /// Returns whether angles are given; an error where vectors are, too.
     fn by_angles(&self, given: &Given, angles: &[&str]) -> Result<bool, String> {
         let angle = angles.iter().find(|name| self.number(given, name).is_some());
         let mut vectors = self.inputs.iter().zip(given).filter(|(input, _)| input.vector);

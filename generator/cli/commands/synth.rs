@@ -115,7 +115,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     Ok(true)
 }
 
-/// The tools for each target, and what is said of targets that are left out.
+/// Returns the tools for each target, and what is said of targets that are left out.
 fn flows(arguments: &Arguments) -> Result<(Vec<Flow>, Vec<String>)> {
     let search = std::env::var_os("PATH").unwrap_or_default();
     let find = |target: Target| {

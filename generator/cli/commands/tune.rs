@@ -144,7 +144,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     Ok(true)
 }
 
-/// The device, the configuration to start from, and the keys that are part of the goal.
+/// Returns the device, the configuration to start from, and the keys that are part of the goal.
 fn base(registry: &Registry, arguments: &Arguments) -> Result<(Device, Config, Vec<String>)> {
     let Some(device) = registry.device(&arguments.device) else {
         let names: Vec<&str> = registry.devices().iter().map(|device| device.name).collect();
@@ -172,12 +172,12 @@ fn base(registry: &Registry, arguments: &Arguments) -> Result<(Device, Config, V
     Ok((*device, config, fixed))
 }
 
-/// Where the bounds come from.
+/// Returns where the bounds come from.
 fn origin(device: &Device) -> &'static str {
     if device.proved { "proved" } else { "stated by its author" }
 }
 
-/// The configuration as a file, with what led to it.
+/// Returns the configuration as a file, with what led to it.
 fn toml(device: &Device, best: &Candidate, arguments: &Arguments) -> String {
     let cost = &best.cost;
     let head = format!(
@@ -205,7 +205,7 @@ fn toml(device: &Device, best: &Candidate, arguments: &Arguments) -> String {
     head + &best.config.to_toml(&(device.schema)())
 }
 
-/// The free keys of a candidate, as `key = value, …`.
+/// Returns the free keys of a candidate, as `key = value, …`.
 fn widths(answer: &Answer, candidate: &Candidate) -> String {
     let shown = answer.free.iter().map(|key| {
         let value: &Value = candidate.config.value(key);

@@ -155,7 +155,7 @@ fn climbs(starts: u64) -> String {
     format!("{} climb{}", text::grouped(starts), if starts == 1 { "" } else { "s" })
 }
 
-/// The record to be, and the one that is there if it is of the same contract.
+/// Returns the record to be, and the one that is there if it is of the same contract.
 fn record(one: &Loaded, arguments: &Arguments) -> Result<Option<(OwnFile, Option<Known>)>> {
     let Some(directory) = &arguments.out else { return Ok(None) };
     let name = format!("{}.json", one.core.config.name);

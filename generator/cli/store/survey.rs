@@ -120,7 +120,7 @@ fn parsed(manifest: &Path) -> Option<BTreeMap<String, String>> {
     digests.iter().map(|(path, digest)| Some((path.clone(), digest.as_str()?.to_owned()))).collect()
 }
 
-/// The files in the directories of a configuration, at any depth, sorted.
+/// Returns the files in the directories of a configuration, at any depth, sorted.
 fn present(out: &Path, name: &str) -> Result<Vec<PathBuf>> {
     let mut found = Vec::new();
     for directory in directories(out, name) {

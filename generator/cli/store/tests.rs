@@ -6,7 +6,7 @@ use std::path::Path;
 use super::*;
 use glint_core::package::digest;
 
-/// A manifest that vouches for the other files, last.
+/// Returns a manifest that vouches for the other files, last.
 fn files(text: &str) -> Vec<OutputFile> {
     let mut files: Vec<OutputFile> = ["rtl_out/core/core.v", "testbench/core/core_tb.v"]
         .map(|path| OutputFile { path: path.to_owned(), contents: text.to_owned() })

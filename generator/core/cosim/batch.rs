@@ -50,27 +50,27 @@ impl Points {
         self.results.extend(other.results[1..].iter().map(|count| before + count));
     }
 
-    /// The number of computations.
+    /// Returns the number of computations.
     pub fn len(&self) -> usize {
         self.results.len() - 1
     }
 
-    /// Whether there is none.
+    /// Returns whether there is none.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The number of results of all computations.
+    /// Returns the number of results of all computations.
     pub fn result_count(&self) -> usize {
         self.results.last().copied().unwrap_or(0)
     }
 
-    /// The raw operands of computation number `at`.
+    /// Returns the raw operands of computation number `at`.
     pub fn operands(&self, at: usize) -> &[i64] {
         &self.values[at * self.operands..(at + 1) * self.operands]
     }
 
-    /// The number of results of computation number `at`.
+    /// Returns the number of results of computation number `at`.
     pub fn results(&self, at: usize) -> usize {
         self.results[at + 1] - self.results[at]
     }
@@ -78,7 +78,7 @@ impl Points {
 
 /// An engine that computes points.
 pub trait Engine {
-    /// The raw outputs, those of a [`Contract`] in its order, result after result.
+    /// Returns the raw outputs, those of a [`Contract`] in its order, result after result.
     ///
     /// # Errors
     /// The device does not end, or shows more or fewer results than expected; an outside tool fails.

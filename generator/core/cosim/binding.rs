@@ -73,7 +73,7 @@ impl<'a> Binding<'a> {
         })
     }
 
-    /// Whether the design is a pipeline.
+    /// Returns whether the design is a pipeline.
     pub(super) fn is_pipeline(&self) -> bool {
         self.address.is_none()
     }
@@ -93,7 +93,7 @@ impl<'a> Binding<'a> {
         self.points.shorten(results - 1);
     }
 
-    /// A bound on the results of one computation.
+    /// Returns a bound on the results of one computation.
     pub(super) fn longest(&self) -> u64 {
         let operands = self.measure.contract.operands();
         // A length of 0 is a result too.

@@ -44,14 +44,14 @@ impl Space {
         }
     }
 
-    /// The bits of all operands together that are not held.
+    /// Returns the bits of all operands together that are not held.
     pub(super) fn bits(&self) -> u32 {
         let operands = self.ports.operands.iter().zip(&self.held);
         let free = operands.filter(|(_, held)| held.is_none());
         free.map(|(port, _)| port.format.width()).sum()
     }
 
-    /// The bit patterns of the operands at a place, in the order of the ports.
+    /// Returns the bit patterns of the operands at a place, in the order of the ports.
     fn at(&self, place: u64) -> impl Iterator<Item = (&OperandPort, u64)> {
         let mut bits = place.wrapping_mul(SCATTER);
         let listed = usize::try_from(place).ok().and_then(|place| self.listed.get(place));
@@ -69,7 +69,7 @@ impl Space {
         })
     }
 
-    /// The bit patterns of the operands at a place, by name.
+    /// Returns the bit patterns of the operands at a place, by name.
     pub(super) fn named(&self, place: u64) -> Vec<(String, u64)> {
         let operands = self.at(place);
         operands.map(|(port, pattern)| (port.name.clone(), pattern)).collect()
@@ -97,12 +97,12 @@ impl Combinations {
         Self { space, first, count, started: 0, since_start: 0, reset: false, inputs }
     }
 
-    /// Whether no computation is left to start.
+    /// Returns whether no computation is left to start.
     pub(super) fn all_started(&self) -> bool {
         self.started == self.count
     }
 
-    /// The place of the computation that runs, or ran last.
+    /// Returns the place of the computation that runs, or ran last.
     pub(super) fn place(&self) -> u64 {
         self.first + self.started.saturating_sub(1)
     }
@@ -112,7 +112,7 @@ impl Combinations {
         self.since_start
     }
 
-    /// The inputs of the next clock, in which the device takes a computation if it is `ready`.
+    /// Returns the inputs of the next clock, in which the device takes a computation if it is `ready`.
     pub(super) fn next(&mut self, ready: bool) -> &[u64] {
         let ports = &*self.space.ports;
         let starting = ready && self.reset && self.started < self.count;
@@ -142,7 +142,7 @@ impl Combinations {
         &self.inputs
     }
 
-    /// The latest inputs.
+    /// Returns the latest inputs.
     pub(super) fn inputs(&self) -> &[u64] {
         &self.inputs
     }

@@ -57,23 +57,23 @@ impl Driven {
         self.model.clock(&self.inputs);
     }
 
-    /// Whether there is a result.
+    /// Returns whether there is a result.
     pub fn is_valid(&self) -> bool {
         self.values()[self.valid] == 1
     }
 
-    /// All signals, with their names in [`Driven::names`].
+    /// Returns all signals, with their names in [`Driven::names`].
     pub fn values(&self) -> &[u64] {
         self.model.values()
     }
 
-    /// The names of all signals.
+    /// Returns the names of all signals.
     pub fn names(&self) -> &[String] {
         self.model.signals()
     }
 }
 
-/// The position of a signal of a model.
+/// Returns the position of a signal of a model.
 pub(super) fn signal(model: &dyn Model, name: &str) -> Result<usize> {
     let at = model.signals().iter().position(|other| other == name);
     at.with_context(|| format!("the golden model does not predict `{name}`"))

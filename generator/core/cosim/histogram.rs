@@ -40,12 +40,12 @@ impl Histogram {
         self.counts.iter_mut().zip(&other.counts).for_each(|(sum, count)| *sum += count);
     }
 
-    /// How many results are in each of [`CLASSES`].
+    /// Returns how many results are in each of [`CLASSES`].
     pub fn counts(&self) -> [u64; CLASSES.len()] {
         self.counts
     }
 
-    /// The share of all results with `0 < f < 1 − ulp`.
+    /// Returns the share of all results with `0 < f < 1 − ulp`.
     pub fn share_inside(&self) -> f64 {
         let inside: u64 = self.counts[1..CLASSES.len() - 2].iter().sum();
         inside as f64 / self.counts.iter().sum::<u64>().max(1) as f64

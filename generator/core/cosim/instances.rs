@@ -45,7 +45,7 @@ impl<const LANES: usize> Instances<LANES> {
         }
     }
 
-    /// The raw results in a lane, in the order of the contract.
+    /// Returns the raw results in a lane, in the order of the contract.
     pub(super) fn results(&self, lane: usize) -> impl Iterator<Item = i64> {
         let results = self.ports.results.iter();
         results.map(move |&(net, format)| format.raw(self.simulator.lane(net, lane)) as i64)

@@ -263,7 +263,7 @@ impl<'a> Lockstep<'a> {
         Ok(self.outcome(alone.into_seen()?))
     }
 
-    /// One stream of `points` points under the seed of the run.
+    /// Returns one stream of `points` points under the seed of the run.
     fn alone(&self, points: u64) -> Result<Runner<'_, 1>> {
         Runner::new(&self.binding, [self.course(points, 1, 0)])
     }

@@ -53,7 +53,7 @@ impl<'a> Measure<'a> {
         Ok(Self { contract, outputs })
     }
 
-    /// Whether raw operands, in the order of the contract, are in its domain.
+    /// Returns whether raw operands, in the order of the contract, are in its domain.
     pub(super) fn inside(&self, operands: &[i64]) -> bool {
         let mut pairs = self.contract.operands().iter().zip(operands);
         pairs.all(|(operand, raw)| (operand.domain.0..=operand.domain.1).contains(raw))

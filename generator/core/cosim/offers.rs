@@ -55,17 +55,17 @@ impl Offers {
         self.listed = Some(points.iter().cloned().collect());
     }
 
-    /// Whether a list is at its end.
+    /// Returns whether a list is at its end.
     pub(super) fn is_over(&self) -> bool {
         self.offered.is_none() && self.listed.as_ref().is_some_and(VecDeque::is_empty)
     }
 
-    /// The latest inputs.
+    /// Returns the latest inputs.
     pub(super) fn inputs(&self) -> &[u64] {
         &self.inputs
     }
 
-    /// The inputs of the next clock; `taken`: what was offered in the latest one was taken.
+    /// Returns the inputs of the next clock; `taken`: what was offered in the latest one was taken.
     pub(super) fn next(&mut self, taken: bool, points: &Points<'_>) -> &[u64] {
         let Self { ports, random, offered, listed, inputs, .. } = self;
         if taken {

@@ -131,7 +131,7 @@ pub(super) struct Seen {
     pub(super) exact: Vec<[f64; 2]>,
 }
 
-/// The seed of a stream; the first has that of the run.
+/// Returns the seed of a stream; the first has that of the run.
 pub(super) fn stream_seed(seed: u64, number: u64) -> u64 {
     if number == 0 {
         seed
@@ -141,7 +141,7 @@ pub(super) fn stream_seed(seed: u64, number: u64) -> u64 {
     }
 }
 
-/// The points of stream `number` of a run of `points`.
+/// Returns the points of stream `number` of a run of `points`.
 pub(super) fn share(points: u64, streams: u64, number: u64) -> u64 {
     points / streams + u64::from(number < points % streams)
 }

@@ -99,7 +99,7 @@ impl<'a> Points<'a> {
         values
     }
 
-    /// The operands, in the order in which values are passed.
+    /// Returns the operands, in the order in which values are passed.
     pub fn operands(&self) -> &[Operand] {
         &self.operands
     }
@@ -129,7 +129,7 @@ impl<'a> Points<'a> {
         self.contract.hint(&mut || random.unit()).map(|hint| self.clamped(hint))
     }
 
-    /// The position of the operand that says how many results a computation has.
+    /// Returns the position of the operand that says how many results a computation has.
     pub fn length(&self) -> Option<usize> {
         self.length
     }
@@ -163,7 +163,7 @@ impl<'a> Points<'a> {
         }
     }
 
-    /// A raw value for one operand, drawn on its own: often an end of the domain or close to one, and of a length a
+    /// Returns a raw value for one operand, drawn on its own: often an end of the domain or close to one, and of a length a
     /// short one more often than not, so that long computations do not crowd out all others.
     pub fn one(&self, random: &mut Random, at: usize) -> i64 {
         let (low, high) = self.operands[at].domain;
@@ -175,7 +175,7 @@ impl<'a> Points<'a> {
         low.wrapping_add(lengths[0].min(lengths[1]) as i64)
     }
 
-    /// A raw value for one operand: half of the time any bit pattern of its format, else one that is drawn on its own or, of a
+    /// Returns a raw value for one operand: half of the time any bit pattern of its format, else one that is drawn on its own or, of a
     /// device that is no highlight, often one that is just outside the domain, where a core may saturate.
     pub fn any(&self, random: &mut Random, at: usize) -> i64 {
         let Operand { format, domain: (low, high), .. } = self.operands[at];
@@ -230,7 +230,7 @@ impl<'a> Points<'a> {
         way.go(scale, far);
     }
 
-    /// The last control operands on the way from the peak to these for which the formula is above what it is at its
+    /// Returns the last control operands on the way from the peak to these for which the formula is above what it is at its
     /// foot (0, say), and the first for which it is not.
     pub fn edge(&self, control: &[i64]) -> Option<[Vec<i64>; 2]> {
         let (way, highlight) = self.way(control).zip(self.highlight)?;
@@ -269,7 +269,7 @@ impl<'a> Points<'a> {
         }
     }
 
-    /// The way from the peak to control operands, or to a place on it that is below the peak.
+    /// Returns the way from the peak to control operands, or to a place on it that is below the peak.
     fn way(&self, far: &[i64]) -> Option<Way> {
         let highlight = self.highlight?;
         let peak = self.peak(highlight, far);
@@ -286,7 +286,7 @@ impl<'a> Points<'a> {
         None
     }
 
-    /// The peak to which operands are moved; operands that are held stay.
+    /// Returns the peak to which operands are moved; operands that are held stay.
     fn peak(&self, highlight: &Highlight, control: &[i64]) -> Vec<i64> {
         let said = highlight.peak(control).unwrap_or_else(|| {
             let found = self.peak.iter().zip(control);
@@ -340,7 +340,7 @@ impl<'a> Points<'a> {
     }
 }
 
-/// The position of the operand that says how many results a computation has.
+/// Returns the position of the operand that says how many results a computation has.
 pub(super) fn length(contract: &dyn Contract) -> Option<usize> {
     let length = contract.length();
     contract.operands().iter().position(|operand| Some(operand.name.as_str()) == length)
@@ -365,7 +365,7 @@ impl Way {
         }
     }
 
-    /// Where the formula crosses a value: just above it, and below; to the very step if that is wanted. `at` takes the
+    /// Returns where the formula crosses a value: just above it, and below; to the very step if that is wanted. `at` takes the
     /// control operands that are tried.
     fn crossing(
         &self,
@@ -411,7 +411,7 @@ fn power(parts: usize) -> f64 {
     POWERS[parts % PARTS] * exp2(-((parts / PARTS) as i32))
 }
 
-/// The formula at control operands.
+/// Returns the formula at control operands.
 #[inline]
 fn value(highlight: &Highlight, control: &[i64]) -> f64 {
     highlight.reference(&highlight.point(control, 0))
@@ -481,7 +481,7 @@ pub(super) mod tests {
         }
     }
 
-    /// The share of points with `f` between 0 and 1.
+    /// Returns the share of points with `f` between 0 and 1.
     fn share(pulse: &Highlight) -> f64 {
         let points = Points::new(pulse);
         let mut random = Random::new(7);

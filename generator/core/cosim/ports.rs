@@ -43,13 +43,13 @@ pub(super) struct OperandPort {
 }
 
 impl OperandPort {
-    /// The bit pattern at the port of its value among raw operands, in the order of the contract.
+    /// Returns the bit pattern at the port of its value among raw operands, in the order of the contract.
     #[inline]
     pub(super) fn pattern(&self, raw: &[i64]) -> u64 {
         raw[self.at] as u64 & mask(self.format.width())
     }
 
-    /// Its raw value among the inputs.
+    /// Returns its raw value among the inputs.
     #[inline]
     pub(super) fn raw(&self, inputs: &[u64]) -> i64 {
         self.format.raw(inputs[self.data]) as i64

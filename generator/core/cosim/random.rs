@@ -16,13 +16,13 @@ const STEP: u64 = 0x9e37_79b9_7f4a_7c15;
 const AROUND_ZERO: [usize; 16] = [0, 1, 2, 3, 3, 6, 5, 6, 5, 6, 5, 6, 5, 6, 2, 2];
 const TO_ONE_SIDE: [usize; 16] = [0, 1, 2, 3, 3, 4, 4, 4, 4, 2, 2, 2, 2, 2, 2, 2];
 
-/// An integer from 0 to `below - 1` of random bits.
+/// Returns an integer from 0 to `below - 1` of random bits.
 #[inline]
 fn scaled(bits: u64, below: u64) -> u64 {
     ((u128::from(bits) * u128::from(below)) >> 64) as u64
 }
 
-/// An integer from `low` to `high` of random bits.
+/// Returns an integer from `low` to `high` of random bits.
 #[inline]
 fn within(bits: u64, low: i64, high: i64) -> i64 {
     let span = high.wrapping_sub(low).wrapping_add(1) as u64;
@@ -42,14 +42,14 @@ impl Random {
         Self(seed)
     }
 
-    /// The next 64 bits.
+    /// Returns the next 64 bits.
     pub fn bits(&mut self) -> u64 {
         let bits = self.ahead(1);
         self.skip(1);
         bits
     }
 
-    /// The bits that come after so many more, 1 for the next.
+    /// Returns the bits that come after so many more, 1 for the next.
     #[inline]
     fn ahead(&self, draws: u64) -> u64 {
         let mut z = self.0.wrapping_add(STEP.wrapping_mul(draws));
@@ -63,7 +63,7 @@ impl Random {
         self.0 = self.0.wrapping_add(STEP.wrapping_mul(draws));
     }
 
-    /// An integer from 0 to `below - 1`.
+    /// Returns an integer from 0 to `below - 1`.
     pub fn below(&mut self, below: u64) -> u64 {
         scaled(self.bits(), below)
     }
@@ -73,12 +73,12 @@ impl Random {
         self.below(times) == 0
     }
 
-    /// An integer from `low` to `high`.
+    /// Returns an integer from `low` to `high`.
     pub fn within(&mut self, low: i64, high: i64) -> i64 {
         within(self.bits(), low, high)
     }
 
-    /// A raw value from `low` to `high`: often one of its ends or close to one (or to 0, which is as good as an
+    /// Returns a raw value from `low` to `high`: often one of its ends or close to one (or to 0, which is as good as an
     /// end).
     ///
     /// The choice cannot be foreseen: all are worked out, and one is taken without a branch. It is as though only
@@ -104,19 +104,19 @@ impl Random {
         values[place]
     }
 
-    /// A bit pattern for an operand: mostly of its domain, as [`Random::of_domain`] draws it, at times any.
+    /// Returns a bit pattern for an operand: mostly of its domain, as [`Random::of_domain`] draws it, at times any.
     pub fn pattern(&mut self, operand: &Operand) -> u64 {
         let raw =
             if self.once_in(16) { self.bits() as i64 } else { self.of_domain(operand.domain) };
         raw as u64 & mask(operand.format.width())
     }
 
-    /// An integer from 0 to `most`, of each magnitude as often as of any other.
+    /// Returns an integer from 0 to `most`, of each magnitude as often as of any other.
     pub fn magnitude(&mut self, most: u64) -> u64 {
         magnitude([self.bits(), self.bits()], most)
     }
 
-    /// A number from 0 to just below 1.
+    /// Returns a number from 0 to just below 1.
     pub fn unit(&mut self) -> f64 {
         (self.bits() >> 11) as f64 * exp2(-53)
     }

@@ -29,7 +29,7 @@ impl Recorded {
         Self { recording: Arc::clone(recording), next: 0 }
     }
 
-    /// The inputs of the next clock.
+    /// Returns the inputs of the next clock.
     #[inline]
     pub(super) fn next(&mut self) -> &[u64] {
         let Recording { words, inputs } = &*self.recording;
@@ -38,7 +38,7 @@ impl Recorded {
         &words[first..self.next]
     }
 
-    /// The latest inputs.
+    /// Returns the latest inputs.
     #[inline]
     pub(super) fn inputs(&self) -> &[u64] {
         &self.recording.words[self.next - self.recording.inputs..self.next]

@@ -73,7 +73,7 @@ impl<'a, const LANES: usize> Runner<'a, LANES> {
         })
     }
 
-    /// Whether every stream has ended up to the first that differs.
+    /// Returns whether every stream has ended up to the first that differs.
     pub(super) fn ended(&self) -> bool {
         for (stream, differs) in self.streams.iter().zip(self.differ) {
             if differs || !stream.ended() || stream.seen.mismatch.is_some() {
@@ -83,13 +83,13 @@ impl<'a, const LANES: usize> Runner<'a, LANES> {
         true
     }
 
-    /// The first stream in which something differs.
+    /// Returns the first stream in which something differs.
     pub(super) fn first_that_differs(&self) -> Option<usize> {
         let mut streams = self.streams.iter().zip(self.differ);
         streams.position(|(stream, differs)| differs || stream.seen.mismatch.is_some())
     }
 
-    /// The first stream.
+    /// Returns the first stream.
     pub(super) fn first(&mut self) -> &mut Stream {
         &mut self.streams[0]
     }

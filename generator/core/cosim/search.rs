@@ -45,7 +45,7 @@ pub struct Reached {
 }
 
 impl Reached {
-    /// The largest error of an output at raw operands; `None` without an output.
+    /// Returns the largest error of an output at raw operands; `None` without an output.
     pub fn at(contract: &dyn Contract, operands: Vec<i64>) -> Option<Self> {
         let (mut raw, mut exact) = (Vec::new(), Vec::new());
         contract.results(&operands, 0, &mut raw);
@@ -63,7 +63,7 @@ impl Reached {
     }
 }
 
-/// The first of two, unless the error of the second is larger.
+/// Returns the first of two, unless the error of the second is larger.
 fn larger(a: Reached, b: Reached) -> Reached {
     if b.units > a.units { b } else { a }
 }
@@ -73,7 +73,7 @@ pub fn steps(starts: u64) -> u64 {
     starts.saturating_add(starts.min(HIGHEST as u64))
 }
 
-/// The largest error that is reached from `starts` starts, drawn by a seed: the same on any number of threads. `progress`
+/// Returns the largest error that is reached from `starts` starts, drawn by a seed: the same on any number of threads. `progress`
 /// is called after each, and after each place that is looked around. `None` for no start.
 pub fn worst(
     contract: &dyn Contract,
@@ -154,7 +154,7 @@ impl<'a> Climber<'a> {
         }
     }
 
-    /// The end of the climb from some operands.
+    /// Returns the end of the climb from some operands.
     fn from(&self, operands: Vec<i64>) -> End {
         // Control operands come first.
         let mut highest = operands;
@@ -169,14 +169,14 @@ impl<'a> Climber<'a> {
         End { height, highest, operands: self.with_colours(highlight, control) }
     }
 
-    /// The control operands with the colour that makes the largest error.
+    /// Returns the control operands with the colour that makes the largest error.
     fn with_colours(&self, highlight: &Highlight, mut control: Vec<i64>) -> Vec<i64> {
         let (_, colour) = self.of_output(highlight, &control);
         control.resize(highlight.operands().len(), colour);
         control
     }
 
-    /// The operands of the largest error among all values of each pair of operands around some, and around what is found so.
+    /// Returns the operands of the largest error among all values of each pair of operands around some, and around what is found so.
     fn look_around(&self, mut operands: Vec<i64>) -> Vec<i64> {
         let highlight = self.contract.highlight();
         let terms = self.contract.bound().terms;
@@ -249,7 +249,7 @@ impl<'a> Climber<'a> {
         }
     }
 
-    /// The largest error of an output, in units, and its colour.
+    /// Returns the largest error of an output, in units, and its colour.
     fn of_output(&self, highlight: &Highlight, control: &[i64]) -> (f64, i64) {
         let point = highlight.point(control, 0);
         let (f, right) = (highlight.f(&point), highlight.references(&point));
@@ -261,7 +261,7 @@ impl<'a> Climber<'a> {
     }
 }
 
-/// The error of `f`.
+/// Returns the error of `f`.
 fn of_f(highlight: &Highlight, control: &[i64]) -> f64 {
     let point = highlight.point(control, 0);
     let f = highlight.f_format().to_f64(i128::from(highlight.f(&point)));

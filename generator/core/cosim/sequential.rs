@@ -32,7 +32,7 @@ pub(super) struct Core {
 }
 
 impl Core {
-    /// The model of a core, and the nets that it predicts, in its order.
+    /// Returns the model of a core, and the nets that it predicts, in its order.
     ///
     /// # Errors
     /// A name of one side that the other does not have.
@@ -127,7 +127,7 @@ impl Core {
     }
 }
 
-/// The registers that a golden model must predict.
+/// Returns the registers that a golden model must predict.
 pub(super) fn registers(design: &Design) -> impl Iterator<Item = NetId> {
     let registers = design.registers.iter();
     let registers = registers.filter(|register| register.kind != RegisterKind::Internal);

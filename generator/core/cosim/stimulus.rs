@@ -66,12 +66,12 @@ impl Stimulus {
         }
     }
 
-    /// The raw values of the latest computation, in the order of the points.
+    /// Returns the raw values of the latest computation, in the order of the points.
     pub(super) fn accepted(&self) -> &[i64] {
         self.taken.as_ref().unwrap_or(&self.written)
     }
 
-    /// The inputs of the next clock; `busy`: a `start` that stands before the edge is not heard.
+    /// Returns the inputs of the next clock; `busy`: a `start` that stands before the edge is not heard.
     pub(super) fn next(&mut self, busy: bool, points: &Points) -> &[u64] {
         if !self.idle {
             self.inputs.fill(0);
@@ -102,13 +102,13 @@ impl Stimulus {
         &self.inputs
     }
 
-    /// Whether the latest inputs are those of any clock in which nothing is driven.
+    /// Returns whether the latest inputs are those of any clock in which nothing is driven.
     #[inline]
     pub(super) fn is_idle(&self) -> bool {
         self.idle
     }
 
-    /// The latest inputs.
+    /// Returns the latest inputs.
     #[inline]
     pub(super) fn inputs(&self) -> &[u64] {
         &self.inputs
@@ -246,7 +246,7 @@ mod tests {
     use glint_rtl::dsl::{Designer, end, step, valid};
     use glint_rtl::netlist::{Design, Role};
 
-    /// A design with one operand; how long a computation takes is for the tests to say.
+    /// Returns a design with one operand; how long a computation takes is for the tests to say.
     fn design() -> Design {
         let d = Designer::new("device");
         let x = d.operand("x", Format::unsigned(12, 0));

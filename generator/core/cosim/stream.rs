@@ -21,7 +21,7 @@ enum Source {
 }
 
 impl Source {
-    /// The latest inputs.
+    /// Returns the latest inputs.
     #[inline]
     fn inputs(&self) -> &[u64] {
         match self {
@@ -32,7 +32,7 @@ impl Source {
         }
     }
 
-    /// Whether no computation is left to start.
+    /// Returns whether no computation is left to start.
     fn is_over(&self) -> bool {
         match self {
             Self::Combinations(combinations) => combinations.all_started(),
@@ -41,7 +41,7 @@ impl Source {
         }
     }
 
-    /// The place of the combination that was started last.
+    /// Returns the place of the combination that was started last.
     fn place(&self) -> Option<u64> {
         match self {
             Self::Combinations(combinations) => Some(combinations.place()),
@@ -81,7 +81,7 @@ impl Stream {
         Self { seen: Seen::default(), course, source, host, since_start: 0 }
     }
 
-    /// Whether it has come to the end of its course, or something differs. Of combinations in a pipeline those before the
+    /// Returns whether it has come to the end of its course, or something differs. Of combinations in a pipeline those before the
     /// one that differs are still gone through.
     pub(super) fn ended(&self) -> bool {
         match (&self.course, &self.seen.mismatch) {
@@ -143,13 +143,13 @@ impl Stream {
         Ok(())
     }
 
-    /// The inputs of the latest clock.
+    /// Returns the inputs of the latest clock.
     #[inline]
     pub(super) fn inputs(&self) -> &[u64] {
         self.source.inputs()
     }
 
-    /// Whether the latest inputs are those of any clock in which the stream drives nothing.
+    /// Returns whether the latest inputs are those of any clock in which the stream drives nothing.
     #[inline]
     pub(super) fn is_idle(&self) -> bool {
         matches!(&self.source, Source::Stimulus(stimulus) if stimulus.is_idle())

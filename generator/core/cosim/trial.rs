@@ -44,7 +44,7 @@ struct Trial {
 }
 
 impl Trial {
-    /// The clocks from each result to the next; where it is as from the one before, it is left out.
+    /// Returns the clocks from each result to the next; where it is as from the one before, it is left out.
     fn distances(&self) -> Vec<u32> {
         let pairs = self.results.windows(2);
         let mut distances: Vec<u32> = pairs.map(|pair| pair[1].0 - pair[0].0).collect();
@@ -53,7 +53,7 @@ impl Trial {
     }
 }
 
-/// The clocks between the events of the handshake, where the microprogram makes them the same for all operands
+/// Returns the clocks between the events of the handshake, where the microprogram makes them the same for all operands
 /// that the ports take, inside the domain or not. Clocks from result to result are those of operands from the
 /// corners of the ports.
 ///
@@ -87,7 +87,7 @@ pub fn timing(design: &Design, contract: &dyn Contract) -> Result<Timing> {
     })
 }
 
-/// The lowest operands within these ends, the highest, and those in the middle.
+/// Returns the lowest operands within these ends, the highest, and those in the middle.
 fn corners(contract: &dyn Contract, ends: fn(&Operand) -> (i128, i128)) -> [Vec<i64>; 3] {
     let corner = |pick: fn(i128, i128) -> i128| {
         let raw = |(low, high)| pick(low, high) as i64;
@@ -144,7 +144,7 @@ fn listed<'a>(names: impl Iterator<Item = &'a str>, raw: &[i64]) -> String {
     each.join(" ")
 }
 
-/// The clocks of one computation, from `start` to the next, and the results that it shows.
+/// Returns the clocks of one computation, from `start` to the next, and the results that it shows.
 ///
 /// # Errors
 /// As of [`timing`].
@@ -158,7 +158,7 @@ pub fn throughput(
     Ok((clocks, trial.results.len() as u32))
 }
 
-/// The clocks of a line in terms of its length, measured at the shortest lines and a long one; `None` for a device that
+/// Returns the clocks of a line in terms of its length, measured at the shortest lines and a long one; `None` for a device that
 /// walks none, or whose clocks are no constant and a multiple of the length.
 ///
 /// # Errors
@@ -188,7 +188,7 @@ pub fn line(design: &Design, contract: &dyn Contract) -> Result<Option<LineClock
     Ok(Some(LineClocks { length: name, last_valid, done, next_start }))
 }
 
-/// A computation with all its numbers: operands of the domain for which f, if there is one, is neither 0 nor 1. Of several
+/// Returns a computation with all its numbers: operands of the domain for which f, if there is one, is neither 0 nor 1. Of several
 /// results it shows the first.
 ///
 /// # Errors
@@ -293,7 +293,7 @@ fn slow_down(
     }
 }
 
-/// The first operands that the contract hints at for which no output is 0 or at an end of its format.
+/// Returns the first operands that the contract hints at for which no output is 0 or at an end of its format.
 fn hinted(contract: &dyn Contract) -> Option<Vec<i64>> {
     let (mut random, points) = (Random::new(1), Points::new(contract));
     let inside = |operands: &Vec<i64>| {

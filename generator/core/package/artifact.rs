@@ -68,7 +68,7 @@ impl Artifacts {
         self.0.push(Artifact { kind, name: name.into(), text });
     }
 
-    /// The names of the files of some kinds, in the order of the kinds and, among one kind, in which they were added.
+    /// Returns the names of the files of some kinds, in the order of the kinds and, among one kind, in which they were added.
     pub fn names(&self, kinds: &[Kind]) -> Vec<String> {
         let all = kinds.iter().flat_map(|kind| self.0.iter().filter(move |it| it.kind == *kind));
         all.map(|file| file.name.clone()).collect()
@@ -95,12 +95,12 @@ pub struct Job<'a> {
 }
 
 impl<'a> Job<'a> {
-    /// The name of the core.
+    /// Returns the name of the core.
     pub fn name(&self) -> &'a str {
         &self.design.name
     }
 
-    /// The command that makes the files again.
+    /// Returns the command that makes the files again.
     pub fn regenerate(&self) -> &'a str {
         &self.inputs.regenerate
     }

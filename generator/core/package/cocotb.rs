@@ -60,7 +60,7 @@ pub fn file(
     Ok(())
 }
 
-/// A line a number; where it has a fraction, with what the integer stands for.
+/// Returns a line a number; where it has a fraction, with what the integer stands for.
 fn lines(quantities: &[Quantity], code: fn(&str, i128) -> String) -> Vec<String> {
     let line = |quantity: &Quantity| {
         let code = code(&quantity.name, quantity.raw);
@@ -73,7 +73,7 @@ fn lines(quantities: &[Quantity], code: fn(&str, i128) -> String) -> Vec<String>
     quantities.iter().map(line).collect()
 }
 
-/// The driver, with a last line that vouches for those above.
+/// Returns the driver, with a last line that vouches for those above.
 pub fn driver() -> OutputFile {
     let text = fill!("glint_cocotb.py" {}).expect("a template without fields");
     OutputFile {

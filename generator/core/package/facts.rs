@@ -133,7 +133,7 @@ fn as_map<S: Serializer>(pairs: &[(&str, u64)], serializer: S) -> Result<S::Ok, 
     map.end()
 }
 
-/// The ports, the clock first.
+/// Returns the ports, the clock first.
 pub fn ports(design: &Design) -> Vec<Port<'_>> {
     let clock = Port {
         name: "clk",
@@ -195,7 +195,7 @@ fn role(role: Role) -> &'static str {
     }
 }
 
-/// The fields of the control word, from the top bits.
+/// Returns the fields of the control word, from the top bits.
 pub fn fields(design: &Design) -> Vec<Field<'_>> {
     let positions = design.field_positions();
     design
@@ -222,7 +222,7 @@ pub fn fields(design: &Design) -> Vec<Field<'_>> {
         .collect()
 }
 
-/// The microinstructions, from address 0.
+/// Returns the microinstructions, from address 0.
 pub fn microprogram(design: &Design) -> Vec<Microinstruction<'_>> {
     let control = &design.control;
     let names = || control.fields.iter().map(|field| field.name.as_str());
@@ -251,7 +251,7 @@ pub fn microprogram(design: &Design) -> Vec<Microinstruction<'_>> {
         .collect()
 }
 
-/// The ROMs, that of the microprogram among them.
+/// Returns the ROMs, that of the microprogram among them.
 pub fn roms<'a>(design: &'a Design, naming: &'a Naming) -> Vec<Rom<'a>> {
     let in_file = !naming.style.inline;
     let entry = |(at, rom): (usize, &'a netlist::Rom)| {

@@ -97,7 +97,7 @@ impl Script<'_> {
     }
 }
 
-/// The clocks by which `valid` follows what sets it, none in a design without it.
+/// Returns the clocks by which `valid` follows what sets it, none in a design without it.
 fn valid_delay(design: &Design) -> u32 {
     let Some(valid) = design.port(|role| role == Role::Valid) else { return 0 };
     let mut at = valid.net;
@@ -193,7 +193,7 @@ pub fn files(job: &Job, files: &mut Artifacts) -> Result<()> {
     script.files(wrapper, depth, if unroll { "smtbmc --unroll z3" } else { "smtbmc z3" }, files)
 }
 
-/// The ports of a wrapper for the clock and the inputs of a design: what a solver chooses.
+/// Returns the ports of a wrapper for the clock and the inputs of a design: what a solver chooses.
 pub(super) fn inputs_of(design: &Design) -> Vec<String> {
     let input = |port: &Port| {
         let net = design.net(port.net);
@@ -204,7 +204,7 @@ pub(super) fn inputs_of(design: &Design) -> Vec<String> {
     std::iter::once("input  wire clk".to_owned()).chain(design.inputs().map(input)).collect()
 }
 
-/// The wires of a wrapper for the outputs of a design.
+/// Returns the wires of a wrapper for the outputs of a design.
 pub(super) fn outputs_of(design: &Design) -> Vec<String> {
     let output = |port: &Port| {
         let net = design.net(port.net);
@@ -213,7 +213,7 @@ pub(super) fn outputs_of(design: &Design) -> Vec<String> {
     Row::declarations(&design.outputs().map(output).collect::<Vec<_>>())
 }
 
-/// How the end of every computation is proved: in each microinstruction the age and what is left at most are no more
+/// Returns how the end of every computation is proved: in each microinstruction the age and what is left at most are no more
 /// than the whole.
 fn bounded_view(
     design: &Design,
@@ -270,7 +270,7 @@ fn bounded_view(
     }
 }
 
-/// The clocks of `valid` and `done`, and that of the next start, where all are known, and the result is
+/// Returns the clocks of `valid` and `done`, and that of the next start, where all are known, and the result is
 /// there in one clock.
 fn exact(timing: &Timing) -> Option<([u32; 2], u32)> {
     let (valid, done) = (timing.start_to_valid?, timing.start_to_done?);

@@ -34,7 +34,7 @@ fn is_number(role: Role) -> bool {
 
 /// A component of VHDL.
 struct Component<'a> {
-    name: &'a str,
+    name: String,
     what: &'a str,
     generics: Vec<String>,
     ports: Vec<String>,
@@ -42,7 +42,7 @@ struct Component<'a> {
 
 fn component<'a>(top: &'a Top, of_core: &[String]) -> Component<'a> {
     Component {
-        name: &top.module,
+        name: vhdl_name(&top.module),
         what: &top.what,
         generics: if top.face == Face::Core { of_core.to_vec() } else { Vec::new() },
         ports: listed(top.ports.iter().map(plain).collect()),
@@ -88,6 +88,11 @@ fn vhdl(job: &Job, tops: &[Top]) -> Result<String> {
     }
     fill!("vhdl.vhd" {
         name: &'a str,
+        component: String = vhdl_name(name),
+        package: String = vhdl_name(&format!("{name}_components")),
+        entity: String = vhdl_name(&format!("{name}_fixed")),
+        // The label of the component.
+        label: String = vhdl_name(&names.fresh("core")),
         regenerate: &'a str = job.regenerate(),
         components: Vec<Component<'a>> = tops.iter().map(|top| component(top, &generics)).collect(),
         generics: Vec<String>,
@@ -119,7 +124,7 @@ fn std_logic(width: u32, vector: bool) -> String {
     }
 }
 
-/// The type of a number, whose bits are numbered by their weights.
+/// Returns the type of a number, whose bits are numbered by their weights.
 fn fixed(format: Format) -> String {
     let kind = if format.signed { "sfixed" } else { "ufixed" };
     let low = -format.frac;
@@ -132,8 +137,8 @@ fn vhdl_name(name: &str) -> String {
     let plain = !name.starts_with('_') && !name.ends_with('_') && !name.contains("__");
     let small = !name.chars().any(|sign| sign.is_ascii_uppercase());
     // The generics, all of them upper case, are the only names of which case does not matter.
-    let upper = !name.chars().any(|sign| sign.is_ascii_lowercase());
-    if plain && !reserved && (small || upper) { name.to_owned() } else { format!("\\{name}\\") }
+    let generic = name.contains("_FILE") && name.to_ascii_uppercase() == name;
+    if plain && !reserved && (small || generic) { name.to_owned() } else { format!("\\{name}\\") }
 }
 
 /// The reserved words of IEEE 1076-2008.
@@ -168,7 +173,7 @@ impl Number {
         format!("{:?}", exp2(self.format.frac))
     }
 
-    /// The limits as reals.
+    /// Returns the limits as reals.
     fn limits(&self) -> (String, String) {
         let (low, high) = self.format.range();
         (format!("{:?}", low as f64), format!("{:?}", high as f64))
@@ -182,7 +187,7 @@ impl Number {
         }
     }
 
-    /// The raw integer of `scaled`, which is within the limits. Verilator takes no real above 2^63.
+    /// Returns the raw integer of `scaled`, which is within the limits. Verilator takes no real above 2^63.
     fn whole(&self) -> String {
         let plain = format!("{}'(longint'(scaled))", self.kind);
         match (self.format.signed, self.format.width()) {

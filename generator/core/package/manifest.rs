@@ -87,7 +87,7 @@ impl Names {
     }
 }
 
-/// The manifest as text, with the digests of all `others`.
+/// Returns the manifest as text, with the digests of all `others`.
 ///
 /// # Errors
 /// A number that JSON cannot carry (a value that is not finite).
@@ -136,7 +136,7 @@ pub fn contents(job: &Job, names: &Names, others: &[OutputFile]) -> Result<Strin
     Ok(serde_json::to_string_pretty(&manifest)? + "\n")
 }
 
-/// The layout of a transfer on each stream.
+/// Returns the layout of a transfer on each stream.
 fn stream(job: &Job) -> Result<Value> {
     let layout = |transfer: Transfer| {
         let field = |it: &Field| json!({ "name": it.name, "low": it.low, "width": it.width });
@@ -232,7 +232,7 @@ fn positions(ordered: &[(usize, &str)]) -> Vec<usize> {
     ordered.iter().map(|(place, _)| *place).collect()
 }
 
-/// A computation in a line: raw values in the orders of operands and results that are stated.
+/// Returns a computation in a line: raw values in the orders of operands and results that are stated.
 fn line(computation: &Computation, operands: &[usize], results: &[usize]) -> Result<Box<RawValue>> {
     let pick = |order: &[usize], values: &[i64]| -> Vec<i64> {
         order.iter().map(|&place| values[place]).collect()

@@ -167,17 +167,17 @@ impl Map {
         Ok(map)
     }
 
-    /// The place of the last operand's last register, in words.
+    /// Returns the place of the last operand's last register, in words.
     pub fn last_operand(&self) -> u32 {
         last_place(&self.operands)
     }
 
-    /// The place of the last register, in words, which is one of a result.
+    /// Returns the place of the last register, in words, which is one of a result.
     pub fn last(&self) -> u32 {
         last_place(&self.results)
     }
 
-    /// Bits of an address in bytes.
+    /// Returns bits of an address in bytes.
     pub fn address_bits(&self) -> u32 {
         (4 * self.last()).ilog2() + 1
     }
@@ -206,7 +206,7 @@ fn last_place(ports: &[Placed]) -> u32 {
     parts.map(|part| part.place).max().unwrap_or_default()
 }
 
-/// A port in registers of its own.
+/// Returns a port in registers of its own.
 fn placed(design: &Design, port: &Port, strobe: String, place: &mut u32) -> Placed {
     let net = design.net(port.net);
     let width = net.format.width();
@@ -220,7 +220,7 @@ fn placed(design: &Design, port: &Port, strobe: String, place: &mut u32) -> Plac
     Placed { name: net.name.clone(), format: net.format, strobe, parts }
 }
 
-/// All results in one register, each in whole bytes, where they fit; else each in its own.
+/// Returns all results in one register, each in whole bytes, where they fit; else each in its own.
 fn results(design: &Design, place: &mut u32) -> Vec<Placed> {
     let ports: Vec<&Port> = design.outputs().filter(|port| port.role == Role::Result).collect();
     let padded = |port: &Port| design.width(port.net).next_multiple_of(8);
@@ -250,7 +250,7 @@ struct Fixed {
     register: Vec<Register>,
 }
 
-/// The registers that every core has, in this one.
+/// Returns the registers that every core has, in this one.
 fn fixed(
     inputs: &EmitInputs,
     (operands, results): (usize, usize),
@@ -306,7 +306,7 @@ fn of_results(results: &[Placed], design: &Design) -> Vec<Register> {
     }]
 }
 
-/// The registers of a port, which no other port has a part in.
+/// Returns the registers of a port, which no other port has a part in.
 fn own(port: &Placed, access: Access, doc: &str) -> Vec<Register> {
     let register = |(number, part): (usize, &Part)| {
         let (name, doc) = match port.parts.len() {

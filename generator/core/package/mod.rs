@@ -64,7 +64,7 @@ pub use seal::{Seal, is_sealed, sealed, sealed_json};
 pub use surroundings::{Surroundings, check_clock, check_rom_style};
 pub use unfit::Unfit;
 
-/// The bench that computes a list of points, each in less than `limit` clocks: of a pipeline, or of a design with a
+/// Returns the bench that computes a list of points, each in less than `limit` clocks: of a pipeline, or of a design with a
 /// microprogram.
 ///
 /// # Errors
@@ -86,12 +86,12 @@ pub struct OutputFile {
 }
 
 impl OutputFile {
-    /// The last part of the path.
+    /// Returns the last part of the path.
     pub fn name(&self) -> &str {
         self.path.rsplit('/').next().unwrap_or(&self.path)
     }
 
-    /// The target that the file is for, of one that stands in its directory: `rtl_out/<name>/<target>/…`.
+    /// Returns the target that the file is for, of one that stands in its directory: `rtl_out/<name>/<target>/…`.
     fn target(&self) -> Option<&str> {
         match self.path.split('/').collect::<Vec<_>>()[..] {
             [_, _, target, _] => Some(target),
@@ -151,7 +151,7 @@ impl EmitInputs {
     }
 }
 
-/// Every file of a design.
+/// Returns every file of a design.
 ///
 /// # Errors
 /// The mistakes that [`Design::verify_structure`] finds; a net named `clk`; vectors that do not fit the ports.

@@ -60,13 +60,13 @@ fn verilog(files: &[OutputFile]) -> impl Iterator<Item = &OutputFile> {
     files.iter().filter(|file| file.path.ends_with(".v") || file.path.ends_with(".sv"))
 }
 
-/// The modules that a text defines.
+/// Returns the modules that a text defines.
 fn defined<'a>(tokens: &[Token<'a>]) -> Vec<&'a str> {
     let pairs = tokens.windows(2).filter(|pair| pair[0].text == "module");
     pairs.map(|pair| pair[1].text).collect()
 }
 
-/// Whether token `at`, which is the name of a module, stands for the module: where it is defined, and where it is
+/// Returns whether token `at`, which is the name of a module, stands for the module: where it is defined, and where it is
 /// instantiated.
 fn names_module(tokens: &[Token<'_>], at: usize) -> bool {
     let text = |at: usize| tokens.get(at).map_or("", |token| token.text);

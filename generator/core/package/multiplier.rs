@@ -46,7 +46,7 @@ pub fn files(job: &Job, files: &mut Artifacts) -> Result<()> {
     Ok(())
 }
 
-/// Every pin of factors, the unused one between them, and product, five a line.
+/// Returns every pin of factors, the unused one between them, and product, five a line.
 fn pins() -> Vec<String> {
     let bus = |pin: char, width: usize, net: &'static str| {
         (0..width).map(move |bit| match net {

@@ -48,7 +48,7 @@ struct List {
 }
 
 impl List {
-    /// The list by the input ports that are operands; reset and `valid` are nets of the design.
+    /// Returns the list by the input ports that are operands; reset and `valid` are nets of the design.
     fn new(
         design: &Design,
         limit: u32,
@@ -80,7 +80,7 @@ impl List {
         }
     }
 
-    /// The bench of which this is the text.
+    /// Returns the bench of which this is the text.
     fn bench(self, text: String) -> PointsBench {
         PointsBench { name: self.name, text, operands: self.operands, results: self.results }
     }
@@ -88,7 +88,7 @@ impl List {
 
 fresh_names!(Variables { points, results, read, clocks, total, tick, dut });
 
-/// The bench of a design with a microprogram, whose computations take less than `limit` clocks each.
+/// Returns the bench of a design with a microprogram, whose computations take less than `limit` clocks each.
 ///
 /// # Errors
 /// A design without the common handshake, or without operands or results.

@@ -19,7 +19,7 @@ pub enum Seal {
 /// The member of sealed JSON that vouches for the others.
 const MEMBER: &str = "sha256";
 
-/// The text, which ends with a newline, and a last line that vouches for it. JSON has none, and is left as it
+/// Returns the text, which ends with a newline, and a last line that vouches for it. JSON has none, and is left as it
 /// is: see [`sealed_json`].
 pub fn sealed(text: String, seal: Seal) -> String {
     let line = last_line(text.as_bytes(), seal);
@@ -45,7 +45,7 @@ pub fn sealed_json(mut value: Value) -> Result<String> {
     Ok(serde_json::to_string_pretty(&value)? + "\n")
 }
 
-/// Whether a file is as Glint wrote it.
+/// Returns whether a file is as Glint wrote it.
 pub fn is_sealed(contents: &[u8], seal: Seal) -> bool {
     match seal {
         Seal::Json => is_sealed_json(contents),

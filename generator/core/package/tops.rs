@@ -60,17 +60,17 @@ pub struct Top {
 }
 
 impl Top {
-    /// The bits of a port; 0 of none.
+    /// Returns the bits of a port; 0 of none.
     pub fn width(&self, name: &str) -> u32 {
         self.ports.iter().find(|port| port.name == name).map_or(0, |port| port.width)
     }
 
-    /// The ports that carry data or a handshake: neither clock nor reset.
+    /// Returns the ports that carry data or a handshake: neither clock nor reset.
     pub fn signals(&self) -> impl Iterator<Item = &TopPort> {
         self.ports.iter().filter(|port| port.name != self.clock && port.name != self.reset)
     }
 
-    /// The ports of an interface, each with its name there.
+    /// Returns the ports of an interface, each with its name there.
     pub fn ports_of(&self, protocol: &Protocol) -> Vec<(&TopPort, String)> {
         let named = |port: &TopPort| {
             Some(port.name.strip_prefix(protocol.name)?.strip_prefix('_')?.to_owned())
@@ -84,7 +84,7 @@ impl Top {
     }
 }
 
-/// The modules of a configuration, the core first.
+/// Returns the modules of a configuration, the core first.
 ///
 /// # Errors
 /// A stream around a core without operands or results.

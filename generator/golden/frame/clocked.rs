@@ -50,7 +50,7 @@ pub struct Clocked {
 }
 
 impl Frame {
-    /// The model at power-up. The first microinstruction is the one in which the device idles, the last ends
+    /// Returns the model at power-up. The first microinstruction is the one in which the device idles, the last ends
     /// the program.
     ///
     /// # Panics
@@ -127,12 +127,12 @@ impl Clocked {
         model
     }
 
-    /// Whether `valid` is high.
+    /// Returns whether `valid` is high.
     pub fn is_valid(&self) -> bool {
         self.values[0] == 1
     }
 
-    /// The device with registers behind the results that are logic. These are taken in the microinstruction that was to set
+    /// Returns the device with registers behind the results that are logic. These are taken in the microinstruction that was to set
     /// `valid`, and one more sets it; where `valid` comes later than a microinstruction says, in every clock.
     pub(crate) fn registered(&self) -> Option<Self> {
         let mut it = Fixed::clone(&self.fixed);
@@ -266,7 +266,7 @@ impl Model for Clocked {
     }
 }
 
-/// The program with one microinstruction more after each that was to set `valid`; none where such a one goes on by a
+/// Returns the program with one microinstruction more after each that was to set `valid`; none where such a one goes on by a
 /// condition.
 fn taking(program: &[Microinstruction]) -> Option<Vec<Microinstruction>> {
     let mut longer = Vec::new();

@@ -85,7 +85,7 @@ pub struct Microinstruction {
     takes_results: bool,
 }
 
-/// A microinstruction that changes no register.
+/// Returns a microinstruction that changes no register.
 pub fn idle() -> Microinstruction {
     Microinstruction {
         does: None,
@@ -96,12 +96,12 @@ pub fn idle() -> Microinstruction {
     }
 }
 
-/// A microinstruction by what its rising edge does to the registers.
+/// Returns a microinstruction by what its rising edge does to the registers.
 pub fn step(does: impl Fn(&mut State) + Send + Sync + 'static) -> Microinstruction {
     Microinstruction { does: Some(Arc::new(does)), ..idle() }
 }
 
-/// A microinstruction as [`step`], by an arithmetic that several share.
+/// Returns a microinstruction as [`step`], by an arithmetic that several share.
 pub fn step_by<A: Send + Sync + 'static>(
     arithmetic: &Arc<A>,
     does: impl Fn(&A, &mut State) + Send + Sync + 'static,
@@ -195,12 +195,12 @@ impl Frame {
         slot
     }
 
-    /// A register, of which the low bits that `format` has are shown.
+    /// Returns a register, of which the low bits that `format` has are shown.
     pub fn register(&mut self, name: &str, format: Format) -> Slot {
         self.shown(name.to_owned(), format, false)
     }
 
-    /// An output that is logic: a function of operands and registers.
+    /// Returns an output that is logic: a function of operands and registers.
     pub fn output(
         &mut self,
         name: &str,
@@ -221,19 +221,19 @@ impl Frame {
         self.shown.push(Signal { name: name.to_owned(), output: true, slot: register, format });
     }
 
-    /// An output of one bit that is 1 in the microinstructions that assert it.
+    /// Returns an output of one bit that is 1 in the microinstructions that assert it.
     pub fn flag(&mut self, name: &str) -> Slot {
         let slot = self.shown(name.to_owned(), Format::BIT, true);
         self.flags.push(slot);
         slot
     }
 
-    /// An operand with its register, which holds whatever `format` can denote.
+    /// Returns an operand with its register, which holds whatever `format` can denote.
     pub fn operand(&mut self, name: &str, format: Format) -> Slot {
         self.clamped(name, format, format.min_raw() as i64, format.max_raw() as i64)
     }
 
-    /// An operand whose register moves what it loads into `min ..= max`, raw.
+    /// Returns an operand whose register moves what it loads into `min ..= max`, raw.
     pub fn clamped(&mut self, name: &str, format: Format, min: i64, max: i64) -> Slot {
         let slot = self.shown(format!("{name}_reg"), format, false);
         self.operands.push(Operand { name: name.to_owned(), slot, format, min, max });
@@ -246,12 +246,12 @@ impl Frame {
         self.edges.push(Arc::new(does));
     }
 
-    /// The operands: name, format, and the smallest and largest raw value that the register holds.
+    /// Returns the operands: name, format, and the smallest and largest raw value that the register holds.
     pub fn operands(&self) -> impl Iterator<Item = (&str, Format, (i64, i64))> {
         self.operands.iter().map(|it| (it.name.as_str(), it.format, (it.min, it.max)))
     }
 
-    /// The outputs but for flags: name and format.
+    /// Returns the outputs but for flags: name and format.
     pub fn results(&self) -> impl Iterator<Item = (&str, Format)> {
         let results = self.shown.iter().filter(|it| it.output && !self.flags.contains(&it.slot));
         results.map(|it| (it.name.as_str(), it.format))

@@ -40,7 +40,7 @@ pub struct Part {
 }
 
 impl Part {
-    /// The result of this name.
+    /// Returns the result of this name.
     ///
     /// # Panics
     /// If the part has no such output.
@@ -51,7 +51,7 @@ impl Part {
 }
 
 impl Frame {
-    /// A part with its operands, each by its name, as functions of what was computed before. Its registers have their own
+    /// Returns a part with its operands, each by its name, as functions of what was computed before. Its registers have their own
     /// names behind `name`.
     ///
     /// # Panics
@@ -128,13 +128,13 @@ impl Frame {
     }
 }
 
-/// The operation of a part whose state begins at `base`.
+/// Returns the operation of a part whose state begins at `base`.
 fn within(base: usize, does: &Does) -> Does {
     let does = does.clone();
     Arc::new(move |s| does(&mut s[base..]))
 }
 
-/// The first operation, and the second after it: they must not read what the other writes.
+/// Returns the first operation, and the second after it: they must not read what the other writes.
 fn then(first: Does, second: Option<Does>) -> Does {
     let Some(second) = second else { return first };
     Arc::new(move |s| {

@@ -1,7 +1,7 @@
 use super::*;
 use crate::Model;
 
-/// An operand that counts down by ones, or not at all where it is 0 (s1.2, clamped to 0 … 1.0): its slot and that of the
+/// Returns an operand that counts down by ones, or not at all where it is 0 (s1.2, clamped to 0 … 1.0): its slot and that of the
 /// count.
 fn countdown(frame: &mut Frame) -> (Slot, Slot) {
     let from = frame.clamped("from", Format::signed(1, 2), 0, 4);

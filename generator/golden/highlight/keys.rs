@@ -5,12 +5,12 @@ use crate::frame::{Frame, Slot};
 use crate::{Operand, contract};
 use glint_keys::common::{Colours, Domain, Intensity, Operands};
 
-/// The products of f with the colours.
+/// Returns the products of f with the colours.
 pub fn products(keys: &Colours, f: &Intensity) -> Products {
     Products::colours(f.format(), keys.bits, f.output_rounding).in_turn(keys.in_turn())
 }
 
-/// The operands cos γ and n.
+/// Returns the operands cos γ and n.
 pub fn operands(keys: &Operands, domain: &Domain) -> Vec<Operand> {
     let one = keys.cosine.one();
     let lowest = if keys.cosine.signed { -one } else { 0 };
@@ -20,7 +20,7 @@ pub fn operands(keys: &Operands, domain: &Domain) -> Vec<Operand> {
     ]
 }
 
-/// The slots of the operands cos γ, which is taken for 0 … 1.0, and n.
+/// Returns the slots of the operands cos γ, which is taken for 0 … 1.0, and n.
 pub fn slots(keys: &Operands, frame: &mut Frame) -> [Slot; 2] {
     let cosine = frame.clamped("cos_gamma", keys.cosine.format(), 0, keys.cosine.one());
     [cosine, frame.operand("exponent", keys.exponent_format())]

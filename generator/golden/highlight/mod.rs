@@ -16,20 +16,20 @@ use glint_base::fixed::{Format, exp2};
 
 /// The reflectance by a highlight's control operands: a number f in 0 … 1.
 pub trait Reflectance: Send + Sync {
-    /// The raw f that the device computes from the raw control operands.
+    /// Returns the raw f that the device computes from the raw control operands.
     fn f(&self, control: &[i64]) -> i64;
 
-    /// The source's formula in f64, unrounded, at the raw (that is, quantised) control operands.
+    /// Returns the source's formula in f64, unrounded, at the raw (that is, quantised) control operands.
     fn reference(&self, control: &[i64]) -> f64;
 
-    /// The values that are right for `f` at the raw control operands: the formula's, twice. Where the formula
+    /// Returns the values that are right for `f` at the raw control operands: the formula's, twice. Where the formula
     /// jumps and fixed point may come out on its other side, the values on both sides. An error is
     /// taken from the nearer.
     fn references(&self, control: &[i64]) -> [f64; 2] {
         [self.reference(control); 2]
     }
 
-    /// The values of [`Reflectance::references`] as expressions of Python, for benches that have no other second
+    /// Returns the values of [`Reflectance::references`] as expressions of Python, for benches that have no other second
     /// opinion; none where nobody wrote them.
     ///
     /// They speak of the control operands by name, as values and not raw, of the result's number (from 0) as
@@ -46,7 +46,7 @@ pub trait Reflectance: Send + Sync {
         let _ = (control, index);
     }
 
-    /// Where the formula is largest: these control operands with those changed that lead there (a cosine to 1, an
+    /// Returns where the formula is largest: these control operands with those changed that lead there (a cosine to 1, an
     /// angle or a vector to 0). Points for tests are drawn between there and anywhere, by the value of the formula;
     /// it should not rise on the straight way from there to `control`.
     ///
@@ -57,7 +57,7 @@ pub trait Reflectance: Send + Sync {
         None
     }
 
-    /// The control operands of a computation of several results that goes from the point `first` to the point
+    /// Returns the control operands of a computation of several results that goes from the point `first` to the point
     /// `last`, as far as `first` says how many there are: the inverse of [`Reflectance::point`].
     ///
     /// A device with one result per `start` shows `first`.
@@ -66,13 +66,13 @@ pub trait Reflectance: Send + Sync {
         first.to_vec()
     }
 
-    /// The formula at a cosine that is not quantised, and a raw exponent; none of a device with other control operands.
+    /// Returns the formula at a cosine that is not quantised, and a raw exponent; none of a device with other control operands.
     fn at_cosine(&self, cosine: f64, exponent: i64) -> Option<f64> {
         let _ = (cosine, exponent);
         None
     }
 
-    /// How far the formula follows the cosine over the domain; none where nobody stated it.
+    /// Returns how far the formula follows the cosine over the domain; none where nobody stated it.
     fn variation(&self) -> Option<Variation> {
         None
     }
@@ -82,7 +82,7 @@ pub trait Reflectance: Send + Sync {
         None
     }
 
-    /// The control operands, as [`Reflectance::f`] takes them, that come nearest to the angle `gamma`, in radians
+    /// Returns the control operands, as [`Reflectance::f`] takes them, that come nearest to the angle `gamma`, in radians
     /// from 0 to π/2, and the exponent `n`; `None` where no operands of the domain stand for that exponent.
     /// `operands` are those of the contract.
     ///
@@ -93,7 +93,7 @@ pub trait Reflectance: Send + Sync {
         contract::operands_at(operands, gamma, n, &[])
     }
 
-    /// The cosine of the angle γ that control operands denote once they are quantised: by default the operand
+    /// Returns the cosine of the angle γ that control operands denote once they are quantised: by default the operand
     /// `cos_gamma`, if the device has one. `operands` are those of the contract.
     fn cosine(&self, operands: &[Operand], control: &[i64]) -> Option<f64> {
         let (operand, raw) =
@@ -101,19 +101,19 @@ pub trait Reflectance: Send + Sync {
         Some(operand.format.to_f64(i128::from(*raw)).clamp(0.0, 1.0))
     }
 
-    /// The places of an exhaustive check of `f`; none for every combination of the control operands.
+    /// Returns the places of an exhaustive check of `f`; none for every combination of the control operands.
     fn sweep(&self) -> Option<Sweep> {
         None
     }
 
-    /// The error of `f` at a place of the sweep, absolute; none where a place is a point.
+    /// Returns the error of `f` at a place of the sweep, absolute; none where a place is a point.
     #[inline]
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let _ = place;
         None
     }
 
-    /// The terms of f's error, each a proven upper limit; none where the bound is not known yet.
+    /// Returns the terms of f's error, each a proven upper limit; none where the bound is not known yet.
     fn shares(&self) -> Vec<ErrorShare> {
         Vec::new()
     }
@@ -168,17 +168,17 @@ impl Highlight {
         Self { reflectance: Box::new(reflectance), single, products, operands, bound }
     }
 
-    /// The number of control operands, which come first.
+    /// Returns the number of control operands, which come first.
     pub fn control(&self) -> usize {
         self.operands.len() - self.products.operands.len()
     }
 
-    /// The format of f.
+    /// Returns the format of f.
     pub fn f_format(&self) -> Format {
         self.products.f
     }
 
-    /// The raw output for a raw f and a raw colour operand.
+    /// Returns the raw output for a raw f and a raw colour operand.
     #[inline]
     pub fn colour(&self, f: i64, colour: i64) -> i64 {
         self.products.narrow.apply(f * colour)
@@ -266,13 +266,13 @@ impl Contract for Highlight {
         self.reflectance.length()
     }
 
-    /// The sweep of f alone; every product is checked beside it.
+    /// Returns the sweep of f alone; every product is checked beside it.
     fn sweep(&self) -> Sweep {
         let control = &self.operands[..self.control()];
         self.reflectance.sweep().unwrap_or_else(|| Sweep::all(control.iter()))
     }
 
-    /// The error of f, absolute.
+    /// Returns the error of f, absolute.
     #[inline]
     fn sweep_error(&self, place: &[i64]) -> f64 {
         self.reflectance.sweep_error(place).unwrap_or_else(|| {

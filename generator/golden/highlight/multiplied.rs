@@ -114,7 +114,7 @@ impl Products {
         program
     }
 
-    /// The device at power-up: the products of what `program` leaves in the slot f are made, and shown in its last
+    /// Returns the device at power-up: the products of what `program` leaves in the slot f are made, and shown in its last
     /// microinstruction.
     pub fn behind(&self, mut frame: Frame, f: Slot, mut program: Vec<Microinstruction>) -> Clocked {
         program.extend(self.slots(&mut frame, f));

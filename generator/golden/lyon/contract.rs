@@ -12,7 +12,7 @@ use glint_config::Config;
 /// The most that D² can be: each component is at least −2.0.
 const FARTHEST: i64 = 12;
 
-/// The accuracy contract. Control operands: `dx`, `dy`, `dz`, and `shift` or `exponent`.
+/// Returns the accuracy contract. Control operands: `dx`, `dy`, `dz`, and `shift` or `exponent`.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     Box::new(of_keys(Keys::of(config)))
 }
@@ -43,7 +43,7 @@ impl Arithmetic {
         squares.sum::<i64>() as f64 * exp2(-2 * self.keys.vector_fraction as i32)
     }
 
-    /// The formula at a D², with the β that the operand stands for.
+    /// Returns the formula at a D², with the β that the operand stands for.
     #[inline]
     fn formula(&self, distance: f64, operand: i64) -> f64 {
         let power = self.keys.power;
@@ -74,7 +74,7 @@ impl Reflectance for Arithmetic {
         vec![format!("{} ** {power}", shared::clamped_at_0(&base))]
     }
 
-    /// The normal is (0, 0, 1), and the half vector (sin γ, 0, cos γ).
+    /// Returns the normal is (0, 0, 1), and the half vector (sin γ, 0, cos γ).
     fn at(&self, operands: &[Operand], gamma: f64, n: f64) -> Option<Vec<i64>> {
         let (first, last) = self.keys.domain.exponents();
         let exponent = n as i64;
@@ -92,12 +92,12 @@ impl Reflectance for Arithmetic {
         ])
     }
 
-    /// The cosine of unit vectors at the distance D: 1 − D²/2.
+    /// Returns the cosine of unit vectors at the distance D: 1 − D²/2.
     fn cosine(&self, _: &[Operand], control: &[i64]) -> Option<f64> {
         Some((1.0 - self.exact_distance(control) / 2.0).max(0.0))
     }
 
-    /// The word of D² and the operand that scales it determine f: adders 1 and 2 and multipliers 1 to 3 are exact.
+    /// Returns the word of D² and the operand that scales it determine f: adders 1 and 2 and multipliers 1 to 3 are exact.
     fn sweep(&self) -> Option<Sweep> {
         let most = FARTHEST << self.keys.distance_fraction;
         Some(Sweep::ranges([
@@ -106,7 +106,7 @@ impl Reflectance for Arithmetic {
         ]))
     }
 
-    /// The worst over every D² that is rounded to the word. The formula falls as D² grows, so that it is at an end.
+    /// Returns the worst over every D² that is rounded to the word. The formula falls as D² grows, so that it is at an end.
     #[inline]
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let (operand, word) = (place[0], place[1]);
@@ -167,7 +167,7 @@ impl Reflectance for Arithmetic {
         }
     }
 
-    /// The cost of a β that is a power of two: largest where n is midway between two.
+    /// Returns the cost of a β that is a power of two: largest where n is midway between two.
     fn remarks(&self) -> Vec<String> {
         let (keys, (first, last)) = (&self.keys, self.keys.domain.exponents());
         if keys.scale == Scale::Multiplier {
@@ -195,7 +195,7 @@ impl Reflectance for Arithmetic {
     }
 }
 
-/// The largest difference between the function with β = `rounded`/(2·m) and cosⁿγ, for unit vectors, on a
+/// Returns the largest difference between the function with β = `rounded`/(2·m) and cosⁿγ, for unit vectors, on a
 /// grid that the highlight fills.
 fn formula_error(n: i64, rounded: i64, power: u32) -> f64 {
     const GRID: u32 = 1024;

@@ -11,7 +11,7 @@ use crate::{Contract, Operand, Sweep};
 use glint_base::fixed::{Format, exp2};
 use glint_config::Config;
 
-/// The accuracy contract. Control operands: `delta_zeta`, `zeta_start`, `exponent`, `length`; those of a
+/// Returns the accuracy contract. Control operands: `delta_zeta`, `zeta_start`, `exponent`, `length`; those of a
 /// point have its angle for `zeta_start`.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     Box::new(highlight(Keys::of(config)))
@@ -29,7 +29,7 @@ fn highlight(keys: Keys) -> Highlight {
 }
 
 impl Arithmetic {
-    /// The largest error of the stretched angle for n, in right angles, from what multiplier 11 takes of
+    /// Returns the largest error of the stretched angle for n, in right angles, from what multiplier 11 takes of
     /// the angle and from ROM 9's rounding.
     ///
     /// The magnitude m stands for angles from m to m + u. With s = √(n/k) and s' = ROM 9's word, s'·m is less than
@@ -51,7 +51,7 @@ impl Reflectance for Arithmetic {
         self.cosine_of(n, self.magnitude(angle), self.root(n))
     }
 
-    /// The surface faces from −90° to less than 90°, as two's complement has it.
+    /// Returns the surface faces from −90° to less than 90°, as two's complement has it.
     #[inline]
     fn reference(&self, control: &[i64]) -> f64 {
         let (angle, n) = (control[1], control[2]);
@@ -79,7 +79,7 @@ impl Reflectance for Arithmetic {
         vec![line::interval(angle, last[1], length, first[0]), angle, first[2], length]
     }
 
-    /// A line of one point.
+    /// Returns a line of one point.
     fn at(&self, operands: &[Operand], gamma: f64, n: f64) -> Option<Vec<i64>> {
         let angle = line::raw_angle(&operands[1], gamma);
         Some(vec![0, angle, shared::exponent_at(&operands[2], n)?, 0])
@@ -94,7 +94,7 @@ impl Reflectance for Arithmetic {
         Some("length")
     }
 
-    /// Every angle that a line can come to, by what multiplier 11 takes of it, and every n. Where the surface
+    /// Returns every angle that a line can come to, by what multiplier 11 takes of it, and every n. Where the surface
     /// faces away the word is the table's last, 0, for every n, and so is the formula.
     fn sweep(&self) -> Option<Sweep> {
         let magnitudes = 1i64 << self.keys.angle_multiplied;
@@ -104,7 +104,7 @@ impl Reflectance for Arithmetic {
         ]))
     }
 
-    /// The worst over the angles of either sign that have this magnitude: the formula falls from one end
+    /// Returns the worst over the angles of either sign that have this magnitude: the formula falls from one end
     /// of them to the other.
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let (n, magnitude) = (place[0], place[1]);

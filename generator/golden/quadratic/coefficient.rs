@@ -34,7 +34,7 @@ fn minimax(n: f64) -> f64 {
     a
 }
 
-/// Where h is largest. From 0 on, h' falls and is convex, so that Newton's iteration comes from the left.
+/// Returns where h is largest. From 0 on, h' falls and is convex, so that Newton's iteration comes from the left.
 fn summit(n: f64, a: f64) -> f64 {
     let mut x = 0.0;
     for _ in 0..60 {

@@ -40,12 +40,12 @@ impl Errors {
         Self { errors, sines }
     }
 
-    /// The largest error of register 12 from the table, for γ in bin `i` and dγ in bin `j`.
+    /// Returns the largest error of register 12 from the table, for γ in bin `i` and dγ in bin `j`.
     fn product(&self, i: usize, j: usize) -> f64 {
         self.part(i, j, |error, _| error)
     }
 
-    /// The part of [`Self::product`] that comes from a part of each entry's error, which `part` takes
+    /// Returns the part of [`Self::product`] that comes from a part of each entry's error, which `part` takes
     /// from the error and its shape.
     pub fn part(&self, i: usize, j: usize, part: impl Fn(f64, f64) -> f64) -> f64 {
         let (gamma, dgamma) = (self.errors[i], self.errors[j]);
@@ -142,18 +142,18 @@ impl Analysis {
         it
     }
 
-    /// Every bin of γ with every bin of dγ.
+    /// Returns every bin of γ with every bin of dγ.
     pub fn pairs(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
         let deviation = self.deviation;
         (0..BINS).flat_map(move |i| (0..=deviation).map(move |j| (i, j)))
     }
 
-    /// The largest sine in a bin.
+    /// Returns the largest sine in a bin.
     pub fn sine(&self, bin: usize) -> f64 {
         self.errors.sines[bin]
     }
 
-    /// The largest error of f in two bins.
+    /// Returns the largest error of f in two bins.
     pub fn bound(&self, i: usize, j: usize, negative: bool) -> f64 {
         self.bound_of(i, j, negative, self.errors.product(i, j))
     }
@@ -164,7 +164,7 @@ impl Analysis {
         self.rounded(self.weights[apart].linear * (error + self.products))
     }
 
-    /// The largest error of f where what adder 15 is off by makes n·b times as much.
+    /// Returns the largest error of f where what adder 15 is off by makes n·b times as much.
     pub fn rounded(&self, linear: f64) -> f64 {
         let base = self.square + self.base;
         linear + 2.0 * self.base + self.ulp + base * base

@@ -71,7 +71,7 @@ fn exact(it: &Arithmetic) -> Vec<ErrorShare> {
     shares
 }
 
-/// The keys that govern the parts which [`split`] tells apart.
+/// Returns the keys that govern the parts which [`split`] tells apart.
 fn sine_terms(keys: &Keys) -> &'static [(&'static str, &'static str)] {
     match keys.scheme {
         Scheme::Direct => &[
@@ -86,7 +86,7 @@ fn sine_terms(keys: &Keys) -> &'static [(&'static str, &'static str)] {
     }
 }
 
-/// An entry's error, which is known as a whole, in parts that add up to it: in proportion to what
+/// Returns an entry's error, which is known as a whole, in parts that add up to it: in proportion to what
 /// rounding (with the floor after interpolation), the shape and the slope's rounding could cost at most.
 fn split(keys: &Keys, error: f64, shape: f64) -> [f64; 3] {
     let ulp = exp2(-(keys.sine_fraction as i32));

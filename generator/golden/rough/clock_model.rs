@@ -8,12 +8,12 @@ use crate::frame::{Clocked, Frame, idle, step_by};
 use glint_base::fixed::Format;
 use glint_config::Config;
 
-/// The golden model.
+/// Returns the golden model.
 pub fn model(config: &Config) -> Box<dyn Model> {
     Box::new(clocked(keys_of(config)))
 }
 
-/// The device, clock by clock.
+/// Returns the device, clock by clock.
 ///
 /// A synchronous ROM 18 is addressed a microinstruction before its sine is taken, with operands that do not change in
 /// between, so that it shows the same as another would.

@@ -10,7 +10,7 @@ use glint_config::Config;
 /// The settings of dγ, in degrees, that an exhaustive check visits beside the largest of the domain.
 const SWEPT_DEVIATIONS: [f64; 4] = [0.0, 1.0, 5.0, 15.0];
 
-/// The accuracy contract. Control operands: `cos_gamma`, `cos_dgamma`, `exponent`, `dgamma_negative`.
+/// Returns the accuracy contract. Control operands: `cos_gamma`, `cos_dgamma`, `exponent`, `dgamma_negative`.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     let keys = keys_of(config);
     let (control, products) = (keys.control(), keys.products());
@@ -29,7 +29,7 @@ impl Reflectance for Arithmetic {
         it.f_of(it.squared(scaled, cos_gamma))
     }
 
-    /// The patent's arithmetic is held against the clamped formula, which shows what it costs.
+    /// Returns the patent's arithmetic is held against the clamped formula, which shows what it costs.
     #[inline]
     fn reference(&self, control: &[i64]) -> f64 {
         let cosine = |raw| self.keys.clamped(raw) as f64 * self.keys.ulp();
@@ -59,13 +59,13 @@ impl Reflectance for Arithmetic {
         shared::operands_at(operands, gamma, n, &no_deviation)
     }
 
-    /// Where γ is dγ; where dγ is added to it, both are 0.
+    /// Returns where γ is dγ; where dγ is added to it, both are 0.
     fn peak(&self, control: &[i64]) -> Option<Vec<i64>> {
         let deviation = if control[3] == 1 { control[1] } else { self.keys.largest_cosine() };
         Some(vec![deviation, deviation, control[2], control[3]])
     }
 
-    /// Every cos γ and every n, with some settings of dγ of the domain, of both signs.
+    /// Returns every cos γ and every n, with some settings of dγ of the domain, of both signs.
     fn sweep(&self) -> Option<Sweep> {
         let (low, high) = self.keys.cos_dgamma_domain();
         let mut deviations: Vec<i64> = SWEPT_DEVIATIONS

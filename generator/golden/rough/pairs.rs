@@ -52,7 +52,7 @@ struct Search<'a> {
     steps: u64,
 }
 
-/// A bound on the error of f, which no pair of angles exceeds.
+/// Returns a bound on the error of f, which no pair of angles exceeds.
 pub fn largest_error(it: &Arithmetic, analysis: &Analysis) -> f64 {
     let mut bins: Vec<(f64, usize, usize, i64)> = Vec::new();
     let mut first = 0.0_f64;
@@ -121,7 +121,7 @@ impl Search<'_> {
         within
     }
 
-    /// The pair, if its bound is larger than the largest error that was met.
+    /// Returns the pair, if its bound is larger than the largest error that was met.
     fn pair(&mut self, x: &Cosine, y: &Cosine, negative: i64) -> Option<Pair> {
         let (it, keys) = (self.it, &self.it.keys);
         let ulp = exp2(-(keys.operands.cosine.fraction as i32));
@@ -164,7 +164,7 @@ impl Search<'_> {
         (f - self.it.reference(control)).abs()
     }
 
-    /// The cosines of angles in a bin, and one more at each end.
+    /// Returns the cosines of angles in a bin, and one more at each end.
     fn cosines_of(&self, bin: usize) -> Vec<Cosine> {
         let keys = &self.it.keys;
         let one = 1_i64 << keys.operands.cosine.fraction;

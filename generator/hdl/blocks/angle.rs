@@ -15,7 +15,7 @@ pub struct Folded<'d> {
     pub within: Signal<'d>,
 }
 
-/// The magnitude of a signed `angle` to `fraction` bits, at most as many as it has.
+/// Returns the magnitude of a signed `angle` to `fraction` bits, at most as many as it has.
 ///
 /// The magnitude of a negative angle is its complement: truncation has made a positive angle smaller by
 /// up to an ulp, and the complement makes a negative one smaller by as much, without an adder.
@@ -41,7 +41,7 @@ pub fn fold<'d>(d: &'d Designer, angle: Signal<'d>, fraction: i32) -> Folded<'d>
     Folded { magnitude, within }
 }
 
-/// The address of a [`cosine_power_table`] for the angle `scaled`, unsigned, in right angles: its `bits`
+/// Returns the address of a [`cosine_power_table`] for the angle `scaled`, unsigned, in right angles: its `bits`
 /// leading fraction bits; the last word where it is a right angle or more, or `within` is 0.
 #[track_caller]
 pub fn address<'d>(
@@ -63,7 +63,7 @@ pub fn address<'d>(
     d.choose(name, within, [last, step])
 }
 
-/// The words of a table of `cosᵏ` over a right angle in 2^`bits` steps, in `u0.fraction`.
+/// Returns the words of a table of `cosᵏ` over a right angle in 2^`bits` steps, in `u0.fraction`.
 ///
 /// A word stands for all angles of its step, and is the middle of the values there; the last one is 0,
 /// because it also stands for all angles beyond.

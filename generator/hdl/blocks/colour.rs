@@ -124,7 +124,7 @@ impl<'d> Colours<'d> {
     }
 }
 
-/// The name of the rounded product on the output `<name>_out`.
+/// Returns the name of the rounded product on the output `<name>_out`.
 fn intensity_name(name: &str) -> String {
     match name {
         "intensity" => "intensity_rounded".to_owned(),

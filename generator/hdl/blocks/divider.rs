@@ -120,12 +120,12 @@ impl<'d> Divider<'d> {
         }
     }
 
-    /// The quotient, when all steps are done.
+    /// Returns the quotient, when all steps are done.
     pub fn quotient(&self) -> Signal<'d> {
         self.quotient.q()
     }
 
-    /// The settings with which dividend and divisor are taken at the end of the microinstruction.
+    /// Returns the settings with which dividend and divisor are taken at the end of the microinstruction.
     #[track_caller]
     pub fn load(&self) -> [Setting; 4] {
         [
@@ -136,7 +136,7 @@ impl<'d> Divider<'d> {
         ]
     }
 
-    /// The settings with which the next bit enters the quotient at the end of the microinstruction.
+    /// Returns the settings with which the next bit enters the quotient at the end of the microinstruction.
     #[track_caller]
     pub fn step(&self) -> [Setting; 4] {
         [
@@ -147,7 +147,7 @@ impl<'d> Divider<'d> {
         ]
     }
 
-    /// The condition under which the microinstruction that steps is executed once more.
+    /// Returns the condition under which the microinstruction that steps is executed once more.
     pub fn more(&self) -> Signal<'d> {
         self.more
     }

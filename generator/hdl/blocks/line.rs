@@ -106,7 +106,7 @@ impl<'d> Line<'d> {
         Self { designer: d, start: start.q(), sum, next, angle, intervals, empty, more }
     }
 
-    /// The angle of the point.
+    /// Returns the angle of the point.
     pub fn angle(&self) -> Signal<'d> {
         self.angle.q()
     }

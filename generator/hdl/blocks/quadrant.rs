@@ -12,7 +12,7 @@ pub struct Quadrant<'d> {
     pub negative: Signal<'d>,
 }
 
-/// The quadrant of `turn`, an integer without a sign whose steps are a whole turn, after `ahead` more quadrants.
+/// Returns the quadrant of `turn`, an integer without a sign whose steps are a whole turn, after `ahead` more quadrants.
 #[track_caller]
 pub fn quadrant<'d>(d: &'d Designer, name: &str, turn: Signal<'d>, ahead: u32) -> Quadrant<'d> {
     let steps = turn.format().width() - 2;

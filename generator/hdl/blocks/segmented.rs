@@ -38,7 +38,7 @@ pub struct Entry {
     pub slope: i128,
 }
 
-/// The straight line through a segment of a concave function with the least error: the slope of the chord,
+/// Returns the straight line through a segment of a concave function with the least error: the slope of the chord,
 /// and the base that puts the error of the segment's points symmetrically about 0.
 pub fn chord(segment: Segment, shape: SegmentedFormats, function: impl Fn(f64) -> f64) -> Entry {
     let value = Format::unsigned(0, shape.fraction);
@@ -89,7 +89,7 @@ pub struct SegmentedFormats {
 }
 
 impl Segmentation {
-    /// The blocks by range, the exact one last. In the ROM larger blocks come first, which aligns
+    /// Returns the blocks by range, the exact one last. In the ROM larger blocks come first, which aligns
     /// each to its size, so that an address is a constant beside a prefix.
     fn blocks(&self) -> Vec<Block> {
         let ranges = self.segments.len() as u32;
@@ -109,12 +109,12 @@ impl Segmentation {
         blocks
     }
 
-    /// Bits of the remainder that the slope multiplies; one, a zero, when every entry is exact.
+    /// Returns bits of the remainder that the slope multiplies; one, a zero, when every entry is exact.
     fn rest_bits(&self) -> u32 {
         self.blocks().iter().map(|block| block.bits - block.prefix).max().unwrap_or(0).max(1)
     }
 
-    /// Words of the table.
+    /// Returns words of the table.
     pub fn entries(&self) -> usize {
         self.blocks()
             .iter()
@@ -123,7 +123,7 @@ impl Segmentation {
             .unwrap_or(0)
     }
 
-    /// The segment of each word of the table; `None` where no value of u leads. The word that
+    /// Returns the segment of each word of the table; `None` where no value of u leads. The word that
     /// u = 2^C leads to has that one value.
     pub fn segment_of_words(&self) -> Vec<Option<Segment>> {
         let mut words = vec![None; self.entries()];
@@ -143,7 +143,7 @@ impl Segmentation {
     }
 }
 
-/// The table as hardware: `u` is an integer from 0 to 2^C; the result is `u0.S`.
+/// Returns the table as hardware: `u` is an integer from 0 to 2^C; the result is `u0.S`.
 ///
 /// With `shape.synchronous` the ROM and the remainder are registered, and the result belongs to the
 /// `u` of the clock before.
@@ -203,7 +203,7 @@ pub fn interpolate<'d>(
     d.narrow(&format!("{name}_value"), sum, value, Rounding::Truncate, Overflow::Saturate)
 }
 
-/// The word and the remainder, left-justified, a fraction of the segment.
+/// Returns the word and the remainder, left-justified, a fraction of the segment.
 #[track_caller]
 fn address_and_rest<'d>(
     d: &'d Designer,

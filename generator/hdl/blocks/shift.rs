@@ -33,7 +33,7 @@ pub struct Normalised<'d> {
     pub zeros: Signal<'d>,
 }
 
-/// The bits of `x` shifted left until the top one is 1, and by how many places: a row of muxes for each bit
+/// Returns the bits of `x` shifted left until the top one is 1, and by how many places: a row of muxes for each bit
 /// of the count, which is thereby encoded. Of a word of zeros it makes zeros, and a count of ones.
 #[track_caller]
 pub fn normalise<'d>(d: &'d Designer, name: &str, x: Signal<'d>) -> Normalised<'d> {

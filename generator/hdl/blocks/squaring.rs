@@ -45,7 +45,7 @@ impl<'d> Squarings<'d> {
         (squarings, counter, load_other)
     }
 
-    /// The settings that load the counter, in a microinstruction before the second squaring.
+    /// Returns the settings that load the counter, in a microinstruction before the second squaring.
     #[track_caller]
     pub fn load(&self) -> Vec<Setting> {
         let pick = self.start.map(|(mux, squarings)| mux.pick(squarings));
@@ -53,7 +53,7 @@ impl<'d> Squarings<'d> {
         pick.into_iter().chain(load).collect()
     }
 
-    /// The microinstructions: `register` takes the square of a base, then its own, until all are done.
+    /// Returns the microinstructions: `register` takes the square of a base, then its own, until all are done.
     ///
     /// `first` are the settings that bring the square of the base to the register, `again` those that
     /// bring the register's own.
@@ -82,7 +82,7 @@ impl<'d> Squarings<'d> {
     }
 }
 
-/// The squarings after the first.
+/// Returns the squarings after the first.
 #[track_caller]
 fn start(designer: &Designer, count: u32) -> Signal<'_> {
     designer.raw_constant("squarings", i128::from(count) - 1, Format::unsigned(2, 0))

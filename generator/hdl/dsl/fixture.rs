@@ -3,7 +3,7 @@
 use super::{Designer, Step, end, step, valid};
 use crate::netlist::Design;
 
-/// The design of a description that gives the microinstructions between the one that idles and the one with the result.
+/// Returns the design of a description that gives the microinstructions between the one that idles and the one with the result.
 pub fn design(describe: impl FnOnce(&Designer) -> Vec<Step>) -> Design {
     let d = Designer::new("device");
     let mut steps = vec![step("idle", [])];

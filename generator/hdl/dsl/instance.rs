@@ -30,7 +30,7 @@ pub struct Instance<'d> {
 }
 
 impl<'d> Instance<'d> {
-    /// The result of this name, held in a register until the part computes again.
+    /// Returns the result of this name, held in a register until the part computes again.
     #[track_caller]
     pub fn out(&self, output: &str) -> Signal<'d> {
         let outputs = self.outputs.as_deref().unwrap_or_default();
@@ -49,7 +49,7 @@ impl<'d> Instance<'d> {
 }
 
 impl Designer {
-    /// A part: the description `describe` under the name `name`, with a signal for each of its operands. Its results are in
+    /// Returns a part: the description `describe` under the name `name`, with a signal for each of its operands. Its results are in
     /// registers. A description with parts has no microprogram of its own: [`Designer::dataflow`].
     ///
     /// ```
@@ -192,7 +192,7 @@ fn delayed(inner: &mut Inner) -> Vec<Diagnostic> {
     found.collect()
 }
 
-/// The reason why a design cannot be a part.
+/// Returns the reason why a design cannot be a part.
 fn unfit(design: &Design) -> Option<String> {
     let control = &design.control;
     let Some(valid) = control.fields.iter().position(|field| field.name == "valid_word") else {
@@ -350,7 +350,7 @@ impl<'d> Placed<'d, '_> {
     }
 }
 
-/// The register that a result shows.
+/// Returns the register that a result shows.
 fn register(design: &Design, port: NetId) -> NetId {
     match design.net(port).driver {
         Driver::Op(Op::Relabel(of)) => register(design, of),
@@ -358,7 +358,7 @@ fn register(design: &Design, port: NetId) -> NetId {
     }
 }
 
-/// The nets on which results and the program depend, but for the handshake, in order.
+/// Returns the nets on which results and the program depend, but for the handshake, in order.
 fn kept(design: &Design, shown: &[(String, NetId)]) -> Vec<NetId> {
     let leads = |id: NetId| match design.net(id).driver {
         Driver::Field(_) => Vec::new(),

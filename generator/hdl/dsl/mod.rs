@@ -223,7 +223,7 @@ impl Designer {
         self.inner.borrow_mut().design.about = about;
     }
 
-    /// A constant of the given format; `value` must be exactly representable.
+    /// Returns a constant of the given format; `value` must be exactly representable.
     #[track_caller]
     pub fn constant(&self, name: &str, value: f64, format: Format) -> Signal<'_> {
         let format = self.sound(name, format);
@@ -238,7 +238,7 @@ impl Designer {
         self.signal(id)
     }
 
-    /// The constant `raw`, an integer, in the given format.
+    /// Returns the constant `raw`, an integer, in the given format.
     #[track_caller]
     pub fn raw_constant(&self, name: &str, mut raw: i128, format: Format) -> Signal<'_> {
         let format = self.sound(name, format);
@@ -250,7 +250,7 @@ impl Designer {
         self.signal(id)
     }
 
-    /// A wire that [`Designer::drive`] connects later: a forward reference.
+    /// Returns a wire that [`Designer::drive`] connects later: a forward reference.
     #[track_caller]
     pub fn wire(&self, name: &str, format: Format) -> Signal<'_> {
         self.signal(self.add_named(name, format, Driver::Undriven))
@@ -275,7 +275,7 @@ impl Designer {
         }
     }
 
-    /// A read-only memory: word `address` of `words` (raw values of `format`).
+    /// Returns a read-only memory: word `address` of `words` (raw values of `format`).
     ///
     /// `doc` says what an entry means. The address must be an integer that stays within the words. A
     /// `synchronous` ROM reads on the rising edge, as block RAM does: its output belongs to the
@@ -317,13 +317,13 @@ impl Designer {
         Rom { designer: self, id }
     }
 
-    /// An output port that carries a result.
+    /// Returns an output port that carries a result.
     #[track_caller]
     pub fn output<'d>(&'d self, name: &str, source: Signal<'d>) -> Signal<'d> {
         self.output_as(name, source, Role::Result)
     }
 
-    /// An output port that shows a signal of the control block.
+    /// Returns an output port that shows a signal of the control block.
     #[track_caller]
     pub fn status<'d>(&'d self, name: &str, source: Signal<'d>) -> Signal<'d> {
         self.output_as(name, source, Role::Status)
@@ -425,7 +425,7 @@ impl Designer {
         });
     }
 
-    /// The finished design, assembled and checked. What it says and no output needs are its [`Design::warnings`].
+    /// Returns the finished design, assembled and checked. What it says and no output needs are its [`Design::warnings`].
     ///
     /// # Errors
     /// Every mistake of the description, each with the signals and the Rust source line.

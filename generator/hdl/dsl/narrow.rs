@@ -39,7 +39,7 @@ impl Designer {
         self.signal(self.add_net(name, format, range, Driver::Op(op), true))
     }
 
-    /// The value with `frac` fraction bits.
+    /// Returns the value with `frac` fraction bits.
     #[track_caller]
     fn rounded<'d>(
         &'d self,
@@ -89,7 +89,7 @@ impl Designer {
         }
     }
 
-    /// The low bits of `a`, in `format`.
+    /// Returns the low bits of `a`, in `format`.
     #[track_caller]
     fn low_bits(&self, a: Signal<'_>, format: Format) -> Op {
         if a.format().width() <= format.width() {
@@ -112,7 +112,7 @@ impl Designer {
         }
     }
 
-    /// The saturation of `v`, whose range `format` does not hold.
+    /// Returns the saturation of `v`, whose range `format` does not hold.
     #[track_caller]
     fn saturated<'d>(&'d self, name: &str, v: Signal<'d>, format: Format) -> Op {
         let (low, high) = v.range();

@@ -29,7 +29,7 @@ pub struct OperandMux<'d> {
 described!(OperandMux, out);
 
 impl Designer {
-    /// A mux whose inputs may differ in format, under `select`.
+    /// Returns a mux whose inputs may differ in format, under `select`.
     #[track_caller]
     pub fn bus<'d>(
         &'d self,
@@ -64,7 +64,7 @@ impl Designer {
         }
     }
 
-    /// The product of two buses under the same select lines.
+    /// Returns the product of two buses under the same select lines.
     ///
     /// Where one of them alone has negative inputs, the multiplier takes the bits below its sign as an
     /// unsigned number. That is a bit less on either side than a product of signed numbers needs, and
@@ -137,7 +137,7 @@ impl Designer {
 }
 
 impl<'d> OperandMux<'d> {
-    /// The setting with which the mux passes `input` on. It must be one of the inputs.
+    /// Returns the setting with which the mux passes `input` on. It must be one of the inputs.
     #[track_caller]
     pub fn pick(&self, input: Signal<'d>) -> Setting {
         Setting::pick_of(self.designer, self.field, &self.name, input, &self.inputs)
@@ -180,13 +180,13 @@ pub struct SharedProduct<'d> {
 described!(SharedProduct, out);
 
 impl<'d> SharedProduct<'d> {
-    /// The product of `first` and `second`, which must stand opposite each other on the two buses.
+    /// Returns the product of `first` and `second`, which must stand opposite each other on the two buses.
     #[track_caller]
     pub fn of(&self, first: Signal<'d>, second: Signal<'d>) -> Signal<'d> {
         self.of_any(&[(first, second)])
     }
 
-    /// The product of any of the pairs, which must have one point: what a register takes in several
+    /// Returns the product of any of the pairs, which must have one point: what a register takes in several
     /// words.
     #[track_caller]
     pub fn of_any(&self, pairs: &[(Signal<'d>, Signal<'d>)]) -> Signal<'d> {
@@ -236,7 +236,7 @@ impl<'d> SharedProduct<'d> {
         view
     }
 
-    /// The product in `format` less the excess.
+    /// Returns the product in `format` less the excess.
     #[track_caller]
     fn corrected(&self, format: Format, range: Interval, excess: Excess<'d>) -> Signal<'d> {
         let d = self.out.designer();
@@ -254,7 +254,7 @@ impl<'d> SharedProduct<'d> {
     }
 }
 
-/// The low bits of `signal`, or all of them and zeros or signs above, as `format`.
+/// Returns the low bits of `signal`, or all of them and zeros or signs above, as `format`.
 #[track_caller]
 fn resized<'d>(signal: Signal<'d>, suffix: &str, format: Format, range: Interval) -> Signal<'d> {
     let id = signal.id();

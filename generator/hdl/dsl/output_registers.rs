@@ -42,7 +42,7 @@ pub(super) fn insert(d: &Designer, program: &mut Program) {
     d.replace_note(note);
 }
 
-/// The ports of results that are no registers.
+/// Returns the ports of results that are no registers.
 fn logic(design: &Design) -> Vec<NetId> {
     let results = design.ports.iter().filter(|port| port.role == Role::Result);
     let is_register = |port: NetId| {

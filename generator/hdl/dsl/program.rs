@@ -112,38 +112,41 @@ impl Setting {
     }
 }
 
-/// The setting that keeps the selections of the microinstruction before, but for those that are stated.
+/// Returns the setting that keeps the selections of the microinstruction before, but for those that are stated.
 #[track_caller]
 pub fn hold() -> Setting {
     Setting::sequence(Kind::Hold)
 }
 
-/// The setting that says that the results are on the outputs: `valid` is high in this microinstruction.
+/// Returns the setting that says that the results are on the outputs: `valid` is high in this microinstruction.
 #[track_caller]
 pub fn valid() -> Setting {
     Setting::sequence(Kind::Valid)
 }
 
-/// The setting that goes on to the next microinstruction, which is also the default.
+/// Returns the setting that goes on to the next microinstruction, which is also the default.
 #[track_caller]
 pub fn next() -> Setting {
     Setting::sequence(Kind::Next)
 }
 
-/// The setting that stays in this microinstruction until `start` is high; the device is not busy meanwhile. Microinstruction 0 always does.
+/// Returns the setting that stays in this microinstruction until `start` is high; the device is not busy meanwhile.
+/// Microinstruction 0 always does.
 #[track_caller]
 pub fn wait_for_start() -> Setting {
     Setting::sequence(Kind::WaitForStart)
 }
 
-/// The setting that goes back to the microinstruction named `to` while `condition`, one bit, is 1; then on to the next microinstruction.
+/// Returns the setting that goes back to the microinstruction named `to` while `condition`, one bit, is 1; then on to
+/// the next microinstruction.
 #[track_caller]
 pub fn loop_while(condition: Signal<'_>, to: &str) -> Setting {
     let kind = Kind::LoopWhile { condition: condition.id(), to: to.to_owned() };
     Setting { of: Some(origin(condition.designer())), ..Setting::sequence(kind) }
 }
 
-/// The setting that goes on to the microinstruction named `to` when `condition`, one bit, is 1; else to the next microinstruction: a way around microinstructions
+/// Returns the setting that goes on to the microinstruction named `to` when `condition`, one bit, is 1; else to the
+/// next microinstruction: a way around microinstructions
 /// that there may be nothing to do for, as a loop whose body need not run even once.
 #[track_caller]
 pub fn jump_if(condition: Signal<'_>, to: &str) -> Setting {
@@ -151,7 +154,7 @@ pub fn jump_if(condition: Signal<'_>, to: &str) -> Setting {
     loop_while(condition, to)
 }
 
-/// The setting of the last microinstruction: `done` is high in it, and the device is idle after it.
+/// Returns the setting of the last microinstruction: `done` is high in it, and the device is idle after it.
 #[track_caller]
 pub fn end() -> Setting {
     Setting::sequence(Kind::End)
@@ -165,7 +168,7 @@ pub struct Step {
     pub(super) location: SourceLocation,
 }
 
-/// A microinstruction with its name and settings. Muxes that are not mentioned pass on their first input;
+/// Returns a microinstruction with its name and settings. Muxes that are not mentioned pass on their first input;
 /// registers that are not mentioned keep their value.
 #[track_caller]
 pub fn step(name: &str, settings: impl IntoIterator<Item = Setting>) -> Step {
@@ -248,7 +251,7 @@ pub(crate) fn assemble(d: &Designer, program: &Program) {
     sequencer.build(d, microinstructions, program.location);
 }
 
-/// Whether a setting is of another designer, which is reported: its numbers would mean other nets and fields here.
+/// Returns whether a setting is of another designer, which is reported: its numbers would mean other nets and fields here.
 fn foreign(d: &Designer, steps: &[Step]) -> bool {
     let own = origin(d);
     let settings = steps.iter().flat_map(|step| step.settings.iter().map(move |it| (step, it)));

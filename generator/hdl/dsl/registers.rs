@@ -7,14 +7,14 @@ use glint_base::fixed::Format;
 use glint_base::interval::Interval;
 
 impl Designer {
-    /// An operand: the input port `name`, its write strobe `<name>_write` and the register
+    /// Returns an operand: the input port `name`, its write strobe `<name>_write` and the register
     /// `<name>_reg`, which a write loads unless the device is busy.
     #[track_caller]
     pub fn operand(&self, name: &str, format: Format) -> Operand<'_> {
         self.operand_port(name, format, |port| port)
     }
 
-    /// An operand whose register holds values from `low` to `high` only: a write of a smaller or
+    /// Returns an operand whose register holds values from `low` to `high` only: a write of a smaller or
     /// larger value loads the limit. Both must be representable.
     #[track_caller]
     pub fn operand_clamped(&self, name: &str, format: Format, low: f64, high: f64) -> Operand<'_> {
@@ -114,7 +114,7 @@ impl Designer {
         Operand { port: self.signal(port), strobe: self.signal(strobe), q: self.signal(q) }
     }
 
-    /// A register of the datapath, loaded in the microinstructions that say so; its field is `<name>_load`.
+    /// Returns a register of the datapath, loaded in the microinstructions that say so; its field is `<name>_load`.
     ///
     /// It has no reset, and an operand cannot have its name, because both would own `<name>_load`.
     #[track_caller]
@@ -131,7 +131,7 @@ impl Designer {
         Register { q: self.signal(q), field }
     }
 
-    /// A register inside a block, loaded on every clock: it delays `source` by one.
+    /// Returns a register inside a block, loaded on every clock: it delays `source` by one.
     #[track_caller]
     pub fn pipeline<'d>(&'d self, name: &str, source: Signal<'d>) -> Signal<'d> {
         let source = self.own(source);
@@ -165,7 +165,7 @@ impl Designer {
         self.select(&format!("{line}_own"), &choices)
     }
 
-    /// An output of the device that microinstructions raise.
+    /// Returns an output of the device that microinstructions raise.
     #[track_caller]
     pub fn flag(&self, name: &str) -> Flag<'_> {
         let field = self.add_field(&format!("{name}_flag"), 1, FieldKind::Flag);
@@ -174,7 +174,7 @@ impl Designer {
         Flag { designer: self, field }
     }
 
-    /// A counter that counts down, with fields `<name>_load` and `<name>_count`.
+    /// Returns a counter that counts down, with fields `<name>_load` and `<name>_count`.
     ///
     /// `load` takes the value of `start`; `count` subtracts one. Both in one microinstruction: `load` wins.
     #[track_caller]
@@ -222,7 +222,7 @@ pub struct Operand<'d> {
 }
 
 impl<'d> Operand<'d> {
-    /// The register's output.
+    /// Returns the register's output.
     pub fn q(self) -> Signal<'d> {
         self.q
     }
@@ -261,17 +261,17 @@ pub struct Register<'d> {
 described!(Register, q, "load": field);
 
 impl<'d> Register<'d> {
-    /// The register's output.
+    /// Returns the register's output.
     pub fn q(self) -> Signal<'d> {
         self.q
     }
 
-    /// The format.
+    /// Returns the format.
     pub fn format(self) -> Format {
         self.q.format()
     }
 
-    /// The load line: 1 in the microinstructions that load the register.
+    /// Returns the load line: 1 in the microinstructions that load the register.
     pub fn loading(self) -> Signal<'d> {
         self.q.designer().field_net(self.field)
     }
@@ -295,7 +295,7 @@ impl<'d> Register<'d> {
         }
     }
 
-    /// The setting with which the register takes its data at the end of the microinstruction.
+    /// Returns the setting with which the register takes its data at the end of the microinstruction.
     #[track_caller]
     pub fn load(self) -> Setting {
         Setting::field(self.q.designer(), self.field, 1, format!("{}.load", self.q.name()))
@@ -310,7 +310,7 @@ pub struct Select<'d> {
 }
 
 impl<'d> Select<'d> {
-    /// The lines themselves, for a mux in the datapath that some of them control too.
+    /// Returns the lines themselves, for a mux in the datapath that some of them control too.
     pub fn out(self) -> Signal<'d> {
         self.designer.field_net(self.field)
     }
@@ -334,7 +334,7 @@ impl<'d> Select<'d> {
         self
     }
 
-    /// The names of its values.
+    /// Returns the names of its values.
     fn choices(self) -> Vec<String> {
         self.designer.with(|inner| match &inner.design.control.fields[self.field.index()].kind {
             FieldKind::Select(choices) => choices.clone(),
@@ -365,7 +365,7 @@ pub struct Flag<'d> {
 }
 
 impl Flag<'_> {
-    /// The setting with which the output is high in this microinstruction.
+    /// Returns the setting with which the output is high in this microinstruction.
     #[track_caller]
     pub fn raise(self) -> Setting {
         let name = self.designer.field_net(self.field).name();
@@ -384,23 +384,23 @@ pub struct Counter<'d> {
 described!(Counter, q, "count": count);
 
 impl<'d> Counter<'d> {
-    /// The count.
+    /// Returns the count.
     pub fn q(self) -> Signal<'d> {
         self.q
     }
 
-    /// The count line: 1 in the microinstructions that count.
+    /// Returns the count line: 1 in the microinstructions that count.
     pub fn counting(self) -> Signal<'d> {
         self.q.designer().field_net(self.count)
     }
 
-    /// The setting with which the counter takes its start value at the end of the microinstruction.
+    /// Returns the setting with which the counter takes its start value at the end of the microinstruction.
     #[track_caller]
     pub fn load(self) -> Setting {
         Setting::field(self.q.designer(), self.load, 1, format!("{}.load", self.q.name()))
     }
 
-    /// The setting with which the counter is one less at the end of the microinstruction.
+    /// Returns the setting with which the counter is one less at the end of the microinstruction.
     #[track_caller]
     pub fn count(self) -> Setting {
         Setting::field(self.q.designer(), self.count, 1, format!("{}.count", self.q.name()))

@@ -11,7 +11,7 @@ pub struct Rom<'d> {
 }
 
 impl<'d> Rom<'d> {
-    /// The word read.
+    /// Returns the word read.
     pub fn out(self) -> Signal<'d> {
         let data = self.designer.with(|inner| inner.design.rom(self.id).data);
         self.designer.signal(data)

@@ -140,7 +140,7 @@ impl Sequencer {
     }
 }
 
-/// The signal that `valid` follows, as many clocks later as was said. A reset drops what is on its way.
+/// Returns the signal that `valid` follows, as many clocks later as was said. A reset drops what is on its way.
 fn valid_line(d: &Designer) -> NetId {
     let Some((mut source, clocks)) = d.with(|inner| inner.valid) else {
         return d.run;

@@ -25,14 +25,14 @@ impl Designer {
         act(&mut self.inner.borrow_mut())
     }
 
-    /// A net that the author named.
+    /// Returns a net that the author named.
     #[track_caller]
     pub(crate) fn add_named(&self, name: &str, format: Format, driver: Driver) -> NetId {
         let format = self.sound(name, format);
         self.add_net(name, format, format.range(), driver, true)
     }
 
-    /// A net that the DSL adds; `name` is made distinct.
+    /// Returns a net that the DSL adds; `name` is made distinct.
     #[track_caller]
     pub(crate) fn add_wiring(
         &self,
@@ -72,7 +72,7 @@ impl Designer {
         made
     }
 
-    /// The format, if a net can have it. If not that is an error, and one bit is what to go on with, so that
+    /// Returns the format, if a net can have it. If not that is an error, and one bit is what to go on with, so that
     /// the rest of the description is checked too.
     #[track_caller]
     pub(crate) fn sound(&self, name: &str, format: Format) -> Format {
@@ -117,7 +117,7 @@ impl Designer {
         })
     }
 
-    /// A register; returns the net that it drives.
+    /// Returns a register; returns the net that it drives.
     #[track_caller]
     pub(crate) fn add_register(
         &self,
@@ -164,7 +164,7 @@ impl Designer {
         self.signal(net)
     }
 
-    /// The signal; of another designer that is an error, and what to go on with a constant like it.
+    /// Returns the signal; of another designer that is an error, and what to go on with a constant like it.
     #[track_caller]
     pub(crate) fn own(&self, signal: Signal<'_>) -> Signal<'_> {
         let other = signal.designer();

@@ -26,17 +26,17 @@ impl<'d> Signal<'d> {
         self.designer
     }
 
-    /// The name of the net.
+    /// Returns the name of the net.
     pub fn name(self) -> String {
         self.designer.net(self.id).name
     }
 
-    /// The format.
+    /// Returns the format.
     pub fn format(self) -> Format {
         self.designer.with(|inner| inner.design.net(self.id).format)
     }
 
-    /// The smallest and the largest raw value that the signal can take.
+    /// Returns the smallest and the largest raw value that the signal can take.
     pub fn range(self) -> Interval {
         self.designer.with(|inner| inner.design.net(self.id).range)
     }
@@ -311,7 +311,7 @@ impl Designer {
         self.signal(self.add_net(name, format, range, Driver::Op(Op::Mul(a.id(), b.id())), true))
     }
 
-    /// Every bit inverted: `−a − ulp` for a signed signal, `largest − a` for an unsigned one.
+    /// Returns every bit inverted: `−a − ulp` for a signed signal, `largest − a` for an unsigned one.
     #[track_caller]
     pub fn not<'d>(&'d self, name: &str, a: Signal<'d>) -> Signal<'d> {
         let a = self.own(a);
@@ -360,7 +360,7 @@ impl Designer {
         low.wiring("beside", format, (from, to), Op::Concat(vec![top.id(), low.id()]))
     }
 
-    /// The bits of the parts side by side, the first in the top bits, read in `format`, which is as wide
+    /// Returns the bits of the parts side by side, the first in the top bits, read in `format`, which is as wide
     /// as all together: wiring.
     #[track_caller]
     pub fn join<'d>(&'d self, name: &str, parts: &[Signal<'d>], format: Format) -> Signal<'d> {
@@ -441,7 +441,7 @@ impl Designer {
         self.mux_of(name, select, &inputs)
     }
 
-    /// A mux that the microprogram controls, with a select field of its own, `<name>_select`.
+    /// Returns a mux that the microprogram controls, with a select field of its own, `<name>_select`.
     ///
     /// The inputs have one point ([`Signal::with_fraction`] aligns them; [`Designer::bus`] carries
     /// any); integer bits and signs may differ.
@@ -454,7 +454,7 @@ impl Designer {
         self.mux_on(name, select, inputs)
     }
 
-    /// A mux that shares its select field with others.
+    /// Returns a mux that shares its select field with others.
     #[track_caller]
     pub fn mux_on<'d>(
         &'d self,
@@ -553,18 +553,18 @@ pub struct Mux<'d> {
 described!(Mux, out, "select": field);
 
 impl<'d> Mux<'d> {
-    /// The output of the mux.
+    /// Returns the output of the mux.
     pub fn out(self) -> Signal<'d> {
         self.out
     }
 
-    /// The setting with which the mux passes `input` on. It must be one of the mux's inputs.
+    /// Returns the setting with which the mux passes `input` on. It must be one of the mux's inputs.
     #[track_caller]
     pub fn pick(self, input: Signal<'d>) -> Setting {
         Setting::pick(self.out.designer(), self.field, &self.out.name(), input)
     }
 
-    /// The select line or lines.
+    /// Returns the select line or lines.
     pub fn select(self) -> Signal<'d> {
         self.out.designer().field_net(self.field)
     }

@@ -85,7 +85,7 @@ impl<N> Op<N> {
         }
     }
 
-    /// Every operand, in order of writing.
+    /// Returns every operand, in order of writing.
     pub fn operands(&self) -> Vec<N>
     where
         N: Copy,
@@ -95,7 +95,7 @@ impl<N> Op<N> {
         operands
     }
 
-    /// The name of the cell in dumps and diagrams.
+    /// Returns the name of the cell in dumps and diagrams.
     pub fn mnemonic(&self) -> &'static str {
         match self {
             Self::Relabel(_) => "relabel",

@@ -93,7 +93,8 @@ impl Control {
         }
     }
 
-    /// The microinstructions that can follow microinstruction `at`, in ascending order; the number of microinstructions itself where the last
+    /// Returns the microinstructions that can follow microinstruction `at`, in ascending order; the number of
+    /// microinstructions itself where the last
     /// one does not end. Idle, the device stays in microinstruction 0.
     pub fn successors(&self, at: usize) -> Vec<usize> {
         let next = at + 1;
@@ -110,7 +111,7 @@ impl Control {
         successors
     }
 
-    /// The microinstructions from which control comes to microinstruction `at` in `clocks` clocks, in ascending order.
+    /// Returns the microinstructions from which control comes to microinstruction `at` in `clocks` clocks, in ascending order.
     pub fn predecessors(&self, at: usize, clocks: u32) -> Vec<usize> {
         let leads = |from: usize, after: &[usize]| {
             self.successors(from).iter().any(|to| after.contains(to))
@@ -122,7 +123,7 @@ impl Control {
 }
 
 impl Design {
-    /// The number of the lowest bit of each field in the control word; of a pipeline, which has none, nothing.
+    /// Returns the number of the lowest bit of each field in the control word; of a pipeline, which has none, nothing.
     pub fn field_positions(&self) -> Vec<u32> {
         if self.control.fields.is_empty() {
             return Vec::new();

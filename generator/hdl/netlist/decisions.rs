@@ -9,7 +9,7 @@ use std::collections::HashSet;
 use super::{Design, Driver, NetId, Role, Sequence};
 use glint_base::cone;
 
-/// The microinstructions whose successor depends on an operand, by number.
+/// Returns the microinstructions whose successor depends on an operand, by number.
 pub fn decided_by_data(design: &Design) -> Vec<usize> {
     let microprogram = design.control.microprogram.iter().enumerate();
     let decided = microprogram.filter(|(_, microinstruction)| match microinstruction.sequence {
@@ -21,14 +21,14 @@ pub fn decided_by_data(design: &Design) -> Vec<usize> {
     decided.map(|(at, _)| at).collect()
 }
 
-/// The registers between the control word and `valid`, on the shortest way; `None` if an operand decides about
+/// Returns the registers between the control word and `valid`, on the shortest way; `None` if an operand decides about
 /// `valid`, or there is none.
 pub fn delay_of_valid(design: &Design) -> Option<u32> {
     let valid = design.port(|role| role == Role::Valid)?;
     registers_from_control(design, valid.net)
 }
 
-/// The registers between the control word and a net on the shortest way, or all that there are if the control word
+/// Returns the registers between the control word and a net on the shortest way, or all that there are if the control word
 /// has no influence; `None` if an operand has.
 fn registers_from_control(design: &Design, net: NetId) -> Option<u32> {
     let is_control = |net: NetId| match design.net(net).driver {
@@ -72,7 +72,7 @@ fn registers_from_control(design: &Design, net: NetId) -> Option<u32> {
     Some(shortest.unwrap_or(delay))
 }
 
-/// The inputs by which the environment times what the device does.
+/// Returns the inputs by which the environment times what the device does.
 fn is_handshake(role: Role) -> bool {
     matches!(role, Role::Start | Role::Reset | Role::InValid | Role::OutReady)
 }
@@ -83,7 +83,7 @@ mod tests {
     use crate::dsl::{Designer, Signal, end, loop_while, step};
     use glint_base::fixed::Format;
 
-    /// A counter of three bits, which starts from what is said, and `valid` two clocks after a loop's last iteration.
+    /// Returns a counter of three bits, which starts from what is said, and `valid` two clocks after a loop's last iteration.
     fn counted(start: for<'d> fn(&'d Designer, Signal<'d>) -> Signal<'d>) -> Design {
         let d = Designer::new("counted");
         let x = d.operand("x", Format::unsigned(3, 0));

@@ -27,26 +27,26 @@ pub struct Delayed {
 }
 
 impl DelayLine {
-    /// The words of a memory that does the same: the value that comes out of it is held by a register behind it.
+    /// Returns the words of a memory that does the same: the value that comes out of it is held by a register behind it.
     pub fn words(&self) -> usize {
         self.values[0].passed().len()
     }
 }
 
 impl Delayed {
-    /// The registers that a memory takes the place of: all but the last.
+    /// Returns the registers that a memory takes the place of: all but the last.
     pub fn passed(&self) -> &[RegId] {
         &self.registers[..self.registers.len() - 1]
     }
 
-    /// The register in which the value leaves.
+    /// Returns the register in which the value leaves.
     pub fn last(&self) -> RegId {
         self.registers[self.registers.len() - 1]
     }
 }
 
 impl Design {
-    /// The delay lines that are emitted as memories: those that take less so on a target that has small ones.
+    /// Returns the delay lines that are emitted as memories: those that take less so on a target that has small ones.
     ///
     /// Points find the same there as in these registers, whatever the enable does; a reset, which drops all points, begins with the
     /// first word again. The side channel stays in registers: the proof by induction follows its value from stage to stage. So
@@ -98,7 +98,7 @@ impl Design {
         lines.into_values().filter(|line| memory.pays(line.words(), bits(line))).collect()
     }
 
-    /// Whether a net is, through wires, a word of a ROM that is read on the clock.
+    /// Returns whether a net is, through wires, a word of a ROM that is read on the clock.
     fn is_of_block_memory(&self, id: NetId) -> bool {
         match &self.net(id).driver {
             Driver::Rom(rom) => self.roms[rom.index()].synchronous,

@@ -14,13 +14,13 @@ fn two<const N: usize>(a: &[u64; N], b: &[u64; N], cell: impl Fn(u64, u64) -> u6
     std::array::from_fn(|lane| cell(a[lane], b[lane]))
 }
 
-/// The bits of a signed net of this width, as a number.
+/// Returns the bits of a signed net of this width, as a number.
 fn signed(width: u32) -> impl Fn(u64) -> i64 {
     let drop = 64 - width;
     move |bits| (bits << drop) as i64 >> drop
 }
 
-/// The result of a cell `width` bits wide as [`Op`] documents it, for `N` independent sets of operands. `format`
+/// Returns the result of a cell `width` bits wide as [`Op`] documents it, for `N` independent sets of operands. `format`
 /// gives the format of an operand, `of` its bit patterns.
 pub fn cell<'a, Operand: Copy, const N: usize>(
     op: &Op<Operand>,
@@ -154,12 +154,12 @@ impl<'a> Interpreter<'a> {
         }
     }
 
-    /// The bit pattern of a net. Those of cells belong to the latest [`Interpreter::settle`].
+    /// Returns the bit pattern of a net. Those of cells belong to the latest [`Interpreter::settle`].
     pub fn value(&self, net: NetId) -> u64 {
         self.values[net.index()][0]
     }
 
-    /// The word that a ROM's address selects; 0 beyond its contents.
+    /// Returns the word that a ROM's address selects; 0 beyond its contents.
     fn read(&self, rom: RomId) -> u64 {
         let rom = self.design.rom(rom);
         rom.words.get(self.value(rom.address) as usize).copied().unwrap_or(0)

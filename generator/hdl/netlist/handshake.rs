@@ -20,14 +20,14 @@ pub struct Handshake {
 }
 
 impl Role {
-    /// Whether the port is an output of the handshake.
+    /// Returns whether the port is an output of the handshake.
     pub fn is_status(self) -> bool {
         matches!(self, Self::Valid | Self::Busy | Self::Done | Self::InReady)
     }
 }
 
 impl Design {
-    /// The position of a net among the inputs.
+    /// Returns the position of a net among the inputs.
     ///
     /// # Errors
     /// The net is no input.
@@ -36,7 +36,7 @@ impl Design {
         at.with_context(|| format!("`{}` is no input of `{}`", self.net(net).name, self.name))
     }
 
-    /// The ports of the handshake.
+    /// Returns the ports of the handshake.
     ///
     /// # Errors
     /// The design lacks one of them.

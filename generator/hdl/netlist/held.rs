@@ -57,12 +57,12 @@ type Places = [u32; 3];
 /// When a cell is computed, or a register loaded: not before clock k + 1 if place k is below number k.
 type Thresholds = [u32; 3];
 
-/// The thresholds of what is computed in any clock, up to the one in which it is first needed.
+/// Returns the thresholds of what is computed in any clock, up to the one in which it is first needed.
 fn until(needed: usize, thresholds: Thresholds) -> Thresholds {
     std::array::from_fn(|clock| if needed > clock { thresholds[clock] } else { 0 })
 }
 
-/// The clock, counted from that of the first microinstruction, from which on something is computed.
+/// Returns the clock, counted from that of the first microinstruction, from which on something is computed.
 fn clock(thresholds: Thresholds, places: Places) -> usize {
     thresholds.iter().zip(places).filter(|(limit, place)| place < *limit).count()
 }
@@ -167,7 +167,7 @@ impl<'a> Steady<'a> {
         Self { design, cells, thresholds, holds, registers, places }
     }
 
-    /// The best places: of all pairs while there are few, else of pairs that lie evenly, and again between the
+    /// Returns the best places: of all pairs while there are few, else of pairs that lie evenly, and again between the
     /// neighbours of the best of these.
     fn best(&self) -> Places {
         let mut windows = [(0, self.places.len() - 1); 2];
@@ -196,12 +196,12 @@ impl<'a> Steady<'a> {
         [self.places[first], self.places[second], 0]
     }
 
-    /// Whether a register between a net and what reads it from a clock on costs no time.
+    /// Returns whether a register between a net and what reads it from a clock on costs no time.
     fn is_cut(&self, net: NetId, by: usize, places: Places) -> bool {
         self.holds[net.index()] && by > clock(self.thresholds[net.index()], places)
     }
 
-    /// The longest path that starts at an operand register or at an inserted one, in hundredths of a nanosecond, and the
+    /// Returns the longest path that starts at an operand register or at an inserted one, in hundredths of a nanosecond, and the
     /// bits of the inserted registers.
     fn cost(&self, places: Places) -> (u32, u32) {
         let mut arrival: Vec<Option<u32>> = vec![None; self.thresholds.len()];
@@ -231,7 +231,7 @@ impl<'a> Steady<'a> {
         (longest, nets.map(|(_, net)| net.format.width()).sum())
     }
 
-    /// The nets that are followed by a register, each with the readers that take the register in its place: those
+    /// Returns the nets that are followed by a register, each with the readers that take the register in its place: those
     /// that compute in a later clock.
     fn cut(&self, places: Places) -> BTreeMap<NetId, Vec<Reader>> {
         let cells = self.cells.iter().flat_map(|cell| {
@@ -272,7 +272,7 @@ fn delay(design: &Design, op: &Op) -> u32 {
     }
 }
 
-/// Whether a net is a sum, or the product of operands too wide for one multiplier, or bits of one.
+/// Returns whether a net is a sum, or the product of operands too wide for one multiplier, or bits of one.
 fn ends_in_a_sum(design: &Design, net: NetId) -> bool {
     match &design.net(net).driver {
         Driver::Op(Op::Relabel(of) | Op::Extend(of) | Op::Not(of) | Op::Slice { of, .. }) => {
@@ -353,7 +353,7 @@ mod tests {
         assert!(design.nets.iter().all(|net| !net.name.ends_with("_held")));
     }
 
-    /// The sum of two operands is on an output at once, its cube in a register by the microprogram's load.
+    /// Returns the sum of two operands is on an output at once, its cube in a register by the microprogram's load.
     fn device(program: fn(Step, Step) -> Vec<Step>) -> Design {
         let d = Designer::new("device");
         let (a, b) = (d.operand("a", BYTE), d.operand("b", BYTE));

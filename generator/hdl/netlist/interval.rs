@@ -4,7 +4,7 @@ use super::Op;
 use glint_base::fixed::{Format, mask};
 use glint_base::interval::{Interval, hull, product, wrap};
 
-/// The interval of a cell in `format` as [`Op`] documents it; all that the format has where nothing closer is known.
+/// Returns the interval of a cell in `format` as [`Op`] documents it; all that the format has where nothing closer is known.
 /// `of` gives the interval of an operand, `format_of` its format. Two operands that are one net are a square.
 pub fn of_cell<N: Copy + PartialEq>(
     op: &Op<N>,

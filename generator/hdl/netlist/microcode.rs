@@ -1,11 +1,11 @@
 //! Packing of microprogram words.
 
-/// A control word from the values of its fields, the first field in the top bits.
+/// Returns a control word from the values of its fields, the first field in the top bits.
 pub fn pack(widths: &[u32], values: &[u64]) -> u64 {
     widths.iter().zip(values).fold(0, |word, (width, value)| word << width | value)
 }
 
-/// The values of the fields of a control word.
+/// Returns the values of the fields of a control word.
 pub fn unpack(widths: &[u32], word: u64) -> Vec<u64> {
     let mut rest = word;
     let mut values: Vec<u64> = widths

@@ -51,7 +51,7 @@ macro_rules! id {
         pub struct $name(pub u32);
 
         impl $name {
-            /// The position in the arena.
+            /// Returns the position in the arena.
             pub fn index(self) -> usize {
                 self.0 as usize
             }
@@ -237,7 +237,7 @@ pub enum Role {
 }
 
 impl Role {
-    /// Whether the port is an input.
+    /// Returns whether the port is an input.
     pub fn is_input(self) -> bool {
         matches!(
             self,
@@ -269,7 +269,7 @@ pub struct About {
 }
 
 impl About {
-    /// The texts of the notes.
+    /// Returns the texts of the notes.
     pub fn paragraphs(&self) -> impl Iterator<Item = &str> {
         self.notes.iter().map(|note| note.text.as_str())
     }
@@ -298,7 +298,7 @@ pub enum Topic {
 }
 
 impl Topic {
-    /// A note on it.
+    /// Returns a note on it.
     pub fn note(self, text: impl Into<String>) -> Note {
         Note { topic: self, text: text.into() }
     }
@@ -334,33 +334,33 @@ pub struct Design {
 }
 
 impl Design {
-    /// The net `id`.
+    /// Returns the net `id`.
     pub fn net(&self, id: NetId) -> &Net {
         &self.nets[id.index()]
     }
 
-    /// The width of the net `id`.
+    /// Returns the width of the net `id`.
     pub fn width(&self, id: NetId) -> u32 {
         self.net(id).format.width()
     }
 
-    /// The register `id`.
+    /// Returns the register `id`.
     pub fn register(&self, id: RegId) -> &Register {
         &self.registers[id.index()]
     }
 
-    /// The ROM `id`.
+    /// Returns the ROM `id`.
     pub fn rom(&self, id: RomId) -> &Rom {
         &self.roms[id.index()]
     }
 
-    /// The net of the given name.
+    /// Returns the net of the given name.
     pub fn find(&self, name: &str) -> Option<NetId> {
         let at = self.nets.iter().position(|net| net.name == name)?;
         Some(NetId(at as u32))
     }
 
-    /// Every net with its id.
+    /// Returns every net with its id.
     pub fn iter(&self) -> impl Iterator<Item = (NetId, &Net)> {
         self.nets.iter().enumerate().map(|(at, net)| (NetId(at as u32), net))
     }
@@ -375,12 +375,12 @@ impl Design {
         self.ports.iter().filter(|port| !port.role.is_input())
     }
 
-    /// The ports of the given kind.
+    /// Returns the ports of the given kind.
     pub fn port(&self, wanted: impl Fn(Role) -> bool) -> Option<&Port> {
         self.ports.iter().find(|port| wanted(port.role))
     }
 
-    /// The nets that `id` depends on within one clock: operands of its cell, the address of an
+    /// Returns the nets that `id` depends on within one clock: operands of its cell, the address of an
     /// asynchronous ROM, the control ROM behind a field. Nothing for inputs, constants, registers and
     /// synchronous ROMs.
     pub fn combinational_inputs(&self, id: NetId) -> Vec<NetId> {
@@ -396,7 +396,7 @@ impl Design {
         }
     }
 
-    /// An order of all nets in which each stands after what it depends on within one clock.
+    /// Returns an order of all nets in which each stands after what it depends on within one clock.
     ///
     /// # Errors
     /// A combinational loop, as the nets along it.
@@ -443,7 +443,7 @@ impl Design {
         Ok(order)
     }
 
-    /// The bits in all ROMs.
+    /// Returns the bits in all ROMs.
     pub fn rom_bits(&self) -> u64 {
         self.roms.iter().map(|rom| rom.words.len() as u64 * u64::from(self.width(rom.data))).sum()
     }

@@ -39,7 +39,7 @@ pub fn needed(design: &Design) -> Vec<usize> {
     walk.needed
 }
 
-/// The value of a control line in a microinstruction: a field, or what is made of fields alone.
+/// Returns the value of a control line in a microinstruction: a field, or what is made of fields alone.
 pub fn setting_of(
     design: &Design,
     microinstruction: &Microinstruction,

@@ -87,17 +87,17 @@ pub struct Checkpoint {
 }
 
 impl Pipeline {
-    /// The first clock in which a net has the value of a point, counted from that in which the point is taken: its stage.
+    /// Returns the first clock in which a net has the value of a point, counted from that in which the point is taken: its stage.
     pub fn clock_of(&self, net: NetId) -> usize {
         self.stage_of[net.index()]
     }
 
-    /// Whether a net belongs to a multiplier that operations of several stages share.
+    /// Returns whether a net belongs to a multiplier that operations of several stages share.
     pub fn is_shared(&self, net: NetId) -> bool {
         self.units.iter().any(|unit| unit.nets.contains(&net))
     }
 
-    /// The named nets whose logic is in a stage, each with the name of its value, in the order of the design's nets; the
+    /// Returns the named nets whose logic is in a stage, each with the name of its value, in the order of the design's nets; the
     /// handshake is none of them.
     pub fn computed<'a>(
         &'a self,
@@ -128,7 +128,7 @@ pub struct Multiplier {
 }
 
 impl Design {
-    /// The multiplier that a register is inside of, if it is.
+    /// Returns the multiplier that a register is inside of, if it is.
     pub fn multiplier(&self, register: RegId) -> Option<Multiplier> {
         self.pipeline.as_ref().filter(|it| it.registered.contains(&register))?;
         let product = self.register(register).data?;

@@ -44,7 +44,7 @@ pub fn remaining(design: &Design) -> Option<Vec<Left>> {
     Some(left)
 }
 
-/// The number of the clock in which `done` is high, at most.
+/// Returns the number of the clock in which `done` is high, at most.
 pub fn latest_done(design: &Design) -> Option<u32> {
     // Microinstruction 0 is executed in clock 1.
     let first = *remaining(design)?.first()?;
@@ -52,12 +52,12 @@ pub fn latest_done(design: &Design) -> Option<u32> {
     u32::try_from(1 + first.clocks + most).ok()
 }
 
-/// The largest value of a register.
+/// Returns the largest value of a register.
 fn largest(design: &Design, register: RegId) -> u64 {
     glint_base::fixed::mask(design.width(design.register(register).q))
 }
 
-/// The one register on which a net depends, without its own clock.
+/// Returns the one register on which a net depends, without its own clock.
 fn decides(design: &Design, net: NetId) -> Option<RegId> {
     let mut found = None;
     for net in cone::reached([net], |net| design.combinational_inputs(net)) {
@@ -79,7 +79,7 @@ mod tests {
 
     type Condition = for<'d> fn(&'d Designer, Signal<'d>, Signal<'d>) -> Signal<'d>;
 
-    /// A counter of three bits goes from the operand to 0 in microinstruction 2.
+    /// Returns a counter of three bits goes from the operand to 0 in microinstruction 2.
     fn counted(condition: Condition) -> Design {
         design(|d| {
             let x = d.operand("x", Format::unsigned(3, 0));

@@ -11,7 +11,7 @@ use glint_base::fixed::{MAX_WIDTH, mask};
 use glint_base::identifier;
 
 impl Design {
-    /// Every mistake: one in the names, in the structure or in the microprogram.
+    /// Returns every mistake: one in the names, in the structure or in the microprogram.
     pub fn verify(&self) -> Vec<Diagnostic> {
         let mut found = self.verify_structure();
         self.names(&mut found);
@@ -21,7 +21,7 @@ impl Design {
         found
     }
 
-    /// The mistakes that keep a design from meaning anything: what is referred to and does not exist, nets
+    /// Returns the mistakes that keep a design from meaning anything: what is referred to and does not exist, nets
     /// without a driver or with two, widths that do not match, combinational loops. Names and the
     /// microprogram are not looked at.
     pub fn verify_structure(&self) -> Vec<Diagnostic> {

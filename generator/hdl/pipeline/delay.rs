@@ -60,14 +60,14 @@ pub fn setup(timing: &Timing, graph: &Graph, id: NodeId) -> f64 {
     }
 }
 
-/// The select of a mux of a value and a constant, which takes no look-up tables before a register.
+/// Returns the select of a mux of a value and a constant, which takes no look-up tables before a register.
 pub fn reset_by(graph: &Graph, id: NodeId) -> Option<NodeId> {
     let Cell::Op(Op::Mux { select, inputs }) = &graph.node(id).cell else { return None };
     let constants = inputs.iter().filter(|input| graph.constant_of(**input).is_some()).count();
     (graph.width(id) > 1 && inputs.len() == 2 && constants == 1).then_some(*select)
 }
 
-/// Whether a node is a read of a block memory, which takes a clock.
+/// Returns whether a node is a read of a block memory, which takes a clock.
 pub fn is_block(timing: &Timing, graph: &Graph, id: NodeId) -> bool {
     match graph.node(id).cell {
         Cell::Read { address, .. } => {

@@ -36,7 +36,7 @@ pub fn gated(unrolled: &Unrolled) -> Unrolled {
 /// A bit of either input, where it is known.
 type Pair = (Option<bool>, Option<bool>);
 
-/// The bits from `low` on of a mux, of whose inputs the same is known in each.
+/// Returns the bits from `low` on of a mux, of whose inputs the same is known in each.
 fn part(
     graph: &mut Graph,
     select: NodeId,

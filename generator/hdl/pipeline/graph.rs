@@ -99,17 +99,17 @@ pub struct Graph {
 }
 
 impl Graph {
-    /// The node of this number.
+    /// Returns the node of this number.
     pub fn node(&self, id: NodeId) -> &Node {
         &self.nodes[id.index()]
     }
 
-    /// Bits of a node.
+    /// Returns bits of a node.
     pub fn width(&self, id: NodeId) -> u32 {
         self.node(id).format.width()
     }
 
-    /// The bit pattern of a constant.
+    /// Returns the bit pattern of a constant.
     pub fn constant_of(&self, id: NodeId) -> Option<u64> {
         match self.node(id).cell {
             Cell::Constant(bits) => Some(bits),
@@ -117,14 +117,14 @@ impl Graph {
         }
     }
 
-    /// Every node that these need, themselves too, in order.
+    /// Returns every node that these need, themselves too, in order.
     pub fn cone(&self, roots: impl IntoIterator<Item = NodeId>) -> Vec<NodeId> {
         let operands = |at: usize| self.nodes[at].cell.operands().into_iter().map(NodeId::index);
         let live = cone::needed(self.nodes.len(), roots.into_iter().map(NodeId::index), operands);
         (0..live.len()).filter(|&at| live[at]).map(|at| NodeId(at as u32)).collect()
     }
 
-    /// The node, which from now on has the values of `range` alone.
+    /// Returns the node, which from now on has the values of `range` alone.
     pub fn refine(&mut self, id: NodeId, range: Interval) -> NodeId {
         let node = &mut self.nodes[id.index()];
         // Of a path that is never taken, the intersection can be empty.
@@ -141,14 +141,14 @@ impl Graph {
         }
     }
 
-    /// A constant.
+    /// Returns a constant.
     pub fn constant(&mut self, bits: u64, format: Format, label: &Label) -> NodeId {
         let bits = bits & mask(format.width());
         let raw = format.raw(bits);
         self.insert(Cell::Constant(bits), format, (raw, raw), label)
     }
 
-    /// The word of a ROM. `words` are its contents.
+    /// Returns the word of a ROM. `words` are its contents.
     pub fn read(
         &mut self,
         rom: RomId,
@@ -169,7 +169,7 @@ impl Graph {
         self.insert(Cell::Read { rom, address }, format, range, label)
     }
 
-    /// The leaf for an operand or an unknown.
+    /// Returns the leaf for an operand or an unknown.
     pub fn leaf(&mut self, cell: Cell, format: Format, range: Interval, label: &Label) -> NodeId {
         self.insert(cell, format, range, label)
     }
@@ -196,7 +196,7 @@ impl Graph {
         id
     }
 
-    /// The bits of `id` from the lowest on as a number of this width and sign.
+    /// Returns the bits of `id` from the lowest on as a number of this width and sign.
     pub fn resize(&mut self, id: NodeId, width: u32, signed: bool) -> NodeId {
         let node = self.node(id);
         let (format, label) = (node.format, Label { named: false, ..node.label.clone() });
@@ -209,7 +209,7 @@ impl Graph {
         }
     }
 
-    /// A cell, folded as far as it can be.
+    /// Returns a cell, folded as far as it can be.
     pub fn op(&mut self, op: Op, format: Format, label: &Label) -> NodeId {
         if let Some(id) = self.fold(&op, format, label) {
             let node = &mut self.nodes[id.index()];
@@ -227,7 +227,7 @@ impl Graph {
         self.insert(Cell::Op(op), format, range, label)
     }
 
-    /// The limit that a choice keeps to: the value where it is less, and the limit where not.
+    /// Returns the limit that a choice keeps to: the value where it is less, and the limit where not.
     fn limit(&self, op: &Op) -> Option<i128> {
         let Op::Mux { select, inputs } = op else { return None };
         match (&self.node(*select).cell, &inputs[..]) {
@@ -238,7 +238,7 @@ impl Graph {
         }
     }
 
-    /// Whether a value is never above a limit, a power of two, whose bit selects the limit.
+    /// Returns whether a value is never above a limit, a power of two, whose bit selects the limit.
     fn is_kept(&self, value: NodeId, select: NodeId, limit: u64) -> bool {
         let (low, high) = self.node(value).range;
         let Cell::Op(Op::Slice { of, low: bit }) = self.node(select).cell else { return false };
@@ -249,7 +249,7 @@ impl Graph {
             && limit.is_power_of_two()
     }
 
-    /// A node that already is what the cell would give, or one that is less.
+    /// Returns a node that already is what the cell would give, or one that is less.
     fn fold(&mut self, op: &Op, format: Format, label: &Label) -> Option<NodeId> {
         let known = op.operands().into_iter();
         let known: Option<HashMap<NodeId, [u64; 1]>> =
@@ -358,12 +358,12 @@ impl Graph {
         }
     }
 
-    /// Whether a node is another one inverted.
+    /// Returns whether a node is another one inverted.
     fn is_inverse(&self, inverse: NodeId, of: NodeId) -> bool {
         matches!(self.node(inverse).cell, Cell::Op(Op::Not(it)) if it == of)
     }
 
-    /// The bits of a slice that are not zeros in front of a number, where some are.
+    /// Returns the bits of a slice that are not zeros in front of a number, where some are.
     fn without_zeros(&mut self, slice: NodeId, label: &Label) -> Option<NodeId> {
         let Cell::Op(Op::Slice { of, low }) = self.node(slice).cell else { return None };
         let Cell::Op(Op::Extend(number)) = self.node(of).cell else { return None };
@@ -431,7 +431,7 @@ impl Graph {
         }
     }
 
-    /// The product of what the operands' values need, no wider, and unsigned where that serves.
+    /// Returns the product of what the operands' values need, no wider, and unsigned where that serves.
     fn fold_product(
         &mut self,
         a: NodeId,
@@ -458,7 +458,7 @@ impl Graph {
 }
 
 impl Cell {
-    /// The nodes that it takes.
+    /// Returns the nodes that it takes.
     pub fn operands(&self) -> Vec<NodeId> {
         match self {
             Self::Op(op) => op.operands(),
@@ -467,7 +467,7 @@ impl Cell {
         }
     }
 
-    /// Whether it is bits under another name: wires alone.
+    /// Returns whether it is bits under another name: wires alone.
     pub fn is_wiring(&self) -> bool {
         matches!(
             self,
@@ -477,7 +477,7 @@ impl Cell {
     }
 }
 
-/// How many bits a number of this range needs.
+/// Returns how many bits a number of this range needs.
 fn bits_for(range: Interval, signed: bool) -> u32 {
     let bits = |raw: i128| 128 - if raw < 0 { !raw } else { raw }.leading_zeros();
     (bits(range.0).max(bits(range.1)) + u32::from(signed)).max(1)

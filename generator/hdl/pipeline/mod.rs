@@ -76,7 +76,7 @@ pub struct Options {
     pub delays: Delays,
 }
 
-/// The pipeline of a sequential design.
+/// Returns the pipeline of a sequential design.
 ///
 /// # Errors
 /// A microprogram that cannot be unrolled, with its source line; a clock or a number of stages that

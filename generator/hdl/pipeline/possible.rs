@@ -12,7 +12,7 @@ const MOST_BITS: u32 = 16;
 /// The most bits of a node that selects among a number for each of its values.
 const MOST_SELECTED: u32 = 6;
 
-/// Whether `condition`, one bit, is ever 1, whatever the nodes `free` and all leaves are; `None` if it
+/// Returns whether `condition`, one bit, is ever 1, whatever the nodes `free` and all leaves are; `None` if it
 /// depends on too many bits to try them all.
 pub fn ever(graph: &Graph, condition: NodeId, free: &[NodeId]) -> Option<bool> {
     let cone = Cone::of(graph, &[condition], free);
@@ -23,7 +23,7 @@ pub fn ever(graph: &Graph, condition: NodeId, free: &[NodeId]) -> Option<bool> {
     Some(cases.any(|values| values[&condition] == [1]))
 }
 
-/// The one node of a few bits among `free` and the leaves that all `conditions` depend on, and how many of them hold for
+/// Returns the one node of a few bits among `free` and the leaves that all `conditions` depend on, and how many of them hold for
 /// each of its bit patterns; none for one that it never has.
 pub fn count(
     graph: &Graph,
@@ -72,7 +72,7 @@ impl Cone {
         Self { leaves, bits, inside }
     }
 
-    /// All nodes where the bits of the leaves are those of a number; none if a leaf never has such a value.
+    /// Returns all nodes where the bits of the leaves are those of a number; none if a leaf never has such a value.
     fn values(&self, graph: &Graph, number: u64) -> Option<HashMap<NodeId, [u64; 1]>> {
         let mut values: HashMap<NodeId, [u64; 1]> = HashMap::new();
         let mut rest = number;

@@ -3,7 +3,7 @@
 use super::graph::{Cell, Graph, Node, NodeId, Op};
 use super::unroll::Unrolled;
 
-/// A copy in which `replace` says what stands for a cell, whose operands are those of the new graph; the cell itself where
+/// Returns a copy in which `replace` says what stands for a cell, whose operands are those of the new graph; the cell itself where
 /// it says nothing.
 pub fn rebuilt(
     unrolled: &Unrolled,

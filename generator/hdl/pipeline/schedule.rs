@@ -85,12 +85,12 @@ struct Clocked {
     apart: usize,
 }
 
-/// The clock of a period in nanoseconds, in MHz to a decimal. Rounded down, so that what is stated can be reached.
+/// Returns the clock of a period in nanoseconds, in MHz to a decimal. Rounded down, so that what is stated can be reached.
 pub fn megahertz(period: f64) -> f64 {
     (10_000.0 / period).floor() / 10.0
 }
 
-/// Whether an operation is made of other things than look-up tables that could take logic before it with them.
+/// Returns whether an operation is made of other things than look-up tables that could take logic before it with them.
 fn takes_no_logic(cell: &Cell) -> bool {
     matches!(cell, Cell::Op(Op::Add { .. } | Op::Sub(..) | Op::Less(..) | Op::Mul(..)))
 }
@@ -101,7 +101,7 @@ type Difference = (NodeId, NodeId, usize);
 /// The stages of the products that share multipliers.
 type Taken = BTreeMap<NodeId, usize>;
 
-/// The inverters whose bits are, through wiring, factors of products.
+/// Returns the inverters whose bits are, through wiring, factors of products.
 fn inverted_factors(graph: &Graph, live: &[NodeId]) -> Vec<NodeId> {
     let products = live.iter().filter_map(|&id| match graph.node(id).cell {
         Cell::Op(Op::Mul(a, b)) => Some([a, b]),
@@ -119,13 +119,13 @@ fn inverted_factors(graph: &Graph, live: &[NodeId]) -> Vec<NodeId> {
     inverters
 }
 
-/// Whether a node is another with more bits of its sign, or under another name: made anew wherever it is
+/// Returns whether a node is another with more bits of its sign, or under another name: made anew wherever it is
 /// used, so that registers hold what it is made of.
 pub fn is_extension(graph: &Graph, id: NodeId) -> bool {
     matches!(graph.node(id).cell, Cell::Op(Op::Extend(_) | Op::Relabel(_)))
 }
 
-/// The node that registers hold for the users of `id`.
+/// Returns the node that registers hold for the users of `id`.
 fn held(graph: &Graph, results: &[NodeId], mut id: NodeId) -> NodeId {
     while is_extension(graph, id) && !results.contains(&id) {
         id = graph.node(id).cell.operands()[0];
@@ -216,13 +216,13 @@ impl<'a> Problems<'a> {
         }
     }
 
-    /// The multipliers of the target that products take.
+    /// Returns the multipliers of the target that products take.
     pub fn multipliers(&self) -> usize {
         let all = sharing::products(self.graph, self.target, &self.live).len();
         all - self.kinds.iter().map(|kind| kind.products.len() - kind.units).sum::<usize>()
     }
 
-    /// The shortest period that one operation alone allows, and the operation. What the environment takes for an operand
+    /// Returns the shortest period that one operation alone allows, and the operation. What the environment takes for an operand
     /// never makes a period unreachable.
     pub fn fastest(&self) -> Option<Unreachable> {
         let delay = |id: &NodeId| {
@@ -241,7 +241,7 @@ impl<'a> Problems<'a> {
         Some(Unreachable { limiting, period: delay(&limiting) + self.target.register })
     }
 
-    /// The schedule with the fewest register bits for a period in nanoseconds, in as few stages as it
+    /// Returns the schedule with the fewest register bits for a period in nanoseconds, in as few stages as it
     /// can be.
     ///
     /// # Errors
@@ -259,7 +259,7 @@ impl<'a> Problems<'a> {
         self.solve(&differences, &taken, latency, period)
     }
 
-    /// The schedule of this number of stages with the shortest period. With more than there are of use the
+    /// Returns the schedule of this number of stages with the shortest period. With more than there are of use the
     /// period is that of the slowest operation.
     ///
     /// # Errors
@@ -292,19 +292,19 @@ impl<'a> Problems<'a> {
         self.solve(&differences, &taken, latency, high)
     }
 
-    /// The most stages that shorten the clock.
+    /// Returns the most stages that shorten the clock.
     pub fn most_stages(&self) -> usize {
         let period = self.fastest().map_or(0.0, |it| it.period);
         let differences = self.differences(period);
         self.latency(&differences, &self.taken(&differences))
     }
 
-    /// How many boundaries lie between the operands of `user` and `user`.
+    /// Returns how many boundaries lie between the operands of `user` and `user`.
     pub fn apart(&self, user: NodeId) -> usize {
         self.clocked[user.index()].map_or(0, |it| it.apart)
     }
 
-    /// The registers between two nodes that are too long for one stage. Block memories and multipliers stand in columns of
+    /// Returns the registers between two nodes that are too long for one stage. Block memories and multipliers stand in columns of
     /// their own: where the way to a multiplier has no room, the value of a memory takes one near each.
     fn registers_between(&self, from: NodeId, user: NodeId, most: f64) -> usize {
         let product = matches!(self.graph.node(user).cell, Cell::Op(Op::Mul(..)));
@@ -366,7 +366,7 @@ impl<'a> Problems<'a> {
         differences
     }
 
-    /// The fewest boundaries: the longest chain of differences, and one behind the results.
+    /// Returns the fewest boundaries: the longest chain of differences, and one behind the results.
     fn latency(&self, differences: &[Difference], taken: &Taken) -> usize {
         let earliest = self.earliest(differences, taken);
         let results = self.results.iter().filter(|id| self.graph.constant_of(**id).is_none());
@@ -383,7 +383,7 @@ impl<'a> Problems<'a> {
         earliest
     }
 
-    /// The stages of products that share multipliers: one after another, first the one that can be there first, and of those the
+    /// Returns the stages of products that share multipliers: one after another, first the one that can be there first, and of those the
     /// one on which most depends.
     fn taken(&self, differences: &[Difference]) -> Taken {
         let mut after = vec![0; self.graph.nodes.len()];
@@ -411,7 +411,7 @@ impl<'a> Problems<'a> {
         taken
     }
 
-    /// The last stage that a node can stand in: operands are there from the beginning, and results need a boundary behind them.
+    /// Returns the last stage that a node can stand in: operands are there from the beginning, and results need a boundary behind them.
     fn last_stage(&self, id: usize, latency: usize) -> usize {
         if matches!(self.graph.nodes[id].cell, Cell::Operand(_)) { 0 } else { latency - 1 }
     }
@@ -546,7 +546,7 @@ impl<'a> Problems<'a> {
         users
     }
 
-    /// The longest way through the logic of each stage.
+    /// Returns the longest way through the logic of each stage.
     fn logic(&self, stage: &[usize], latency: usize) -> Vec<f64> {
         let mut arrival = vec![0.0f64; self.graph.nodes.len()];
         let mut longest = vec![0.0f64; latency];
@@ -580,12 +580,12 @@ impl<'a> Problems<'a> {
         longest
     }
 
-    /// The part of a clock that registers take.
+    /// Returns the part of a clock that registers take.
     pub fn register_ns(&self) -> f64 {
         self.target.register
     }
 
-    /// The nodes that are scheduled.
+    /// Returns the nodes that are scheduled.
     pub fn live(&self) -> &[NodeId] {
         &self.live
     }
@@ -605,7 +605,7 @@ impl<'a> Problems<'a> {
         last
     }
 
-    /// The multipliers that products share, with the products of each slot.
+    /// Returns the multipliers that products share, with the products of each slot.
     pub fn units(&self, schedule: &Schedule) -> Vec<Unit> {
         let kinds = self.kinds.iter();
         let of =
@@ -613,7 +613,7 @@ impl<'a> Problems<'a> {
         kinds.flat_map(of).collect()
     }
 
-    /// Whether the clock makes a node: a word of a block memory, or a product in a register.
+    /// Returns whether the clock makes a node: a word of a block memory, or a product in a register.
     pub fn is_clocked(&self, id: NodeId) -> bool {
         self.clocked[id.index()].is_some()
     }

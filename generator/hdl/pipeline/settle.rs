@@ -24,7 +24,7 @@ fn limit(graph: &Graph, id: NodeId) -> Option<(NodeId, NodeId, NodeId)> {
     }
 }
 
-/// A condition without the choice of which it asks for a bit.
+/// Returns a condition without the choice of which it asks for a bit.
 fn flag(graph: &mut Graph, id: NodeId) -> NodeId {
     let node = graph.node(id).clone();
     let Cell::Op(Op::Slice { of, low }) = node.cell else { return id };
@@ -37,7 +37,7 @@ fn flag(graph: &mut Graph, id: NodeId) -> NodeId {
     either(graph, over, bit, &label)
 }
 
-/// Whether one of two bits is 1; of bits side by side, whether any is.
+/// Returns whether one of two bits is 1; of bits side by side, whether any is.
 fn either(graph: &mut Graph, a: NodeId, b: NodeId, label: &Label) -> NodeId {
     if let (Some((of, low, width)), Some((other, below, 1))) = (run(graph, a), run(graph, b))
         && of == other
@@ -50,7 +50,7 @@ fn either(graph: &mut Graph, a: NodeId, b: NodeId, label: &Label) -> NodeId {
     graph.op(Op::Or(a, b), Format::BIT, label)
 }
 
-/// The bits of which a condition asks whether any is 1, as a net, the lowest bit and their number.
+/// Returns the bits of which a condition asks whether any is 1, as a net, the lowest bit and their number.
 fn run(graph: &Graph, id: NodeId) -> Option<(NodeId, u32, u32)> {
     match graph.node(id).cell {
         Cell::Op(Op::Any(of)) => run(graph, of),
@@ -74,7 +74,7 @@ fn below(graph: &mut Graph, id: NodeId, over: NodeId) -> NodeId {
     }
 }
 
-/// Whether `inner` is 0 wherever `over` is.
+/// Returns whether `inner` is 0 wherever `over` is.
 fn follows(graph: &Graph, over: NodeId, inner: NodeId) -> bool {
     match (run(graph, over), run(graph, inner)) {
         _ if over == inner => true,

@@ -31,7 +31,7 @@ pub struct Unit {
     pub serves: Vec<Option<(NodeId, [NodeId; 2])>>,
 }
 
-/// The factors of a product.
+/// Returns the factors of a product.
 fn factors(graph: &Graph, id: NodeId) -> Option<[NodeId; 2]> {
     match graph.node(id).cell {
         Cell::Op(Op::Mul(a, b)) => Some([a, b]),
@@ -39,7 +39,7 @@ fn factors(graph: &Graph, id: NodeId) -> Option<[NodeId; 2]> {
     }
 }
 
-/// The products of a computation that take a multiplier of the target, which those that synthesis makes of look-up tables do not.
+/// Returns the products of a computation that take a multiplier of the target, which those that synthesis makes of look-up tables do not.
 pub fn products(graph: &Graph, target: &Timing, live: &[NodeId]) -> Vec<NodeId> {
     let family = FAMILIES.iter().find(|family| family.name() == target.name);
     let least = family.map_or(0, |family| family.estimate.least_product);
@@ -47,7 +47,8 @@ pub fn products(graph: &Graph, target: &Timing, live: &[NodeId]) -> Vec<NodeId> 
     products.filter(|&id| factors(graph, id).is_some()).collect()
 }
 
-/// The products of a computation that share multipliers; none with an interval of 1. A product without sign is one with sign where the multiplier has a bit to spare, and has company there.
+/// Returns the products of a computation that share multipliers; none with an interval of 1. A product without sign is
+/// one with sign where the multiplier has a bit to spare, and has company there.
 pub fn kinds(graph: &Graph, target: &Timing, live: &[NodeId], interval: usize) -> Vec<Kind> {
     let products = products(graph, target, live);
     let signed = |id: &NodeId| graph.node(*id).format.signed;
@@ -72,7 +73,7 @@ pub fn kinds(graph: &Graph, target: &Timing, live: &[NodeId], interval: usize) -
     kinds.filter(|kind| kind.units < kind.products.len()).collect()
 }
 
-/// The units that serve the products of a kind in these stages. Of those that are free in its slot, a product takes the one
+/// Returns the units that serve the products of a kind in these stages. Of those that are free in its slot, a product takes the one
 /// whose muxes and registers grow the least.
 pub fn units(
     graph: &Graph,

@@ -67,7 +67,7 @@ fn parts(
     vec![Term { value, places: 0 }]
 }
 
-/// Whether the greatest value of an unsigned factor is a power of two, with a bit that no other value has.
+/// Returns whether the greatest value of an unsigned factor is a power of two, with a bit that no other value has.
 fn reaches_a_power_of_two(graph: &Graph, factor: NodeId) -> bool {
     let (low, high) = graph.node(factor).range;
     low >= 0 && high == 1 << (graph.width(factor) - 1)
@@ -111,7 +111,7 @@ fn with_a_sign(graph: &Graph, [a, b]: [NodeId; 2]) -> Option<[NodeId; 2]> {
     (positive(factors[0]) && graph.width(factors[1]) > 1).then_some(factors)
 }
 
-/// A product of a factor that is never negative and one that may be: that of the bits below the sign, less the former where
+/// Returns a product of a factor that is never negative and one that may be: that of the bits below the sign, less the former where
 /// the sign is set. Of two signed factors more bits would be cut.
 fn below_the_sign(
     graph: &mut Graph,
@@ -146,7 +146,7 @@ struct Term {
     places: u32,
 }
 
-/// The sum of the parts of a product.
+/// Returns the sum of the parts of a product.
 fn summed(graph: &mut Graph, mut parts: Vec<Term>, format: Format, label: &Label) -> NodeId {
     let top = |graph: &Graph, term: &Term| term.places + graph.width(term.value);
     parts.sort_by_key(|term| std::cmp::Reverse(top(graph, term)));
@@ -166,7 +166,7 @@ fn summed(graph: &mut Graph, mut parts: Vec<Term>, format: Format, label: &Label
     graph.op(Op::Relabel(sum), format, label)
 }
 
-/// A term as a number of this width and sign.
+/// Returns a term as a number of this width and sign.
 fn in_ones(graph: &mut Graph, term: Term, width: u32, signed: bool, label: &Label) -> NodeId {
     let Term { value, places } = term;
     let format = graph.node(value).format;
@@ -219,7 +219,7 @@ fn cut(
     upper.chain(lower).collect()
 }
 
-/// The product of the lowest `rest` bits of `wide` with `narrow`, a row for each.
+/// Returns the product of the lowest `rest` bits of `wide` with `narrow`, a row for each.
 fn rows(graph: &mut Graph, wide: NodeId, rest: u32, narrow: NodeId, label: &Label) -> NodeId {
     let signed = graph.node(narrow).format.signed;
     let width = graph.width(narrow);
@@ -259,7 +259,7 @@ fn unsigned(width: u32) -> Format {
     integer(false, width)
 }
 
-/// The label of what needs no name.
+/// Returns the label of what needs no name.
 fn unnamed(label: &Label) -> Label {
     Label { doc: String::new(), named: false, ..label.clone() }
 }
@@ -277,7 +277,7 @@ mod tests {
     use glint_base::fixed::Format;
     use glint_base::target::{TIMINGS, Timing};
 
-    /// A product in one stage, of a device whose multipliers take 4 bits by 4.
+    /// Returns a product in one stage, of a device whose multipliers take 4 bits by 4.
     fn product(factors: impl for<'d> Fn(&'d Designer) -> [Signal<'d>; 2]) -> Design {
         let design = design(|d| {
             let [a, b] = factors(d);
@@ -318,7 +318,7 @@ mod tests {
         device.value(design.find("product_out").expect("a result"))
     }
 
-    /// How many multipliers there are; none takes more than it can.
+    /// Returns how many multipliers there are; none takes more than it can.
     fn multipliers(design: &Design) -> usize {
         let products = design.iter().filter_map(|(_, net)| match net.driver {
             Driver::Op(Op::Mul(a, b)) => Some([a, b]),

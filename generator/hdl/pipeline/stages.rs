@@ -13,7 +13,7 @@ use crate::netlist::{
 };
 use glint_base::fixed::Format;
 
-/// The design of a schedule.
+/// Returns the design of a schedule.
 pub fn assemble(
     sequential: &Design,
     unrolled: &Unrolled,
@@ -325,7 +325,7 @@ impl Builder<'_> {
         }
     }
 
-    /// A net of the handshake without a name of its own.
+    /// Returns a net of the handshake without a name of its own.
     fn inner(&mut self, name: &str, format: Format, driver: Driver) -> NetId {
         let id = self.net(self.free(name.to_owned()), 0, format, driver);
         self.design.nets[id.index()].named = false;
@@ -333,7 +333,7 @@ impl Builder<'_> {
         id
     }
 
-    /// The counter of the slots, and whether it stands in slot 0; none if there is one slot.
+    /// Returns the counter of the slots, and whether it stands in slot 0; none if there is one slot.
     fn slots(&mut self) -> Option<NetId> {
         let last = self.interval.checked_sub(1).filter(|last| *last > 0)?;
         let bits = usize::BITS - last.leading_zeros();
@@ -356,7 +356,7 @@ impl Builder<'_> {
         Some(first)
     }
 
-    /// Whether the counter stands in a slot.
+    /// Returns whether the counter stands in a slot.
     fn is_slot(&mut self, slot: NetId, number: usize) -> NetId {
         let format = self.design.net(slot).format;
         let value = Driver::Constant(number as u64);
@@ -364,7 +364,7 @@ impl Builder<'_> {
         self.inner("slot_is", Format::BIT, Driver::Op(Op::Equal(slot, number)))
     }
 
-    /// The enable of registers that take what a stage makes, and hold it until the next point is there.
+    /// Returns the enable of registers that take what a stage makes, and hold it until the next point is there.
     fn load(&mut self, stage: usize) -> Option<NetId> {
         let Some(slot) = self.slot else { return self.advance };
         let number = stage % self.interval;
@@ -380,7 +380,7 @@ impl Builder<'_> {
         Some(load)
     }
 
-    /// The multipliers that products share, without what selects their factors.
+    /// Returns the multipliers that products share, without what selects their factors.
     fn units(&mut self, registered: bool) -> Vec<(sharing::Unit, [NetId; 2])> {
         let mut made = Vec::new();
         for (number, unit) in (1..).zip(self.problems.units(self.schedule)) {
@@ -455,7 +455,7 @@ impl Builder<'_> {
         }
     }
 
-    /// A value with as many bits as another net.
+    /// Returns a value with as many bits as another net.
     fn widened(&mut self, value: NetId, as_many: NetId) -> NetId {
         let format = self.design.net(as_many).format;
         if self.design.width(value) == format.width() {
@@ -498,7 +498,7 @@ impl Builder<'_> {
         }
     }
 
-    /// The bits of a shared multiplier's register that are a product, in its stage.
+    /// Returns the bits of a shared multiplier's register that are a product, in its stage.
     fn shared_product(&mut self, id: NodeId, stage: usize) -> NetId {
         let (of, format) = (self.shared[&id], self.graph.node(id).format);
         let op = match self.design.width(of) == format.width() {
@@ -522,7 +522,7 @@ impl Builder<'_> {
         net
     }
 
-    /// A register of a stage that takes what the stage before has of a node.
+    /// Returns a register of a stage that takes what the stage before has of a node.
     fn behind(&mut self, id: NodeId, value: NetId, stage: usize, enable: Option<NetId>) -> NetId {
         let name = self.staged(&self.names[&id], stage);
         let q = self.net(name, stage, self.graph.node(id).format, Driver::Undriven);
@@ -571,7 +571,7 @@ impl Builder<'_> {
         net
     }
 
-    /// A read port of a memory: of a block memory the word comes a stage after the address.
+    /// Returns a read port of a memory: of a block memory the word comes a stage after the address.
     fn read(&mut self, id: NodeId, rom: RomId, address: NodeId, stage: usize) -> NetId {
         let synchronous = self.problems.is_clocked(id);
         let address = self.value(address, stage - usize::from(synchronous));
@@ -654,13 +654,13 @@ impl Builder<'_> {
             .collect()
     }
 
-    /// The stage whose logic makes a node: of a product in the register of a multiplier, that before its own.
+    /// Returns the stage whose logic makes a node: of a product in the register of a multiplier, that before its own.
     fn computed_in(&self, id: NodeId) -> usize {
         let product = matches!(self.graph.node(id).cell, Cell::Op(_));
         self.schedule.stage[id.index()] - usize::from(product && self.problems.is_clocked(id))
     }
 
-    /// Where values that architectural registers hold are to be seen.
+    /// Returns where values that architectural registers hold are to be seen.
     fn checkpoints(&self, unrolled: &Unrolled) -> Vec<Checkpoint> {
         let mut before: HashMap<RegId, NodeId> = HashMap::new();
         let mut checkpoints = Vec::new();

@@ -8,7 +8,7 @@ use crate::netlist::interval::of_cell;
 use glint_base::fixed::Format;
 use glint_base::interval::Interval;
 
-/// A cell; of a sum or a difference the chain has no more bits than it needs.
+/// Returns a cell; of a sum or a difference the chain has no more bits than it needs.
 pub fn shortened(
     graph: &mut Graph,
     op: Op,
@@ -72,7 +72,7 @@ fn within(
     graph.insert(Cell::Op(Op::Concat(vec![upper, lower])), format, range, label)
 }
 
-/// A constant and a choice between a value and a constant: the choice between their sums, or differences.
+/// Returns a constant and a choice between a value and a constant: the choice between their sums, or differences.
 fn chosen_behind(
     graph: &mut Graph,
     op: &Op,
@@ -106,7 +106,7 @@ fn chosen_behind(
     Some(graph.insert(Cell::Op(Op::Mux { select, inputs }), format, range, label))
 }
 
-/// The select and the inputs of a choice between a value and a constant, where a node is one or has its bits.
+/// Returns the select and the inputs of a choice between a value and a constant, where a node is one or has its bits.
 fn choice(graph: &Graph, id: NodeId) -> Option<(NodeId, Vec<NodeId>)> {
     match &graph.node(id).cell {
         Cell::Op(Op::Relabel(of)) => choice(graph, *of),
@@ -118,7 +118,7 @@ fn choice(graph: &Graph, id: NodeId) -> Option<(NodeId, Vec<NodeId>)> {
     }
 }
 
-/// How many of the lowest bits are always 0.
+/// Returns how many of the lowest bits are always 0.
 fn zeros(graph: &Graph, id: NodeId) -> u32 {
     let width = graph.width(id);
     match &graph.node(id).cell {

@@ -19,7 +19,7 @@ fn options(goal: Goal) -> Options {
     }
 }
 
-/// A quotient of 8 bits, a bit a clock.
+/// Returns a quotient of 8 bits, a bit a clock.
 fn ratio() -> Design {
     design(|d| {
         let a = d.operand("a", Format::unsigned(8, 0));
@@ -125,7 +125,7 @@ fn what_an_earlier_computation_left_cannot_be_a_result() {
     assert!(super::carried(&power()).is_none());
 }
 
-/// The fourth power of an operand, by two products.
+/// Returns the fourth power of an operand, by two products.
 fn power() -> Design {
     design(|d| {
         let x = d.operand("x", Format::unsigned(9, 0));
@@ -239,7 +239,7 @@ enum By {
     Sum,
 }
 
-/// The clock in MHz of a stage in which a sum goes to a register.
+/// Returns the clock in MHz of a stage in which a sum goes to a register.
 fn clock_of_a_sum(by: By) -> f64 {
     let design = design(|d| {
         let wide = Format::unsigned(40, 0);

@@ -94,7 +94,7 @@ enum Iterations {
     InPowers,
 }
 
-/// The result that depends on what an earlier computation has left, in words; none where no result does, or where the
+/// Returns the result that depends on what an earlier computation has left, in words; none where no result does, or where the
 /// microprogram cannot be executed to its results so.
 pub fn carried(design: &Design) -> Option<Diagnostic> {
     let (executor, results) = executed(design, Iterations::InPowers).ok()?;
@@ -108,7 +108,7 @@ fn run(design: &Design, iterations: Iterations) -> Result<Unrolled, Diagnostic> 
     Ok(executor.unrolled)
 }
 
-/// The execution to the results, and these.
+/// Returns the execution to the results, and these.
 fn executed(
     design: &Design,
     iterations: Iterations,
@@ -161,7 +161,7 @@ impl<'a> Executor<'a> {
         }
     }
 
-    /// The clock that takes `start`, with all operands.
+    /// Returns the clock that takes `start`, with all operands.
     fn start(&mut self, state: &State) -> State {
         Clock::new(self, state, Some(0), true).edge()
     }
@@ -221,7 +221,7 @@ impl<'a> Executor<'a> {
         }
     }
 
-    /// Every iteration but the first of the loop from `to` to `last`, of which `condition` says whether there
+    /// Returns every iteration but the first of the loop from `to` to `last`, of which `condition` says whether there
     /// is one; `state` is that after the first. The loop is bounded whatever the registers `free`, with
     /// which it begins, hold.
     ///
@@ -276,7 +276,7 @@ impl<'a> Executor<'a> {
         }
     }
 
-    /// The state after the iterations of a loop, of which there are as many as `conditions` hold, but for the registers that
+    /// Returns the state after the iterations of a loop, of which there are as many as `conditions` hold, but for the registers that
     /// count them: 8, 4, 2 and 1 iterations, each under a bit of their number. None if an iteration depends on the registers that
     /// count them or on a memory, or the number on more than a few bits.
     fn in_powers(
@@ -341,7 +341,7 @@ impl<'a> Executor<'a> {
         (!depends && now.roms == first.roms).then_some(now)
     }
 
-    /// One microinstruction: the state after it, and the condition of a loop.
+    /// Returns one microinstruction: the state after it, and the condition of a loop.
     fn execute(&mut self, at: &At) -> Result<(State, Option<NodeId>), Diagnostic> {
         let design = self.design;
         if self.unrolled.steps.len() == MOST_CLOCKS {
@@ -387,7 +387,7 @@ impl<'a> Executor<'a> {
         Ok((clock.edge(), condition))
     }
 
-    /// Each register as it is in `yes` where the condition holds, and else as in `no`.
+    /// Returns each register as it is in `yes` where the condition holds, and else as in `no`.
     fn either(&mut self, condition: NodeId, yes: &State, no: &State) -> State {
         let design = self.design;
         let graph = &mut self.unrolled.graph;

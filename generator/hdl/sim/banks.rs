@@ -45,7 +45,7 @@ pub(super) fn divide(
     divider.program()
 }
 
-/// A bound on the width of what each slot holds. The nets that share a slot are extensions of the
+/// Returns a bound on the width of what each slot holds. The nets that share a slot are extensions of the
 /// narrowest among them.
 fn widths(compiler: &Compiler) -> Vec<u32> {
     let mut widths = vec![u64::BITS + 1; compiler.sources.len()];
@@ -90,14 +90,14 @@ struct Divider<'a> {
 }
 
 impl Divider<'_> {
-    /// A new slot, where it is wanted.
+    /// Returns a new slot, where it is wanted.
     fn fresh(&mut self, wide: bool, initial: u64) -> Slot {
         let bank = if wide { &mut self.wide } else { &mut self.narrow };
         bank.initial.push(initial);
         (bank.initial.len() - 1) as Slot
     }
 
-    /// The new slot that takes the value of a slot of the compiler, in its own bank.
+    /// Returns the new slot that takes the value of a slot of the compiler, in its own bank.
     fn home(&mut self, slot: Slot) -> Slot {
         let wide = self.is_wide[slot as usize];
         let [initial] = self.compiler.initial[slot as usize];
@@ -115,7 +115,7 @@ impl Divider<'_> {
         }
     }
 
-    /// Where a slot of the compiler is, if it is anywhere yet.
+    /// Returns where a slot of the compiler is, if it is anywhere yet.
     fn place(&self, slot: Slot) -> Option<Place> {
         let slot = slot as usize;
         if *self.is_wide.get(slot)? {
@@ -125,7 +125,7 @@ impl Divider<'_> {
         }
     }
 
-    /// The value of a slot of the compiler in a bank. Constants, registers and ROMs get their places when
+    /// Returns the value of a slot of the compiler in a bank. Constants, registers and ROMs get their places when
     /// they are first asked for. A conversion is done now, for a step with these sources, and serves
     /// those that follow.
     fn operand(&mut self, slot: Slot, wide: bool, sources: Sources) -> Slot {
@@ -150,7 +150,7 @@ impl Divider<'_> {
         to
     }
 
-    /// The bits of a wide slot of the compiler, in a new narrow slot.
+    /// Returns the bits of a wide slot of the compiler, in a new narrow slot.
     fn cut(&mut self, slot: Slot, low: u8, drop: u8, sources: Sources) -> Slot {
         let a = self.operand(slot, true, sources);
         let to = self.fresh(false, 0);

@@ -31,7 +31,7 @@ impl Program {
 }
 
 impl<'a> Compiler<'a> {
-    /// A slot with a field of the control word. It is a source of its own, so that what depends on
+    /// Returns a slot with a field of the control word. It is a source of its own, so that what depends on
     /// it is settled when the field changes, rather than whenever the address does.
     fn field(&mut self, word: NetId, low: u32, width: u32) -> Slot {
         let a = self.of_net[word.index()];
@@ -46,7 +46,7 @@ impl<'a> Compiler<'a> {
         to
     }
 
-    /// The slot of a net whose inputs have been compiled.
+    /// Returns the slot of a net whose inputs have been compiled.
     fn net(&mut self, id: NetId) -> Slot {
         let design = self.design;
         let width = design.width(id);
@@ -71,7 +71,7 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    /// The clock edge, and everything together.
+    /// Returns the clock edge, and everything together.
     fn finish(mut self) -> Program {
         let design = self.design;
         let reset = design.port(|role| role == Role::Reset);
@@ -116,7 +116,7 @@ impl<'a> Compiler<'a> {
         banks::divide(&self, &reads, &registers)
     }
 
-    /// The registers, those that take the value of another before that one as far as they are no circle: such a value
+    /// Returns the registers, those that take the value of another before that one as far as they are no circle: such a value
     /// need not be copied to be [`Compiler::stable`].
     fn readers_first(&self) -> Vec<&'a Register> {
         let registers = &self.design.registers;
@@ -191,14 +191,14 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    /// The slot of an enable, unless it is always 1.
+    /// Returns the slot of an enable, unless it is always 1.
     fn enable(&mut self, enable: Option<NetId>, written: &HashSet<Slot>) -> Option<Slot> {
         let slot = enable.map(|net| self.of_net[net.index()]);
         let slot = slot.filter(|&slot| self.known_value(slot) != Some(1));
         slot.map(|slot| self.stable(slot, written))
     }
 
-    /// A slot that holds the value of `a` until the edge is over, although the edge has written the
+    /// Returns a slot that holds the value of `a` until the edge is over, although the edge has written the
     /// slots `written` before: the edge happens everywhere at once.
     fn stable(&mut self, a: Slot, written: &HashSet<Slot>) -> Slot {
         if written.contains(&a) { self.emit(&[a], |to| Instruction::Copy { to, a }) } else { a }

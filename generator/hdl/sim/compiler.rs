@@ -105,7 +105,7 @@ impl<'a> Compiler<'a> {
         (self.sources.len() - 1) as Slot
     }
 
-    /// A slot that the edge writes where `enable` is 1. What has one enable changes together, and is one source; but what a
+    /// Returns a slot that the edge writes where `enable` is 1. What has one enable changes together, and is one source; but what a
     /// microinstruction loads is seldom all news.
     pub(super) fn source(&mut self, enable: Option<NetId>) -> Slot {
         let is_field = |net: &NetId| matches!(self.design.net(*net).driver, Driver::Field(_));
@@ -132,13 +132,13 @@ impl<'a> Compiler<'a> {
         slot
     }
 
-    /// The value of a slot that is known already.
+    /// Returns the value of a slot that is known already.
     pub(super) fn known_value(&self, slot: Slot) -> Option<u64> {
         let constant = self.sources[slot as usize] == 0;
         constant.then(|| self.initial[slot as usize][0])
     }
 
-    /// The slot with the result of an instruction, which `make` builds for a given destination.
+    /// Returns the slot with the result of an instruction, which `make` builds for a given destination.
     pub(super) fn emit(&mut self, operands: &[Slot], make: impl Fn(Slot) -> Instruction) -> Slot {
         if let Some(slot) = self.known.get(&make(0)) {
             return *slot;
@@ -171,7 +171,7 @@ impl<'a> Compiler<'a> {
         sources.fold(0, |all, sources| all | sources)
     }
 
-    /// The slot, the lowest bit and the width, as a `drop`, of which a slot is a slice; itself when
+    /// Returns the slot, the lowest bit and the width, as a `drop`, of which a slot is a slice; itself when
     /// it is none. Instructions that can cut use it, and the slice is often not needed then.
     pub(super) fn sliced(&self, slot: Slot) -> (Slot, u8, u8) {
         match self.made_by.get(&slot) {
@@ -180,7 +180,7 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    /// The slot, the lowest bit and the width, as a `drop`, of which a slot says whether any bit is 1.
+    /// Returns the slot, the lowest bit and the width, as a `drop`, of which a slot says whether any bit is 1.
     pub(super) fn any(&self, slot: Slot) -> Option<(Slot, u8, u8)> {
         match self.made_by.get(&slot) {
             Some(Instruction::Any { a, low, drop, .. }) => Some((*a, *low, *drop)),

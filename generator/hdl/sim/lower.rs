@@ -6,7 +6,7 @@ use crate::sim::program::{Instruction, Slot, drop_of};
 use glint_base::fixed::{MAX_WIDTH, mask};
 
 impl Compiler<'_> {
-    /// The slot with the result of a cell, whose operands have been compiled.
+    /// Returns the slot with the result of a cell, whose operands have been compiled.
     pub(super) fn op(&mut self, op: &Op, id: NetId) -> Slot {
         let design = self.design;
         let width = design.width(id);
@@ -118,14 +118,14 @@ impl Compiler<'_> {
         self.emit(&[a], |to| Instruction::Slice { to, a, low, drop })
     }
 
-    /// The width of what a slot holds: that of the narrowest net in it, of which the others are extensions.
+    /// Returns the width of what a slot holds: that of the narrowest net in it, of which the others are extensions.
     fn held(&self, slot: Slot) -> u32 {
         let nets = self.of_net.iter().zip(&self.design.nets);
         let widths = nets.filter(|(own, _)| **own == slot).map(|(_, net)| net.format.width());
         widths.min().unwrap_or(MAX_WIDTH)
     }
 
-    /// The operands side by side; together they are no wider than a net.
+    /// Returns the operands side by side; together they are no wider than a net.
     fn concat(&mut self, parts: &[NetId]) -> Slot {
         let mut known = 0;
         let mut others = Vec::new();
@@ -168,7 +168,7 @@ impl Compiler<'_> {
         })
     }
 
-    /// A mux of two inputs, together with what only prepares its operands: chains of such muxes tell in
+    /// Returns a mux of two inputs, together with what only prepares its operands: chains of such muxes tell in
     /// which range a value is.
     fn choose(&mut self, select: Slot, a: Slot, b: Slot) -> Slot {
         let Some((of, low, drop)) = self.any(select) else {

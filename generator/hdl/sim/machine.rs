@@ -199,7 +199,7 @@ impl<const LANES: usize> Machine<LANES> {
         differences
     }
 
-    /// The bit pattern of a net in each lane.
+    /// Returns the bit pattern of a net in each lane.
     ///
     /// # Panics
     /// When the net is unnamed and was optimised away.
@@ -210,7 +210,7 @@ impl<const LANES: usize> Machine<LANES> {
         }
     }
 
-    /// The bit pattern of a net in one lane.
+    /// Returns the bit pattern of a net in one lane.
     ///
     /// # Panics
     /// When the net is unnamed and was optimised away, or there is no such lane.
@@ -457,19 +457,19 @@ pub(super) fn execute<W: Word, const LANES: usize>(
     0
 }
 
-/// The sign bit of a pattern whose width is given as `drop`.
+/// Returns the sign bit of a pattern whose width is given as `drop`.
 #[inline(always)]
 fn sign<W: Word>(drop: u8) -> W {
     W::low(1 << 63 >> drop)
 }
 
-/// A two's complement pattern whose width is given as `drop`, at the full width.
+/// Returns a two's complement pattern whose width is given as `drop`, at the full width.
 #[inline(always)]
 fn sign_extended<W: Word>(bits: W, drop: u8) -> W {
     (bits ^ sign(drop)).wrapping_sub(sign(drop))
 }
 
-/// A word of a ROM; 0 beyond its contents.
+/// Returns a word of a ROM; 0 beyond its contents.
 #[inline(always)]
 fn read(words: &[u64], span: Span, address: u64) -> u64 {
     if address < u64::from(span.len) { words[span.start as usize + address as usize] } else { 0 }

@@ -84,12 +84,12 @@ impl<const LANES: usize> Simulator<LANES> {
         })
     }
 
-    /// The position of an input port among [`Design::inputs`], by its name.
+    /// Returns the position of an input port among [`Design::inputs`], by its name.
     pub fn input(&self, name: &str) -> Option<usize> {
         self.inputs.iter().position(|input| input == name)
     }
 
-    /// The names of the input ports, in the order of their positions.
+    /// Returns the names of the input ports, in the order of their positions.
     pub fn inputs(&self) -> &[String] {
         &self.inputs
     }
@@ -102,13 +102,13 @@ impl<const LANES: usize> Simulator<LANES> {
         self.circuit.inputs_mut()[input] = lanes;
     }
 
-    /// The input ports in order of position, each with its lanes, for [`Simulator::set_lanes`] of many
+    /// Returns the input ports in order of position, each with its lanes, for [`Simulator::set_lanes`] of many
     /// at once.
     pub fn inputs_mut(&mut self) -> &mut [[u64; LANES]] {
         self.circuit.inputs_mut()
     }
 
-    /// The bit pattern of a net in each lane, after the latest clock.
+    /// Returns the bit pattern of a net in each lane, after the latest clock.
     ///
     /// # Panics
     /// When the net is unnamed and was optimised away.
@@ -116,7 +116,7 @@ impl<const LANES: usize> Simulator<LANES> {
         self.circuit.machine.lanes(net)
     }
 
-    /// The bit pattern of a net in one lane, after the latest clock.
+    /// Returns the bit pattern of a net in one lane, after the latest clock.
     ///
     /// # Panics
     /// When the net is unnamed and was optimised away, or there is no such lane.
@@ -220,7 +220,7 @@ impl Simulator {
         self.set_lanes(input, [bits]);
     }
 
-    /// The bit pattern of a net after the latest clock.
+    /// Returns the bit pattern of a net after the latest clock.
     ///
     /// # Panics
     /// When the net is unnamed and was optimised away.

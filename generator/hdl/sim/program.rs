@@ -90,7 +90,7 @@ pub(super) enum Instruction {
 }
 
 impl Instruction {
-    /// Its slots, the result first. Those of a mux in the table of choices are not among them.
+    /// Returns its slots, the result first. Those of a mux in the table of choices are not among them.
     pub(super) fn slots_mut(&mut self) -> Vec<&mut Slot> {
         match self {
             Self::Copy { to, a }
@@ -220,12 +220,12 @@ pub struct Program {
 }
 
 impl Program {
-    /// The number of input ports.
+    /// Returns the number of input ports.
     pub fn inputs(&self) -> usize {
         self.narrow.inputs.len() + self.wide.inputs.len()
     }
 
-    /// The place of a net.
+    /// Returns the place of a net.
     ///
     /// # Panics
     /// When the net is unnamed and has none.
@@ -235,7 +235,7 @@ impl Program {
     }
 }
 
-/// How much narrower than 64 bits a width is.
+/// Returns how much narrower than 64 bits a width is.
 pub(super) fn drop_of(width: u32) -> u8 {
     (MAX_WIDTH - width) as u8
 }

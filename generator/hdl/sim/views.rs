@@ -13,7 +13,7 @@ const SIGNED: u32 = 1 << 10 | 1 << 5;
 const POINT: u32 = 1 << 30;
 const TEXT: u32 = 1 << 9;
 
-/// The scopes of a waveform with their nets, the ports first.
+/// Returns the scopes of a waveform with their nets, the ports first.
 fn shown(design: &Design) -> Vec<(String, Vec<&Net>)> {
     let ports = design.ports.iter().map(|port| design.net(port.net)).collect();
     let scopes = scopes(design).into_iter();

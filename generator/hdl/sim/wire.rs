@@ -37,7 +37,7 @@ pub(super) struct Wire<'a> {
     pub seen: Seen<'a>,
 }
 
-/// A string as VCD can hold it: a space would end it.
+/// Returns a string as VCD can hold it: a space would end it.
 fn vcd_text(text: &str) -> String {
     let graphic = |c: char| if c.is_ascii_graphic() { c } else { '_' };
     text.chars().map(graphic).collect()

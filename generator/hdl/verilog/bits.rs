@@ -92,12 +92,12 @@ impl Bits {
         Self(vec![Piece::Constant { value, width }])
     }
 
-    /// The pieces, the most significant first.
+    /// Returns the pieces, the most significant first.
     pub fn pieces(&self) -> &[Piece] {
         &self.0
     }
 
-    /// The only piece, if there is but one.
+    /// Returns the only piece, if there is but one.
     pub fn single(&self) -> Option<Piece> {
         match self.0[..] {
             [piece] => Some(piece),

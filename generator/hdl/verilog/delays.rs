@@ -15,7 +15,7 @@ const TITLE: &str =
 /// How many words go round, and when they do.
 type Pace = (usize, Option<NetId>);
 
-/// The section of the delay lines: an instance for those of one length. Empty without any.
+/// Returns the section of the delay lines: an instance for those of one length. Empty without any.
 pub fn section(builder: &mut Builder<'_>, naming: &Naming) -> Vec<String> {
     let plan = builder.plan;
     let mut paces: BTreeMap<Pace, Vec<&DelayLine>> = BTreeMap::new();
@@ -47,7 +47,7 @@ pub fn section(builder: &mut Builder<'_>, naming: &Naming) -> Vec<String> {
     writer::section(TITLE, text)
 }
 
-/// One value, or several side by side.
+/// Returns one value, or several side by side.
 fn together(values: Vec<String>) -> String {
     match &values[..] {
         [only] => only.clone(),

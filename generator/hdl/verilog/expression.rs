@@ -45,7 +45,7 @@ impl<'a> Expressions<'a> {
         self.names.fresh(wish)
     }
 
-    /// The right-hand side that drives a net.
+    /// Returns the right-hand side that drives a net.
     pub fn driver(&mut self, id: NetId) -> String {
         match &self.plan.design.net(id).driver {
             Driver::Op(op) => self.cell(id, op),
@@ -58,7 +58,7 @@ impl<'a> Expressions<'a> {
         }
     }
 
-    /// A net as the whole right-hand side.
+    /// Returns a net as the whole right-hand side.
     pub fn whole(&mut self, id: NetId) -> String {
         match self.inline(id) {
             Some(cell) => self.driver(cell),
@@ -66,7 +66,7 @@ impl<'a> Expressions<'a> {
         }
     }
 
-    /// A net as an operand: a name, a selection, a concatenation, or a cell in parentheses.
+    /// Returns a net as an operand: a name, a selection, a concatenation, or a cell in parentheses.
     pub fn operand(&mut self, id: NetId) -> String {
         if let Some(constant) = self.constant(id) {
             return constant;
@@ -80,13 +80,13 @@ impl<'a> Expressions<'a> {
         }
     }
 
-    /// The operand of a unary operator, which may not begin with another one.
+    /// Returns the operand of a unary operator, which may not begin with another one.
     fn primary(&mut self, id: NetId) -> String {
         let text = self.operand(id);
         if text.starts_with('~') { format!("({text})") } else { text }
     }
 
-    /// The localparam for a net that is a constant, possibly extended or relabelled, unless a literal
+    /// Returns the localparam for a net that is a constant, possibly extended or relabelled, unless a literal
     /// says as much: 0, 1 ulp, all ones.
     fn constant(&mut self, id: NetId) -> Option<String> {
         let design = self.plan.design;
@@ -134,7 +134,7 @@ impl<'a> Expressions<'a> {
         Some(name)
     }
 
-    /// The word number for a ROM, exactly as wide as its depth asks.
+    /// Returns the word number for a ROM, exactly as wide as its depth asks.
     pub fn address(&mut self, rom: &Rom) -> String {
         let width = super::plan::address_width(rom.words.len());
         let bits = &self.plan.bits[rom.address.index()];
@@ -143,7 +143,7 @@ impl<'a> Expressions<'a> {
         self.bits(&exact)
     }
 
-    /// The cell that a net stands for, if that is written in its place.
+    /// Returns the cell that a net stands for, if that is written in its place.
     fn inline(&self, id: NetId) -> Option<NetId> {
         match self.plan.bits[id.index()].single() {
             Some(Piece::Net { net, .. }) if self.plan.forms[net.index()] == NetForm::Inline => {
@@ -238,7 +238,7 @@ impl<'a> Expressions<'a> {
         if width == 1 { carry } else { format!("{{{}, {carry}}}", literal(0, width - 1)) }
     }
 
-    /// An operand whose signedness in the Verilog is that of its format.
+    /// Returns an operand whose signedness in the Verilog is that of its format.
     fn with_sign(&mut self, id: NetId) -> String {
         let text = self.operand(id);
         let wanted = self.plan.design.net(id).format.signed;
@@ -265,7 +265,7 @@ fn unnumbered(name: &str) -> &str {
     }
 }
 
-/// Whether a text needs no parentheses as an operand: a name, a selection, a concatenation or the
+/// Returns whether a text needs no parentheses as an operand: a name, a selection, a concatenation or the
 /// inverse of one.
 fn is_primary(text: &str) -> bool {
     let inner = text.strip_prefix('~').unwrap_or(text);
@@ -273,7 +273,7 @@ fn is_primary(text: &str) -> bool {
         && (!inner.contains(' ') || (inner.starts_with('{') && closes_at_end(inner)))
 }
 
-/// Whether the first brace closes with the last character.
+/// Returns whether the first brace closes with the last character.
 fn closes_at_end(text: &str) -> bool {
     let mut depth = 0usize;
     for (at, sign) in text.char_indices() {

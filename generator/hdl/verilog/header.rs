@@ -67,7 +67,7 @@ fn paragraph(text: &str) -> Vec<String> {
     lines
 }
 
-/// Where a file comes from.
+/// Returns where a file comes from.
 pub fn regenerated(origin: &Origin) -> Vec<String> {
     let again = match origin.regenerate {
         "" => String::new(),
@@ -126,7 +126,7 @@ fn formats(design: &Design) -> String {
     text
 }
 
-/// The ports with format and role, in columns.
+/// Returns the ports with format and role, in columns.
 fn ports(design: &Design) -> Vec<String> {
     let name = |net: NetId| design.net(net).name.as_str();
     let width = design.ports.iter().map(|port| name(port.net).len()).max().unwrap_or(0);
@@ -163,7 +163,7 @@ fn ports(design: &Design) -> Vec<String> {
     lines
 }
 
-/// The microprogram, a line for each microinstruction.
+/// Returns the microprogram, a line for each microinstruction.
 fn program(design: &Design) -> Vec<String> {
     let mut lines = vec!["//".to_owned(), "// Microprogram:".to_owned()];
     for (address, it) in design.control.microprogram.iter().enumerate() {

@@ -54,7 +54,7 @@ impl Interface {
     }
 }
 
-/// The nets and the bits of them that are there in a partition and that nothing in it needs, as ranges
+/// Returns the nets and the bits of them that are there in a partition and that nothing in it needs, as ranges
 /// `(net, low, width)`.
 pub fn unread(plan: &Plan, partition: Partition, interface: &Interface) -> Vec<(NetId, u32, u32)> {
     let design = plan.design;

@@ -4,7 +4,7 @@ use super::naming::Naming;
 use super::text::literal;
 use crate::netlist::{Design, Partition, RegisterKind};
 
-/// The lines of a partition's section for formal tools.
+/// Returns the lines of a partition's section for formal tools.
 pub fn invariants(design: &Design, naming: &Naming, partition: Partition) -> Vec<String> {
     let mut names = naming.names.clone();
     let lines = match partition {

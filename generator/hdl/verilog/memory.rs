@@ -8,7 +8,7 @@ use super::words::{in_fields, in_hex, word_note};
 use crate::netlist::{Design, RomId};
 use glint_base::fixed::mask;
 
-/// The `.mem` file of a ROM.
+/// Returns the `.mem` file of a ROM.
 ///
 /// # Errors
 /// A control ROM whose words are not exactly as wide as all fields; a word that is wider than its ROM.
@@ -42,7 +42,7 @@ pub fn contents(design: &Design, id: RomId) -> Result<String> {
     Ok(lines.join("\n") + "\n")
 }
 
-/// The names of the fields, in the order of the digits below.
+/// Returns the names of the fields, in the order of the digits below.
 fn fields(design: &Design, width: u32) -> Result<Vec<String>> {
     let fields = &design.control.fields;
     let total: u32 = fields.iter().map(|field| design.width(field.net)).sum();

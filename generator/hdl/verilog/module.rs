@@ -46,7 +46,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// The module.
+    /// Returns the module.
     pub fn module(mut self, origin: &Origin) -> String {
         // Statements first: they tell which constants and choices are to be declared.
         let items = self.items(&|_| true);
@@ -107,7 +107,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// The registers here that are written as such.
+    /// Returns the registers here that are written as such.
     fn registers(&self) -> impl Iterator<Item = NetId> {
         let design = self.plan.design;
         let registers = (0..).map(RegId).zip(&design.registers).filter(|(id, _)| {
@@ -117,7 +117,7 @@ impl<'a> Builder<'a> {
         registers.filter(|net| self.plan.partition(*net) == self.partition)
     }
 
-    /// The declarations of what the clock changes and is wanted, except ports.
+    /// Returns the declarations of what the clock changes and is wanted, except ports.
     pub(super) fn state(&self, wanted: &dyn Fn(NetId) -> bool) -> Vec<Row> {
         let roms = self.plan.design.roms.iter().filter(|rom| rom.synchronous).map(|rom| rom.data);
         let roms = roms.filter(|net| self.plan.partition(*net) == self.partition);
@@ -152,7 +152,7 @@ impl<'a> Builder<'a> {
         lines
     }
 
-    /// The lines of each cell and memory whose net is wanted.
+    /// Returns the lines of each cell and memory whose net is wanted.
     pub(super) fn items(&mut self, wanted: &dyn Fn(NetId) -> bool) -> Vec<Vec<String>> {
         let design = self.plan.design;
         let mut items = Vec::new();
@@ -207,7 +207,7 @@ impl<'a> Builder<'a> {
         [comment(4, &note), lines].concat()
     }
 
-    /// The left side of a continuous assignment: with the declaration, unless the net is a port.
+    /// Returns the left side of a continuous assignment: with the declaration, unless the net is a port.
     fn target(&self, id: NetId) -> String {
         let net = self.plan.design.net(id);
         if self.interface.outputs.contains(&id) {
@@ -218,7 +218,7 @@ impl<'a> Builder<'a> {
         words.into_iter().filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ")
     }
 
-    /// A mux of more than two inputs.
+    /// Returns a mux of more than two inputs.
     fn case(&mut self, id: NetId, select: NetId, inputs: &[NetId]) -> Vec<String> {
         let design = self.plan.design;
         let name = &design.net(id).name;
@@ -263,7 +263,7 @@ impl<'a> Builder<'a> {
             .collect()
     }
 
-    /// A memory, unless it is there for another read port, and its read port.
+    /// Returns a memory, unless it is there for another read port, and its read port.
     fn rom(&mut self, id: RomId) -> Vec<String> {
         let rom = self.plan.design.rom(id);
         let case = self.naming.style.case;
@@ -289,7 +289,7 @@ impl<'a> Builder<'a> {
         lines
     }
 
-    /// The declaration of a memory with its words, or of the function in its place.
+    /// Returns the declaration of a memory with its words, or of the function in its place.
     fn memory(&mut self, id: RomId) -> Vec<String> {
         let design = self.plan.design;
         let rom = design.rom(id);
@@ -326,7 +326,7 @@ impl<'a> Builder<'a> {
         vec![declaration, format!("    initial $readmem{radix}({parameter}, {memory});")]
     }
 
-    /// The instance that computes a product and holds it.
+    /// Returns the instance that computes a product and holds it.
     fn multiplier(&mut self, register: &Register, multiplier: Multiplier) -> Vec<String> {
         let design = self.plan.design;
         let Multiplier { product, factors } = multiplier;
@@ -395,7 +395,7 @@ impl<'a> Builder<'a> {
         takes
     }
 
-    /// The blocks of the wanted registers of a pipeline: one for those that take their values under the same enable.
+    /// Returns the blocks of the wanted registers of a pipeline: one for those that take their values under the same enable.
     pub(super) fn stage(&mut self, wanted: &dyn Fn(NetId) -> bool) -> Vec<String> {
         let design = self.plan.design;
         let registers = (0..).map(RegId).zip(&design.registers);
@@ -460,7 +460,7 @@ impl<'a> Builder<'a> {
         lines
     }
 
-    /// The section of the net that takes the bits that nobody reads; empty without any.
+    /// Returns the section of the net that takes the bits that nobody reads; empty without any.
     pub(super) fn unused(&self) -> Vec<String> {
         let ranges = unread(self.plan, self.partition, self.interface);
         if ranges.is_empty() {
@@ -477,7 +477,7 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// A statement for each word of a ROM; it begins with what `place` says for the number of the word, which has so many bits.
+/// Returns a statement for each word of a ROM; it begins with what `place` says for the number of the word, which has so many bits.
 fn words(
     design: &Design,
     id: RomId,
@@ -499,7 +499,7 @@ fn words(
     rom.words.iter().enumerate().flat_map(word).collect()
 }
 
-/// The file parameters of ROMs, with their commas; none where the words stand in the Verilog.
+/// Returns the file parameters of ROMs, with their commas; none where the words stand in the Verilog.
 pub fn parameters(naming: &Naming, roms: &[RomId]) -> Vec<String> {
     let roms = roms.iter().filter(|_| !naming.style.inline);
     let texts = roms.filter(|rom| !naming.second.contains(rom)).map(|rom| {

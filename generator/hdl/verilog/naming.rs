@@ -87,7 +87,7 @@ impl Naming {
         Self { style, ..self }
     }
 
-    /// The module of a partition.
+    /// Returns the module of a partition.
     pub fn module(&self, partition: Partition) -> String {
         match partition {
             Partition::Control => format!("{}_control", self.design),
@@ -95,17 +95,17 @@ impl Naming {
         }
     }
 
-    /// The module of a product with a register at its output.
+    /// Returns the module of a product with a register at its output.
     pub fn multiplier(&self) -> String {
         format!("{}_multiplier", self.design)
     }
 
-    /// The module of delay lines.
+    /// Returns the module of delay lines.
     pub fn delay(&self) -> String {
         format!("{}_delay", self.design)
     }
 
-    /// The instance of a partition.
+    /// Returns the instance of a partition.
     pub fn instance(&self, partition: Partition) -> &str {
         match partition {
             Partition::Control => &self.control_instance,
@@ -125,7 +125,7 @@ fn choices(control: &Control, names: &mut Names) -> Vec<Vec<String>> {
     control.fields.iter().map(&mut of_field).collect()
 }
 
-/// The control ROM or not.
+/// Returns the control ROM or not.
 pub fn is_control_rom(design: &Design, rom: RomId) -> bool {
     design.control.rom == rom
 }

@@ -93,7 +93,7 @@ impl<'a> Plan<'a> {
         Ok(plan)
     }
 
-    /// The module that declares a net: fields belong to the control unit whatever they control.
+    /// Returns the module that declares a net: fields belong to the control unit whatever they control.
     pub fn partition(&self, net: NetId) -> Partition {
         match self.design.net(net).driver {
             Driver::Field(_) => Partition::Control,
@@ -101,24 +101,24 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Whether a net is a port of the top module.
+    /// Returns whether a net is a port of the top module.
     pub fn is_port(&self, net: NetId) -> bool {
         self.design.ports.iter().any(|port| port.net == net)
     }
 
-    /// Whether a net is an input port, driven from outside.
+    /// Returns whether a net is an input port, driven from outside.
     pub fn is_input(&self, net: NetId) -> bool {
         self.design.net(net).driver == Driver::Input
     }
 
-    /// Whether a register is one of those of a delay line, and whether it is the last, which is read.
+    /// Returns whether a register is one of those of a delay line, and whether it is the last, which is read.
     pub fn delayed(&self, register: RegId) -> Option<bool> {
         let mut values = self.delays.iter().flat_map(|line| &line.values);
         let value = values.find(|it| it.registers.contains(&register))?;
         Some(value.last() == register)
     }
 
-    /// The module that a reader is written in.
+    /// Returns the module that a reader is written in.
     pub fn home(&self, reader: Reader) -> Partition {
         match reader {
             Reader::Cell(net) => self.partition(net),
@@ -127,7 +127,7 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// The nets that a reader is written with.
+    /// Returns the nets that a reader is written with.
     pub fn operands(&self, reader: Reader) -> Vec<NetId> {
         match reader {
             Reader::Cell(net) => match &self.design.net(net).driver {
@@ -148,7 +148,7 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// The bits of the operand that a reader really reads: all of them, but for a field, a slice and
+    /// Returns the bits of the operand that a reader really reads: all of them, but for a field, a slice and
     /// the address of a ROM, which may have bits to spare.
     pub fn operand_bits(&self, reader: Reader, operand: NetId) -> Bits {
         let bits = &self.bits[operand.index()];
@@ -169,7 +169,7 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// A comparison that the format alone decides (`a < 0` without a sign), which linters refuse.
+    /// Returns a comparison that the format alone decides (`a < 0` without a sign), which linters refuse.
     pub fn constant_comparison(&self, a: NetId, b: NetId) -> Option<u64> {
         let format = self.design.net(a).format;
         let constant = |id: NetId| match self.roots[id.index()].single() {
@@ -184,7 +184,7 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Every reader that is written.
+    /// Returns every reader that is written.
     pub fn readers(&self) -> Vec<Reader> {
         let cells =
             self.live.iter().copied().filter(|net| {
@@ -215,7 +215,7 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// The right-hand side of a declared net that is wiring.
+    /// Returns the right-hand side of a declared net that is wiring.
     pub fn wiring(&self, id: NetId) -> Option<Bits> {
         self.wired(id, &self.bits)
     }
@@ -323,7 +323,7 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Whether a net of a pipeline is short wiring that needs no name: it has no comment, or the register behind it has that.
+    /// Returns whether a net of a pipeline is short wiring that needs no name: it has no comment, or the register behind it has that.
     fn is_plain(&self, id: NetId, bits: &Bits) -> bool {
         const MOST_PIECES: usize = 3;
         let is_held = || {
@@ -337,7 +337,7 @@ impl<'a> Plan<'a> {
             && (undocumented || is_held())
     }
 
-    /// Whether a register holds the value that a net of a pipeline has in the stage before, under the same name.
+    /// Returns whether a register holds the value that a net of a pipeline has in the stage before, under the same name.
     fn is_carried(&self, id: NetId, register: RegId) -> bool {
         let Some(pipeline) = &self.design.pipeline else { return false };
         let q = self.design.register(register).q;
@@ -378,7 +378,7 @@ impl<'a> Plan<'a> {
         nets.sum::<usize>().max(1)
     }
 
-    /// Whether `op` may stand inside what `reader` writes. Products never do, except as the whole
+    /// Returns whether `op` may stand inside what `reader` writes. Products never do, except as the whole
     /// right-hand side: in a larger expression they would be cut to the width of their operands.
     fn reads_well(&self, op: &Op, reader: Reader, mentioned: usize) -> bool {
         const SMALL: usize = 3;
@@ -440,7 +440,7 @@ impl<'a> Plan<'a> {
     }
 }
 
-/// The bits that number `depth` words; a memory of one word has one address bit.
+/// Returns the bits that number `depth` words; a memory of one word has one address bit.
 pub fn address_width(depth: usize) -> u32 {
     depth.max(2).next_power_of_two().trailing_zeros()
 }

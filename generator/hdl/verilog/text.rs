@@ -82,7 +82,7 @@ pub fn constant_name(text: &str) -> String {
     name.trim_end_matches('_').to_owned()
 }
 
-/// A sized literal: decimal while that is short, else hexadecimal.
+/// Returns a sized literal: decimal while that is short, else hexadecimal.
 pub fn literal(value: u64, width: u32) -> String {
     match (width, value) {
         (1, _) => format!("1'b{value}"),
@@ -99,12 +99,12 @@ pub fn range(width: u32) -> String {
     }
 }
 
-/// A statement, broken at spaces where it exceeds the columns; further lines are indented more.
+/// Returns a statement, broken at spaces where it exceeds the columns; further lines are indented more.
 pub fn statement(indent: usize, text: &str) -> Vec<String> {
     broken(&" ".repeat(indent), &" ".repeat(indent + 8), text)
 }
 
-/// A comment of as many lines as it needs, or none for an empty text.
+/// Returns a comment of as many lines as it needs, or none for an empty text.
 pub fn comment(indent: usize, text: &str) -> Vec<String> {
     // Tools take a comment that begins with their name for an order.
     let text = ascii(text).replace("verilator", "Verilator").replace("synopsys", "Synopsys");
@@ -115,7 +115,7 @@ pub fn comment(indent: usize, text: &str) -> Vec<String> {
     broken(&margin, &margin, &text)
 }
 
-/// A declaration with a comment behind it, or above it where it does not fit behind.
+/// Returns a declaration with a comment behind it, or above it where it does not fit behind.
 pub fn annotated(code: &str, indent: usize, note: &str) -> Vec<String> {
     let code = format!("{}{code}", " ".repeat(indent));
     let note = ascii(note);

@@ -16,7 +16,7 @@ pub fn word_note(design: &Design, id: RomId, address: usize) -> Option<String> {
     given.or_else(name).map(|text| ascii(text))
 }
 
-/// A word of the control ROM in binary, its fields apart.
+/// Returns a word of the control ROM in binary, its fields apart.
 pub fn in_fields(design: &Design, word: u64) -> String {
     let positions = design.field_positions();
     let digits = design.control.fields.iter().zip(positions).map(|(field, low)| {

@@ -41,7 +41,7 @@ pub struct View<'a> {
 }
 
 impl View<'_> {
-    /// Every node that these need, themselves too, in order. Of a quotient that are its operands, and no bits.
+    /// Returns every node that these need, themselves too, in order. Of a quotient that are its operands, and no bits.
     fn cone(&self, roots: &[NodeId]) -> Vec<NodeId> {
         let operands = |at| self.operands(NodeId(at as u32)).into_iter().map(NodeId::index);
         let roots = roots.iter().map(|root| root.index());
@@ -57,7 +57,7 @@ impl View<'_> {
     }
 }
 
-/// All ways to compute `results`, given `known` of the operands: together they cover every combination of operands.
+/// Returns all ways to compute `results`, given `known` of the operands: together they cover every combination of operands.
 ///
 /// # Errors
 /// There are too many.
@@ -97,7 +97,7 @@ pub fn cases(view: View, results: &[NodeId], known: &Known) -> Result<Vec<Case>,
     Ok(found)
 }
 
-/// The raw values of a node, given `known` of the operands; none where a selection on the way to it is open.
+/// Returns the raw values of a node, given `known` of the operands; none where a selection on the way to it is open.
 pub fn range(view: View, node: NodeId, known: &Known) -> Option<Interval> {
     let ranges = view.graph.nodes.iter().map(|node| node.range).collect();
     let mut case = Case { known: known.clone(), ranges, parabolas: BTreeMap::new() };
@@ -118,7 +118,7 @@ enum Decision {
 }
 
 impl Case {
-    /// The raw values of the nodes of `cone`, as far as they are decided.
+    /// Returns the raw values of the nodes of `cone`, as far as they are decided.
     fn follow(&mut self, view: View, cone: &[NodeId]) -> Decision {
         let graph = view.graph;
         let mut polynomials: BTreeMap<NodeId, Polynomial> = BTreeMap::new();
@@ -333,7 +333,7 @@ pub fn learn(
     }
 }
 
-/// Whether a value has no bits that count from this one up.
+/// Returns whether a value has no bits that count from this one up.
 fn reaches_top(graph: &Graph, id: NodeId, from: u32) -> bool {
     let node = graph.node(id);
     from == graph.width(id) || !node.format.signed && node.range.1 < 1 << from

@@ -29,7 +29,7 @@ enum Choice {
 }
 
 impl Branch {
-    /// Whether it presupposes of a number what is not so.
+    /// Returns whether it presupposes of a number what is not so.
     pub fn is_never(&self, terms: &Terms) -> bool {
         let is = |id: &Id, wrong: fn(f64) -> bool| match terms.get(*id) {
             Term::Number(value) => wrong(*value),
@@ -39,7 +39,7 @@ impl Branch {
             || self.at_most.iter().any(|id| is(id, |value| value > 0.0))
     }
 
-    /// The way that goes both ways, with the term of the second; none where they choose differently.
+    /// Returns the way that goes both ways, with the term of the second; none where they choose differently.
     pub fn and(&self, other: &Self) -> Option<Self> {
         let mut both = self.clone();
         both.term = other.term;
@@ -56,7 +56,7 @@ impl Branch {
         Some(both)
     }
 
-    /// The way with a choice made about the sign of a term.
+    /// Returns the way with a choice made about the sign of a term.
     fn choosing(&self, difference: Id, choice: Choice, taken: bool) -> Option<Self> {
         let mut own = Self { term: self.term, ..Self::default() };
         own.chosen.insert((difference, choice), taken);
@@ -81,7 +81,7 @@ pub struct Setting<'a> {
     pub operands: &'a [Operand],
 }
 
-/// The variable that stands for the word of a table, by the variable of the operand that numbers it.
+/// Returns the variable that stands for the word of a table, by the variable of the operand that numbers it.
 pub fn word_variable(rom: &str, variable: &str) -> String {
     format!("{rom}_at_{variable}")
 }
@@ -105,7 +105,7 @@ pub fn divisors(formula: &Formula, found: &mut HashMap<String, Option<i32>>) {
     }
 }
 
-/// The operand that is divided by a power of two, and that power.
+/// Returns the operand that is divided by a power of two, and that power.
 fn quotient(formula: &Formula) -> Option<(&str, i32)> {
     let Kind::Binary(Operator::Div, a, b) = &formula.kind else { return None };
     let (Kind::Operand(name), Kind::Number(by, _)) = (&a.kind, &b.kind) else { return None };
@@ -116,12 +116,12 @@ fn power_of_two(value: f64) -> Option<i32> {
     (0..=30).find(|&power| exp2(power) == value)
 }
 
-/// The message about a function that Gappa lacks.
+/// Returns the message about a function that Gappa lacks.
 pub fn untranslated(function: Function) -> String {
     format!("the function `{}` has no translation", function.name())
 }
 
-/// Every way that a formula can go.
+/// Returns every way that a formula can go.
 ///
 /// # Errors
 /// The formula has a part without a translation.
@@ -217,7 +217,7 @@ pub fn branches(
     }
 }
 
-/// The word of a table: the number that it is wherever this case reads, or a variable.
+/// Returns the word of a table: the number that it is wherever this case reads, or a variable.
 fn word(rom: &str, place: &Formula, setting: &Setting, terms: &mut Terms) -> Result<Id, String> {
     let words = setting.words.get(rom).ok_or_else(|| format!("there is no table `{rom}`"))?;
     let (name, range) = match &place.kind {
@@ -263,7 +263,7 @@ fn variable_of(
     }
 }
 
-/// The value of what does not vary in this case.
+/// Returns the value of what does not vary in this case.
 fn constant(formula: &Formula, setting: &Setting) -> Option<f64> {
     match &formula.kind {
         Kind::Number(value, _) => Some(*value),
@@ -274,7 +274,7 @@ fn constant(formula: &Formula, setting: &Setting) -> Option<f64> {
     }
 }
 
-/// Whether a comparison of an operand with a number holds for all values of this case, or for none.
+/// Returns whether a comparison of an operand with a number holds for all values of this case, or for none.
 fn decided(comparison: &Comparison, setting: &Setting) -> Option<bool> {
     let range = |formula: &Formula| match &formula.kind {
         Kind::Number(value, _) => Some((*value, *value)),
@@ -310,7 +310,7 @@ fn power(terms: &mut Terms, base: Id, exponent: u32) -> Id {
     result.unwrap_or_else(|| terms.number(1.0))
 }
 
-/// The term, or what it is by the rules of 0 and 1, or the number that it is if that is exact.
+/// Returns the term, or what it is by the rules of 0 and 1, or the number that it is if that is exact.
 pub fn folded(terms: &mut Terms, term: Term) -> Id {
     let value = |id: Id| match terms.get(id) {
         Term::Number(value) => Some(*value),

@@ -38,7 +38,7 @@ impl Statement {
     }
 }
 
-/// A bound of all that the statements ask for. What Gappa answers is an upper limit; where a smaller one can be proved the
+/// Returns a bound of all that the statements ask for. What Gappa answers is an upper limit; where a smaller one can be proved the
 /// largest is brought down by halves.
 ///
 /// # Errors
@@ -106,7 +106,7 @@ fn answer(
     })
 }
 
-/// The upper end of the interval that Gappa gives, rounded up to six digits behind the point; 0 where it says that what is
+/// Returns the upper end of the interval that Gappa gives, rounded up to six digits behind the point; 0 where it says that what is
 /// presupposed cannot be.
 fn largest(output: &str) -> Option<f64> {
     if output.contains("anything can be proved") {

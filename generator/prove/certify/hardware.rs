@@ -55,7 +55,7 @@ impl<'a> Hardware<'a> {
         self.case.ranges[id.index()]
     }
 
-    /// A new variable with the values that the node has.
+    /// Returns a new variable with the values that the node has.
     fn variable(&mut self, terms: &mut Terms, node: NodeId, variable: String, scale: i32) -> Value {
         let id = terms.insert(Term::Variable(variable.clone()), &variable);
         let (low, high) = self.range(node);
@@ -67,7 +67,7 @@ impl<'a> Hardware<'a> {
         Value::Term { id, scale }
     }
 
-    /// The word of a table: the variable that a formula has for it too, where an operand numbers it.
+    /// Returns the word of a table: the variable that a formula has for it too, where an operand numbers it.
     fn read(&mut self, terms: &mut Terms, node: NodeId, rom: RomId, address: NodeId) -> Value {
         let table = &self.tables[rom.index()];
         let variable = match self.graph.node(address).cell {
@@ -78,7 +78,7 @@ impl<'a> Hardware<'a> {
         self.variable(terms, node, variable, scale)
     }
 
-    /// A quotient: a variable that the real quotient exceeds by its last place at most.
+    /// Returns a quotient: a variable that the real quotient exceeds by its last place at most.
     fn quotient(
         &mut self,
         terms: &mut Terms,
@@ -97,7 +97,7 @@ impl<'a> Hardware<'a> {
         Ok(value)
     }
 
-    /// The difference of two values of which the first is known to be less, or not to be; nothing where one does not
+    /// Returns the difference of two values of which the first is known to be less, or not to be; nothing where one does not
     /// vary, or has no translation.
     pub fn compared(
         &mut self,
@@ -130,7 +130,7 @@ impl<'a> Hardware<'a> {
         Ok((pointed(terms, dividend, scale, "dividend"), pointed(terms, divisor, scale, "divisor")))
     }
 
-    /// The node as a value.
+    /// Returns the node as a value.
     ///
     /// # Errors
     /// The operation that has no translation, with the name of its result.
@@ -144,7 +144,7 @@ impl<'a> Hardware<'a> {
         Ok(value)
     }
 
-    /// The node as a term even where it is one number in this case: that it is this number says something of its operands.
+    /// Returns the node as a term even where it is one number in this case: that it is this number says something of its operands.
     /// None where it is made of constants, or is bits that are cut out.
     pub fn expression(&mut self, terms: &mut Terms, id: NodeId) -> Option<Value> {
         let is_cut =
@@ -281,7 +281,7 @@ impl<'a> Hardware<'a> {
         }
     }
 
-    /// The number of which `a` holds the bits from `low` up and `b` the one below: their sum is that number
+    /// Returns the number of which `a` holds the bits from `low` up and `b` the one below: their sum is that number
     /// rounded to the nearest, halves up, for ⌊y⌋ + (⌊2y⌋ − 2⌊y⌋) = ⌊y + 1/2⌋. None where it may be negative.
     fn rounded(&self, a: NodeId, b: NodeId) -> Option<(NodeId, u32)> {
         let inner = |id: NodeId| match &self.graph.node(id).cell {
@@ -321,7 +321,7 @@ fn cut(terms: &mut Terms, value: Value, low: u32, direction: Direction, name: &s
     }
 }
 
-/// The value with zeros below.
+/// Returns the value with zeros below.
 fn raised(value: Value, position: i32) -> Value {
     match value {
         Value::Constant(raw) => Value::Constant(raw << position),
@@ -329,7 +329,7 @@ fn raised(value: Value, position: i32) -> Value {
     }
 }
 
-/// The sum or the difference.
+/// Returns the sum or the difference.
 fn add(terms: &mut Terms, a: Value, b: Value, operation: fn(Id, Id) -> Term, name: &str) -> Value {
     let scale = match (a, b) {
         (Value::Constant(a), Value::Constant(b)) => {
@@ -350,7 +350,7 @@ fn add(terms: &mut Terms, a: Value, b: Value, operation: fn(Id, Id) -> Term, nam
     Value::Term { id: terms.insert(operation(a, b), name), scale }
 }
 
-/// The value as a term whose raw values are its values times 2^`scale`.
+/// Returns the value as a term whose raw values are its values times 2^`scale`.
 fn pointed(terms: &mut Terms, value: Value, scale: i32, name: &str) -> Id {
     match value {
         Value::Constant(raw) => terms.number(raw as f64 * exp2(-scale)),
@@ -358,7 +358,7 @@ fn pointed(terms: &mut Terms, value: Value, scale: i32, name: &str) -> Id {
     }
 }
 
-/// The term times two to the power of `power`.
+/// Returns the term times two to the power of `power`.
 pub fn scaled(terms: &mut Terms, id: Id, power: i32, name: &str) -> Id {
     if power == 0 {
         return id;
@@ -367,7 +367,7 @@ pub fn scaled(terms: &mut Terms, id: Id, power: i32, name: &str) -> Id {
     terms.insert(Term::Mul(id, factor), name)
 }
 
-/// The value as a term and its fraction bits, which are `frac` for a constant.
+/// Returns the value as a term and its fraction bits, which are `frac` for a constant.
 pub fn placed(terms: &mut Terms, value: Value, frac: i32) -> (Id, i32) {
     match value {
         Value::Constant(raw) => (terms.number(raw as f64 * exp2(-frac)), frac),

@@ -78,7 +78,7 @@ impl Statements {
     }
 }
 
-/// The statements whose conjunction is the contract of a sequential design.
+/// Returns the statements whose conjunction is the contract of a sequential design.
 ///
 /// # Errors
 /// The step that has no translation, in words; that the contract states no bound; or that it takes longer than `limit` to
@@ -210,7 +210,7 @@ impl Task<'_> {
         cases::learn(self.graph(), known, &ranges, node, range)
     }
 
-    /// The node of the operand, if anything depends on it, by its name.
+    /// Returns the node of the operand, if anything depends on it, by its name.
     fn operand(&self, name: &str) -> Option<NodeId> {
         let at =
             self.unrolled.operands.iter().position(|&port| self.design.net(port).name == name)?;
@@ -219,7 +219,7 @@ impl Task<'_> {
         found.map(|(id, _)| NodeId(id as u32))
     }
 
-    /// The values that operands have in the contract's domain.
+    /// Returns the values that operands have in the contract's domain.
     fn domain(&self) -> Result<Known, String> {
         let mut known = Known::new();
         for operand in self.contract.operands() {
@@ -244,7 +244,7 @@ impl Task<'_> {
         outputs.collect()
     }
 
-    /// The domain, by the values of operands that stand in exponents, and by the runs of operands over which tables have the
+    /// Returns the domain, by the values of operands that stand in exponents, and by the runs of operands over which tables have the
     /// same words. Of one table with many words, which the formula reads too, a word is a variable; those of several depend on
     /// each other.
     fn split(&self, known: &Known) -> Vec<Known> {
@@ -288,7 +288,7 @@ impl Task<'_> {
         split
     }
 
-    /// The tables that this node numbers the words of.
+    /// Returns the tables that this node numbers the words of.
     fn tables_read_at(&self, node: NodeId) -> Vec<RomId> {
         let reads = self.graph().nodes.iter().filter_map(|it| match it.cell {
             Cell::Read { rom, address } if address == node => Some(rom),
@@ -438,7 +438,7 @@ fn real_operand(name: &str, setting: &Setting, terms: &mut Terms) -> Result<Id, 
     Ok(branches[0].term)
 }
 
-/// Every way that the expressions can go together.
+/// Returns every way that the expressions can go together.
 fn together(ways: &[Vec<Branch>]) -> Vec<Vec<Branch>> {
     let all = ways.iter().fold(vec![(Branch::default(), Vec::new())], |chosen, ways| {
         let longer = chosen.iter().flat_map(|(all, before)| {

@@ -36,13 +36,13 @@ impl Polynomial {
         small.then_some(Self { of, factors })
     }
 
-    /// The sum with so many times the other.
+    /// Returns the sum with so many times the other.
     pub fn plus(self, other: Self, times: i128) -> Option<Self> {
         let sum = |at: usize| self.factors[at] + times * other.factors[at];
         self.with(other, [sum(0), sum(1), sum(2)])
     }
 
-    /// The product.
+    /// Returns the product.
     pub fn times(self, other: Self) -> Option<Self> {
         let ([a, b, c], [d, e, f]) = (self.factors, other.factors);
         let small = |factors: [i128; 3]| factors.iter().all(|factor| factor.abs() <= 1 << 60);
@@ -52,7 +52,7 @@ impl Polynomial {
         self.with(other, [a * d, a * e + b * d, a * f + b * e + c * d])
     }
 
-    /// The smallest and the largest value for integers of an interval.
+    /// Returns the smallest and the largest value for integers of an interval.
     pub fn range(self, (low, high): Interval) -> Option<Interval> {
         let [a, b, c] = self.factors;
         if low.abs().max(high.abs()) > 1 << 32 || [a, b, c].iter().any(|it| it.abs() > 1 << 62) {

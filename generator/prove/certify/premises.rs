@@ -18,7 +18,7 @@ pub struct Premise {
     pub script: String,
 }
 
-/// The premises of a case.
+/// Returns the premises of a case.
 ///
 /// # Errors
 /// A value has no translation.

@@ -20,7 +20,7 @@ pub struct Quotient {
     pub bits: u32,
 }
 
-/// The quotients that results depend on, each by the node that joins its bits.
+/// Returns the quotients that results depend on, each by the node that joins its bits.
 pub fn quotients(graph: &Graph, results: &[NodeId]) -> BTreeMap<NodeId, Quotient> {
     let mut found = BTreeMap::new();
     let mut pending = results.to_vec();
@@ -40,7 +40,7 @@ pub fn quotients(graph: &Graph, results: &[NodeId]) -> BTreeMap<NodeId, Quotient
     found
 }
 
-/// The quotient whose bits a node joins, the first on top.
+/// Returns the quotient whose bits a node joins, the first on top.
 fn quotient(graph: &Graph, id: NodeId) -> Option<Quotient> {
     let Cell::Op(Op::Concat(_)) = graph.node(id).cell else { return None };
     let mut bits = Vec::new();
@@ -97,14 +97,14 @@ fn step(graph: &Graph, bit: NodeId) -> Option<Step> {
     (is_sign && is_doubled && natural).then_some(Step { remainder, divisor, doubled, trial, bit })
 }
 
-/// Whether a node is what a step leaves, with all bits that numbers up to the divisor have.
+/// Returns whether a node is what a step leaves, with all bits that numbers up to the divisor have.
 fn is_left(graph: &Graph, id: NodeId, step: &Step) -> bool {
     let Cell::Op(Op::Slice { of, low: 0 }) = graph.node(id).cell else { return false };
     let left = Op::Mux { select: step.bit, inputs: vec![step.doubled, step.trial] };
     graph.node(of).cell == Cell::Op(left) && graph.width(id) >= graph.width(step.divisor)
 }
 
-/// The node that is extended by zeros in this one.
+/// Returns the node that is extended by zeros in this one.
 pub fn widened(graph: &Graph, id: NodeId) -> NodeId {
     match &graph.node(id).cell {
         Cell::Op(Op::Extend(of)) if !graph.node(*of).format.signed => *of,

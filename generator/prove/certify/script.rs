@@ -40,7 +40,7 @@ impl Script<'_> {
         self.statement(terms, difference, &goal, &[])
     }
 
-    /// A goal about a term, with hints beside those that hardware and formula give.
+    /// Returns a goal about a term, with hints beside those that hardware and formula give.
     pub fn statement(&self, mut terms: Terms, about: Id, goal: &str, hints: &[String]) -> String {
         let mut roots = vec![about];
         for way in self.ways {
@@ -145,7 +145,7 @@ impl Script<'_> {
         (equal, near)
     }
 
-    /// The values of all terms at operands of this case, and at others of the domain, of which there are more.
+    /// Returns the values of all terms at operands of this case, and at others of the domain, of which there are more.
     fn samples(&self, terms: &Terms) -> Vec<Vec<f64>> {
         let mut random = ChaCha8Rng::seed_from_u64(1);
         let (mut samples, mut others) = (Vec::new(), Vec::new());
@@ -218,7 +218,7 @@ fn rewriting(terms: &Terms, left: Id, right: Id, (factor, offset): (f64, f64)) -
     format!("{} -> {right};", terms.name(left))
 }
 
-/// Whether two columns are equal but for the rounding of f64.
+/// Returns whether two columns are equal but for the rounding of f64.
 fn is_same(x: &[f64], y: &[f64]) -> bool {
     let largest = y.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
     x.iter().zip(y).all(|(x, y)| (x - y).abs() <= largest * exp2(-44))
@@ -238,7 +238,7 @@ fn line_through(x: &[f64], y: &[f64]) -> Option<(f64, f64)> {
     (factor != 0.0 && x.iter().zip(y).all(fits)).then_some((factor, offset))
 }
 
-/// The script with its names numbered as they come: equal ones say the same.
+/// Returns the script with its names numbered as they come: equal ones say the same.
 pub fn nameless(script: &str) -> String {
     let mut numbers: HashMap<&str, usize> = HashMap::new();
     let is_part = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '.';

@@ -49,7 +49,7 @@ struct Word {
     to: f64,
 }
 
-/// The statements of a line.
+/// Returns the statements of a line.
 ///
 /// # Errors
 /// A formula or netlist that is no table of a power of a cosine, at an angle that is walked along.
@@ -99,7 +99,7 @@ struct Walk {
 }
 
 impl Walk {
-    /// The walk whose only register begins with an operand, to which another is added modulo its format.
+    /// Returns the walk whose only register begins with an operand, to which another is added modulo its format.
     fn new(task: &Task, walk: &[WalkRegister]) -> Result<Self, String> {
         let graph = task.graph();
         let other = || "its points walk on by more than a sum".to_owned();
@@ -125,7 +125,7 @@ impl Walk {
         Ok(Self { start, wrapped })
     }
 
-    /// The expression with [`POINT`] for the angle of a point, which is what the walk's register holds: by induction that is
+    /// Returns the expression with [`POINT`] for the angle of a point, which is what the walk's register holds: by induction that is
     /// start + index·step, wrapped around.
     fn angle(&self, formula: &Formula) -> Formula {
         formula.substitute(&self.wrapped, &Formula::operand(POINT), &formula.span)
@@ -175,7 +175,7 @@ fn table(task: &Task) -> Result<Products, String> {
     Ok((colours, table, outputs))
 }
 
-/// The words of the table with the angles that read them, by address.
+/// Returns the words of the table with the angles that read them, by address.
 fn words(task: &Task, table: NodeId, walk: &Walk, angle: &Formula) -> Result<Vec<Word>, String> {
     let graph = task.graph();
     let Cell::Read { rom, address } = graph.node(table).cell else {
@@ -223,7 +223,7 @@ fn words(task: &Task, table: NodeId, walk: &Walk, angle: &Formula) -> Result<Vec
     Ok(found.into_values().collect())
 }
 
-/// The enclosure of an angle where that of the point is in this range; none where it is made of anything else.
+/// Returns the enclosure of an angle where that of the point is in this range; none where it is made of anything else.
 fn enclosed(angle: &Formula, (low, high): (f64, f64)) -> Option<Enclosure> {
     angle.enclose(&[(POINT, Enclosure::between(low, high))]).ok()
 }

@@ -53,7 +53,7 @@ pub struct Terms {
 }
 
 impl Terms {
-    /// The term; `name` is what its definition is called, if it gets one.
+    /// Returns the term; `name` is what its definition is called, if it gets one.
     ///
     /// Operands of a sum and a product are put in one order, so that hardware and formula have them in the
     /// same: Gappa compares a product with another factor by factor.
@@ -78,7 +78,7 @@ impl Terms {
         id
     }
 
-    /// Whether `a` stands behind `b`: numbers stand first, variables last, and other terms by the variables and the degree
+    /// Returns whether `a` stands behind `b`: numbers stand first, variables last, and other terms by the variables and the degree
     /// that they have.
     fn is_after(&self, a: Id, b: Id) -> bool {
         let kind = |id: Id| match self.get(id) {
@@ -90,7 +90,7 @@ impl Terms {
         order(a) > order(b)
     }
 
-    /// The variables of a term that is new, and its degree in them.
+    /// Returns the variables of a term that is new, and its degree in them.
     fn shape(&self, id: Id) -> (Vec<Id>, u32) {
         let operands = self.operands(id);
         let mut variables: Vec<Id> =
@@ -109,12 +109,12 @@ impl Terms {
         (variables, degree)
     }
 
-    /// The constant.
+    /// Returns the constant.
     pub fn number(&mut self, value: f64) -> Id {
         self.insert(Term::Number(value), "number")
     }
 
-    /// The term of a number.
+    /// Returns the term of a number.
     pub fn get(&self, id: Id) -> &Term {
         &self.terms[id].0
     }
@@ -128,12 +128,12 @@ impl Terms {
         }
     }
 
-    /// How many there are.
+    /// Returns how many there are.
     pub fn count(&self) -> usize {
         self.terms.len()
     }
 
-    /// Whether a term is free of roundings and no constant.
+    /// Returns whether a term is free of roundings and no constant.
     pub fn is_exact(&self, id: Id) -> bool {
         let of = |id: &Id| self.is_exact(*id) || matches!(self.get(*id), Term::Number(_));
         match self.get(id) {
@@ -143,7 +143,7 @@ impl Terms {
         }
     }
 
-    /// The values of all terms where the variables have these; NaN where a variable has none.
+    /// Returns the values of all terms where the variables have these; NaN where a variable has none.
     pub fn evaluate(&self, variables: &HashMap<String, f64>) -> Vec<f64> {
         let mut values: Vec<f64> = Vec::with_capacity(self.terms.len());
         for (term, _) in &self.terms {
@@ -173,7 +173,7 @@ impl Terms {
         cone::needed(self.terms.len(), roots.iter().copied(), |id| self.operands(id))
     }
 
-    /// The term without its roundings. `known` are those that are known.
+    /// Returns the term without its roundings. `known` are those that are known.
     pub fn unrounded(&mut self, id: Id, known: &mut HashMap<Id, Id>) -> Id {
         if let Some(&twin) = known.get(&id) {
             return twin;
@@ -234,7 +234,7 @@ impl Terms {
     }
 }
 
-/// A number in decimal, to its last bit.
+/// Returns a number in decimal, to its last bit.
 pub fn number(value: f64) -> String {
     let text = format!("{value:.1100}");
     let text = text.trim_end_matches('0').trim_end_matches('.');

@@ -27,7 +27,7 @@ const NEVER: &str = "1 in [2,3] }";
 /// The text between hypotheses and goal.
 const IMPLIES: &str = "\n  -> ";
 
-/// The script with a goal that follows from a contradiction alone; nothing without hypotheses.
+/// Returns the script with a goal that follows from a contradiction alone; nothing without hypotheses.
 pub fn contradiction(script: &str) -> Option<String> {
     let (hypotheses, rest) = script.split_once(IMPLIES)?;
     let (_, hints) = rest.split_once('}')?;
@@ -99,7 +99,7 @@ impl Hypotheses {
         Some(Self { variables: variables.collect(), terms, intervals })
     }
 
-    /// How far the hypotheses are from holding: 0 where they hold.
+    /// Returns how far the hypotheses are from holding: 0 where they hold.
     fn violation(&self, point: &[i64]) -> f64 {
         let variables = self.variables.iter().zip(point);
         let variables = variables.map(|(it, &raw)| (it.name.clone(), raw as f64 * it.unit));
@@ -140,7 +140,7 @@ impl Hypotheses {
     }
 }
 
-/// A point at which the hypotheses of a script hold, in words; `None` where none is found.
+/// Returns a point at which the hypotheses of a script hold, in words; `None` where none is found.
 pub fn witness(script: &str) -> Option<String> {
     if !script.contains(IMPLIES) {
         return Some("every point".to_owned());
@@ -170,7 +170,7 @@ pub fn witness(script: &str) -> Option<String> {
     None
 }
 
-/// The term of a text.
+/// Returns the term of a text.
 fn expression(text: &str, terms: &mut Terms, names: &HashMap<String, Id>) -> Option<Id> {
     if let Some(rounded) = text.strip_prefix("fixed<") {
         let (how, of) = rounded.split_once(">(")?;

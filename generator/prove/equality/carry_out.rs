@@ -89,7 +89,7 @@ impl<'a> Execution<'a> {
         values
     }
 
-    /// The rising edge.
+    /// Returns the rising edge.
     pub fn edge(&self, terms: &mut Terms, state: &State, values: &[Id]) -> State {
         let design = self.design;
         let of = |net: NetId| values[net.index()];
@@ -125,7 +125,7 @@ impl<'a> Execution<'a> {
         terms.make(Term::Word { memory: self.memories[rom], address }, width)
     }
 
-    /// The result of a cell as [`Op`] documents it.
+    /// Returns the result of a cell as [`Op`] documents it.
     fn cell(
         &self,
         terms: &mut Terms,

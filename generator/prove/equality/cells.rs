@@ -61,7 +61,7 @@ impl Values {
         word.unwrap_or_else(|| terms.constant(0, 1))
     }
 
-    /// The lowest bits that stand beside each other in one term, and how many they are.
+    /// Returns the lowest bits that stand beside each other in one term, and how many they are.
     fn run(&self, terms: &mut Terms, bits: &[Bit]) -> (Id, usize) {
         let source = |bit: Bit| if let Bit::Wire(wire) = bit { self.0[wire] } else { None };
         let first = source(bits[0]);
@@ -84,7 +84,7 @@ impl Values {
         (id, width)
     }
 
-    /// A word of a memory that is never written.
+    /// Returns a word of a memory that is never written.
     pub fn rom(&self, terms: &mut Terms, at: &Bits, words: &[u64], width: u32) -> Id {
         let address = self.word(terms, at);
         let address = terms.resized(address, ADDRESS);

@@ -56,7 +56,7 @@ pub fn about(terms: &mut Terms, roots: &[Id], products: &[Product], parts: bool)
     facts
 }
 
-/// A product by 0, 1 and -1.
+/// Returns a product by 0, 1 and -1.
 fn by_one_or_none(terms: &mut Terms, product: Id, factor: Id, other: Id) -> [Id; 3] {
     let zero = terms.constant(0, MAX_WIDTH);
     let negative = terms.make(Term::Sub(zero, other), MAX_WIDTH);
@@ -87,7 +87,7 @@ pub fn divided(terms: &mut Terms, roots: impl IntoIterator<Item = Id>) -> HashMa
     divided
 }
 
-/// The bits of an extended number, and whether the extension has its sign.
+/// Returns the bits of an extended number, and whether the extension has its sign.
 pub fn extended(terms: &Terms, factor: Id) -> Option<(Id, bool)> {
     match *terms.term(factor) {
         Term::SignExtend(bits) => Some((bits, true)),
@@ -136,7 +136,7 @@ fn in_parts(terms: &mut Terms, factor: Id, other: Id) -> Option<Parts> {
     Some(Parts { product, sum, there })
 }
 
-/// The square of `u·2^r + l`, when `l` is multiplied by `u·2^(r+1) + l` somewhere: that product, and the square of u, shifted.
+/// Returns the square of `u·2^r + l`, when `l` is multiplied by `u·2^(r+1) + l` somewhere: that product, and the square of u, shifted.
 fn square_in_parts(terms: &mut Terms, factor: Id, whole: Id, rest: Id) -> Option<Parts> {
     let (bits, signed) = extended(terms, factor)?;
     let low = terms.width(rest);
@@ -165,7 +165,7 @@ fn square_in_parts(terms: &mut Terms, factor: Id, whole: Id, rest: Id) -> Option
     Some(Parts { product, sum, there: true })
 }
 
-/// Bits with those of the same term below their lowest, and how many these are.
+/// Returns bits with those of the same term below their lowest, and how many these are.
 fn whole(terms: &mut Terms, bits: Id) -> Option<(Id, u32)> {
     match *terms.term(bits) {
         Term::Slice { of, low } if low > 0 => {
@@ -180,7 +180,7 @@ fn whole(terms: &mut Terms, bits: Id) -> Option<(Id, u32)> {
     }
 }
 
-/// Whether there is the first row of the product of a few bits with 64.
+/// Returns whether there is the first row of the product of a few bits with 64.
 fn has_row(terms: &mut Terms, bits: Id, other: Id) -> bool {
     let narrow = match *terms.term(other) {
         Term::SignExtend(narrow) => narrow,
@@ -192,7 +192,7 @@ fn has_row(terms: &mut Terms, bits: Id, other: Id) -> bool {
     terms.has(&Term::Choice(bit, narrow, zero), width) || terms.has(&Term::And(narrow, all), width)
 }
 
-/// The product of a few bits with 64.
+/// Returns the product of a few bits with 64.
 fn rows(terms: &mut Terms, bits: Id, other: Id) -> Id {
     let zero = terms.constant(0, MAX_WIDTH);
     (0..terms.width(bits)).fold(zero, |sum, row| {
@@ -226,7 +226,7 @@ fn within(terms: &mut Terms, product: &Product) -> Option<Id> {
     Some(terms.make(Term::Or(not, conclusion), 1))
 }
 
-/// Whether 64 bits are a number of an interval, two's complement; none if that is no question of 64 bits.
+/// Returns whether 64 bits are a number of an interval, two's complement; none if that is no question of 64 bits.
 fn between(terms: &mut Terms, value: Id, range: Interval) -> Option<Id> {
     let low = i64::try_from(range.0).ok()?;
     let high = i64::try_from(range.1).ok()?;

@@ -57,7 +57,7 @@ impl Comparison<'_> {
         Ok(self.same(low, bits)?.then_some(Factor::Lowest(width)))
     }
 
-    /// Whether two terms of one width are equal for all operands.
+    /// Returns whether two terms of one width are equal for all operands.
     fn same(&mut self, one: Id, other: Id) -> Result<bool> {
         if one == other || !agree(&self.terms, one, other) {
             return Ok(one == other);

@@ -121,7 +121,7 @@ pub fn compare(
     Comparison::new(&pair, solver, limit)?.run()
 }
 
-/// A point that differs among some at random; near one, some of whose operands each of them has.
+/// Returns a point that differs among some at random; near one, some of whose operands each of them has.
 fn tried(pair: &Pair<'_>, near: Option<&[u64]>) -> Result<Option<Difference>> {
     let mut random = ChaCha8Rng::seed_from_u64(1);
     for _ in 0..TRIALS {
@@ -138,7 +138,7 @@ fn tried(pair: &Pair<'_>, near: Option<&[u64]>) -> Result<Option<Difference>> {
     Ok(None)
 }
 
-/// A bit pattern, drawn evenly or around a power of two, which 1.0 is too.
+/// Returns a bit pattern, drawn evenly or around a power of two, which 1.0 is too.
 fn drawn(random: &mut ChaCha8Rng) -> u64 {
     let bits = random.next_u64();
     let power = 1u64 << (random.next_u32() % 24);
@@ -150,7 +150,7 @@ fn drawn(random: &mut ChaCha8Rng) -> u64 {
     }
 }
 
-/// How the cores differ at a point, if they do.
+/// Returns how the cores differ at a point, if they do.
 fn differs(pair: &Pair<'_>, operands: &[u64]) -> Result<Option<Difference>> {
     let widths = pair.operands.iter().map(|name| {
         let net = pair.pipeline.find(name);
@@ -488,7 +488,7 @@ impl<'p> Comparison<'p> {
         Ok(())
     }
 
-    /// Whether terms can all be 1: with the products divided as the pipeline has them, and else with all that is known of parts.
+    /// Returns whether terms can all be 1: with the products divided as the pipeline has them, and else with all that is known of parts.
     fn ask(&mut self, wanted: Vec<Id>) -> Result<Outcome> {
         self.divide_by_lowest(&wanted)?;
         let mut divided = wanted.clone();

@@ -84,7 +84,7 @@ fn bits(value: &Value) -> Result<Bits> {
     bits.iter().map(bit).collect()
 }
 
-/// A parameter, which Yosys writes in binary.
+/// Returns a parameter, which Yosys writes in binary.
 fn number(value: &Value) -> Result<usize> {
     let text = value.as_str().and_then(|text| usize::from_str_radix(text, 2).ok());
     text.or(value.as_u64().map(|it| it as usize)).context("a parameter of the netlist is no number")
@@ -295,12 +295,12 @@ impl Module {
         Ok(values)
     }
 
-    /// The rising edge.
+    /// Returns the rising edge.
     pub fn edge(&self, terms: &mut Terms, values: &Values) -> Held {
         self.registers.iter().map(|it| values.columns(terms, &it.data)).collect()
     }
 
-    /// The outputs by name.
+    /// Returns the outputs by name.
     pub fn shown(&self, terms: &mut Terms, values: &Values) -> HashMap<String, Id> {
         let outputs = self.outputs.iter();
         outputs.map(|(name, bits)| (name.clone(), values.word(terms, bits))).collect()
@@ -332,7 +332,7 @@ fn unknown(terms: &mut Terms, width: usize) -> Vec<Id> {
     columns.map(|at| terms.unknown((width - at).min(MAX_WIDTH as usize) as u32)).collect()
 }
 
-/// The contents of a memory that is never written.
+/// Returns the contents of a memory that is never written.
 fn words(cell: &Value, width: usize) -> Result<Vec<u64>> {
     let contents = cell["parameters"]["INIT"].as_str().unwrap_or_default();
     ensure!(width <= MAX_WIDTH as usize, "its words have more than 64 bits");

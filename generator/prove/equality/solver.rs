@@ -40,7 +40,7 @@ impl<'a> Solver<'a> {
         Ok(Self { tool, end: Instant::now() + limit, dir, asked: 0 })
     }
 
-    /// Whether terms of one bit can all be 1, given facts about the products.
+    /// Returns whether terms of one bit can all be 1, given facts about the products.
     ///
     /// # Errors
     /// The solver does not do its work.
@@ -75,7 +75,7 @@ fn name(id: Id) -> String {
     format!("t{}", id.number())
 }
 
-/// The question as SMT-LIB 2.
+/// Returns the question as SMT-LIB 2.
 fn script(terms: &Terms, wanted: &[Id], facts: &[Id]) -> String {
     let cone = terms.cone(wanted.iter().chain(facts).copied());
     let mut text = String::from(
@@ -155,7 +155,7 @@ fn expression(terms: &Terms, id: Id) -> String {
     }
 }
 
-/// The values that the solver gives to unknowns: `((t1 #x0f) (t2 #b1))`.
+/// Returns the values that the solver gives to unknowns: `((t1 #x0f) (t2 #b1))`.
 fn values(terms: &Terms, output: &str) -> Vec<(Id, u64)> {
     let mut words = output.split(|c: char| c.is_whitespace() || c == '(' || c == ')');
     let mut values = Vec::new();

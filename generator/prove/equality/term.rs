@@ -13,7 +13,7 @@ use glint_base::fixed::{MAX_WIDTH, mask};
 pub struct Id(u32);
 
 impl Id {
-    /// Its number among all terms.
+    /// Returns its number among all terms.
     pub fn number(self) -> u32 {
         self.0
     }
@@ -75,7 +75,7 @@ pub struct Terms {
 }
 
 impl Term {
-    /// Its operands, in order of writing.
+    /// Returns its operands, in order of writing.
     fn operands_mut(&mut self) -> Vec<&mut Id> {
         match self {
             Self::Unknown(_) | Self::Constant(_) => Vec::new(),
@@ -95,13 +95,13 @@ impl Term {
         }
     }
 
-    /// Its operands, in order of writing.
+    /// Returns its operands, in order of writing.
     pub fn operands(&self) -> Vec<Id> {
         self.clone().operands_mut().into_iter().map(|id| *id).collect()
     }
 }
 
-/// A pattern of so many bits, two's complement.
+/// Returns a pattern of so many bits, two's complement.
 fn signed(bits: u64, width: u32) -> i64 {
     let drop = MAX_WIDTH - width;
     (bits << drop) as i64 >> drop
@@ -116,7 +116,7 @@ impl Terms {
         self.nodes[id.0 as usize].1
     }
 
-    /// The term of a number.
+    /// Returns the term of a number.
     pub fn numbered(&self, number: u32) -> Option<Id> {
         ((number as usize) < self.nodes.len()).then_some(Id(number))
     }
@@ -128,7 +128,7 @@ impl Terms {
         }
     }
 
-    /// All terms that these need, themselves too, each after its operands.
+    /// Returns all terms that these need, themselves too, each after its operands.
     pub fn cone(&self, roots: impl IntoIterator<Item = Id>) -> Vec<Id> {
         let index = |id: Id| id.0 as usize;
         let operands = |at: usize| self.nodes[at].0.operands().into_iter().map(index);
@@ -136,7 +136,7 @@ impl Terms {
         (0..live.len()).filter(|&at| live[at]).map(|at| Id(at as u32)).collect()
     }
 
-    /// The value of each term of a cone, for values of the unknowns by their numbers.
+    /// Returns the value of each term of a cone, for values of the unknowns by their numbers.
     pub fn values(&self, cone: &[Id], unknown: impl Fn(u32) -> u64) -> HashMap<Id, u64> {
         let mut values = HashMap::new();
         for &id in cone {
@@ -150,7 +150,7 @@ impl Terms {
         values
     }
 
-    /// A new unknown.
+    /// Returns a new unknown.
     pub fn unknown(&mut self, width: u32) -> Id {
         self.unknowns += 1;
         self.insert(Term::Unknown(self.unknowns - 1), width)
@@ -160,7 +160,7 @@ impl Terms {
         self.insert(Term::Constant(bits & mask(width)), width)
     }
 
-    /// The number of a memory with these contents.
+    /// Returns the number of a memory with these contents.
     pub fn memory(&mut self, words: &[u64]) -> usize {
         if let Some(at) = self.memories.iter().position(|other| other == words) {
             return at;
@@ -169,7 +169,7 @@ impl Terms {
         self.memories.len() - 1
     }
 
-    /// A word that a memory does not have: any, the same for the same address.
+    /// Returns a word that a memory does not have: any, the same for the same address.
     pub fn beyond(&mut self, memory: usize, address: Id, width: u32) -> Id {
         if let Some(&word) = self.beyond.get(&(memory, address)) {
             return word;
@@ -220,7 +220,7 @@ impl Terms {
         self.make(Term::Choice(condition, then, otherwise), self.width(then))
     }
 
-    /// Whether there is such a term.
+    /// Returns whether there is such a term.
     pub fn has(&self, term: &Term, width: u32) -> bool {
         self.known.contains_key(&(ordered(term.clone()), width))
     }
@@ -248,7 +248,7 @@ impl Terms {
         terms.iter_mut().for_each(|term| *term = new[term]);
     }
 
-    /// A term, in the form that all that are the same by simple rules have.
+    /// Returns a term, in the form that all that are the same by simple rules have.
     pub fn make(&mut self, term: Term, width: u32) -> Id {
         let constants: Option<HashMap<Id, u64>> =
             term.operands().into_iter().map(|id| Some((id, self.constant_of(id)?))).collect();
@@ -399,7 +399,7 @@ impl Terms {
         }
     }
 
-    /// A sum or a difference: what stands below the lowest bits of `b`, which are 0, passes it by.
+    /// Returns a sum or a difference: what stands below the lowest bits of `b`, which are 0, passes it by.
     fn passed_by(&mut self, a: Id, b: Id, width: u32, op: fn(Id, Id) -> Term) -> Option<Id> {
         let low = self.zeros(b);
         if low == 0 || low >= width {
@@ -412,7 +412,7 @@ impl Terms {
         Some(self.make(Term::Join(upper, lower), width))
     }
 
-    /// How many of the lowest bits are known to be 0.
+    /// Returns how many of the lowest bits are known to be 0.
     fn zeros(&self, id: Id) -> u32 {
         match *self.term(id) {
             Term::Constant(bits) => bits.trailing_zeros().min(self.width(id)),

@@ -155,7 +155,7 @@ fn delays(module: &Module, roles: &Roles) -> Result<Vec<Vec<usize>>> {
 /// More values than a counter of slots has.
 const MOST_SLOTS: usize = 1024;
 
-/// The clocks from write to read of each read port, for what write and read ports are given in the clocks of a period, which
+/// Returns the clocks from write to read of each read port, for what write and read ports are given in the clocks of a period, which
 /// comes again and again.
 fn lags(course: &[&[u64]], reads: usize) -> Option<Vec<usize>> {
     let period = course.len();
@@ -221,7 +221,7 @@ struct Comparison<'p> {
     proof: TextProof,
 }
 
-/// The operands come with a point, everything else is the handshake's.
+/// Returns the operands come with a point, everything else is the handshake's.
 fn input(
     terms: &mut Terms,
     inputs: &mut HashMap<(String, usize), Id>,

@@ -57,7 +57,7 @@ impl<'a> Pair<'a> {
         })
     }
 
-    /// The bit patterns of the outputs, of the sequential core and of the pipeline, for those of the operands.
+    /// Returns the bit patterns of the outputs, of the sequential core and of the pipeline, for those of the operands.
     ///
     /// # Errors
     /// No result is shown.

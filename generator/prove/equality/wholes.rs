@@ -35,21 +35,21 @@ impl Candidates {
         Self { values, nets: known }
     }
 
-    /// A net that has the values of a term of 64 bits, extended to as many.
+    /// Returns a net that has the values of a term of 64 bits, extended to as many.
     pub fn of(&self, id: Id) -> Option<Id> {
         let key: Vec<u64> = self.values.iter().map(|values| values[&id]).collect();
         self.nets.get(&key).copied()
     }
 }
 
-/// Whether two terms of one width have the same values for numbers at random.
+/// Returns whether two terms of one width have the same values for numbers at random.
 pub fn agree(terms: &Terms, one: Id, other: Id) -> bool {
     let cone = terms.cone([one, other]);
     terms.width(one) == terms.width(other)
         && samples(terms, &cone).all(|values| values[&one] == values[&other])
 }
 
-/// Values of a cone's terms for numbers at random in place of the unknowns.
+/// Returns values of a cone's terms for numbers at random in place of the unknowns.
 pub fn samples(terms: &Terms, cone: &[Id]) -> impl Iterator<Item = HashMap<Id, u64>> {
     let mut random = ChaCha8Rng::seed_from_u64(2);
     (0..SAMPLES).map(move |_| {

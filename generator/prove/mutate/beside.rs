@@ -172,7 +172,7 @@ impl PointSearch {
     }
 }
 
-/// A raw value of an operand: of its domain, with a single bit set (a bit that is stuck is then the only one), or any.
+/// Returns a raw value of an operand: of its domain, with a single bit set (a bit that is stuck is then the only one), or any.
 fn value(random: &mut Random, operand: &Operand) -> i64 {
     let format = operand.format;
     match random.below(8) {
@@ -187,7 +187,7 @@ fn flipped(random: &mut Random, Operand { format, .. }: &Operand, raw: i64) -> i
     format.raw(raw as u64 ^ 1 << random.below(format.width().into())) as i64
 }
 
-/// The lanes in which any of these nets differs.
+/// Returns the lanes in which any of these nets differs.
 fn differing<'m>(
     sound: &Machine<LANES>,
     mutant: &'m Machine<LANES>,

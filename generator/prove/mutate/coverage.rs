@@ -100,12 +100,12 @@ impl Coverage {
         Ok(Self { places: all, operands })
     }
 
-    /// Where a word is read.
+    /// Returns where a word is read.
     pub(super) fn places(&self, rom: RomId, word: usize) -> &[Place] {
         &self.places[rom.index()][word]
     }
 
-    /// The operands of a computation that reads a word, at each place.
+    /// Returns the operands of a computation that reads a word, at each place.
     pub(super) fn operands(
         &self,
         design: &Design,
@@ -124,7 +124,7 @@ impl Coverage {
     }
 }
 
-/// The operand that a register holds, which it takes from a port or from the buffer behind it.
+/// Returns the operand that a register holds, which it takes from a port or from the buffer behind it.
 pub(super) fn operand_of<'d>(design: &'d Design, register: &Register) -> Option<&'d str> {
     let before = |net: NetId| match &design.net(net).driver {
         Driver::Op(op) => op.operands(),

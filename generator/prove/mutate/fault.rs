@@ -116,17 +116,17 @@ impl Faults {
         self.0.iter()
     }
 
-    /// How many there are.
+    /// Returns how many there are.
     pub fn len(&self) -> usize {
         self.0.len()
     }
 
-    /// Whether there is none.
+    /// Returns whether there is none.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// The fault of that id.
+    /// Returns the fault of that id.
     pub fn find(&self, id: &str) -> Option<&Fault> {
         self.0.iter().find(|fault| fault.id == id)
     }
@@ -240,7 +240,7 @@ fn pairs(words: &[u64], random: &mut Random) -> BTreeSet<(usize, usize)> {
     pairs
 }
 
-/// The field of the control word that holds a bit, and which of its bits that is.
+/// Returns the field of the control word that holds a bit, and which of its bits that is.
 fn field_bit(design: &Design, bit: u32) -> String {
     let fields = design.control.fields.iter().zip(design.field_positions());
     let mut holding =

@@ -25,7 +25,7 @@ const SEED: u64 = 3;
 /// All values of operands are tried if they have no more bits than this.
 const MOST_BITS: u32 = 22;
 
-/// The operand whose register addresses a ROM, held at a word.
+/// Returns the operand whose register addresses a ROM, held at a word.
 pub(super) fn addressing(core: &Core, rom: RomId, word: usize) -> Option<Operands> {
     let design = &core.design;
     let net = design.net(design.rom(rom).address);
@@ -36,7 +36,7 @@ pub(super) fn addressing(core: &Core, rom: RomId, word: usize) -> Option<Operand
     Some(vec![(operand_of(design, register)?.to_owned(), word as i64)])
 }
 
-/// The first difference while these operands are held and the others drawn.
+/// Returns the first difference while these operands are held and the others drawn.
 ///
 /// # Errors
 /// The mutant cannot be simulated.

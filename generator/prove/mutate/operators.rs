@@ -3,7 +3,7 @@
 use super::kind::FaultKind;
 use glint_rtl::netlist::{Design, Driver, NetId, Op};
 
-/// The wrong cells in the place of the one that drives `id`, each with a name and a kind.
+/// Returns the wrong cells in the place of the one that drives `id`, each with a name and a kind.
 pub(super) fn of(design: &Design, id: NetId, op: &Op) -> Vec<(String, FaultKind, Op)> {
     let width = design.width(id);
     match op {
@@ -63,7 +63,7 @@ fn mux(design: &Design, select: NetId, inputs: &[NetId]) -> Vec<(String, FaultKi
     faults
 }
 
-/// A sum without its carry or without the bit that rounds, and a difference.
+/// Returns a sum without its carry or without the bit that rounds, and a difference.
 fn add(design: &Design, a: NetId, b: NetId, carry: Option<NetId>) -> Vec<(String, FaultKind, Op)> {
     let mut faults = vec![operator("sub", Op::Sub(a, b))];
     if carry.is_some() {
@@ -79,7 +79,7 @@ fn add(design: &Design, a: NetId, b: NetId, carry: Option<NetId>) -> Vec<(String
     faults
 }
 
-/// The bits one place beside.
+/// Returns the bits one place beside.
 fn slice(of: NetId, low: u32, width: u32, have: u32) -> Vec<(String, FaultKind, Op)> {
     let mut faults = Vec::new();
     let mut shifted = |name: &str, low| {

@@ -7,7 +7,7 @@ use glint_rtl::netlist::microcode;
 use glint_rtl::netlist::{Design, Driver, Net, NetId, Op, RegId, RomId};
 
 impl Fault {
-    /// The design with this fault.
+    /// Returns the design with this fault.
     ///
     /// It is a design for simulation and emission: the intervals of its nets are those of the fault-free one.
     pub fn planted(&self, design: &Design) -> Design {
@@ -24,7 +24,7 @@ impl Fault {
     }
 }
 
-/// A design without what only people read: cheaper to copy.
+/// Returns a design without what only people read: cheaper to copy.
 pub(super) fn bare(design: &Design) -> Design {
     let mut bare = design.clone();
     for rom in &mut bare.roms {
@@ -37,7 +37,7 @@ pub(super) fn bare(design: &Design) -> Design {
     bare
 }
 
-/// A net beside `like`.
+/// Returns a net beside `like`.
 fn add(design: &mut Design, like: NetId, suffix: &str, driver: Driver) -> NetId {
     let mut name = Cow::from(format!("{}_{suffix}", design.net(like).name));
     while design.find(&name).is_some() {
@@ -48,7 +48,7 @@ fn add(design: &mut Design, like: NetId, suffix: &str, driver: Driver) -> NetId 
     design.add_net(Net { name, driver, block: None, doc, named: false, ..like })
 }
 
-/// A new net that carries `sound` with a bit at fault, as a driver.
+/// Returns a new net that carries `sound` with a bit at fault, as a driver.
 fn at_fault(design: &mut Design, sound: NetId, bit: u32, how: Bit) -> Driver {
     let ones = match how {
         Bit::Stuck0 => glint_base::fixed::mask(design.width(sound)) & !(1 << bit),

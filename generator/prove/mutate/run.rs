@@ -118,7 +118,7 @@ impl Bench<'_> {
         Ok(found.map_or(Verdict::Undecided, |it| Verdict::Caught(Detector::Directed, it)))
     }
 
-    /// The beginning of the default test, or of its streams that read words at fault: there it shows, if anywhere.
+    /// Returns the beginning of the default test, or of its streams that read words at fault: there it shows, if anywhere.
     fn first_look(&self, mutant: &Design, site: &Site) -> Result<Option<Mismatch>> {
         let looks = match self.words(site) {
             Some(_) => self.places(site),
@@ -193,7 +193,7 @@ impl Bench<'_> {
         Ok(None)
     }
 
-    /// The results of a stream to the end of the computation after one that reads a word.
+    /// Returns the results of a stream to the end of the computation after one that reads a word.
     fn end(&self, place: &Place) -> u64 {
         place.points + 2 + self.latency
     }
@@ -203,7 +203,7 @@ impl Bench<'_> {
         Lockstep::new(mutant, self.model.boxed_clone(), contract, seed)
     }
 
-    /// The words at fault of a table.
+    /// Returns the words at fault of a table.
     fn words<'s>(&self, site: &'s Site) -> Option<(RomId, &'s [(usize, u64)])> {
         match site {
             Site::Words(rom, words) if *rom != self.sound.control.rom => Some((*rom, words)),
@@ -211,7 +211,7 @@ impl Bench<'_> {
         }
     }
 
-    /// Where the default test reads the words at fault: a seed, and the results up to where it shows.
+    /// Returns where the default test reads the words at fault: a seed, and the results up to where it shows.
     fn places(&self, site: &Site) -> Vec<(u64, u64)> {
         let Some((rom, words)) = self.words(site) else {
             return Vec::new();

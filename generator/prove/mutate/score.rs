@@ -63,17 +63,17 @@ impl Tally {
         }
     }
 
-    /// How many some check noticed.
+    /// Returns how many some check noticed.
     pub fn all_caught(&self) -> usize {
         self.caught.values().sum()
     }
 
-    /// How many were proved equivalent.
+    /// Returns how many were proved equivalent.
     pub fn all_equivalent(&self) -> usize {
         self.equivalent.values().sum()
     }
 
-    /// The share that is undecided.
+    /// Returns the share that is undecided.
     pub fn share_undecided(&self) -> f64 {
         if self.planted == 0 { 0.0 } else { self.undecided as f64 / self.planted as f64 }
     }
@@ -124,7 +124,7 @@ impl Score {
         score
     }
 
-    /// Whether no more than is tolerated is undecided.
+    /// Returns whether no more than is tolerated is undecided.
     pub fn holds(&self) -> bool {
         self.all.share_undecided() <= TOLERATED
     }

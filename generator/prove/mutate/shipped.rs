@@ -19,7 +19,7 @@ impl Shipped {
         core.shipped_vectors().map(Self)
     }
 
-    /// Whether a mutant differs in an output that the bench compares.
+    /// Returns whether a mutant differs in an output that the bench compares.
     ///
     /// # Errors
     /// A mutant that cannot be simulated.

@@ -22,7 +22,7 @@ const EVERY: usize = if cfg!(feature = "outside-tools") { 29 } else { 211 };
 /// Points in which most faults show.
 const POINTS: u64 = 200;
 
-/// A file of the repository.
+/// Returns a file of the repository.
 fn at(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(path)
 }

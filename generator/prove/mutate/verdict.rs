@@ -80,7 +80,7 @@ pub struct Found {
 }
 
 impl Found {
-    /// Whether a check notices it and the shipped bench does not.
+    /// Returns whether a check notices it and the shipped bench does not.
     pub fn is_missed(&self) -> bool {
         matches!(self.verdict, Verdict::Caught(..)) && !self.shipped
     }

@@ -228,12 +228,12 @@ impl Text {
         Ok(text)
     }
 
-    /// All files, each with its plain name.
+    /// Returns all files, each with its plain name.
     pub fn files(&self) -> &[(String, String)] {
         &self.files
     }
 
-    /// All files, with a fault.
+    /// Returns all files, with a fault.
     pub fn planted(&self, fault: &TextFault) -> Vec<(String, String)> {
         let mut files = self.files.clone();
         let lines = files[fault.file].1.lines().enumerate();
@@ -242,7 +242,7 @@ impl Text {
         files
     }
 
-    /// Every fault, in the order of the text.
+    /// Returns every fault, in the order of the text.
     pub fn faults(&self) -> Vec<TextFault> {
         let mut faults = Vec::new();
         for &file in &self.modules {
@@ -302,7 +302,7 @@ impl Text {
         Ok(TextFound { verdict, shipped })
     }
 
-    /// Whether lint refuses the modules or warns of them.
+    /// Returns whether lint refuses the modules or warns of them.
     fn is_linted(
         &self,
         files: &[(String, String)],
@@ -351,7 +351,7 @@ impl Text {
         })
     }
 
-    /// Whether the module in a file is proved to behave as without the fault, in a directory that holds all files; of
+    /// Returns whether the module in a file is proved to behave as without the fault, in a directory that holds all files; of
     /// a pipeline with its multiplier, the pipeline.
     fn proves(
         &self,

@@ -79,14 +79,14 @@ pub fn measure(
     Ok(Figures::new(Target::Osu018, DEVICE, area).with_runs(vec![(1000.0 / period, path)]))
 }
 
-/// The area of the cell that is the unit of gates.
+/// Returns the area of the cell that is the unit of gates.
 fn gate(liberty: &str) -> Option<f64> {
     let (_, cell) = liberty.split_once(&format!("cell ({GATE})"))?;
     let (_, area) = cell.split_once("area :")?;
     area.split(';').next()?.trim().parse().ok()
 }
 
-/// The area of the cells, with the flip-flops counted.
+/// Returns the area of the cells, with the flip-flops counted.
 fn area(statistics: &str, gate: f64) -> Option<Area> {
     let total = statistics.lines().find_map(|line| {
         let (before, area) = line.split_once(": ")?;
@@ -104,7 +104,7 @@ fn area(statistics: &str, gate: f64) -> Option<Area> {
     })
 }
 
-/// The shortest period in nanoseconds, and the longest path.
+/// Returns the shortest period in nanoseconds, and the longest path.
 fn timing(
     sta: &Tool,
     subject: &Subject,
@@ -132,7 +132,7 @@ fn timing(
     Ok((PERIOD - slack, steps(netlist, &said)))
 }
 
-/// The nets of the path, and the register at its end.
+/// Returns the nets of the path, and the register at its end.
 fn steps(netlist: &Netlist, said: &str) -> Vec<Step> {
     let mut points = Vec::new();
     let mut time = 0.0;

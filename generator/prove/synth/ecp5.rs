@@ -35,7 +35,7 @@ pub fn measure(
     routed(figures, subject, done, |seed| route(nextpnr, &workspace, &netlist, chip, seed))
 }
 
-/// Whether nextpnr-ecp5 times a multiplier with this parameter: not its inside, with a register before its product, but the way
+/// Returns whether nextpnr-ecp5 times a multiplier with this parameter: not its inside, with a register before its product, but the way
 /// to the register at its output.
 fn is_timed(parameter: &str, value: &Value) -> bool {
     let clocked = parameter.starts_with("REG_") && parameter.ends_with("_CLK");
@@ -66,7 +66,7 @@ fn route(
     Ok((frequency, steps(netlist, &report, &format!("posedge {clock}"))))
 }
 
-/// The longest path from the clock to the clock.
+/// Returns the longest path from the clock to the clock.
 fn steps(netlist: &Netlist, report: &Value, clock: &str) -> Vec<Step> {
     let paths = report["critical_paths"].as_array().into_iter().flatten();
     let path = paths.into_iter().find(|path| path["from"] == clock && path["to"] == clock);

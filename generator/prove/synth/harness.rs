@@ -16,7 +16,7 @@ struct Slice<'a> {
     low: u32,
 }
 
-/// The Verilog of the harness: a shift register feeds every input, and every output is captured in a register of its own,
+/// Returns the Verilog of the harness: a shift register feeds every input, and every output is captured in a register of its own,
 /// which is shifted out: four pins, whatever the ports of the core.
 pub fn harness(design: &Design) -> Result<String> {
     let (inputs, fed) = slices(design, design.inputs());

@@ -49,7 +49,7 @@ pub fn measure(
     })
 }
 
-/// Whether a parameter leaves a DSP block a multiplier and nothing else.
+/// Returns whether a parameter leaves a DSP block a multiplier and nothing else.
 fn is_pure(parameter: &str, value: &Value) -> bool {
     let value = value.as_str().unwrap_or_default();
     match parameter {
@@ -84,7 +84,7 @@ fn route(
     Ok((1000.0 / nanoseconds, steps(netlist, &path, &placed)))
 }
 
-/// The longest path. What icetime calls a net is often the next one that has a name, so that cells are looked up by their
+/// Returns the longest path. What icetime calls a net is often the next one that has a name, so that cells are looked up by their
 /// place.
 fn steps(netlist: &Netlist, path: &Value, placed: &Value) -> Vec<Step> {
     let outputs = outputs(placed);
@@ -96,7 +96,8 @@ fn steps(netlist: &Netlist, path: &Value, placed: &Value) -> Vec<Step> {
     }))
 }
 
-/// The location of a cell of icetime, `lc40_16_2_0`, as nextpnr writes it, without the kind of cell: `16 2 0`. Routing is at no location.
+/// Returns the location of a cell of icetime, `lc40_16_2_0`, as nextpnr writes it, without the kind of cell: `16 2 0`.
+/// Routing is at no location.
 fn location_of(cell: &str) -> Option<String> {
     let mut parts = cell.split('_');
     let kind = parts.next()?;
@@ -109,7 +110,7 @@ fn location_of(cell: &str) -> Option<String> {
     }
 }
 
-/// A net that each cell drives, by the cell's location: of a block the first of its outputs.
+/// Returns a net that each cell drives, by the cell's location: of a block the first of its outputs.
 fn outputs(placed: &Value) -> BTreeMap<String, String> {
     // nextpnr calls the only module `top`.
     let Some(module) = placed["modules"].as_object().and_then(|modules| modules.values().next())

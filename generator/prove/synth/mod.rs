@@ -97,7 +97,7 @@ impl Flow {
         package::digest(text.as_bytes())
     }
 
-    /// The steps of work that [`Flow::measure`] reports as done.
+    /// Returns the steps of work that [`Flow::measure`] reports as done.
     pub fn steps(target: Target, seeds: u32) -> u64 {
         match target {
             Target::Ice40 | Target::Ecp5 => 1 + u64::from(seeds),
@@ -138,7 +138,7 @@ fn version(tool: &Tool) -> Result<String> {
     })
 }
 
-/// The area alone.
+/// Returns the area alone.
 fn area(target: Target, yosys: &Tool, subject: &Subject, done: &dyn Fn()) -> Result<Figures> {
     let family = target.family().context("Yosys knows no such family")?;
     let usage = synthesise(yosys, subject.files, &subject.design.name, family, subject.limit)?;

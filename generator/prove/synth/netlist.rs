@@ -91,7 +91,7 @@ impl Netlist {
         Ok(())
     }
 
-    /// The register that a flip-flop is a bit of, in the description's names.
+    /// Returns the register that a flip-flop is a bit of, in the description's names.
     pub fn register(&self, cell: &str) -> Option<&str> {
         self.registers.get(cell).map(String::as_str)
     }
@@ -102,7 +102,7 @@ impl Netlist {
     }
 }
 
-/// A path, from pairs of a name and the time in nanoseconds at which it settles: each name once in a row, at its last time.
+/// Returns a path, from pairs of a name and the time in nanoseconds at which it settles: each name once in a row, at its last time.
 pub fn path(points: impl IntoIterator<Item = (String, f64)>) -> Vec<Step> {
     let mut steps: Vec<Step> = Vec::new();
     for (name, ns) in points {
@@ -115,7 +115,7 @@ pub fn path(points: impl IntoIterator<Item = (String, f64)>) -> Vec<Step> {
     steps
 }
 
-/// The nets of a design by name, each with what it is shown as, and a rank: of several names for one wire the first
+/// Returns the nets of a design by name, each with what it is shown as, and a rank: of several names for one wire the first
 /// is a register's, then a ROM's, a product's, one that the author gave, any other.
 fn known(design: &Design) -> BTreeMap<&str, (u8, String)> {
     let known = design.nets.iter().map(|net| {
@@ -131,7 +131,7 @@ fn known(design: &Design) -> BTreeMap<&str, (u8, String)> {
     known.collect()
 }
 
-/// A net's name without the instances that it lies in, and without the bit of one that was split.
+/// Returns a net's name without the instances that it lies in, and without the bit of one that was split.
 fn own_name(name: &str) -> &str {
     let inside = name.strip_prefix(CORE).and_then(|rest| rest.strip_prefix('.')).unwrap_or("");
     let units = ["control.", "datapath."];
@@ -139,7 +139,7 @@ fn own_name(name: &str) -> &str {
     inside.split('[').next().unwrap_or(inside)
 }
 
-/// The bits of a net that are no constants.
+/// Returns the bits of a net that are no constants.
 fn bits(net: &Value) -> impl Iterator<Item = u64> {
     let bits = net["bits"].as_array().into_iter().flatten();
     bits.filter_map(Value::as_u64)

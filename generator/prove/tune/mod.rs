@@ -36,7 +36,7 @@ pub enum ErrorUnit {
 }
 
 impl ErrorUnit {
-    /// The bound in this unit.
+    /// Returns the bound in this unit.
     pub fn of(self, bound: &Bound) -> f64 {
         match self {
             Self::F => bound.f,
@@ -132,7 +132,7 @@ pub fn tune(
     Ok(Answer { best, front: goal.front([own.front, pipeline.front].concat()), free, looked_at })
 }
 
-/// The pipelines that could have the rate, and no more multipliers than are allowed, the longest interval first.
+/// Returns the pipelines that could have the rate, and no more multipliers than are allowed, the longest interval first.
 fn pipelines(base: &Config, fixed: &[&str], goal: &Goal) -> Vec<Config> {
     let Some(family) =
         goal.target.family().filter(|_| goal.rate.is_some() || goal.most_dsps.is_some())
@@ -185,7 +185,7 @@ fn of_architecture(
     Ok(if fits(&shared) { shared } else { answer })
 }
 
-/// Every configuration of the free keys whose values are given, each with its cost, in the order of the values: for tests
+/// Returns every configuration of the free keys whose values are given, each with its cost, in the order of the values: for tests
 /// of the search, and for small spaces.
 ///
 /// # Errors

@@ -42,7 +42,7 @@ pub struct Cost {
     pub mhz: f64,
 }
 
-/// The family of a target. Cells have no model of their own: of the FPGAs ECP5 is nearest, where a product is not split.
+/// Returns the family of a target. Cells have no model of their own: of the FPGAs ECP5 is nearest, where a product is not split.
 fn family(target: Target) -> &'static Family {
     target.family().unwrap_or(&ECP5)
 }
@@ -181,7 +181,7 @@ fn block_rams(design: &Design, family: &Family) -> u64 {
         .sum()
 }
 
-/// The longest path between registers in nanoseconds, by the delays of the pipelines' target.
+/// Returns the longest path between registers in nanoseconds, by the delays of the pipelines' target.
 fn period(design: &Design, family: &Family) -> f64 {
     let delays = &family.timing;
     let order = design.levelise().unwrap_or_default();

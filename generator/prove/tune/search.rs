@@ -140,7 +140,7 @@ impl<'a> Search<'a> {
         self.error(candidate) <= self.goal.error && self.is_possible(candidate)
     }
 
-    /// Whether the clock is fast enough, and there are no more DSP blocks than are allowed.
+    /// Returns whether the clock is fast enough, and there are no more DSP blocks than are allowed.
     fn is_possible(&self, candidate: &Candidate) -> bool {
         self.has_dsps(candidate) && candidate.cost.mhz >= self.wanted_mhz(candidate)
     }
@@ -149,7 +149,7 @@ impl<'a> Search<'a> {
         self.goal.most_dsps.is_none_or(|most| candidate.cost.dsps <= most)
     }
 
-    /// The clock that a candidate needs for the goal, in MHz: infinite where it shows no point.
+    /// Returns the clock that a candidate needs for the goal, in MHz: infinite where it shows no point.
     fn wanted_mhz(&self, candidate: &Candidate) -> f64 {
         let of_rate = self.goal.rate.map(|rate| match candidate.clocks {
             Some(clocks) => rate * clocks,
@@ -172,7 +172,7 @@ impl<'a> Search<'a> {
             .map(|(_, one)| one)
     }
 
-    /// The neighbours that differ by this number of changes.
+    /// Returns the neighbours that differ by this number of changes.
     fn around(&self, candidate: &Candidate, changes: usize) -> Vec<Candidate> {
         let moves = self.space.moves(&candidate.config);
         let single = moves.iter().map(|one| vec![one.clone()]);
@@ -213,7 +213,7 @@ impl<'a> Search<'a> {
         Ok(here)
     }
 
-    /// The clock that cannot be kept.
+    /// Returns the clock that cannot be kept.
     fn too_slow(&self, fastest: &Candidate) -> Result<Candidate> {
         let wanted = match (self.goal.rate, fastest.clocks) {
             (Some(rate), Some(clocks)) => {
@@ -229,7 +229,7 @@ impl<'a> Search<'a> {
         )
     }
 
-    /// The number of DSP blocks that cannot be kept.
+    /// Returns the number of DSP blocks that cannot be kept.
     fn too_many_dsps(&self, fewest: &Candidate) -> Result<Candidate> {
         bail!(
             "the fewest DSP blocks that were found with the error are {}, {} are allowed; a longer pipeline.interval has fewer",
@@ -238,7 +238,7 @@ impl<'a> Search<'a> {
         )
     }
 
-    /// The error that cannot be kept, and what is in the way.
+    /// Returns the error that cannot be kept, and what is in the way.
     fn out_of_reach(&self, nearest: &Candidate) -> Result<Candidate> {
         let unit = self.goal.unit;
         // The rounding of the outputs is no part of the error of f.
@@ -255,7 +255,7 @@ impl<'a> Search<'a> {
         )
     }
 
-    /// A smaller neighbour that keeps the goal.
+    /// Returns a smaller neighbour that keeps the goal.
     fn descend(&self, here: &Candidate, changes: usize) -> Option<Candidate> {
         let smallest = self.smallest(self.around(here, changes))?;
         (self.order(&smallest).0 < self.order(here).0).then_some(smallest)
@@ -303,7 +303,7 @@ impl Goal {
     }
 }
 
-/// A value with as many digits as show that it is above a limit, and six at least.
+/// Returns a value with as many digits as show that it is above a limit, and six at least.
 fn above(value: f64, limit: f64) -> String {
     let shown = (6..17).map(|digits| format!("{value:.digits$}"));
     let is_above = |text: &String| text.parse::<f64>().is_ok_and(|shown| shown > limit);

@@ -54,7 +54,7 @@ impl Space {
         Ok(space)
     }
 
-    /// Whether somebody outside sees the same core, but for its accuracy.
+    /// Returns whether somebody outside sees the same core, but for its accuracy.
     pub fn holds(&self, design: &Design, contract: &dyn Contract) -> bool {
         let own = &self.outside;
         own.ports == ports(design)
@@ -62,17 +62,17 @@ impl Space {
             && own.has_formula(contract)
     }
 
-    /// The free keys.
+    /// Returns the free keys.
     pub fn free(&self) -> &[&'static str] {
         &self.free
     }
 
-    /// The schema of the device.
+    /// Returns the schema of the device.
     pub fn schema(&self) -> &Schema {
         &self.schema
     }
 
-    /// The changes of one free key that applies.
+    /// Returns the changes of one free key that applies.
     pub fn moves(&self, config: &Config) -> Vec<(&'static str, Value)> {
         let keys =
             self.schema.keys.iter().filter(|key| {
@@ -85,13 +85,13 @@ impl Space {
         .collect()
     }
 
-    /// A configuration with values replaced, if the device accepts it.
+    /// Returns a configuration with values replaced, if the device accepts it.
     pub fn with(&self, config: &Config, values: &[(&'static str, Value)]) -> Option<Config> {
         with(&self.schema, config, values)
     }
 }
 
-/// A configuration with values replaced; `None` where the device does not accept that.
+/// Returns a configuration with values replaced; `None` where the device does not accept that.
 fn with(schema: &Schema, config: &Config, values: &[(&'static str, Value)]) -> Option<Config> {
     let changed = |name: &str| values.iter().find(|(key, _)| *key == name).map(|(_, value)| value);
     // A choice decides which other keys apply; those that no longer do are left out.
@@ -145,7 +145,7 @@ impl Outside {
         }
     }
 
-    /// Whether the formula is this one. Where it jumps, two values are right, which depend on the widths: one of them is the
+    /// Returns whether the formula is this one. Where it jumps, two values are right, which depend on the widths: one of them is the
     /// formula's.
     fn has_formula(&self, contract: &dyn Contract) -> bool {
         let other = formula(contract, &self.points);
@@ -165,7 +165,7 @@ fn formula(contract: &dyn Contract, points: &[Vec<i64>]) -> Vec<[f64; 2]> {
     values
 }
 
-/// The values by which it is seen what a key does: those next to its own, and the ends of its range.
+/// Returns the values by which it is seen what a key does: those next to its own, and the ends of its range.
 fn alternatives(key: &Key, value: &Value) -> Vec<Value> {
     let mut values = neighbours(&key.kind, value);
     match (&key.kind, value) {
@@ -180,7 +180,7 @@ fn alternatives(key: &Key, value: &Value) -> Vec<Value> {
     values
 }
 
-/// The values next to one, inside the range.
+/// Returns the values next to one, inside the range.
 fn neighbours(kind: &Kind, value: &Value) -> Vec<Value> {
     match (kind, value) {
         (Kind::Integer { min, max }, Value::Integer(value)) => {

@@ -133,13 +133,13 @@ fn is_short(subject: &Subject<'_>, evaluations: u64) -> bool {
     subject.effort.full || evaluations <= EVALUATIONS
 }
 
-/// The record of a long proof, if there is one.
+/// Returns the record of a long proof, if there is one.
 fn record(subject: &Subject<'_>) -> Result<Option<Recorded>> {
     let (core, digest) = (subject.core, subject.core.contract_digest());
     Recorded::find(subject.proofs, &digest, core.contract.as_ref())
 }
 
-/// The whole proof; or, where it is long, its record, checked again in part.
+/// Returns the whole proof; or, where it is long, its record, checked again in part.
 fn contract(subject: &Subject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Result<Finding> {
     let contract = subject.core.contract.as_ref();
     if !contract.bound().is_stated() {
@@ -168,7 +168,7 @@ fn contract(subject: &Subject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Result<Fi
     .open(job.f.sweep().omits.clone()))
 }
 
-/// A sweep that leaves something out proves nothing.
+/// Returns a sweep that leaves something out proves nothing.
 fn of_sweep(sweep: &Sweep) -> Verdict {
     if sweep.omits.is_empty() { Verdict::Proved } else { Verdict::Passed }
 }

@@ -42,7 +42,7 @@ impl<'a> Subject<'a> {
         Self { path, core, effort, proofs, files: OnceLock::new() }
     }
 
-    /// Every file that `generate` writes.
+    /// Returns every file that `generate` writes.
     fn files(&self) -> Result<&[OutputFile]> {
         if let Some(files) = self.files.get() {
             return Ok(files);
@@ -220,12 +220,12 @@ pub const CHECKS: [&Check; 16] = [
 ];
 
 impl Check {
-    /// Whether it needs a tool outside Glint.
+    /// Returns whether it needs a tool outside Glint.
     pub fn is_outside(&self) -> bool {
         !self.tools.is_empty()
     }
 
-    /// The steps that its progress will have.
+    /// Returns the steps that its progress will have.
     pub fn steps(&self, subject: &Subject<'_>) -> u64 {
         (self.steps)(subject)
     }

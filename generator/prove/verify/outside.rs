@@ -549,7 +549,7 @@ pub const GATES: Check = Check {
     },
 };
 
-/// The families whose netlists can be simulated.
+/// Returns the families whose netlists can be simulated.
 fn simulated() -> impl Iterator<Item = &'static Family> {
     FAMILIES.iter().filter(|family| gates::is_simulated(family))
 }

@@ -23,7 +23,7 @@ struct View<'a> {
     class: &'static str,
 }
 
-/// The page; nothing before its last section depends on the timings.
+/// Returns the page; nothing before its last section depends on the timings.
 ///
 /// # Errors
 /// A template that fails.
@@ -54,7 +54,7 @@ pub fn page(record: &Record, timings: &[CheckTime]) -> Result<String> {
     Ok(text)
 }
 
-/// The class of a verdict in the style sheet.
+/// Returns the class of a verdict in the style sheet.
 fn class(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Proved => "proved",

@@ -8,7 +8,7 @@ use glint_config as config;
 use glint_core::core::Core;
 use glint_core::registry::Registry;
 
-/// A narrow device, of which every check says something.
+/// Returns a narrow device, of which every check says something.
 fn core() -> Core {
     let registry = Registry::catalogue();
     let text = include_str!("../../../configs/reduced/rough.toml");

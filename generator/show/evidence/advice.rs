@@ -55,7 +55,7 @@ pub fn of(core: &Core) -> Option<Advice> {
     Some(kept.map_or(single, |it| advice(device, &core.config, &needed(device, &core.config, it))))
 }
 
-/// The change of one key that the bound depends on, by as little as helps, that brings the bound down most; `None`
+/// Returns the change of one key that the bound depends on, by as little as helps, that brings the bound down most; `None`
 /// where none does. Domains stay as they are: to narrow one is to ask for less.
 fn better(device: &Device, config: &Config, bound: &Bound) -> Option<Better> {
     let schema = (device.schema)();
@@ -102,7 +102,7 @@ fn changes(
     changed.map(|(key, from, to)| (key, from.toml(), to.toml())).collect()
 }
 
-/// The keys that the bound's terms name and the choices beside them, each with the values next to its own.
+/// Returns the keys that the bound's terms name and the choices beside them, each with the values next to its own.
 fn candidates(
     schema: &Schema,
     config: &Config,
@@ -126,7 +126,7 @@ fn candidates(
     candidates
 }
 
-/// The values next to one.
+/// Returns the values next to one.
 fn neighbours(kind: &Kind, value: &Value, step: i64) -> Vec<Value> {
     match (kind, value) {
         (_, Value::Integer(value)) => [value - step, value + step].map(Value::Integer).to_vec(),
@@ -147,7 +147,7 @@ fn neighbours(kind: &Kind, value: &Value, step: i64) -> Vec<Value> {
     }
 }
 
-/// The configuration with another value for a key; `None` where the device does not accept that.
+/// Returns the configuration with another value for a key; `None` where the device does not accept that.
 fn with(schema: &Schema, config: &Config, key: &str, value: &Value) -> Option<Config> {
     let given = config.values().filter(|(name, _)| config.applies(schema, name));
     let given = given.map(|(name, own)| {

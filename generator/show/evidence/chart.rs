@@ -34,7 +34,7 @@ impl ChartAxis {
         Self { scale: Scale::Logarithmic, ..Self::linear(label, low, high) }
     }
 
-    /// The place of a value: itself, or its power of ten; `None` where it has none.
+    /// Returns the place of a value: itself, or its power of ten; `None` where it has none.
     pub fn place(&self, value: f64) -> Option<f64> {
         let place = match self.scale {
             Scale::Linear => value,

@@ -60,7 +60,7 @@ pub fn formula(highlight: &Highlight, control: &[i64], f: f64) -> f64 {
     if (f - other).abs() < (f - one).abs() { other } else { one }
 }
 
-/// The errors over the grid of angles; `None` when the operands cannot denote `n`.
+/// Returns the errors over the grid of angles; `None` when the operands cannot denote `n`.
 pub fn accuracy(contract: &dyn Contract, n: f64) -> Option<Accuracy> {
     let highlight = contract.highlight()?;
     let format = highlight.f_format();
@@ -117,7 +117,7 @@ impl fmt::Display for Multiplier {
     }
 }
 
-/// The multipliers of a design, the largest first.
+/// Returns the multipliers of a design, the largest first.
 pub fn multipliers(design: &Design) -> Vec<Multiplier> {
     let mut found: Vec<Multiplier> = design
         .nets

@@ -129,7 +129,7 @@ fn places() -> Vec<f64> {
     even(0.0, REACH, PLACES)
 }
 
-/// The signed formula error at each place, and the largest fixed-point error about it; zero beyond 90°,
+/// Returns the signed formula error at each place, and the largest fixed-point error about it; zero beyond 90°,
 /// where nothing is reflected. `None` when the operands cannot denote `n`.
 fn over_angle(contract: &dyn Contract, n: f64) -> Option<Vec<AtAngle>> {
     let highlight = contract.highlight()?;
@@ -235,7 +235,7 @@ fn charts(
     vec![over_n, over_gamma, fixed_point]
 }
 
-/// A round number that no value exceeds.
+/// Returns a round number that no value exceeds.
 fn reach(series: &[Series]) -> f64 {
     let largest = series
         .iter()

@@ -9,7 +9,7 @@ const PLACES: i64 = 160;
 /// Operands about each place, at most, of which the worst counts.
 const OPERANDS: i64 = 256;
 
-/// The charts; none of another device.
+/// Returns the charts; none of another device.
 pub fn charts(contract: &dyn Contract) -> Vec<Chart> {
     let ([operand], [output]) = (contract.operands(), contract.outputs()) else {
         return Vec::new();

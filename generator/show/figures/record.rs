@@ -32,7 +32,7 @@ pub struct Record<F = Figures> {
 }
 
 impl Record {
-    /// The record of a core, among all in a directory; `None` where there is none, and where there is no such
+    /// Returns the record of a core, among all in a directory; `None` where there is none, and where there is no such
     /// directory. Files that are no records are left alone.
     ///
     /// # Errors
@@ -48,13 +48,13 @@ impl Record {
         self.targets.iter().find(|figures| figures.target == target)
     }
 
-    /// The tools that measured, each once.
+    /// Returns the tools that measured, each once.
     pub fn tools(&self) -> BTreeSet<&str> {
         tools(&self.targets)
     }
 }
 
-/// The tools of all figures, each once.
+/// Returns the tools of all figures, each once.
 pub fn tools<'a>(figures: impl IntoIterator<Item = &'a Figures>) -> BTreeSet<&'a str> {
     figures.into_iter().flat_map(|it| &it.tools).map(String::as_str).collect()
 }

@@ -52,7 +52,7 @@ fn figure<'a>(chart: &'a Chart, source: &'a str) -> Result<Figure<'a>> {
     Ok(Figure { chart, source, svg: plots::svg(chart)?, legend, rows })
 }
 
-/// A value in a table: errors on a logarithmic axis keep their magnitude.
+/// Returns a value in a table: errors on a logarithmic axis keep their magnitude.
 fn cell(value: f64, scale: Scale) -> String {
     match scale {
         _ if value.is_nan() => "\u{2013}".to_owned(),
@@ -61,7 +61,7 @@ fn cell(value: f64, scale: Scale) -> String {
     }
 }
 
-/// An error by its magnitude.
+/// Returns an error by its magnitude.
 pub fn scientific(value: f64) -> String {
     match value {
         0.0 => "0".to_owned(),

@@ -236,7 +236,7 @@ impl<'a> Reader<'a> {
         }))
     }
 
-    /// A number or a name.
+    /// Returns a number or a name.
     fn single(&mut self) -> Option<Part> {
         let token = self.next()?;
         let first = token.chars().next()?;
@@ -247,7 +247,7 @@ impl<'a> Reader<'a> {
         is_name.then(|| Part::new(name(token)))
     }
 
-    /// One expression in parentheses, or several with commas between.
+    /// Returns one expression in parentheses, or several with commas between.
     fn parentheses(&mut self) -> Option<Part> {
         self.sign(&["("])?;
         let mut inside = self.sum()?;
@@ -267,7 +267,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// A name: Greek letters by their names, `delta_x` as a difference, what follows `_` or is a number as a subscript.
+/// Returns a name: Greek letters by their names, `delta_x` as a difference, what follows `_` or is a number as a subscript.
 fn name(token: &str) -> String {
     if let Some(of) = token.strip_prefix("delta_") {
         return format!("<mrow><mi mathvariant=\"normal\">Δ</mi>{}</mrow>", name(of));

@@ -22,17 +22,17 @@ const INK: RGBColor = RGBColor(1, 0, 0);
 const GRID: RGBColor = RGBColor(2, 0, 0);
 const MARK: RGBColor = RGBColor(3, 0, 0);
 
-/// The colour that stands for series number `at`.
+/// Returns the colour that stands for series number `at`.
 fn style(at: usize) -> RGBColor {
     RGBColor(4, 0, (at % STYLES) as u8)
 }
 
-/// The class of series number `at` in the style sheet.
+/// Returns the class of series number `at` in the style sheet.
 pub fn class(at: usize) -> String {
     format!("s{}", at % STYLES + 1)
 }
 
-/// The chart as an `svg` element, which scales to its place and takes its colours from the classes `ink`,
+/// Returns the chart as an `svg` element, which scales to its place and takes its colours from the classes `ink`,
 /// `grid`, `mark` and those of [`class`].
 ///
 /// # Errors
@@ -159,7 +159,7 @@ fn points(chart: &Chart) -> Vec<(usize, (f64, f64), bool)> {
     points
 }
 
-/// The stretches of a series that can be shown, as places; a line that leaves the range ends at its border.
+/// Returns the stretches of a series that can be shown, as places; a line that leaves the range ends at its border.
 fn runs(chart: &Chart, values: &[f64]) -> Vec<Vec<(f64, f64)>> {
     let low = chart.y.place(chart.y.range.0).unwrap_or(f64::NEG_INFINITY);
     let high = chart.y.place(chart.y.range.1).unwrap_or(f64::INFINITY);
@@ -232,7 +232,7 @@ fn ticks(axis: &ChartAxis) -> Vec<f64> {
     }
 }
 
-/// A value at a tick: at most six significant digits, no trailing zeros.
+/// Returns a value at a tick: at most six significant digits, no trailing zeros.
 fn number(value: f64) -> String {
     if value != 0.0 && value.abs() < 0.001 {
         return format!("{value:.0e}").replace("e-", "e\u{2212}");

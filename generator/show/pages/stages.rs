@@ -15,7 +15,7 @@ pub fn reservations(pipeline: &Pipeline) -> Option<Table> {
     (!pipeline.units.is_empty()).then_some(table)
 }
 
-/// The stages with their microinstructions, values, time and registers.
+/// Returns the stages with their microinstructions, values, time and registers.
 pub fn table(design: &Design, pipeline: &Pipeline) -> Table {
     let mut table = Table::of(
         "stage: | microinstructions | logic, ns: | slack, ns: | register bits: | in delay lines: | computes",

@@ -71,7 +71,7 @@ impl Camera {
         Ok(camera)
     }
 
-    /// How far the eye has to go back for it to see all of `things`.
+    /// Returns how far the eye has to go back for it to see all of `things`.
     fn distance(&self, things: impl Iterator<Item = (Vector, f64)>) -> f64 {
         let slopes = [self.half.0 * FILLED, self.half.1 * FILLED];
         let needed = things.flat_map(|(middle, radius)| {
@@ -85,19 +85,19 @@ impl Camera {
         needed.fold(0.0, f64::max)
     }
 
-    /// Where it stands.
+    /// Returns where it stands.
     pub fn eye(&self) -> Vector {
         self.eye
     }
 
-    /// A point in the camera's coordinates.
+    /// Returns a point in the camera's coordinates.
     #[inline]
     pub fn place(&self, point: Vector) -> Vector {
         let from = point - self.eye;
         Vector::new(from.dot(self.right), from.dot(self.up), from.dot(self.back))
     }
 
-    /// A direction of the camera's coordinates, outside.
+    /// Returns a direction of the camera's coordinates, outside.
     #[inline]
     pub fn outward(&self, direction: Vector) -> Vector {
         let [x, y, z] = direction.0;

@@ -62,7 +62,7 @@ impl Relief {
         Ok(Self { slopes: slopes(&heights, width, height), width, height, depth, repeat })
     }
 
-    /// How much the surface rises per unit of u and v, where it has the given texture coordinates.
+    /// Returns how much the surface rises per unit of u and v, where it has the given texture coordinates.
     ///
     /// Slopes between the pixels are interpolated, so that no edges show.
     pub fn rise(&self, u: f64, v: f64) -> [f64; 2] {
@@ -88,7 +88,7 @@ impl Relief {
     }
 }
 
-/// The rise per pixel to the right and upward: half the difference of the neighbours.
+/// Returns the rise per pixel to the right and upward: half the difference of the neighbours.
 fn slopes(heights: &[f32], width: usize, height: usize) -> Vec<[f32; 2]> {
     let at = |column: usize, row: usize| heights[row % height * width + column % width];
     (0..height)

@@ -123,19 +123,19 @@ impl Mesh {
         })
     }
 
-    /// The position of each corner of a triangle.
+    /// Returns the position of each corner of a triangle.
     #[inline]
     pub fn corners(&self, triangle: usize) -> [Vector; 3] {
         self.triangles[triangle].map(|corner| self.positions[corner.position as usize])
     }
 
-    /// Whether every corner has texture coordinates.
+    /// Returns whether every corner has texture coordinates.
     pub fn is_textured(&self) -> bool {
         let mut corners = self.triangles.iter().flatten();
         corners.all(|corner| corner.texture.is_some())
     }
 
-    /// The positions of all corners of all triangles.
+    /// Returns the positions of all corners of all triangles.
     pub fn corner_positions(&self) -> impl Iterator<Item = Vector> {
         let corners = self.triangles.iter().flatten();
         corners.map(|corner| self.positions[corner.position as usize])
@@ -149,7 +149,7 @@ fn finite(what: &str, vectors: &[Vector]) -> Result<()> {
     }
 }
 
-/// The first of the positions with the same coordinates, for each position.
+/// Returns the first of the positions with the same coordinates, for each position.
 fn first_of_same(positions: &[Vector]) -> Vec<u32> {
     let mut first = HashMap::with_capacity(positions.len());
     let positions = positions.iter().enumerate();
@@ -223,7 +223,7 @@ fn creased_normals(
     found
 }
 
-/// The representative of a group, to which all on the way are then tied; it is the least of its members.
+/// Returns the representative of a group, to which all on the way are then tied; it is the least of its members.
 fn root(group: &mut [usize], at: usize) -> usize {
     let mut root = at;
     while group[root] != root {

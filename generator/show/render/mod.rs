@@ -90,7 +90,7 @@ pub struct Rendered {
 }
 
 impl Rendered {
-    /// The picture; where Blinn's was wanted, it and their difference stand beside it, each with its caption.
+    /// Returns the picture; where Blinn's was wanted, it and their difference stand beside it, each with its caption.
     pub fn whole(&self, device: &str) -> Picture {
         let Some(comparison) = &self.comparison else {
             return self.picture.clone();
@@ -115,13 +115,13 @@ pub struct Comparison {
     pub units: f64,
 }
 
-/// The exponent at which a picture is rendered by default: one that the device takes.
+/// Returns the exponent at which a picture is rendered by default: one that the device takes.
 pub fn usual_exponent(contract: &dyn Contract) -> u32 {
     let (least, most) = exponents(contract).unwrap_or((0, i64::MAX));
     EXPONENT.clamp(least, most).max(0) as u32
 }
 
-/// Whether a picture has the operands of a device.
+/// Returns whether a picture has the operands of a device.
 pub fn draws(core: &Core) -> bool {
     let contract = core.contract.as_ref();
     Feed::new(core.device.name, contract).is_ok()
@@ -305,7 +305,7 @@ impl Portions<'_> {
         all
     }
 
-    /// The mean of the samples of each pixel: each with the specular light that was computed for it, and
+    /// Returns the mean of the samples of each pixel: each with the specular light that was computed for it, and
     /// saturated, as a frame buffer of samples would be.
     fn pixels(&self, rows: &[Shaded], specular: Vec<Vector>) -> Vec<[u8; 3]> {
         let mut sums = Vec::with_capacity(self.width * rows.len() / self.samples);
@@ -329,7 +329,7 @@ impl Portions<'_> {
         sums
     }
 
-    /// The largest error of an output against the device's own formula, in output units.
+    /// Returns the largest error of an output against the device's own formula, in output units.
     fn error(&self, points: &Points, outputs: &[i64]) -> f64 {
         let contract = self.core.contract.as_ref();
         let width = contract.outputs().len();

@@ -9,7 +9,7 @@ use anyhow::{Context, Result, anyhow, bail, ensure};
 use super::mesh::{Mesh, RawCorner};
 use super::vector::Vector;
 
-/// The mesh that a file describes; where it has no normals, edges beyond `crease` degrees are sharp.
+/// Returns the mesh that a file describes; where it has no normals, edges beyond `crease` degrees are sharp.
 ///
 /// # Errors
 /// With the number of the line: a number that is none or not finite, a face with less than three corners or
@@ -85,7 +85,7 @@ impl Reader {
     }
 }
 
-/// The first `N` words as finite numbers.
+/// Returns the first `N` words as finite numbers.
 fn numbers<'a, const N: usize>(
     what: &str,
     mut words: impl Iterator<Item = &'a str>,
@@ -105,7 +105,7 @@ fn number(word: &str) -> Result<f64> {
     Ok(value)
 }
 
-/// An index into the `count` entries so far: from 1, or from −1 backward.
+/// Returns an index into the `count` entries so far: from 1, or from −1 backward.
 fn index(part: &str, what: &str, count: usize) -> Result<u32> {
     let given: i64 = part.parse().map_err(|_| anyhow!("`{part}` is not an integer"))?;
     let index = match given {

@@ -137,14 +137,14 @@ pub struct Feed {
     surfaces: bool,
 }
 
-/// The exponents that a device takes, if it takes any.
+/// Returns the exponents that a device takes, if it takes any.
 pub fn exponents(contract: &dyn Contract) -> Option<(i64, i64)> {
     let mut operands = contract.operands().iter();
     let exponent = operands.find(|operand| operand.name == "exponent")?;
     Some(exponent.domain)
 }
 
-/// Whether a device walks a line of points from one start.
+/// Returns whether a device walks a line of points from one start.
 pub fn walks_lines(contract: &dyn Contract) -> bool {
     contract.length().is_some()
 }
@@ -241,27 +241,27 @@ impl Feed {
         Ok(feed)
     }
 
-    /// The number of operands.
+    /// Returns the number of operands.
     pub fn operand_count(&self) -> usize {
         self.operands.len()
     }
 
-    /// Whether the device computes all of the light, and not the highlight alone.
+    /// Returns whether the device computes all of the light, and not the highlight alone.
     pub fn shades(&self) -> bool {
         self.surfaces
     }
 
-    /// Whether the device takes dγ, and so the smooth normal's angle.
+    /// Returns whether the device takes dγ, and so the smooth normal's angle.
     pub fn takes_deviation(&self) -> bool {
         self.takes(Quantity::CosDgamma)
     }
 
-    /// Whether n, or its logarithm, is an operand.
+    /// Returns whether n, or its logarithm, is an operand.
     pub fn takes_exponent(&self) -> bool {
         self.takes(Quantity::Exponent) || self.takes(Quantity::Shift)
     }
 
-    /// The first of some operands, not yet quantised, that is beyond its domain. The cosine of a surface that faces away
+    /// Returns the first of some operands, not yet quantised, that is beyond its domain. The cosine of a surface that faces away
     /// is the least that there is, and angles of lines are taken modulo a turn.
     pub fn outside(&self, values: &[f64]) -> Option<usize> {
         let mut operands = self.operands.iter().zip(values);
@@ -274,7 +274,7 @@ impl Feed {
         })
     }
 
-    /// The most intervals of a line, if the device computes lines.
+    /// Returns the most intervals of a line, if the device computes lines.
     pub fn longest(&self) -> Option<usize> {
         self.longest
     }
@@ -288,7 +288,7 @@ impl Feed {
         operands.find(|operand| operand.0 == wanted).copied()
     }
 
-    /// The operands of a point before they are quantised, each in its own unit.
+    /// Returns the operands of a point before they are quantised, each in its own unit.
     pub fn values<'a>(&'a self, point: &'a Point, exponent: u32) -> impl Iterator<Item = f64> + 'a {
         let split = self.takes_deviation();
         self.operands.iter().map(move |&(quantity, format, (_, high))| match quantity {
@@ -315,7 +315,7 @@ impl Feed {
         })
     }
 
-    /// The raw operands of a point, and whether dγ was beyond the device's domain.
+    /// Returns the raw operands of a point, and whether dγ was beyond the device's domain.
     pub fn raw<'a>(
         &'a self,
         point: &'a Point,
@@ -332,7 +332,7 @@ impl Feed {
         (raw, beyond)
     }
 
-    /// The amplitude of full light.
+    /// Returns the amplitude of full light.
     pub fn full(&self) -> f64 {
         let full = self.find(Quantity::Amplitude);
         full.map_or(0.0, |(_, format, (_, most))| format.to_f64(i128::from(most)))
@@ -343,7 +343,7 @@ impl Feed {
         if self.takes(Quantity::Exponent) { 1.0 } else { line.stretch() }
     }
 
-    /// The operands of a line before they are quantised, each in its own unit.
+    /// Returns the operands of a line before they are quantised, each in its own unit.
     pub fn line_values<'a>(&'a self, line: &'a Line) -> impl Iterator<Item = f64> + 'a {
         let stretch = self.stretch(line);
         self.operands.iter().map(move |(quantity, ..)| match quantity {
@@ -358,7 +358,7 @@ impl Feed {
         })
     }
 
-    /// The raw operands of a line. Angles are taken modulo a turn.
+    /// Returns the raw operands of a line. Angles are taken modulo a turn.
     ///
     /// # Errors
     /// An angle times √(n/2) that a device without an exponent has no room for.
@@ -384,7 +384,7 @@ impl Feed {
         Ok(self.operands.iter().zip(self.line_values(line)).map(raw).collect())
     }
 
-    /// The results of a point as a colour, 255 at full colour: `outputs` gives those in which red, green and
+    /// Returns the results of a point as a colour, 255 at full colour: `outputs` gives those in which red, green and
     /// blue are.
     #[inline]
     pub fn colour<'a>(&self, outputs: impl Fn(usize) -> &'a [i64]) -> Vector {
@@ -393,18 +393,18 @@ impl Feed {
     }
 }
 
-/// The raw value nearest to a number, in the domain.
+/// Returns the raw value nearest to a number, in the domain.
 fn number(value: f64, format: Format, (low, high): (i64, i64)) -> i64 {
     format.quantise(value).clamp(i128::from(low), i128::from(high)) as i64
 }
 
-/// The raw angle nearest to right angles, modulo a turn: what an angle without room for more means.
+/// Returns the raw angle nearest to right angles, modulo a turn: what an angle without room for more means.
 fn raw_angle(right_angles: f64, format: Format) -> i64 {
     let scaled = (right_angles * exp2(format.frac) + 0.5).floor() as i128;
     format.narrow(scaled, format.frac, Rounding::Truncate, Overflow::Wrap) as i64
 }
 
-/// An operand that is the same at every point.
+/// Returns an operand that is the same at every point.
 fn fixed(operand: &Operand, value: f64) -> Result<Quantity> {
     let name = &operand.name;
     let [low, high] =

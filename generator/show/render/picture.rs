@@ -33,7 +33,7 @@ impl Picture {
         Self { width, pixels: Vec::new() }
     }
 
-    /// The number of rows.
+    /// Returns the number of rows.
     pub fn height(&self) -> u32 {
         (self.pixels.len() / self.width as usize) as u32
     }
@@ -89,7 +89,7 @@ impl Picture {
     }
 }
 
-/// A colour of 0 … 255 a channel as a pixel: saturated, and rounded to the nearest.
+/// Returns a colour of 0 … 255 a channel as a pixel: saturated, and rounded to the nearest.
 #[inline]
 pub fn pixel(colour: Vector) -> [u8; 3] {
     colour.0.map(|value| (value + 0.5).clamp(0.0, 255.0) as u8)

@@ -71,7 +71,7 @@ pub const COLOUR: Vector = Vector::new(0.08, 0.35, 0.54);
 pub const BACKGROUND: Vector = Vector::new(0.05, 0.06, 0.08);
 
 impl Light {
-    /// The lights by default: a white one from the upper left, a weaker one from behind on the right.
+    /// Returns the lights by default: a white one from the upper left, a weaker one from behind on the right.
     pub fn usual() -> Vec<Self> {
         let light = |direction: Vector, colour| Self {
             direction: direction.unit().unwrap_or_default(),
@@ -85,7 +85,7 @@ impl Light {
 }
 
 impl Scene {
-    /// A scene that needs no file; its things have the given colour, or colours of their own. `coarse` ones
+    /// Returns a scene that needs no file; its things have the given colour, or colours of their own. `coarse` ones
     /// consist of triangles that one can see, for devices that interpolate along them.
     ///
     /// # Errors
@@ -125,7 +125,7 @@ impl Scene {
         })
     }
 
-    /// The middle and half the diagonal of the box around everything.
+    /// Returns the middle and half the diagonal of the box around everything.
     pub fn extent(&self) -> (Vector, f64) {
         let mut low = Vector([f64::INFINITY; 3]);
         let mut high = Vector([f64::NEG_INFINITY; 3]);
@@ -152,7 +152,7 @@ impl Scene {
     }
 }
 
-/// A mesh scaled, tilted about the x axis by an angle, and moved.
+/// Returns a mesh scaled, tilted about the x axis by an angle, and moved.
 fn place(mut mesh: Mesh, size: f64, tilt: f64, to: Vector) -> Mesh {
     let (sin, cos) = (libm::sin(tilt), libm::cos(tilt));
     let turn = |vector: Vector| {

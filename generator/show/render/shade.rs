@@ -79,7 +79,7 @@ struct Surface {
 }
 
 impl Surface {
-    /// Whether a light falls on it. The device knows nothing of what lies in its own shadow.
+    /// Returns whether a light falls on it. The device knows nothing of what lies in its own shadow.
     fn is_lit(&self, light: &Light) -> bool {
         self.smooth.dot(light.direction) > 0.0
     }
@@ -188,7 +188,7 @@ impl Shader<'_> {
         Ok(())
     }
 
-    /// The lines along some samples: for each light the numbers of the first result of red, green and blue. A
+    /// Returns the lines along some samples: for each light the numbers of the first result of red, green and blue. A
     /// light that falls on none of them has no line.
     ///
     /// The host's set-up is that of seed 000, from normals and half vectors at both ends.
@@ -225,7 +225,7 @@ impl Shader<'_> {
         Surface { colour: object.colour, smooth, perturbed, interpolated, toward_eye }
     }
 
-    /// The normals of the smooth and of the perturbed surface, both toward the eye, and the latter as it was interpolated.
+    /// Returns the normals of the smooth and of the perturbed surface, both toward the eye, and the latter as it was interpolated.
     fn normals(
         &self,
         object: &Object,

@@ -61,7 +61,7 @@ pub fn vase(steps: [u32; 2]) -> Result<Mesh> {
     })
 }
 
-/// The radius of the vase from the foot (0) to the lip (1).
+/// Returns the radius of the vase from the foot (0) to the lip (1).
 fn vase_radius(height: f64) -> f64 {
     // A foot that closes, a belly, a neck, and a lip that opens.
     let foot = (height * 14.0).min(1.0);

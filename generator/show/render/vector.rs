@@ -14,7 +14,7 @@ impl Vector {
         Self([x, y, z])
     }
 
-    /// The scalar product.
+    /// Returns the scalar product.
     #[inline]
     pub fn dot(self, other: Self) -> f64 {
         let ([ax, ay, az], [bx, by, bz]) = (self.0, other.0);
@@ -28,13 +28,13 @@ impl Vector {
         Self::new(ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx)
     }
 
-    /// The Euclidean length.
+    /// Returns the Euclidean length.
     #[inline]
     pub fn length(self) -> f64 {
         self.dot(self).sqrt()
     }
 
-    /// The vector of length 1 in its direction; `None` when it has none, or none that can be computed.
+    /// Returns the vector of length 1 in its direction; `None` when it has none, or none that can be computed.
     #[inline]
     pub fn unit(self) -> Option<Self> {
         let [x, y, z] = self.0.map(f64::abs);
@@ -52,7 +52,7 @@ impl Vector {
         Self::new(ax * bx, ay * by, az * bz)
     }
 
-    /// Whether no component is infinite or no number.
+    /// Returns whether no component is infinite or no number.
     #[inline]
     pub fn finite(self) -> bool {
         self.0.iter().all(|component| component.is_finite())

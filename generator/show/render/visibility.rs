@@ -29,7 +29,7 @@ pub struct Hit {
 const NOTHING: Hit = Hit { depth: f64::INFINITY, object: u32::MAX, triangle: 0, weights: [0.0; 2] };
 
 impl Hit {
-    /// Whether there is anything.
+    /// Returns whether there is anything.
     pub fn is_something(&self) -> bool {
         self.object != u32::MAX
     }
@@ -52,7 +52,7 @@ impl Raster {
         Self { columns, rows, half: camera.half() }
     }
 
-    /// The ray through the middle of a sample, in the camera's coordinates.
+    /// Returns the ray through the middle of a sample, in the camera's coordinates.
     #[inline]
     pub fn ray(&self, column: usize, row: usize) -> Vector {
         let x = (2.0 * column as f64 + 1.0) / self.columns as f64 - 1.0;
@@ -60,7 +60,7 @@ impl Raster {
         Vector::new(x * self.half.0, y * self.half.1, -1.0)
     }
 
-    /// The samples whose middles may lie between two slopes, `x/−z` or −`y/−z`: one more on each side.
+    /// Returns the samples whose middles may lie between two slopes, `x/−z` or −`y/−z`: one more on each side.
     fn span(&self, low: f64, high: f64, half: f64, count: usize) -> (u32, u32) {
         let at = |slope: f64| (slope / half + 1.0) / 2.0 * count as f64 - 0.5;
         let last = count as f64;
@@ -145,7 +145,7 @@ impl<'a> Visibility<'a> {
         }
     }
 
-    /// Where a triangle may be seen, if anywhere.
+    /// Returns where a triangle may be seen, if anywhere.
     fn candidate(&self, object: u32, triangle: u32) -> Option<Candidate> {
         let corners = self.corners(object, triangle);
         let distances = corners.map(|corner| -corner.0[2]);
@@ -256,7 +256,7 @@ impl Planes {
         (volume != 0.0).then_some(Self { normals, volume })
     }
 
-    /// Where a ray meets the triangle, with the weights of the second and the third corner.
+    /// Returns where a ray meets the triangle, with the weights of the second and the third corner.
     #[inline]
     fn meet(&self, ray: Vector) -> Option<(f64, [f64; 2])> {
         let [a, b, c] = self.normals.map(|normal| ray.dot(normal));
@@ -270,7 +270,7 @@ impl Planes {
     }
 }
 
-/// Where a ray enters a ball.
+/// Returns where a ray enters a ball.
 #[inline]
 fn meet_ball(ray: Vector, middle: Vector, radius: f64) -> Option<f64> {
     let square = ray.dot(ray);

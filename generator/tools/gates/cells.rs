@@ -31,14 +31,14 @@ pub enum Start {
 }
 
 impl Start {
-    /// The starts from which a bench passes: a pipeline knows its state by the reset and the points alone. In gates around the
+    /// Returns the starts from which a bench passes: a pipeline knows its state by the reset and the points alone. In gates around the
     /// registers of a microprogram, which points write one after the other, unknown values stay that no circuit has.
     pub fn of(pipelined: bool) -> &'static [Self] {
         if pipelined { &[Self::Unknown] } else { &[Self::Zeros, Self::Ones] }
     }
 }
 
-/// The flat netlist of the module `top` in cells of [`LIBERTY`], as Verilog.
+/// Returns the flat netlist of the module `top` in cells of [`LIBERTY`], as Verilog.
 ///
 /// # Errors
 /// The library cannot be read; Yosys fails, or takes longer than `limit`.
@@ -59,7 +59,7 @@ pub fn netlist(
     sources.text(NETLIST)
 }
 
-/// The models of the cells, without their delays and with a flip-flop that begins as `start` says: the library's own becomes
+/// Returns the models of the cells, without their delays and with a flip-flop that begins as `start` says: the library's own becomes
 /// unknown by the first value on its constant inputs.
 ///
 /// # Errors

@@ -15,12 +15,12 @@ use glint_base::target::Family;
 /// Models of the ECP5 cells for which Yosys has none.
 const ECP5: &str = include_str!("ecp5.v");
 
-/// Whether all cells to which devices are mapped have a model: in Yosys, or here.
+/// Returns whether all cells to which devices are mapped have a model: in Yosys, or here.
 pub fn is_simulated(family: &Family) -> bool {
     matches!(family.name(), "ice40" | "ecp5")
 }
 
-/// The flat netlist of the module `top`, as Verilog, with the contents of the ROMs.
+/// Returns the flat netlist of the module `top`, as Verilog, with the contents of the ROMs.
 ///
 /// # Errors
 /// As of [`super::synthesis::synthesise`].
@@ -37,7 +37,7 @@ pub fn netlist(
     sources.text(NETLIST)
 }
 
-/// The files of the bench around a netlist of a family, of `sources`, those of device and bench: without those named in
+/// Returns the files of the bench around a netlist of a family, of `sources`, those of device and bench: without those named in
 /// `rtl`, and with the models of the family's cells.
 ///
 /// # Errors
@@ -70,7 +70,7 @@ pub fn around(
     files
 }
 
-/// The models of a family's cells.
+/// Returns the models of a family's cells.
 ///
 /// # Errors
 /// They are not where Yosys has them; there are none.
@@ -91,7 +91,7 @@ pub fn models(yosys: &Tool, family: &Family) -> Result<Vec<(String, String)>> {
     Ok(files)
 }
 
-/// The models that Yosys brings.
+/// Returns the models that Yosys brings.
 fn shipped(yosys: &Tool, family: &Family) -> Result<String> {
     let tool = yosys.path().canonicalize();
     let tool = tool.with_context(|| format!("cannot find `{}`", yosys.path().display()))?;

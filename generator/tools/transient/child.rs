@@ -28,12 +28,12 @@ impl Child {
         Ok(Self { child, ended: false })
     }
 
-    /// The process number.
+    /// Returns the process number.
     pub fn id(&self) -> u32 {
         self.child.id()
     }
 
-    /// How it ended, if it has.
+    /// Returns how it ended, if it has.
     ///
     /// # Errors
     /// There is no such child.
@@ -139,7 +139,7 @@ mod tree {
         parent: i32,
     }
 
-    /// The living descendants of `root`, with itself or without. None where there is no `/proc`.
+    /// Returns the living descendants of `root`, with itself or without. None where there is no `/proc`.
     pub fn descendants(root: i32, with_root: bool) -> Vec<i32> {
         let all = all();
         let mut found = vec![root];

@@ -96,7 +96,7 @@ pub fn clear() -> Cleared {
     Cleared { _undivided: undivided, _list: list }
 }
 
-/// Whether there is nothing at `path` afterwards.
+/// Returns whether there is nothing at `path` afterwards.
 fn delete(path: &Path) -> bool {
     let done = match fs::symlink_metadata(path) {
         Ok(found) if found.is_dir() => fs::remove_dir_all(path),

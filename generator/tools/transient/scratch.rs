@@ -26,7 +26,7 @@ pub struct Directory {
 }
 
 impl Directory {
-    /// One for the use of a tool, where the system keeps temporary files. The first deletes those that killed processes
+    /// Returns one for the use of a tool, where the system keeps temporary files. The first deletes those that killed processes
     /// have left.
     ///
     /// # Errors
@@ -37,7 +37,7 @@ impl Directory {
         Self::made(&place, FOR_TOOLS)
     }
 
-    /// One in `parent`, for files that are moved into their places beside it, once those that killed processes have left
+    /// Returns one in `parent`, for files that are moved into their places beside it, once those that killed processes have left
     /// there are deleted.
     ///
     /// # Errors
@@ -66,7 +66,7 @@ impl Directory {
         Ok(directory)
     }
 
-    /// Where it is.
+    /// Returns where it is.
     pub fn path(&self) -> &Path {
         self.made.as_ref().map_or(Path::new(""), TempDir::path)
     }
@@ -106,7 +106,7 @@ fn sweep(parent: &Path, prefix: &str) {
     }
 }
 
-/// The text of the file in a directory.
+/// Returns the text of the file in a directory.
 fn title(directory: &Path) -> String {
     let name = directory.file_name().unwrap_or_default().to_string_lossy();
     format!("Glint works in {name}. The next run deletes what a killed one has left.\n")
@@ -129,14 +129,14 @@ pub fn files_below(directory: &Path) -> io::Result<Vec<PathBuf>> {
     Ok(found)
 }
 
-/// The path below `root`, with `/`.
+/// Returns the path below `root`, with `/`.
 pub fn relative_name(root: &Path, path: &Path) -> String {
     let relative = path.strip_prefix(root).unwrap_or(path);
     let parts: Vec<_> = relative.iter().map(|part| part.to_string_lossy()).collect();
     parts.join("/")
 }
 
-/// An error of a temporary path without its name, which says nothing to anybody.
+/// Returns an error of a temporary path without its name, which says nothing to anybody.
 fn without_path(error: io::Error) -> io::Error {
     let text = error.to_string();
     io::Error::new(error.kind(), text.split(" at path ").next().unwrap_or_default())

@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use crate::workspace::{COSINE_POWER, Run, Workspace};
 
-/// A comparison without synthesis.
+/// Returns a comparison without synthesis.
 fn compare(arguments: &[&str]) -> Run {
     let dir = Workspace::with("core.toml", COSINE_POWER);
     dir.glint(["compare", "--no-synthesis"].iter().chain(arguments))
@@ -22,7 +22,7 @@ fn entry<'a>(value: &'a Value, name: &str) -> &'a Value {
     found.unwrap_or_else(|| panic!("no {name} in {value}"))
 }
 
-/// The cosines of the grid, from 0 to 90 degrees by a hundredth, as 20 fraction bits hold them; and unrounded.
+/// Returns the cosines of the grid, from 0 to 90 degrees by a hundredth, as 20 fraction bits hold them; and unrounded.
 fn cosines() -> impl Iterator<Item = (i64, f64)> {
     (0..=9000).map(|step| {
         let cosine = (f64::from(step) / 100.0).to_radians().cos();
@@ -30,7 +30,7 @@ fn cosines() -> impl Iterator<Item = (i64, f64)> {
     })
 }
 
-/// The largest and the mean.
+/// Returns the largest and the mean.
 fn spread(errors: impl Iterator<Item = f64>) -> (f64, f64) {
     let errors: Vec<f64> = errors.map(f64::abs).collect();
     let largest = errors.iter().copied().fold(0.0, f64::max);

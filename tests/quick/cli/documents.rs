@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::workspace::Workspace;
 
-/// The blocks of a page: language and text.
+/// Returns the blocks of a page: language and text.
 fn blocks(page: &str) -> Vec<(&str, &str)> {
     let fenced = page.split("\n```").skip(1).step_by(2);
     fenced.filter_map(|block| block.split_once('\n')).collect()

@@ -55,7 +55,7 @@ fn run(dir: &Workspace, arguments: &[String]) -> Run {
     run
 }
 
-/// A directory with what the pieces speak of.
+/// Returns a directory with what the pieces speak of.
 fn dir() -> Workspace {
     let dir = Workspace::new();
     let inner = |name: &str| format!("{INNER}/{name}");

@@ -17,7 +17,7 @@ const MARK: &str = "GLINT_TEST_PLACE";
 const PATIENCE: Duration = Duration::from_secs(300);
 const PAUSE: Duration = Duration::from_millis(20);
 
-/// The command with signals as a terminal has them: a shell lets what it starts in the background ignore Ctrl-C,
+/// Returns the command with signals as a terminal has them: a shell lets what it starts in the background ignore Ctrl-C,
 /// and the tests may be such.
 fn signalled(command: &Command) -> Command {
     let mut signalled = Command::new("env");
@@ -62,7 +62,7 @@ impl<'a> Running<'a> {
         Self { dir, child, before }
     }
 
-    /// The names of all processes of the run.
+    /// Returns the names of all processes of the run.
     fn processes(&self) -> Vec<String> {
         let mark = format!("{MARK}={}", self.dir.path().display());
         let entries = fs::read_dir("/proc").expect("/proc");
@@ -117,7 +117,7 @@ impl<'a> Running<'a> {
     }
 }
 
-/// A process that has ended.
+/// Returns a process that has ended.
 fn dead() -> Child {
     let mut child = std::process::Command::new("true").spawn().expect("true");
     child.wait().expect("its end");

@@ -32,7 +32,7 @@ pub fn pixels(png: &[u8]) -> (u32, u32, Vec<[u8; 3]>) {
     (info.width, info.height, pixels.to_vec())
 }
 
-/// The picture that was drawn last.
+/// Returns the picture that was drawn last.
 fn picture(dir: &Workspace) -> Vec<u8> {
     fs::read(dir.at("out.png")).expect("a picture")
 }
@@ -61,7 +61,7 @@ fn assert_within_bound(told: &Value) {
     assert!(units <= number(told, "bound_in_units"), "{told}");
 }
 
-/// A map with bumps, 16 × 16.
+/// Returns a map with bumps, 16 × 16.
 fn bumps() -> Vec<u8> {
     let heights: Vec<u8> = (0..256).map(|at| (at % 16 * 37 + at / 16 * 91) as u8).collect();
     png(ColorType::Grayscale, BitDepth::Eight, 16, &heights)

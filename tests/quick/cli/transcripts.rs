@@ -88,12 +88,12 @@ fn place(dir: &Workspace, name: &str, text: &str) {
     }
 }
 
-/// A name, and what stands behind it.
+/// Returns a name, and what stands behind it.
 fn halves(text: &str) -> Option<(&str, &str)> {
     text.split_once(' ')
 }
 
-/// Words with blanks between, or with quotes around.
+/// Returns words with blanks between, or with quotes around.
 fn words(text: &str) -> Vec<String> {
     let word = Regex::new(r"'([^']*)'|(\S+)").expect("a pattern");
     let words = word.captures_iter(text);
@@ -197,7 +197,7 @@ impl<'t> Step<'t> {
         wrong
     }
 
-    /// The first text that standard error is to have.
+    /// Returns the first text that standard error is to have.
     fn told(&self) -> Option<&str> {
         self.expected.iter().find_map(|line| line.strip_prefix("! "))
     }

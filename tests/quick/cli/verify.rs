@@ -12,7 +12,7 @@ fn dir() -> Workspace {
     Workspace::with("core.toml", narrow.replace("schlick_reduced", "core"))
 }
 
-/// The verdicts of a record, by check.
+/// Returns the verdicts of a record, by check.
 fn verdicts(record: &Value) -> Vec<(&str, &str)> {
     let checks = record["checks"].as_array().expect("checks");
     checks

@@ -65,12 +65,12 @@ impl Workspace {
         fs::read_to_string(self.at(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
     }
 
-    /// A file that is JSON.
+    /// Returns a file that is JSON.
     pub fn json(&self, name: &str) -> Value {
         serde_json::from_str(&self.read(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
     }
 
-    /// The program, to be run here.
+    /// Returns the program, to be run here.
     pub fn command(&self) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_glint"));
         command.current_dir(self.path());
@@ -88,7 +88,7 @@ impl Workspace {
         run.out
     }
 
-    /// Every file below this directory, with its contents.
+    /// Returns every file below this directory, with its contents.
     pub fn files(&self) -> BTreeMap<String, Vec<u8>> {
         let mut found = BTreeMap::new();
         let mut directories = vec![self.path().to_owned()];

@@ -13,7 +13,7 @@ fn held(d: &Designer) {
     d.microprogram([step("idle", []), step("load", [y.load()]), step("result", [valid(), end()])]);
 }
 
-/// A dataflow of an operand, right but for what `describe` makes of it.
+/// Returns a dataflow of an operand, right but for what `describe` makes of it.
 #[track_caller]
 fn dataflow(describe: impl for<'d> FnOnce(&'d Designer, Signal<'d>) -> Signal<'d>) -> Found {
     let d = Designer::new("device");

@@ -210,7 +210,7 @@ fn results_need_valid_and_muxes_need_a_choice() {
              `pick` what the mux passes on, or leave the mux out"]);
 }
 
-/// A loop around the load of `y`, as long as `condition` says.
+/// Returns a loop around the load of `y`, as long as `condition` says.
 #[track_caller]
 fn looped(condition: impl for<'d> FnOnce(&'d Designer) -> glint::dsl::Signal<'d>) -> Found {
     program(|d, load| {

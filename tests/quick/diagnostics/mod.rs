@@ -36,7 +36,7 @@ fn finish(d: Designer) -> Found {
     Found(found.into_iter().map(|diagnostic| diagnostic.message).collect())
 }
 
-/// A small device with these microinstructions.
+/// Returns a small device with these microinstructions.
 #[track_caller]
 fn program(steps: impl FnOnce(&Designer, Setting) -> Vec<glint::dsl::Step>) -> Found {
     let d = Designer::new("device");
@@ -49,7 +49,7 @@ fn program(steps: impl FnOnce(&Designer, Setting) -> Vec<glint::dsl::Step>) -> F
     finish(d)
 }
 
-/// A small device that is right but for what `wrong` adds.
+/// Returns a small device that is right but for what `wrong` adds.
 #[track_caller]
 fn mistakes(wrong: impl FnOnce(&Designer)) -> Found {
     program(|d, load| {
@@ -77,7 +77,7 @@ fn every_code_has_its_page() {
     }
 }
 
-/// The Rust below a directory, one file behind the other.
+/// Returns the Rust below a directory, one file behind the other.
 fn sources(directory: &str) -> String {
     let entries = fs::read_dir(directory).expect("a directory");
     let paths = entries.map(|entry| entry.expect("an entry").path());
@@ -296,7 +296,7 @@ fn formats_have_limits() {
     assert!(found[expected.len() + 1].starts_with("`none` would be 0 bits wide"), "{found:?}");
 }
 
-/// The warnings of a small device that says more than it needs to.
+/// Returns the warnings of a small device that says more than it needs to.
 fn warnings(more: impl FnOnce(&Designer) -> Vec<Setting>) -> Found {
     let d = Designer::new("device");
     let x = d.operand("x", BYTE);

@@ -30,7 +30,7 @@ pub fn calls(wild: bool) -> impl Strategy<Value = Vec<Call>> {
 }
 
 impl Call {
-    /// Whether it makes a constant or compares: linters refuse, rightly, to compare with what is known.
+    /// Returns whether it makes a constant or compares: linters refuse, rightly, to compare with what is known.
     /// The random netlists have comparisons of what is not.
     pub fn may_be_known(&self) -> bool {
         matches!(self.what % 30, 3 | 4 | 16 | 17)

@@ -21,7 +21,7 @@ use glint::registry::{Device, Registry};
 /// The format of the result, u1.14.
 const RESULT: Format = Format::unsigned(1, 14);
 
-/// The part: 1/√x from 1 to 2.
+/// Returns the part: 1/√x from 1 to 2.
 fn part() -> Config {
     let values = [("formula", Value::Text("1/sqrt(x)".into())), ("from", Value::Text("1".into()))];
     let mut values: Vec<_> = values.into();
@@ -78,7 +78,7 @@ impl Formula for Root {
         vec![x[0].sqrt()]
     }
 
-    /// The part's error grows by x, which is at most 2.
+    /// Returns the part's error grows by x, which is at most 2.
     fn terms(&self) -> Vec<Term> {
         let part = golden::function::contract(&part());
         let error = part.bound().units * exp2(-part.outputs()[0].format.frac);

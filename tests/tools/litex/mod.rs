@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 const PACKAGE: &str = "[package]\nmemories = \"inline\"\nlitex = true\n";
 
-/// The Verilog of a system and its bench, pairs of a plain name and its text.
+/// Returns the Verilog of a system and its bench, pairs of a plain name and its text.
 fn system(name: &str, keys: &str, face: &str) -> Vec<(String, String)> {
     let keys = format!("{keys}{PACKAGE}");
     let core = configuration_between(&format!("configs/{name}.toml"), &keys);

@@ -20,7 +20,7 @@ const ALL: &str = "stream = true\nregisters = \"wishbone\"\n[package]\nconstrain
 
 const INLINE: &str = "\n[package]\nmemories = \"inline\"\n";
 
-/// The files in `rtl_out` of a configuration, in a directory.
+/// Returns the files in `rtl_out` of a configuration, in a directory.
 fn emitted(core: &Core) -> tempfile::TempDir {
     Emitted::new(core, 1, 1).beside("rtl_out/")
 }
@@ -197,7 +197,7 @@ fn rom_contents_in_the_verilog_are_those_of_the_files() {
     });
 }
 
-/// The Verilog with all words of its first memory with a table inverted.
+/// Returns the Verilog with all words of its first memory with a table inverted.
 fn wrong_word(rtl: &[(String, String)]) -> Vec<(String, String)> {
     let inverted = |text: &str| {
         let line = |line: &str| {

@@ -34,7 +34,7 @@ const PROVED: [(&str, &str); 8] = [
     ("cosine_power_pipelined", PADDED),
 ];
 
-/// Every configuration with these keys in its table `interface`, and pipelines that take a point every few clocks; some as
+/// Returns every configuration with these keys in its table `interface`, and pipelines that take a point every few clocks; some as
 /// DMA engines want them.
 fn with_streams() -> Vec<(String, Core)> {
     let padded =
@@ -56,7 +56,7 @@ fn with_interface(keys: &str) -> Vec<(String, Core)> {
         .collect()
 }
 
-/// A pipeline that takes a point every so many clocks, with these keys in its table `interface`.
+/// Returns a pipeline that takes a point every so many clocks, with these keys in its table `interface`.
 fn slower(clocks: u32, keys: &str) -> Core {
     let text = fs::read_to_string("configs/cosine_power_pipelined.toml").expect("a configuration");
     let own = text.split("\n[interface]\n").next().expect("its keys");
@@ -106,7 +106,7 @@ fn breaks_the_proof(fault: &Fault, name: &str, keys: &str, wrapper: &str) {
     fault.assert_breaks(proof(name, keys).path(), &module, &format!("{module}.v"));
 }
 
-/// The wrapper of a configuration, and what is proved of it, in a directory of their own.
+/// Returns the wrapper of a configuration, and what is proved of it, in a directory of their own.
 fn proof(name: &str, keys: &str) -> tempfile::TempDir {
     let core = configuration_between(&format!("configs/{name}.toml"), keys);
     Emitted::new(&core, 1, 1).beside("")
@@ -145,7 +145,7 @@ fn shipped_benches_pass_on_padded_streams() {
 const BUSES: [(&str, &str); 2] =
     [("registers = \"axi-lite\"\n", "axil"), ("registers = \"wishbone\"\n", "wb")];
 
-/// Every default configuration of a core that computes a point at a time by a microprogram, on each bus.
+/// Returns every default configuration of a core that computes a point at a time by a microprogram, on each bus.
 fn on_buses() -> Vec<(String, Core, &'static str)> {
     let points = |core: &Core| core.design.pipeline.is_none() && core.contract.length().is_none();
     let paths: Vec<String> = all_configurations()

@@ -47,7 +47,7 @@ fn planted_faults_are_noticed() {
     }
 }
 
-/// Whether lint, a bench or a proof notices what is wrong with some files.
+/// Returns whether lint, a bench or a proof notices what is wrong with some files.
 fn is_noticed(name: &str, files: &Files) -> bool {
     let dir = tempfile::tempdir().expect("a directory");
     let dir = dir.path();
@@ -71,7 +71,7 @@ fn is_noticed(name: &str, files: &Files) -> bool {
         || proofs(dir, name).any(|it| prove(dir, &it, LIMIT).is_err())
 }
 
-/// The wrappers whose proofs are in a directory.
+/// Returns the wrappers whose proofs are in a directory.
 fn proofs(dir: &Path, core: &str) -> impl Iterator<Item = String> + use<> {
     let core = core.to_owned();
     let files = fs::read_dir(dir).expect("a directory");

@@ -20,7 +20,7 @@ const BLOOMING: Region = Region::Level(0.20);
 /// The level at which the errors of Schlick's function come out.
 const SCHLICK_BLOOMING: Region = Region::Level(0.19);
 
-/// The claims, in the order of the paper.
+/// Returns the claims, in the order of the paper.
 pub fn claims() -> Vec<Claim> {
     vec![
         not_negative(),
@@ -139,7 +139,7 @@ fn falling() -> Claim {
     claim("falling", ours, verdict, &[])
 }
 
-/// The exponents at which some property of errors in a region fails.
+/// Returns the exponents at which some property of errors in a region fails.
 fn failing(region: Region, holds: impl Fn(&dyn Fn(Function) -> f64) -> bool) -> Vec<u32> {
     let fails = |n: &u32| {
         let error = |function: Function| measure::at(function, *n, region).map(|it| it.error);
@@ -152,7 +152,7 @@ fn failing(region: Region, holds: impl Fn(&dyn Fn(Function) -> f64) -> bool) -> 
 /// Whether a claim holds of the functions' errors.
 type Holds<'a> = dyn Fn(&dyn Fn(Function) -> f64) -> bool + 'a;
 
-/// A claim about all exponents: how many fail in each region.
+/// Returns a claim about all exponents: how many fail in each region.
 fn of_all(id: &str, holds: &Holds) -> Claim {
     let regions = [Region::Inflection, EPICENTRE, BLOOMING];
     let failing = regions.map(|region| (region, failing(region, holds)));
@@ -186,7 +186,7 @@ fn ahead_of_schlick() -> Claim {
     of_all("ahead-of-schlick", &|error| three.iter().all(|w| error(w) < error(&schlick)))
 }
 
-/// The largest relative error of a function over the paper's exponents.
+/// Returns the largest relative error of a function over the paper's exponents.
 fn papers(function: Function, region: Region) -> Option<Measured> {
     let worst = measure::over(function, PAPER, region)?;
     let definition = format!("{}, n = 16…250", region.name());

@@ -6,7 +6,7 @@ use super::{
     to_inflection,
 };
 
-/// The claims, in the order of the patent.
+/// Returns the claims, in the order of the patent.
 pub fn claims() -> Vec<Claim> {
     vec![prototype(), four_powers(), quad_large(), quad_small()]
 }

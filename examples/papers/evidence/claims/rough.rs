@@ -11,12 +11,12 @@ const WORDS: u32 = 256;
 /// The largest exponent of the patent: "[1; 1000]".
 const LARGEST_EXPONENT: u32 = 1000;
 
-/// The claims, in the order of the patent's description.
+/// Returns the claims, in the order of the patent's description.
 pub fn claims() -> Vec<Claim> {
     vec![inverse_code(), second_input(), ten_clocks()]
 }
 
-/// How many of `all` words or pairs satisfy what is said of them.
+/// Returns how many of `all` words or pairs satisfy what is said of them.
 fn share(key: &str, definition: &str, all: impl Iterator<Item = bool>) -> Measured {
     let (mut holding, mut count) = (0, 0);
     all.for_each(|holds| {

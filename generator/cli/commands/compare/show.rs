@@ -72,7 +72,7 @@ fn at_rest(entry: &Entry) -> Option<String> {
     })
 }
 
-/// The largest error and the mean: of the whole, of the formula, of the operands and of the fixed point.
+/// Returns the largest error and the mean: of the whole, of the formula, of the operands and of the fixed point.
 fn errors(accuracy: &Accuracy) -> impl Iterator<Item = f64> {
     let Accuracy { whole, formula, operands, fixed_point } = *accuracy;
     [whole, formula, operands, fixed_point].into_iter().flat_map(|it| [it.largest, it.mean])
@@ -146,7 +146,7 @@ fn taken(entry: &Entry, unknown: &str) -> Vec<String> {
     families.collect()
 }
 
-/// The targets for which a frequency was measured, with the core's rate there.
+/// Returns the targets for which a frequency was measured, with the core's rate there.
 fn speeds(entry: &Entry) -> impl Iterator<Item = (Target, Frequency, Rate)> {
     let figures = entry.record.iter().flat_map(|record| &record.targets);
     figures.filter_map(|it| {
@@ -209,7 +209,7 @@ fn numbers(usage: &Usage) -> [(&'static str, u64); 3] {
     [("luts", usage.luts), ("dsps", usage.dsps), ("block_rams", usage.block_rams)]
 }
 
-/// The heading, then a row for each entry. What is not known is empty.
+/// Returns the heading, then a row for each entry. What is not known is empty.
 fn as_csv(arguments: &Arguments, entries: &[Entry]) -> Vec<Vec<String>> {
     let synthesised = entries.iter().any(|entry| !entry.usage.is_empty());
     let mut heading: Vec<String> = ["name", "device", "exponent"].map(str::to_owned).to_vec();

@@ -79,7 +79,7 @@ pub fn benches(
     Ok(holds)
 }
 
-/// The emitted bench in an external simulator. The expected values are those on which golden model
+/// Returns the emitted bench in an external simulator. The expected values are those on which golden model
 /// and built-in simulator agree.
 fn bench(one: &Loaded, which: Simulator, points: u64, arguments: &Arguments) -> Result<Run> {
     let vectors = one.core.vectors(points, arguments.seed)?;
@@ -112,7 +112,7 @@ fn bench(one: &Loaded, which: Simulator, points: u64, arguments: &Arguments) -> 
     Ok(Run { clocks, outcome, mismatch })
 }
 
-/// The simulator as the command line names it.
+/// Returns the simulator as the command line names it.
 fn name(arguments: &Arguments) -> String {
     format!("{:?}", arguments.simulator).to_lowercase()
 }

@@ -64,7 +64,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     Ok(holds)
 }
 
-/// The state that a file holds, if there is one.
+/// Returns the state that a file holds, if there is one.
 pub fn read(path: &Path) -> Result<Option<State>> {
     let Some(text) = input::text(path)? else { return Ok(None) };
     let state = kept::from_text(&text).with_context(|| {

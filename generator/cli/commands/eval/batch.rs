@@ -47,7 +47,7 @@ pub fn batch(output: Output, one: &Loaded, given: &[Option<i64>], path: &Path) -
     Ok(true)
 }
 
-/// The operand of each column; none of one with the real values that `glint setup` writes beside the operands.
+/// Returns the operand of each column; none of one with the real values that `glint setup` writes beside the operands.
 fn columns<'a>(
     one: &Loaded,
     given: &[Option<i64>],
@@ -112,7 +112,7 @@ fn points(
     Ok(())
 }
 
-/// The first row of the results, ending with a newline.
+/// Returns the first row of the results, ending with a newline.
 fn headings(contract: &dyn Contract) -> String {
     let mut headings: Vec<String> =
         contract.operands().iter().map(|operand| operand.name.clone()).collect();

@@ -4,7 +4,7 @@ use glint_config as config;
 use glint_core::cosim::trial;
 use glint_golden::{Contract, Operand};
 
-/// The raw operands that `name=value` settings give.
+/// Returns the raw operands that `name=value` settings give.
 pub fn given(operands: &[Operand], settings: &[String]) -> Result<Vec<Option<i64>>, String> {
     let mut raw: Vec<Option<i64>> = vec![None; operands.len()];
     for setting in settings {
@@ -20,7 +20,7 @@ pub fn given(operands: &[Operand], settings: &[String]) -> Result<Vec<Option<i64
     Ok(raw)
 }
 
-/// The place of an operand.
+/// Returns the place of an operand.
 pub fn position(operands: &[Operand], name: &str) -> Result<usize, String> {
     operands.iter().position(|operand| operand.name == name).ok_or_else(|| {
         let names: Vec<&str> = operands.iter().map(|operand| operand.name.as_str()).collect();
@@ -30,7 +30,7 @@ pub fn position(operands: &[Operand], name: &str) -> Result<usize, String> {
     })
 }
 
-/// All operands: what is not given is typical, so that results show, and of a colour the largest.
+/// Returns all operands: what is not given is typical, so that results show, and of a colour the largest.
 pub fn completed(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<i64> {
     let typical = trial::typical(contract, given);
     let each = contract.operands().iter().zip(given).zip(typical);
@@ -40,7 +40,7 @@ pub fn completed(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<i64> {
     each.collect()
 }
 
-/// The raw value that a text gives to an operand; what is wrong with it names the operand.
+/// Returns the raw value that a text gives to an operand; what is wrong with it names the operand.
 pub fn named_value(operand: &Operand, text: &str) -> Result<i64, String> {
     value(operand, text).map_err(|why| format!("operand `{}`: {why}", operand.name))
 }

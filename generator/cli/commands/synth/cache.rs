@@ -24,7 +24,7 @@ struct Entry {
 }
 
 impl Cache {
-    /// The cache beside the configuration `path`; none beside standard input.
+    /// Returns the cache beside the configuration `path`; none beside standard input.
     pub fn beside(path: &str) -> Option<Self> {
         (path != input::STDIN)
             .then(|| Self(Path::new(path).parent().unwrap_or(Path::new("")).join(FOLDER)))
@@ -34,7 +34,7 @@ impl Cache {
         self.0.join(format!("{}.{target}.json", core.config.name))
     }
 
-    /// The figures of a measurement with this digest.
+    /// Returns the figures of a measurement with this digest.
     pub fn find(&self, core: &Core, target: Target, digest: &str) -> Option<Figures> {
         let text = fs::read_to_string(self.file(core, target)).ok()?;
         let entry: Entry = serde_json::from_str(&text).ok()?;

@@ -16,7 +16,7 @@ const STYLE: &str = "<style>svg{background:#fcfcfb}text{fill:#1c1d1f;font-family
 /// Room for the heading above the plot.
 const HEADING: u32 = 110;
 
-/// An SVG that stands by itself.
+/// Returns an SVG that stands by itself.
 ///
 /// # Errors
 /// A front of one configuration, which is no line.

@@ -64,7 +64,7 @@ struct Task {
 }
 
 impl Team {
-    /// Every instance takes the next point as soon as it can: a core when it is free, a pipeline when it is ready.
+    /// Returns every instance takes the next point as soon as it can: a core when it is free, a pipeline when it is ready.
     fn compute(&mut self, points: &Points, range: Range<usize>) -> Result<Vec<i64>> {
         let Self { instances, latency, in_ready } = self;
         let width = instances.ports.results.len();

@@ -77,7 +77,7 @@ impl Watch {
         }
     }
 
-    /// How many features there are, without words.
+    /// Returns how many features there are, without words.
     pub fn count(&self) -> usize {
         64 * CLASSES * self.watched.len()
     }
@@ -173,7 +173,7 @@ impl Watch {
     }
 }
 
-/// The design with all of its nets named, so that each can be watched.
+/// Returns the design with all of its nets named, so that each can be watched.
 pub fn observable(design: &Design) -> Design {
     let mut design = design.clone();
     design.nets.iter_mut().for_each(|net| net.named = true);

@@ -57,7 +57,7 @@ impl Memories {
     }
 }
 
-/// A net of unsigned numbers.
+/// Returns a net of unsigned numbers.
 fn add(design: &mut Design, name: &str, bits: u32, driver: Driver) -> NetId {
     let like = design.net(design.roms[design.control.rom.index()].address);
     let (name, format) =

@@ -82,7 +82,7 @@ impl Known {
     }
 }
 
-/// The raw operands of the computations, in the order of the contract.
+/// Returns the raw operands of the computations, in the order of the contract.
 ///
 /// # Errors
 /// A design that cannot be simulated, or does not belong to the contract.
@@ -142,7 +142,7 @@ fn sweeps(lines: &[Candidate]) -> Vec<usize> {
     chosen
 }
 
-/// How bright the brightest result is: 0 in the dark, 1 dim, 2 beyond a sixteenth of what a colour can be.
+/// Returns how bright the brightest result is: 0 in the dark, 1 dim, 2 beyond a sixteenth of what a colour can be.
 fn class(contract: &dyn Contract, shown: &Shown) -> usize {
     let mut class = 0;
     for (_, outputs) in &shown.results {

@@ -44,7 +44,7 @@ pub struct Pool {
     pub sweeps: Vec<Vec<i64>>,
 }
 
-/// The pool for a contract; a function of it alone.
+/// Returns the pool for a contract; a function of it alone.
 pub fn pool(contract: &dyn Contract) -> Pool {
     let mut random = Random::new(1);
     let mut points = Points::new(contract);
@@ -132,7 +132,7 @@ fn anywhere(points: &Points<'_>, random: &mut Random, values: &mut [i64]) {
     points.to_value(&mut values[..control], random.unit());
 }
 
-/// Every combination of the ends of the control operands' domains, and of their formats if those are not too many.
+/// Returns every combination of the ends of the control operands' domains, and of their formats if those are not too many.
 fn corners(points: &Points<'_>, bright: &dyn Fn(&mut [i64])) -> Vec<Vec<i64>> {
     let ends = |with_format: bool| -> Vec<Vec<i64>> {
         let of = points.operands().iter().enumerate().map(|(at, operand)| {

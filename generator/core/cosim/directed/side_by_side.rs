@@ -28,7 +28,7 @@ pub struct Shown {
 }
 
 impl Shown {
-    /// How much it differs, in the bits of results as numbers; most where the clocks differ.
+    /// Returns how much it differs, in the bits of results as numbers; most where the clocks differ.
     pub fn differs(&self, from: &Self) -> u64 {
         if self.results.len() != from.results.len() || self.clocks != from.clocks {
             return u64::MAX;

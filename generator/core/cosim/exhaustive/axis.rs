@@ -58,7 +58,7 @@ fn range(item: &str) -> Option<(i64, i64, usize)> {
     Some((first.parse().ok()?, last.parse().ok()?, step))
 }
 
-/// The sweep of a contract with other values of some operands.
+/// Returns the sweep of a contract with other values of some operands.
 ///
 /// # Errors
 /// An operand that is no axis of the sweep; a value outside the operand's domain.

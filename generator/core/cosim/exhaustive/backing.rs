@@ -67,7 +67,7 @@ impl Backing {
         Ok(found.next().map_or(Self::Author, Self::Certificate))
     }
 
-    /// A sentence in front of the terms of the bound.
+    /// Returns a sentence in front of the terms of the bound.
     pub fn sentence(&self) -> String {
         match self {
             Self::Catalogue => "The bound is proven, not measured".to_owned(),

@@ -94,12 +94,12 @@ impl<'a> Clocks<'a> {
         Self { binding: self.binding.holding(held) }
     }
 
-    /// The bits of all operands together.
+    /// Returns the bits of all operands together.
     pub fn bits(&self) -> u32 {
         self.binding.space.bits()
     }
 
-    /// How many combinations there are; 0 if they are too many to go through.
+    /// Returns how many combinations there are; 0 if they are too many to go through.
     pub fn count(&self) -> u64 {
         match self.bits() {
             bits @ ..=MOST_BITS => 1 << bits,
@@ -125,7 +125,7 @@ impl<'a> Clocks<'a> {
         }
     }
 
-    /// How many blocks they are cut into.
+    /// Returns how many blocks they are cut into.
     pub fn blocks(&self) -> u64 {
         self.count().div_ceil(BLOCK)
     }
@@ -134,7 +134,7 @@ impl<'a> Clocks<'a> {
         block * BLOCK..((block + 1) * BLOCK).min(self.count())
     }
 
-    /// How many combinations some blocks have.
+    /// Returns how many combinations some blocks have.
     pub(super) fn visits(&self, blocks: impl Iterator<Item = u64>) -> u64 {
         let count = |block| {
             let places = self.of_block(block);
@@ -143,7 +143,7 @@ impl<'a> Clocks<'a> {
         blocks.map(count).sum()
     }
 
-    /// The first place in some blocks, in ascending order, at which something differs; on all threads of
+    /// Returns the first place in some blocks, in ascending order, at which something differs; on all threads of
     /// rayon's pool. `progress` is called with the number of combinations of each block that is done.
     ///
     /// # Errors
@@ -159,7 +159,7 @@ impl<'a> Clocks<'a> {
         blocks.into_par_iter().find_map_first(check).transpose()
     }
 
-    /// The first of some places at which something differs, each lane with a run of them from power-up on.
+    /// Returns the first of some places at which something differs, each lane with a run of them from power-up on.
     fn first(&self, places: Range<u64>) -> Result<Option<u64>> {
         let runs =
             places.clone().step_by(RUN as usize).map(|first| (first, RUN.min(places.end - first)));
@@ -202,7 +202,7 @@ impl<'a> Clocks<'a> {
         self.alone(place)?.trace(from, file)
     }
 
-    /// The run that has a place, up to it, in a simulator of its own.
+    /// Returns the run that has a place, up to it, in a simulator of its own.
     fn alone(&self, place: u64) -> Result<Runner<'_, 1>> {
         ensure!(place < self.count(), "there is no combination {place}");
         let first = place - place % RUN;
@@ -210,7 +210,7 @@ impl<'a> Clocks<'a> {
         Runner::new(&self.binding, [course])
     }
 
-    /// How long one combination takes on one thread.
+    /// Returns how long one combination takes on one thread.
     ///
     /// # Errors
     /// As of [`Clocks::check`].

@@ -40,12 +40,12 @@ impl Shard {
     /// The whole job.
     pub const WHOLE: Self = Self { number: 1, of: 1 };
 
-    /// Whether there is such a part.
+    /// Returns whether there is such a part.
     fn is_valid(self) -> bool {
         (1..=MOST_SHARDS).contains(&self.of) && (1..=self.of).contains(&self.number)
     }
 
-    /// The blocks of the shard, of `blocks` in all.
+    /// Returns the blocks of the shard, of `blocks` in all.
     fn count(self, blocks: u64) -> u64 {
         (blocks + self.of - self.number) / self.of
     }
@@ -55,7 +55,7 @@ impl Shard {
         self.number - 1 + at * self.of
     }
 
-    /// The next blocks of the shard, which has `count`, after `done` of them; and how many are done then.
+    /// Returns the next blocks of the shard, which has `count`, after `done` of them; and how many are done then.
     fn chunk(self, done: u64, count: u64) -> (u64, Vec<u64>) {
         let end = (done + CHUNK * rayon::current_num_threads() as u64).min(count);
         (end, (done..end).map(|at| self.block(at)).collect())
@@ -145,7 +145,7 @@ impl<'a> Job<'a> {
         Self { f, colours, clocks: None }
     }
 
-    /// How much there is to evaluate, in words.
+    /// Returns how much there is to evaluate, in words.
     pub fn words(&self) -> String {
         let places = grouped(self.f.count());
         match self.colours.count() {
@@ -239,7 +239,7 @@ impl<'a> Job<'a> {
         Ok(())
     }
 
-    /// How long the rest of the shard takes on `threads` threads: a short sample of each part is timed.
+    /// Returns how long the rest of the shard takes on `threads` threads: a short sample of each part is timed.
     ///
     /// # Errors
     /// A design that cannot be simulated, or does not settle.

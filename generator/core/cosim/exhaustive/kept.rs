@@ -18,7 +18,7 @@ fn checksum(state: &State) -> Result<String> {
     Ok(digest(&serde_json::to_vec(state)?))
 }
 
-/// The text of a file that keeps a state.
+/// Returns the text of a file that keeps a state.
 ///
 /// # Errors
 /// Numbers that JSON does not have.
@@ -27,7 +27,7 @@ pub fn to_text(state: &State) -> Result<String> {
     Ok(serde_json::to_string_pretty(&kept)? + "\n")
 }
 
-/// The state that a file keeps.
+/// Returns the state that a file keeps.
 ///
 /// # Errors
 /// The text is not such a file's, or was changed since it was written.

@@ -94,7 +94,7 @@ impl Proof {
         }
     }
 
-    /// The largest errors in words, `at` after the first.
+    /// Returns the largest errors in words, `at` after the first.
     pub fn words(&self, at: &str) -> String {
         if !self.of_f {
             return format!("an output is off by {:.3} units at most{at}", self.together());
@@ -108,7 +108,7 @@ impl Proof {
         )
     }
 
-    /// The most by which an output can be off, in its units.
+    /// Returns the most by which an output can be off, in its units.
     pub fn together(&self) -> f64 {
         self.f_units + self.colours.error
     }

@@ -91,17 +91,17 @@ impl<'a> Places<'a> {
         &self.sweep
     }
 
-    /// How many places there are.
+    /// Returns how many places there are.
     pub fn count(&self) -> u64 {
         self.sweep.axes.iter().map(|axis| axis.values.count()).product()
     }
 
-    /// How many blocks they are cut into.
+    /// Returns how many blocks they are cut into.
     pub fn blocks(&self) -> u64 {
         self.count().div_ceil(BLOCK)
     }
 
-    /// The value on each axis of place `number`.
+    /// Returns the value on each axis of place `number`.
     pub fn place(&self, mut number: u64) -> Vec<i64> {
         let mut values: Vec<i64> = self
             .sweep
@@ -119,7 +119,7 @@ impl<'a> Places<'a> {
         values
     }
 
-    /// The names and values of place `number`, in words.
+    /// Returns the names and values of place `number`, in words.
     pub fn words(&self, number: u64) -> String {
         let pairs = self.sweep.axes.iter().zip(self.place(number));
         let words: Vec<String> =
@@ -127,12 +127,12 @@ impl<'a> Places<'a> {
         words.join(", ")
     }
 
-    /// The error at place `number`.
+    /// Returns the error at place `number`.
     pub fn error(&self, number: u64) -> f64 {
         self.error_at(&self.place(number))
     }
 
-    /// The errors at some places that are spread evenly.
+    /// Returns the errors at some places that are spread evenly.
     pub fn glimpse(&self) -> Vec<f64> {
         let step = (self.count() / SAMPLE).max(1);
         (0..self.count()).step_by(step as usize).map(|place| self.error(place)).collect()
@@ -150,17 +150,17 @@ impl<'a> Places<'a> {
         if error.is_nan() { f64::INFINITY } else { error }
     }
 
-    /// The block that has a place.
+    /// Returns the block that has a place.
     pub(super) fn block_of(place: u64) -> u64 {
         place / BLOCK
     }
 
-    /// The places of one block.
+    /// Returns the places of one block.
     fn of_block(&self, block: u64) -> Range<u64> {
         block * BLOCK..((block + 1) * BLOCK).min(self.count())
     }
 
-    /// How many places some blocks have.
+    /// Returns how many places some blocks have.
     pub(super) fn visits(&self, blocks: impl Iterator<Item = u64>) -> u64 {
         blocks
             .map(|block| {
@@ -170,7 +170,7 @@ impl<'a> Places<'a> {
             .sum()
     }
 
-    /// How long one place takes on one thread.
+    /// Returns how long one place takes on one thread.
     pub(super) fn pace(&self) -> Duration {
         let count = self.count().min(SAMPLE);
         let first = (self.count() - count) / 2;
@@ -179,7 +179,7 @@ impl<'a> Places<'a> {
         begin.elapsed() / count.max(1) as u32
     }
 
-    /// The peak of places that follow one another.
+    /// Returns the peak of places that follow one another.
     fn peak(&self, places: Range<u64>) -> Peak {
         let mut peak = Peak::NONE;
         let Some(inner) = self.sweep.axes.last() else {
@@ -205,7 +205,7 @@ impl<'a> Places<'a> {
         peak
     }
 
-    /// The peak of some blocks, on all cores; `progress` is called with the number of places of each block that is done.
+    /// Returns the peak of some blocks, on all cores; `progress` is called with the number of places of each block that is done.
     pub fn check(
         &self,
         blocks: impl IntoParallelIterator<Item = u64>,

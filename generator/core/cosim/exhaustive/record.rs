@@ -56,7 +56,7 @@ struct RecordedAxis {
 }
 
 impl RecordedAxis {
-    /// Whether the record visited every value of an axis, and perhaps more.
+    /// Returns whether the record visited every value of an axis, and perhaps more.
     fn covers(&self, axis: &Axis) -> bool {
         self.name == axis.name
             && match &axis.values {
@@ -81,7 +81,7 @@ struct Report {
 }
 
 impl Record {
-    /// The record of a configuration, among all in a directory; `None` where there is none, and where there is no
+    /// Returns the record of a configuration, among all in a directory; `None` where there is none, and where there is no
     /// such directory. Files that are no records are left alone.
     ///
     /// # Errors
@@ -121,7 +121,7 @@ impl Record {
         Ok(())
     }
 
-    /// Whether the check went through every combination of operands, and what it found is within today's bound. The
+    /// Returns whether the check went through every combination of operands, and what it found is within today's bound. The
     /// error at its place is computed again.
     pub fn proves(&self, contract: &dyn Contract) -> bool {
         let sweep = self.sweep(contract);
@@ -137,12 +137,12 @@ impl Record {
         Proof::new(contract, f, Peak { error: self.colour_units, place: 0 })
     }
 
-    /// The largest errors in words.
+    /// Returns the largest errors in words.
     pub fn words(&self, contract: &dyn Contract) -> String {
         self.proof(contract).words("")
     }
 
-    /// How many evaluations [`Record::recheck`] makes if it is to make about `places` of `f`.
+    /// Returns how many evaluations [`Record::recheck`] makes if it is to make about `places` of `f`.
     pub fn steps(&self, contract: &dyn Contract, places: u64) -> u64 {
         let f = Places::of_sweep(contract, self.sweep(contract));
         let colours = Places::of_colours(contract);

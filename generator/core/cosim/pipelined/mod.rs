@@ -54,7 +54,7 @@ enum Column {
 }
 
 impl Pipe {
-    /// A pipeline without points; the nets that are compared after a clock, the first to be told first; and those of the
+    /// Returns a pipeline without points; the nets that are compared after a clock, the first to be told first; and those of the
     /// results among them.
     ///
     /// # Errors
@@ -148,12 +148,12 @@ impl Pipe {
         self.stages.stage(self.columns[at].1).map(|point| (point.place, point.taken))
     }
 
-    /// Whether a point is taken in the next clock if the results are.
+    /// Returns whether a point is taken in the next clock if the results are.
     pub(super) fn is_ready(&self) -> bool {
         self.stages.takes(true)
     }
 
-    /// Whether a point is on its way with a place before this one.
+    /// Returns whether a point is on its way with a place before this one.
     pub(super) fn has_before(&self, place: u64) -> bool {
         self.stages.points().any(|(_, point)| point.place < place)
     }

@@ -62,7 +62,7 @@ impl Reference {
         })
     }
 
-    /// One computation, of these bit patterns in the order of the ports.
+    /// Returns one computation, of these bit patterns in the order of the ports.
     ///
     /// # Errors
     /// A model that does not come to an end.

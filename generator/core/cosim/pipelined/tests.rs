@@ -2,14 +2,14 @@ use crate::cosim::Lockstep;
 use crate::registry::{Device, Registry};
 use glint_config::{Config, Value};
 
-/// The default configuration of a device with these keys.
+/// Returns the default configuration of a device with these keys.
 fn pipelined(device: &Device, keys: &[(&str, Value)]) -> Config {
     let mut values = vec![("architecture".to_owned(), Value::Text("pipelined".to_owned()))];
     values.extend(keys.iter().map(|(name, value)| ((*name).to_owned(), value.clone())));
     Config::from_values(&(device.schema)(), "device", values).expect("keys that there are")
 }
 
-/// The devices that compute a point at a time.
+/// Returns the devices that compute a point at a time.
 fn devices() -> Vec<Device> {
     let registry = Registry::catalogue();
     let lines = ["quad-cosine", "cosine-squared"];

@@ -9,7 +9,7 @@ use glint_rtl::verilog::text::{Names, literal};
 
 fresh_names!(Variables { points, results, read, clocks, offered, total, tick, dut });
 
-/// The bench of a pipeline, whose last results come in less than `limit` clocks.
+/// Returns the bench of a pipeline, whose last results come in less than `limit` clocks.
 ///
 /// # Errors
 /// A design without the handshake of a pipeline.

@@ -52,7 +52,7 @@ impl Field {
         }
     }
 
-    /// The smallest raw integer as C writes it.
+    /// Returns the smallest raw integer as C writes it.
     fn least(&self) -> String {
         let (least, suffix) = (self.format.min_raw(), self.suffix());
         match (self.format.signed, self.format.width()) {
@@ -63,7 +63,7 @@ impl Field {
         }
     }
 
-    /// The largest.
+    /// Returns the largest.
     fn most(&self) -> String {
         format!("{}{}", self.format.max_raw(), self.suffix())
     }
@@ -77,28 +77,28 @@ impl Field {
         }
     }
 
-    /// The weight of the lowest bit's inverse, as a C double: 2^F exactly.
+    /// Returns the weight of the lowest bit's inverse, as a C double: 2^F exactly.
     pub fn scale(&self) -> String {
         format!("{:?}", glint_base::fixed::exp2(self.format.frac))
     }
 
-    /// The lowest bit, as a C double: 2^-F exactly.
+    /// Returns the lowest bit, as a C double: 2^-F exactly.
     fn unit(&self) -> String {
         format!("{:?}", glint_base::fixed::exp2(-self.format.frac))
     }
 
-    /// The limits as doubles.
+    /// Returns the limits as doubles.
     fn limits(&self) -> (String, String) {
         let (low, high) = self.format.range();
         (format!("{:?}", low as f64), format!("{:?}", high as f64))
     }
 
-    /// The field of a structure in ctypes.
+    /// Returns the field of a structure in ctypes.
     fn ctype(&self) -> String {
         format!("c_{}", self.kind.trim_end_matches("_t"))
     }
 
-    /// The field of a structure in NumPy.
+    /// Returns the field of a structure in NumPy.
     fn dtype(&self) -> &'static str {
         match self.kind {
             "uint32_t" => "u4",
@@ -172,7 +172,7 @@ pub fn files(job: &Job, files: &mut Artifacts) -> Result<Vec<RomId>> {
     Ok(read)
 }
 
-/// The worked example's raw operands in the order of the ports, which need not be its own.
+/// Returns the worked example's raw operands in the order of the ports, which need not be its own.
 fn example_values(design: &Design, example: &WorkedExample) -> Vec<String> {
     let named = |port: &Port| {
         let name = &design.net(port.net).name;
@@ -187,7 +187,7 @@ fn result_ports(design: &Design) -> impl Iterator<Item = &Port> {
     design.outputs().filter(|port| port.role == Role::Result)
 }
 
-/// The body of the function of one point, and the ROMs that it reads.
+/// Returns the body of the function of one point, and the ROMs that it reads.
 fn of_point(design: &Design, tables: &[String]) -> Result<(Vec<String>, Vec<RomId>)> {
     let unrolled = unroll_in_powers(design)?;
     let results: Vec<(&Port, NodeId)> = results_of(design, &unrolled).collect();
@@ -221,7 +221,7 @@ fn results_of<'a>(
     result_ports(design).filter_map(move |port| Some((port, value(port)?)))
 }
 
-/// The body of the function of a line, and the ROMs that it reads.
+/// Returns the body of the function of a line, and the ROMs that it reads.
 fn of_line(design: &Design, tables: &[String]) -> Result<(Vec<String>, Vec<RomId>)> {
     let Cycle { unrolled, held } = any_cycle(design);
     let graph = &unrolled.graph;
@@ -287,7 +287,7 @@ fn of_line(design: &Design, tables: &[String]) -> Result<(Vec<String>, Vec<RomId
     Ok((body, read))
 }
 
-/// All registers take their new values at once.
+/// Returns all registers take their new values at once.
 fn clocked(
     graph: &Graph,
     printer: &Printer,
@@ -341,13 +341,13 @@ fn roms(graph: &Graph, wanted: &[NodeId]) -> Vec<RomId> {
     needed.filter_map(rom).collect()
 }
 
-/// The array of each ROM.
+/// Returns the array of each ROM.
 pub fn table_names(design: &Design) -> Vec<String> {
     let mut names = Names::new(design.nets.iter().map(|net| net.name.as_str()));
     design.roms.iter().map(|rom| names.fresh(&format!("{}_table", rom.name))).collect()
 }
 
-/// The arrays of the ROMs that are read.
+/// Returns the arrays of the ROMs that are read.
 fn tables(design: &Design, names: &[String], read: &[RomId]) -> Vec<String> {
     let mut lines = Vec::new();
     for (at, rom) in design.roms.iter().enumerate() {

@@ -20,22 +20,22 @@ const TAKEN: &str = "
     INT32_C INT64_C UINT32_C UINT64_C
     operands results points count capacity at point";
 
-/// The names that a function or a structure may not use for its own.
+/// Returns the names that a function or a structure may not use for its own.
 pub fn taken() -> Names {
     Names::new(TAKEN.split_ascii_whitespace())
 }
 
-/// A field of a structure: the port's name, unless that is a word of C.
+/// Returns a field of a structure: the port's name, unless that is a word of C.
 pub fn field(port: &str) -> String {
     taken().fresh(port)
 }
 
-/// The type of a bit pattern.
+/// Returns the type of a bit pattern.
 pub fn pattern_type(width: u32) -> &'static str {
     if width <= 32 { "uint32_t" } else { "uint64_t" }
 }
 
-/// A literal of the type of a bit pattern.
+/// Returns a literal of the type of a bit pattern.
 pub fn literal(bits: u64, width: u32) -> String {
     match (width <= 32, bits < 1024) {
         (true, true) => format!("{bits}u"),
@@ -88,7 +88,7 @@ impl<'a> Printer<'a> {
         Self { graph, design, operands, tables, locals: BTreeMap::new(), states }
     }
 
-    /// The statements that compute `wanted`.
+    /// Returns the statements that compute `wanted`.
     pub fn lines(&mut self, names: &mut Names, wanted: &[NodeId]) -> Vec<Line> {
         let graph = self.graph;
         let needed = graph.cone(wanted.iter().copied());
@@ -121,12 +121,12 @@ impl<'a> Printer<'a> {
         lines
     }
 
-    /// Whether a value stands for itself, whatever becomes of the state.
+    /// Returns whether a value stands for itself, whatever becomes of the state.
     pub fn is_settled(&self, id: NodeId) -> bool {
         self.locals.contains_key(&id) || self.graph.constant_of(id).is_some()
     }
 
-    /// A value that the statements have computed.
+    /// Returns a value that the statements have computed.
     pub fn text(&self, id: NodeId) -> String {
         self.value(id).0
     }
@@ -304,7 +304,7 @@ impl<'a> Printer<'a> {
     }
 }
 
-/// A comment of one line.
+/// Returns a comment of one line.
 pub fn comment(text: &str) -> String {
     // Nothing in a heading may end the comment.
     format!("/* {} */", ascii(text).replace("*/", "* /").replace("/*", "/ *"))

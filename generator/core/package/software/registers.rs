@@ -58,7 +58,7 @@ impl Operand {
         if self.format.width() <= 32 { 32 } else { 64 }
     }
 
-    /// The smallest and the largest raw integer, as C writes 64 bits.
+    /// Returns the smallest and the largest raw integer, as C writes 64 bits.
     fn limits(&self) -> (String, String) {
         let least = match self.format.min_raw() {
             least if least == i64::MIN.into() => "(-9223372036854775807 - 1)".to_owned(),

@@ -22,12 +22,12 @@ impl Number {
         0..self.size
     }
 
-    /// The type of its bit pattern.
+    /// Returns the type of its bit pattern.
     fn unsigned(&self) -> &'static str {
         if self.size <= 4 { "uint32_t" } else { "uint64_t" }
     }
 
-    /// The bit pattern of its bytes.
+    /// Returns the bit pattern of its bytes.
     fn joined(&self) -> String {
         let kind = self.unsigned();
         let byte = |at: u32| match (at, self.size) {
@@ -83,7 +83,7 @@ impl Bytes {
         }
     }
 
-    /// The bytes above all numbers.
+    /// Returns the bytes above all numbers.
     fn above(&self) -> std::ops::Range<u32> {
         self.filled..self.bytes
     }

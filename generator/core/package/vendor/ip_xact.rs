@@ -47,7 +47,7 @@ impl BusInterface {
 }
 
 impl Component<'_> {
-    /// A number as IP-XACT writes it, after the `'h`.
+    /// Returns a number as IP-XACT writes it, after the `'h`.
     fn hex(&self, number: impl std::fmt::LowerHex) -> String {
         format!("{number:x}")
     }
@@ -68,7 +68,7 @@ impl Bits {
         }
     }
 
-    /// The hardware changes them.
+    /// Returns the hardware changes them.
     fn is_volatile(&self) -> bool {
         match self.access {
             Access::Read => self.reset == 0,
@@ -105,7 +105,7 @@ pub fn files(job: &Job, tops: &[Top], files: &mut Artifacts) -> Result<()> {
     Ok(())
 }
 
-/// The buses of a module, and its interrupt. IEEE 1685-2014 has none of its own, and Vivado's is known to other tools too.
+/// Returns the buses of a module, and its interrupt. IEEE 1685-2014 has none of its own, and Vivado's is known to other tools too.
 fn buses(top: &Top) -> Vec<BusInterface> {
     let mut buses = Vec::new();
     for protocol in top.protocols {
@@ -140,7 +140,7 @@ fn escaped(text: &str) -> String {
     ascii(text).replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
-/// A part of a comment of XML, in which two hyphens may not stand side by side.
+/// Returns a part of a comment of XML, in which two hyphens may not stand side by side.
 fn comment(text: &str) -> String {
     let mut text = text.to_owned();
     while text.contains("--") {

@@ -89,7 +89,7 @@ pub fn quartus(job: &Job, tops: &[Top], files: &mut Artifacts) -> Result<()> {
     Ok(())
 }
 
-/// The interfaces of a module but for clock, reset and interrupt.
+/// Returns the interfaces of a module but for clock, reset and interrupt.
 fn interfaces(top: &Top) -> Vec<Interface<'_>> {
     if top.protocols.is_empty() {
         // The type of interface for all that has none.

@@ -107,7 +107,7 @@ fn address(place: u32) -> String {
     format!("32'h{:02x}", 4 * place)
 }
 
-/// The registers before the operands with their values after a reset, and those that cannot be written.
+/// Returns the registers before the operands with their values after a reset, and those that cannot be written.
 fn fixed(map: &Map) -> (Vec<(String, String)>, Vec<String>) {
     let value = |register: &Register| {
         let value = register.bits.iter().map(|bits| bits.reset << bits.low).sum::<u64>();
@@ -124,7 +124,7 @@ fn fixed(map: &Map) -> (Vec<(String, String)>, Vec<String>) {
     )
 }
 
-/// The registers of ports, each in the words of a point.
+/// Returns the registers of ports, each in the words of a point.
 fn accesses(ports: &[Placed], fields: &[Field], net: &str) -> Vec<Access> {
     let of_port = |(port, field)| {
         let Placed { parts, .. }: &Placed = port;
@@ -151,7 +151,7 @@ fn access(part: &Part, field: &Field, net: &str) -> Access {
     Access { at: address(part.place), word, mask: format!("32'h{:08x}", mask(part.width)) }
 }
 
-/// All results in one register are side by side as in a stream.
+/// Returns all results in one register are side by side as in a stream.
 fn of_results(map: &Map, fields: &[Field]) -> Vec<Access> {
     if map.last() > map.last_operand() + 1 || fields.len() == 1 {
         return accesses(&map.results, fields, "result");

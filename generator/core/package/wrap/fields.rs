@@ -20,7 +20,7 @@ pub struct Field {
 }
 
 impl Field {
-    /// Its bits and those that fill its last byte.
+    /// Returns its bits and those that fill its last byte.
     pub fn padded(&self) -> u32 {
         self.width.next_multiple_of(8)
     }
@@ -47,7 +47,7 @@ impl Field {
     }
 }
 
-/// The operands, in the order of the ports.
+/// Returns the operands, in the order of the ports.
 pub fn operands(design: &Design) -> Vec<Field> {
     let ports = design.inputs().filter_map(|port| match port.role {
         Role::Operand { strobe } => Some((port, design.net(strobe).name.clone())),
@@ -57,7 +57,7 @@ pub fn operands(design: &Design) -> Vec<Field> {
     side_by_side(design, ports)
 }
 
-/// The results, in the order of the ports.
+/// Returns the results, in the order of the ports.
 pub fn results(design: &Design) -> Vec<Field> {
     let ports = design.outputs().filter(|port| port.role == Role::Result);
     side_by_side(design, ports.map(|port| (port, String::new())))
@@ -114,12 +114,12 @@ impl Transfer {
         Ok(Self { fields, bits })
     }
 
-    /// The highest bit.
+    /// Returns the highest bit.
     pub fn high(&self) -> u32 {
         self.bits - 1
     }
 
-    /// The bits that fields fill, with those of their last bytes.
+    /// Returns the bits that fields fill, with those of their last bytes.
     pub fn filled(&self) -> u32 {
         self.fields.last().map_or(0, |last| last.low + last.padded())
     }
@@ -157,7 +157,7 @@ impl Transfer {
     }
 }
 
-/// A wire that reads what nothing else does, for linters; nothing for nothing.
+/// Returns a wire that reads what nothing else does, for linters; nothing for nothing.
 pub fn sink(unused: &[String]) -> Vec<String> {
     match unused {
         [] => Vec::new(),

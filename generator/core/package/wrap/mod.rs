@@ -66,7 +66,7 @@ fn connected(
     separated(std::iter::once(format!(".clk({clock})")).chain(ports).collect())
 }
 
-/// The declaration of the wire that an output of the core drives.
+/// Returns the declaration of the wire that an output of the core drives.
 fn core_wire(design: &Design, port: &Port) -> String {
     let net = design.net(port.net);
     format!("wire {} core_{};", range(net.format.width()), net.name).replace("  ", " ")
@@ -83,7 +83,7 @@ fn stub_free(design: &Design) -> Vec<String> {
     free.collect()
 }
 
-/// The ports of a module that stands in for the core, in the order of the core's.
+/// Returns the ports of a module that stands in for the core, in the order of the core's.
 fn stub_ports(design: &Design) -> Vec<String> {
     let port = |port: &Port| {
         let net = design.net(port.net);
@@ -96,7 +96,7 @@ fn stub_ports(design: &Design) -> Vec<String> {
     separated(std::iter::once(clock).chain(design.ports.iter().map(port)).collect())
 }
 
-/// The declaration of a net inside the module that is proved, with its width.
+/// Returns the declaration of a net inside the module that is proved, with its width.
 fn seen_inside((net, width): (String, u32)) -> String {
     format!("(* hierconn *) wire {} \\dut.{net} ;", range(width)).replace("  ", " ")
 }

@@ -20,7 +20,7 @@ pub struct Point {
     pub results: Vec<Vec<u64>>,
 }
 
-/// The computations that run to their end, in the order in which they do.
+/// Returns the computations that run to their end, in the order in which they do.
 ///
 /// # Errors
 /// A design without its handshake.
@@ -49,7 +49,7 @@ struct Row<'a> {
 }
 
 impl Row<'_> {
-    /// The ports of some roles with their values.
+    /// Returns the ports of some roles with their values.
     fn all(&self, is: impl Fn(Role) -> bool) -> Vec<(&Port, u64)> {
         let inputs = self.design.inputs().zip(self.inputs);
         let ports = inputs.chain(self.design.outputs().zip(self.outputs));
@@ -60,7 +60,7 @@ impl Row<'_> {
         self.all(is).into_iter().map(|(_, value)| value).collect()
     }
 
-    /// Whether the one port of a role is high.
+    /// Returns whether the one port of a role is high.
     fn high(&self, role: Role) -> Option<bool> {
         self.values(|it| it == role).first().map(|value| *value == 1)
     }
@@ -70,7 +70,7 @@ impl Row<'_> {
     }
 }
 
-/// A microprogram's: operands are written one by one, and start takes what they are then.
+/// Returns a microprogram's: operands are written one by one, and start takes what they are then.
 fn computed<'a>(design: &Design, rows: impl Iterator<Item = Row<'a>>) -> Option<Vec<Point>> {
     let overlaps = design.control.overlaps;
     let mut done = Vec::new();
@@ -114,7 +114,7 @@ fn computed<'a>(design: &Design, rows: impl Iterator<Item = Row<'a>>) -> Option<
     Some(done)
 }
 
-/// A pipeline's: points leave it in their order.
+/// Returns a pipeline's: points leave it in their order.
 fn streamed<'a>(rows: impl Iterator<Item = Row<'a>>) -> Option<Vec<Point>> {
     let mut done = Vec::new();
     let mut inside: VecDeque<Vec<u64>> = VecDeque::new();

@@ -97,7 +97,7 @@ fn block(job: &Job, map: &Map) -> Result<String> {
     })
 }
 
-/// A line a register, and one for each of its bits that have a name of their own.
+/// Returns a line a register, and one for each of its bits that have a name of their own.
 fn described(map: &Map) -> Vec<String> {
     let mut lines = Vec::new();
     for register in &map.registers {
@@ -171,7 +171,7 @@ fn read(map: &Map, register: &Register) -> Vec<String> {
     statement(12, &format!("assert (read_data == {value});"))
 }
 
-/// The nets behind some bits, as wide as these.
+/// Returns the nets behind some bits, as wide as these.
 fn source(map: &Map, register: &Register, bits: &Bits) -> String {
     if register.place < map::CONSTANTS {
         return literal(bits.reset, bits.width);

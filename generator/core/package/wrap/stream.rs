@@ -20,7 +20,7 @@ struct Line {
 }
 
 impl Line {
-    /// The highest bit of a place in the buffer.
+    /// Returns the highest bit of a place in the buffer.
     fn high(&self) -> u32 {
         self.width - 1
     }

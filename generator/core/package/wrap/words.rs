@@ -17,7 +17,7 @@ pub struct Word {
     pub is_result: bool,
 }
 
-/// Whether an address is one of these places: comparisons of its upper bits, which take no adder as
+/// Returns whether an address is one of these places: comparisons of its upper bits, which take no adder as
 /// comparisons of size do.
 pub fn within(wire: &str, at: &str, (first, last): (u32, u32), word_bits: u32) -> Vec<String> {
     let mut terms = Vec::new();
@@ -40,7 +40,7 @@ pub fn within(wire: &str, at: &str, (first, last): (u32, u32), word_bits: u32) -
     statement(4, &format!("wire {wire} = {};", terms.join(" | ")))
 }
 
-/// Bits of a net of that width; nothing where that is all of it.
+/// Returns bits of a net of that width; nothing where that is all of it.
 pub fn select(width: u32, low: u32, high: u32) -> String {
     match (low, high) {
         (0, high) if high + 1 == width => String::new(),
@@ -94,7 +94,7 @@ pub fn words(design: &Design, map: &Map) -> Vec<Word> {
     (u64::from(map::CONSTANTS)..).zip(reads).map(word).collect()
 }
 
-/// A part of a port in 32 bits, of a result with copies of the sign.
+/// Returns a part of a port in 32 bits, of a result with copies of the sign.
 fn extended(port: &Placed, part: &Part, net: &str, is_result: bool) -> String {
     let width = port.format.width();
     let bits = format!("{net}{}", select(width, part.low, part.low + part.width - 1));

@@ -13,7 +13,7 @@ use glint_base::diagnostic::Diagnostic;
 pub(super) use operands::read_by;
 pub(super) use unused::warnings;
 
-/// Every rule that `design` breaks; `views` are the products that a selection gives their meaning, `picked` the select
+/// Returns every rule that `design` breaks; `views` are the products that a selection gives their meaning, `picked` the select
 /// lines of which a microinstruction makes a choice.
 pub(super) fn check(
     design: &Design,

@@ -21,7 +21,7 @@ pub(super) fn check(design: &Design) -> Vec<Diagnostic> {
     found
 }
 
-/// All nets on which outputs depend, in any number of clocks.
+/// Returns all nets on which outputs depend, in any number of clocks.
 pub(super) fn used(design: &Design) -> HashSet<NetId> {
     reached(design.outputs().map(|port| port.net), |id| read_by(design, id))
 }

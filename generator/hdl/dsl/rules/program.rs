@@ -21,7 +21,7 @@ pub(super) fn check(design: &Design, picked: &HashSet<FieldId>) -> Vec<Diagnosti
     found
 }
 
-/// A microprogram that never says when its results are there.
+/// Returns a microprogram that never says when its results are there.
 fn silent(design: &Design) -> Option<Diagnostic> {
     let control = &design.control;
     let result = design.port(|role| role == Role::Result)?;
@@ -96,7 +96,7 @@ fn early(design: &Design) -> Vec<Diagnostic> {
     found
 }
 
-/// The register that drives a net.
+/// Returns the register that drives a net.
 fn register(design: &Design, id: NetId) -> Option<RegId> {
     match design.net(id).driver {
         Driver::Register(register) => Some(register),
@@ -104,7 +104,8 @@ fn register(design: &Design, id: NetId) -> Option<RegId> {
     }
 }
 
-/// Whether microinstruction `at` loads a register, as far as the microinstruction alone says so. One without an enable loads always.
+/// Returns whether microinstruction `at` loads a register, as far as the microinstruction alone says so. One without
+/// an enable loads always.
 fn loads(design: &Design, at: usize, register: RegId) -> Option<u64> {
     match design.register(register).enable {
         Some(enable) => setting_of(design, &design.control.microprogram[at], enable),
@@ -112,18 +113,21 @@ fn loads(design: &Design, at: usize, register: RegId) -> Option<u64> {
     }
 }
 
-/// Whether control comes from the first microinstruction to microinstruction `at` through microinstructions that do not load the register.
+/// Returns whether control comes from the first microinstruction to microinstruction `at` through microinstructions
+/// that do not load the register.
 fn comes_without_load(design: &Design, at: usize, register: RegId) -> bool {
     let goes = |from: usize| loads(design, from, register) == Some(0);
     at == 0 || goes(0) && controlled(&design.control, 0, goes).contains(&at)
 }
 
-/// The microinstructions to which control comes from microinstruction `from`, which is one of them, going on from those that `goes` holds for.
+/// Returns the microinstructions to which control comes from microinstruction `from`, which is one of them, going on
+/// from those that `goes` holds for.
 fn controlled(control: &Control, from: usize, goes: impl Fn(usize) -> bool) -> HashSet<usize> {
     reached([from], |now| if goes(now) { control.successors(now) } else { Vec::new() })
 }
 
-/// The nets on which a net depends within the clock of microinstruction `at`, and itself. Of a mux that the microinstruction controls, only the
+/// Returns the nets on which a net depends within the clock of microinstruction `at`, and itself. Of a mux that the
+/// microinstruction controls, only the
 /// chosen input counts; fields are what the microinstruction says.
 fn cone(design: &Design, at: usize, net: NetId) -> HashSet<NetId> {
     reached([net], |id| match &design.net(id).driver {
@@ -190,7 +194,7 @@ fn endless(design: &Design) -> Vec<Diagnostic> {
     found
 }
 
-/// Whether a net that ends a cone may change while the microinstructions of a loop are executed.
+/// Returns whether a net that ends a cone may change while the microinstructions of a loop are executed.
 fn changes(design: &Design, body: &[usize], id: NetId) -> bool {
     match design.net(id).driver {
         Driver::Input => true,

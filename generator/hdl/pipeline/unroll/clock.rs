@@ -36,7 +36,7 @@ impl<'e, 'a> Clock<'e, 'a> {
         Self { executor, state, address, first, values: HashMap::new() }
     }
 
-    /// The value of a net.
+    /// Returns the value of a net.
     pub(super) fn value(&mut self, id: NetId) -> NodeId {
         if let Some(&value) = self.values.get(&id) {
             return value;
@@ -136,7 +136,7 @@ impl<'e, 'a> Clock<'e, 'a> {
         self.graph().read(rom, address, words, net.format, &label(net))
     }
 
-    /// The rising edge: what registers and synchronous ROMs hold after it.
+    /// Returns the rising edge: what registers and synchronous ROMs hold after it.
     pub(super) fn edge(&mut self) -> State {
         let design = self.executor.design;
         let mut after = self.state.clone();

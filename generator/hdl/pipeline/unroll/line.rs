@@ -142,7 +142,7 @@ impl Points<'_> {
         Err(self.cannot(0, "begins a computation whose `valid` follows no microinstruction"))
     }
 
-    /// The results, `clocks` after any of these microinstructions is about to be executed.
+    /// Returns the results, `clocks` after any of these microinstructions is about to be executed.
     fn shown(
         &mut self,
         state: &State,
@@ -165,7 +165,7 @@ impl Points<'_> {
         all.ok_or_else(|| self.cannot(0, "ends before its results are shown"))
     }
 
-    /// The registers on which the results depend.
+    /// Returns the registers on which the results depend.
     fn walk_of(&self, any: &State, shown: &[(NetId, NodeId)]) -> Result<Vec<usize>, Diagnostic> {
         let mut walk = Vec::new();
         for id in shown.iter().flat_map(|&(_, node)| self.unknowns(node)) {
@@ -212,7 +212,7 @@ impl Points<'_> {
         ask(&mut Clock::new(&mut self.executor, &state, Some(*last), false))
     }
 
-    /// The values on which one depends and that nothing has determined.
+    /// Returns the values on which one depends and that nothing has determined.
     fn unknowns(&self, id: NodeId) -> Vec<NodeId> {
         let graph = &self.executor.unrolled.graph;
         let is_unknown = |id: &NodeId| matches!(graph.node(*id).cell, Cell::Unknown(_));
@@ -232,7 +232,7 @@ impl Points<'_> {
     }
 }
 
-/// The microinstructions that follow one within a computation.
+/// Returns the microinstructions that follow one within a computation.
 fn successors(design: &Design, at: usize) -> Vec<usize> {
     match design.control.microprogram[at].sequence {
         Sequence::End => Vec::new(),
@@ -240,7 +240,7 @@ fn successors(design: &Design, at: usize) -> Vec<usize> {
     }
 }
 
-/// Every way of this number of clocks from one of these microinstructions: it and those that follow.
+/// Returns every way of this number of clocks from one of these microinstructions: it and those that follow.
 fn paths(design: &Design, from: &[usize], clocks: usize) -> Vec<Vec<usize>> {
     let begin: Vec<Vec<usize>> = from.iter().map(|&at| vec![at]).collect();
     (0..clocks).fold(begin, |paths, _| {

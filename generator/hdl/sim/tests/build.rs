@@ -46,13 +46,13 @@ impl Build {
         self.net(name, format, Driver::Op(op))
     }
 
-    /// A register that takes nothing yet.
+    /// Returns a register that takes nothing yet.
     pub fn register(&mut self, name: &str, format: Format) -> NetId {
         let q = self.net(name, format, Driver::Undriven);
         self.design.add_register(q, RegisterKind::Architectural).q
     }
 
-    /// The register that drives `q`.
+    /// Returns the register that drives `q`.
     pub fn of(&mut self, q: NetId) -> &mut Register {
         let register = self.design.registers.iter_mut().find(|r| r.q == q);
         register.expect("a register")
@@ -73,7 +73,7 @@ impl Build {
         data
     }
 
-    /// A field of the control word, below those that are there.
+    /// Returns a field of the control word, below those that are there.
     pub fn field(&mut self, name: &str, width: u32) -> NetId {
         let id = FieldId(self.design.control.fields.len() as u32);
         let format = Format::unsigned(width as i32, 0);
@@ -116,7 +116,7 @@ impl Random {
         low + self.below((high - low + 1) as usize) as u32
     }
 
-    /// A pattern of a width, often at a corner of the range.
+    /// Returns a pattern of a width, often at a corner of the range.
     pub fn pattern(&mut self, width: u32) -> u64 {
         let top = 1 << (width - 1);
         let pattern = match self.below(8) {

@@ -8,7 +8,7 @@ use glint_base::fixed::Format;
 const BYTE: Format = Format::unsigned(8, 0);
 const SIGNED: Format = Format::signed(7, 0);
 
-/// The message for a design with the port `a`, a byte, which `change` makes wrong.
+/// Returns the message for a design with the port `a`, a byte, which `change` makes wrong.
 fn refusal<T>(change: impl FnOnce(&mut Build, NetId) -> T) -> String {
     let mut b = Build::new();
     let a = b.input("a", BYTE);

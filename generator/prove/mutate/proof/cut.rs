@@ -7,7 +7,7 @@ use glint_rtl::netlist::{Design, Driver, NetId};
 /// Vertices of the flow: each net is divided, and what flows into it goes through its bits.
 type Vertex = (NetId, bool);
 
-/// The nets with the fewest bits together that determine `wanted`, and of which none is in
+/// Returns the nets with the fewest bits together that determine `wanted`, and of which none is in
 /// `affected`. `None` if they have more than `most` bits, or a net of `affected` is no cell.
 pub(super) fn smallest_cut(
     design: &Design,

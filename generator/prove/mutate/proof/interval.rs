@@ -8,7 +8,7 @@ use glint_base::interval::{Interval, fits, hull, of_values};
 use glint_rtl::netlist::interval::of_cell;
 use glint_rtl::netlist::{Design, Driver, NetId, Op, Register, RegisterKind};
 
-/// Whether the stated interval of a register holds in every clock from power-up on.
+/// Returns whether the stated interval of a register holds in every clock from power-up on.
 pub(super) fn trusted(design: &Design, register: &Register) -> bool {
     let (low, high) = design.net(register.q).range;
     register.kind != RegisterKind::Internal && low <= 0 && high >= 0
@@ -77,7 +77,7 @@ pub(super) fn of(
     }
 }
 
-/// The net whose sign a bit is, and whether the bit is 1 where it is negative.
+/// Returns the net whose sign a bit is, and whether the bit is 1 where it is negative.
 fn sign(design: &Design, bit: NetId) -> Option<(NetId, bool)> {
     match &design.net(pairs::named(design, bit)).driver {
         Driver::Op(Op::Not(a)) => sign(design, *a).map(|(of, negative)| (of, !negative)),

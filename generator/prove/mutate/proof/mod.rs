@@ -79,7 +79,7 @@ impl<'a> Prover<'a> {
         Some(Self { nets, order, following, compared, windows: Windows::of(design)? })
     }
 
-    /// How it is proved, if it is, that nothing that is compared ever differs with this fault.
+    /// Returns how it is proved, if it is, that nothing that is compared ever differs with this fault.
     pub(super) fn proves(&self, site: &Site) -> Option<How> {
         if self.by_induction(site) {
             Some(How::Induction)

@@ -70,28 +70,28 @@ impl Pairs {
         Self(pairs)
     }
 
-    /// The bits that may differ.
+    /// Returns the bits that may differ.
     pub(super) fn differ(self) -> u64 {
         self.0[1] | self.0[2]
     }
 
-    /// The bits that the fault-free design can have as 0, and as 1.
+    /// Returns the bits that the fault-free design can have as 0, and as 1.
     fn fault_free(self) -> [u64; 2] {
         [self.0[0] | self.0[2], self.0[1] | self.0[3]]
     }
 
-    /// The bits that the mutant can have as 0, and as 1.
+    /// Returns the bits that the mutant can have as 0, and as 1.
     fn mutant(self) -> [u64; 2] {
         [self.0[0] | self.0[1], self.0[2] | self.0[3]]
     }
 
-    /// Whether the mutant can have this pattern.
+    /// Returns whether the mutant can have this pattern.
     pub(super) fn may_be(self, bits: u64) -> bool {
         let [zeros, ones] = self.mutant();
         bits & !ones == 0 && !bits & !zeros & (zeros | ones) == 0
     }
 
-    /// The pattern, if it is one, in both.
+    /// Returns the pattern, if it is one, in both.
     fn whole(self, width: u32) -> Option<u64> {
         (self.differ() == 0 && self.0[0] ^ self.0[3] == mask(width)).then_some(self.0[3])
     }
@@ -106,12 +106,12 @@ impl Pairs {
         Self(from_fn(|pair| self.0[pair] & !bits | self.0[pair ^ 3] & bits))
     }
 
-    /// The numbers of the pairs that a bit can be.
+    /// Returns the numbers of the pairs that a bit can be.
     fn at(self, bit: u32) -> impl Iterator<Item = usize> + Clone {
         (0..4).filter(move |&pair| self.0[pair] >> bit & 1 == 1)
     }
 
-    /// Every pair of one bit of each that both can be, by an operation on bits.
+    /// Returns every pair of one bit of each that both can be, by an operation on bits.
     fn bitwise(self, other: Self, result: impl Fn(usize, usize) -> usize) -> Self {
         let mut all = [0; 4];
         for (a, left) in self.0.into_iter().enumerate() {
@@ -241,7 +241,7 @@ pub(super) fn chosen(select: Pairs, lines: u32, inputs: &[(Pairs, NetId)]) -> Pa
     all
 }
 
-/// The inputs that a mux of the mutant may take.
+/// Returns the inputs that a mux of the mutant may take.
 pub(super) fn choices(select: Pairs, lines: u32, inputs: &[NetId]) -> impl Iterator<Item = NetId> {
     let possible = (0..1 << lines).filter(move |&number| select.may_be(number));
     possible.map(|number: u64| inputs[(number as usize).min(inputs.len() - 1)])
@@ -284,7 +284,7 @@ fn product(
     Pairs([mask(width), differ, differ & ones, ones])
 }
 
-/// Whether both are the same net, under whatever names.
+/// Returns whether both are the same net, under whatever names.
 pub(super) fn square(design: &Design, a: NetId, b: NetId) -> bool {
     named(design, a) == named(design, b)
 }

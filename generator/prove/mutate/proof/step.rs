@@ -51,13 +51,13 @@ impl<'a> Order<'a> {
         Some(Self { design, same: same(design, &order), order, counter, in_all_slots })
     }
 
-    /// The nets of which a [`State`] is: those of the registers, then those of the ROMs.
+    /// Returns the nets of which a [`State`] is: those of the registers, then those of the ROMs.
     pub(super) fn held(&self) -> impl Iterator<Item = NetId> {
         let registers = self.design.registers.iter().map(|register| register.q);
         registers.chain(self.design.roms.iter().map(|rom| rom.data))
     }
 
-    /// All nets in a microinstruction: those of the fault-free design, or of the mutant beside it.
+    /// Returns all nets in a microinstruction: those of the fault-free design, or of the mutant beside it.
     pub(super) fn settle(&self, at: usize, state: &State, fault: Option<Injected>) -> Vec<Pairs> {
         let design = self.design;
         let mut nets = vec![Pairs::constant(0, 0); design.nets.len()];
@@ -125,7 +125,7 @@ impl<'a> Order<'a> {
         nets
     }
 
-    /// A net with another driver than in the fault-free design.
+    /// Returns a net with another driver than in the fault-free design.
     fn replaced(&self, id: NetId, driver: &Driver, nets: &[Pairs], sound: &[Pairs]) -> Pairs {
         let design = self.design;
         let width = design.width(id);
@@ -143,7 +143,7 @@ impl<'a> Order<'a> {
         }
     }
 
-    /// The word that a ROM has at its address.
+    /// Returns the word that a ROM has at its address.
     fn read(&self, id: RomId, nets: &[Pairs], fault: Option<Injected>) -> Pairs {
         let rom = self.design.rom(id);
         let width = self.design.width(rom.data);
@@ -211,7 +211,7 @@ impl<'a> Order<'a> {
     }
 }
 
-/// The net whose value a net takes, if it takes one.
+/// Returns the net whose value a net takes, if it takes one.
 fn taken(design: &Design, driver: &Driver, value: &impl Fn(NetId) -> Pairs) -> Option<NetId> {
     match driver {
         Driver::Op(Op::Relabel(a)) => Some(*a),

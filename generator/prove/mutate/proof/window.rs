@@ -94,7 +94,7 @@ impl<'a> Windows<'a> {
         })
     }
 
-    /// Whether the fault never leaves its window.
+    /// Returns whether the fault never leaves its window.
     pub(super) fn proves(&self, site: &Site) -> bool {
         match site {
             Site::Words(rom, words) if *rom != self.design.control.rom => {
@@ -127,7 +127,7 @@ impl<'a> Windows<'a> {
         }
     }
 
-    /// The words of a ROM that may be read.
+    /// Returns the words of a ROM that may be read.
     fn words_read(&self, rom: RomId) -> Option<BTreeSet<u64>> {
         let address = self.design.rom(rom).address;
         let read = Mutex::new(BTreeSet::new());
@@ -140,7 +140,7 @@ impl<'a> Windows<'a> {
         read.into_inner().ok()
     }
 
-    /// Whether what leaves some neighbourhood of the net is the same with the fault.
+    /// Returns whether what leaves some neighbourhood of the net is the same with the fault.
     fn stays_inside(&self, net: NetId, site: &Site) -> bool {
         // Short of multipliers first: beyond them is more to try.
         let mut tried = Vec::new();
@@ -189,7 +189,7 @@ impl<'a> Windows<'a> {
         }
     }
 
-    /// The cells that read a net, with multipliers or without.
+    /// Returns the cells that read a net, with multipliers or without.
     fn cells_reading(&self, net: NetId, through: bool) -> impl Iterator<Item = NetId> {
         let multiplies =
             |net: NetId| matches!(self.design.net(net).driver, Driver::Op(Op::Mul(..)));
@@ -289,7 +289,7 @@ impl<'a> Windows<'a> {
         }
     }
 
-    /// A net in all lanes; what the mutant has of its own stands before what the fault-free design has.
+    /// Returns a net in all lanes; what the mutant has of its own stands before what the fault-free design has.
     fn evaluate(
         &self,
         net: NetId,
@@ -318,7 +318,7 @@ fn put(values: &mut Values, net: NetId, lanes: Lanes) {
     }
 }
 
-/// The lanes of a net: what the mutant has of its own before what the fault-free design has.
+/// Returns the lanes of a net: what the mutant has of its own before what the fault-free design has.
 fn of<'v>(sound: &'v Values, mutant: Option<&'v Values>, net: NetId) -> &'v Lanes {
     let own = mutant.and_then(|mutant| mutant[net.index()].as_deref());
     own.or(sound[net.index()].as_deref()).expect("a net stands behind its operands")

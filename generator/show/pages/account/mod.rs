@@ -55,7 +55,7 @@ pub fn numbering(design: &Design) -> &'static str {
     }
 }
 
-/// How a format is written: a single bit is no number.
+/// Returns how a format is written: a single bit is no number.
 pub fn format_text(format: Format) -> String {
     match format.width() {
         1 => "1 bit".to_owned(),
@@ -63,7 +63,7 @@ pub fn format_text(format: Format) -> String {
     }
 }
 
-/// The key that would bring the bound down most, in a sentence; nothing when there is none.
+/// Returns the key that would bring the bound down most, in a sentence; nothing when there is none.
 pub fn limit(inputs: &PageInputs) -> String {
     inputs
         .advice
@@ -71,7 +71,7 @@ pub fn limit(inputs: &PageInputs) -> String {
         .map_or_else(String::new, |advice| format!("The key that helps most: {advice}."))
 }
 
-/// The bound, in sentences.
+/// Returns the bound, in sentences.
 pub fn accuracy(contract: &dyn Contract, backing: &Backing) -> String {
     let bound = contract.bound();
     if !bound.is_stated() {
@@ -128,7 +128,7 @@ fn number(number: Option<u16>) -> String {
     number.map_or_else(String::new, |number| number.to_string())
 }
 
-/// The ports; a strobe stands with its operand.
+/// Returns the ports; a strobe stands with its operand.
 pub fn ports(design: &Design) -> Table {
     let mut table = Table::of("port | no.: | direction | role | format | written by | what it is");
     let ports = facts::ports(design);
@@ -161,7 +161,7 @@ pub fn ports(design: &Design) -> Table {
     table.without_empty(NUMBER).without_empty("written by")
 }
 
-/// The ROMs, that of the microprogram among them.
+/// Returns the ROMs, that of the microprogram among them.
 pub fn roms(design: &Design, config: &Config) -> Table {
     let naming = Naming::new(design).styled(Surroundings::new(config, None).style);
     let mut table = Table::of("ROM | no.: | words × bits: | bits: | reads | file | an entry");
@@ -180,13 +180,13 @@ pub fn roms(design: &Design, config: &Config) -> Table {
     table.without_empty(NUMBER)
 }
 
-/// The lines of a field as the source numbers them.
+/// Returns the lines of a field as the source numbers them.
 fn lines(lines: &[u16]) -> String {
     let lines: Vec<String> = lines.iter().map(u16::to_string).collect();
     lines.join(" ")
 }
 
-/// The fields of the control word.
+/// Returns the fields of the control word.
 pub fn fields(design: &Design) -> Table {
     let mut table = Table::of("field | lines | bits | controls");
     for field in facts::fields(design) {
@@ -212,7 +212,7 @@ pub fn fields(design: &Design) -> Table {
     table.without_empty("lines")
 }
 
-/// The microprogram as the patents print theirs: a row for each microinstruction, a column for each line.
+/// Returns the microprogram as the patents print theirs: a row for each microinstruction, a column for each line.
 pub fn microprogram(design: &Design) -> Table {
     let fields = facts::fields(design);
     let headings: Vec<String> = fields
@@ -267,7 +267,7 @@ pub fn clocks(timing: &Timing, line: Option<&LineClocks>) -> Table {
     table
 }
 
-/// How points enter and leave a pipeline, in sentences.
+/// Returns how points enter and leave a pipeline, in sentences.
 pub fn handshake(pipeline: &Pipeline) -> &'static str {
     if pipeline.stall {
         "A point is taken in each clock in which `in_valid` and `in_ready` are high: the operands of that clock are its \
@@ -288,7 +288,7 @@ pub fn pipeline_clocks(pipeline: &Pipeline) -> Table {
     table
 }
 
-/// The terms of a bound.
+/// Returns the terms of a bound.
 pub fn terms(bound: &Bound) -> Table {
     let mut table = Table::of("key | units: | what rounds or approximates");
     for term in &bound.terms {
@@ -297,7 +297,7 @@ pub fn terms(bound: &Bound) -> Table {
     table
 }
 
-/// The operands, and for which values of them the contract is stated.
+/// Returns the operands, and for which values of them the contract is stated.
 pub fn domain(design: &Design, contract: &dyn Contract) -> Table {
     let mut table = Table::of("operand | format | from: | to: | what it is");
     for operand in contract.operands() {
@@ -317,7 +317,7 @@ pub fn domain(design: &Design, contract: &dyn Contract) -> Table {
     table
 }
 
-/// The worked example beside the formula.
+/// Returns the worked example beside the formula.
 pub fn example(contract: &dyn Contract, example: &WorkedExample) -> Table {
     let mut table = Table::of("port | integer: | value: | formula in f64:");
     let mut row = |quantity: &Quantity, formula: String, of: String| {
@@ -343,7 +343,7 @@ pub fn example(contract: &dyn Contract, example: &WorkedExample) -> Table {
     table
 }
 
-/// The keys of the device, and those that every device shares where they are not at their defaults.
+/// Returns the keys of the device, and those that every device shares where they are not at their defaults.
 pub fn keys(schema: &Schema, config: &Config) -> Table {
     let mut table = Table::of("key | value | accepts | what it governs");
     let changed = |key: &&Key| *config.value(key.name) != key.default;
@@ -366,7 +366,7 @@ pub fn keys(schema: &Schema, config: &Config) -> Table {
     table
 }
 
-/// A text of at most so many characters as a cell has room for.
+/// Returns a text of at most so many characters as a cell has room for.
 fn shortened(text: String) -> String {
     const ROOM: usize = 520;
     match text.char_indices().nth(ROOM) {
@@ -375,7 +375,7 @@ fn shortened(text: String) -> String {
     }
 }
 
-/// A value in six decimals, without the zeros at their end.
+/// Returns a value in six decimals, without the zeros at their end.
 pub fn short(value: f64) -> String {
     let text = format!("{value:.6}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()

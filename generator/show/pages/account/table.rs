@@ -69,7 +69,7 @@ impl Table {
     }
 }
 
-/// A name or a number as the files write it; nothing for nothing.
+/// Returns a name or a number as the files write it; nothing for nothing.
 pub fn code(text: &str) -> String {
     match text {
         "" => String::new(),

@@ -82,7 +82,7 @@ struct Highlight {
     gain: u8,
 }
 
-/// The steps of work that [`datasheet`] reports as done.
+/// Returns the steps of work that [`datasheet`] reports as done.
 pub fn steps(synthesis: bool) -> usize {
     curves::STEPS + 1 + if synthesis { FAMILIES.len() } else { 0 }
 }
@@ -130,7 +130,7 @@ pub fn timing_diagram(core: &Core) -> Result<(String, String)> {
     Ok((timing::drawing(&waves).file()?, waves.described()))
 }
 
-/// A ball in the light that pictures have by default.
+/// Returns a ball in the light that pictures have by default.
 fn highlight(core: &Core) -> Result<Highlight> {
     let contract = core.contract.as_ref();
     let exponent = render::usual_exponent(contract);

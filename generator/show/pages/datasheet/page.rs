@@ -112,7 +112,7 @@ struct HighlightView {
     gain: u8,
 }
 
-/// The page.
+/// Returns the page.
 ///
 /// # Errors
 /// A chart that cannot be plotted, or a template that fails to print.
@@ -262,7 +262,7 @@ fn glance(subject: &Subject, measured: &Measured) -> Vec<(&'static str, String)>
     glance
 }
 
-/// How many there are of each size, the largest first.
+/// Returns how many there are of each size, the largest first.
 fn multipliers(design: &Design) -> String {
     let mut sizes: Vec<(Multiplier, usize)> = Vec::new();
     for multiplier in comparison::multipliers(design) {
@@ -284,13 +284,13 @@ fn multipliers(design: &Design) -> String {
     }
 }
 
-/// The rate at the clock that was measured, where one was.
+/// Returns the rate at the clock that was measured, where one was.
 fn rate(subject: &Subject) -> Option<String> {
     let (figures, frequency, rate) = measured::fastest(subject.figures.as_ref()?)?;
     Some(format!("{:.1} million at {:.1} MHz ({})", rate.points, frequency.median, figures.device))
 }
 
-/// How often a point can be computed, in a sentence.
+/// Returns how often a point can be computed, in a sentence.
 fn throughput(subject: &Subject, timing: &Timing) -> String {
     let often = match timing.clocks_per_point() {
         Some(1) => "A point takes a clock".to_owned(),

@@ -65,7 +65,7 @@ fn label(lane: &Lane) -> String {
     }
 }
 
-/// How wide a clock should be, within reason: for all that is said in it, and where addresses stand in place of
+/// Returns how wide a clock should be, within reason: for all that is said in it, and where addresses stand in place of
 /// the names of microinstructions.
 fn clock_widths(waves: &Waves) -> [i32; 2] {
     let wanted = |lanes: &mut dyn Iterator<Item = &Lane>| {
@@ -82,7 +82,7 @@ fn clock_widths(waves: &Waves) -> [i32; 2] {
     [wanted(&mut waves.lanes.iter()), wanted(&mut values)]
 }
 
-/// The stretches of some places in which a value stays, as half-open ranges.
+/// Returns the stretches of some places in which a value stays, as half-open ranges.
 fn segments(lane: &Lane, places: Range<usize>) -> Vec<(usize, usize)> {
     let mut segments: Vec<(usize, usize)> = Vec::new();
     for at in places {
@@ -129,12 +129,12 @@ impl Grid<'_> {
         }
     }
 
-    /// The edge that begins a clock, by its place among those shown.
+    /// Returns the edge that begins a clock, by its place among those shown.
     fn x(&self, at: usize) -> i32 {
         self.left + self.clock * (at - self.places.start) as i32
     }
 
-    /// The places before which clocks are left out.
+    /// Returns the places before which clocks are left out.
     fn gaps(&self) -> impl Iterator<Item = usize> + '_ {
         let clocks = &self.waves.clocks;
         self.places.clone().filter(|&at| at > 0 && clocks[at] != clocks[at - 1] + 1)
@@ -166,7 +166,7 @@ impl Grid<'_> {
         d
     }
 
-    /// The characters that a frame between two places has room for.
+    /// Returns the characters that a frame between two places has room for.
     fn room(&self, from: usize, to: usize) -> usize {
         (f64::from(self.x(to) - self.x(from) - 2 * SLANT) / (SIZE * 0.6)) as usize
     }

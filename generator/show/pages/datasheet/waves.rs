@@ -158,7 +158,7 @@ impl Waves {
         Self { name: design.name.clone(), pipelined, what, clocks: shown, lanes }
     }
 
-    /// The first clock in which a signal is 1.
+    /// Returns the first clock in which a signal is 1.
     pub fn first(&self, name: &str) -> Option<u32> {
         let lane = self.lanes.iter().find(|lane| lane.name == name)?;
         let at = lane.values.iter().position(|value| value.as_deref() == Some("1"))?;
@@ -251,7 +251,7 @@ fn shape(format: Format) -> LaneStyle {
     if format.width() == 1 { LaneStyle::Bit } else { LaneStyle::Bus }
 }
 
-/// The lane of a probe; none for a register that the computation leaves alone.
+/// Returns the lane of a probe; none for a register that the computation leaves alone.
 fn lane(design: &Design, probe: &Probe, bits: &[u64], valid: usize) -> Option<Lane> {
     let net = design.net(probe.net);
     let known = match probe.kind {
@@ -276,7 +276,7 @@ fn lane(design: &Design, probe: &Probe, bits: &[u64], valid: usize) -> Option<La
     })
 }
 
-/// The microinstruction that is executed, by its name.
+/// Returns the microinstruction that is executed, by its name.
 fn microprogram_lane(design: &Design, addresses: &[u64], busy: &[u64]) -> Lane {
     let name = |address: u64| match design.control.microprogram.get(address as usize) {
         Some(found) => format!("{address} {}", found.name),
@@ -299,7 +299,7 @@ fn microprogram_lane(design: &Design, addresses: &[u64], busy: &[u64]) -> Lane {
     }
 }
 
-/// A value in few digits.
+/// Returns a value in few digits.
 fn text(format: Format, bits: u64) -> String {
     let value = format.to_f64(format.raw(bits));
     match format.frac {
@@ -308,7 +308,7 @@ fn text(format: Format, bits: u64) -> String {
     }
 }
 
-/// The clocks that are shown of a computation of `clocks` clocks.
+/// Returns the clocks that are shown of a computation of `clocks` clocks.
 fn shown(clocks: usize) -> Vec<usize> {
     match clocks {
         0..=MOST => (0..clocks).collect(),

@@ -166,7 +166,7 @@ impl<'a> Builder<'a> {
         })
     }
 
-    /// A caption with the clocks for which registers hold a value that a stage makes, where they are several.
+    /// Returns a caption with the clocks for which registers hold a value that a stage makes, where they are several.
     fn held(&self, caption: String, net: NetId, stage: usize) -> String {
         let Some(pipeline) = &self.design.pipeline else { return caption };
         let held = self.blocks.held(net);
@@ -269,7 +269,7 @@ impl<'a> Builder<'a> {
         added
     }
 
-    /// The numbers or names of the lines that control a block, and of the port that writes an operand.
+    /// Returns the numbers or names of the lines that control a block, and of the port that writes an operand.
     fn turned_by(&self, block: &Block) -> String {
         let (fields, strobes) = self.blocks.controls(block);
         let mut lines: Vec<String> = fields.into_iter().map(|field| self.lines(field)).collect();
@@ -296,7 +296,7 @@ fn caption(block: &Block) -> String {
     }
 }
 
-/// The tooltip of a box.
+/// Returns the tooltip of a box.
 fn titled(name: &str, format: &str, doc: &str) -> String {
     match doc {
         "" => format!("{name}, {format}"),

@@ -103,7 +103,7 @@ pub fn drawing(design: &Design) -> Drawing {
     }
 }
 
-/// The drawing as a file of its own, ending with a newline.
+/// Returns the drawing as a file of its own, ending with a newline.
 ///
 /// # Errors
 /// A template that fails to print.
@@ -152,7 +152,7 @@ fn is_port(one: &Node) -> bool {
     matches!(one.form, BoxForm::Input | BoxForm::Output)
 }
 
-/// The text of a box, with the class of each line; the lines that control it are the last.
+/// Returns the text of a box, with the class of each line; the lines that control it are the last.
 fn lines(one: &Node) -> Vec<(&'static str, String)> {
     let head = match one.number {
         Some(number) => format!("{number} {}", one.name),
@@ -189,7 +189,7 @@ struct Page<'a> {
 }
 
 impl Page<'_> {
-    /// A place of the layout on the page, which shows it turned.
+    /// Returns a place of the layout on the page, which shows it turned.
     fn point(&self, (x, y): (f64, f64)) -> String {
         format!("{} {}", self.left + coordinate(y), coordinate(x))
     }
@@ -301,7 +301,7 @@ impl Page<'_> {
     }
 }
 
-/// The class of a box, which gives it its colour; its caption says the same.
+/// Returns the class of a box, which gives it its colour; its caption says the same.
 fn class(form: BoxForm) -> &'static str {
     match form {
         BoxForm::Input | BoxForm::Output => "box port",

@@ -164,7 +164,7 @@ fn stages(graph: &Graph, layered: &mut Layered<NodeLabel, EdgeLabel>) {
     }
 }
 
-/// Whether an output is the control unit's.
+/// Returns whether an output is the control unit's.
 fn driven_by_control(graph: &Graph, output: usize) -> bool {
     let mut drivers = graph.wires.iter().filter(|wire| wire.to == output);
     drivers.any(|wire| graph.boxes[wire.from].form == BoxForm::Control)
@@ -187,7 +187,7 @@ pub fn back(graph: &Graph) -> Vec<bool> {
     back
 }
 
-/// Whether there is a way from one box to another that does not lead back.
+/// Returns whether there is a way from one box to another that does not lead back.
 fn reaches(graph: &Graph, back: &[bool], from: usize, to: usize) -> bool {
     let mut seen = vec![false; graph.boxes.len()];
     let mut pending = vec![from];

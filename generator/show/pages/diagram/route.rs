@@ -73,13 +73,13 @@ pub struct Routes {
 }
 
 impl Routes {
-    /// The topmost place of a wire.
+    /// Returns the topmost place of a wire.
     pub fn top(&self) -> f64 {
         let pieces = self.nets.iter().flat_map(|net| &net.pieces);
         pieces.map(|piece| piece.from.1.min(piece.to.1)).fold(f64::MAX, f64::min)
     }
 
-    /// The lowest place of a wire.
+    /// Returns the lowest place of a wire.
     pub fn bottom(&self) -> f64 {
         let pieces = self.nets.iter().flat_map(|net| &net.pieces);
         pieces.map(|piece| piece.from.1.max(piece.to.1)).fold(0.0, f64::max)
@@ -96,7 +96,7 @@ impl Routes {
     }
 }
 
-/// The boxes around which wires lead back, with the nets that do; each takes a [`LANE`].
+/// Returns the boxes around which wires lead back, with the nets that do; each takes a [`LANE`].
 pub fn lanes(graph: &Graph, back: &[bool]) -> Vec<Vec<usize>> {
     let mut lanes = vec![Vec::new(); graph.boxes.len()];
     for (wire, _) in graph.wires.iter().zip(back).filter(|(_, back)| **back) {
@@ -149,7 +149,7 @@ struct Router<'a> {
 }
 
 impl Router<'_> {
-    /// Where the output of a box is: in the middle of its place, where wires that pass other columns begin.
+    /// Returns where the output of a box is: in the middle of its place, where wires that pass other columns begin.
     fn out(&self, at: usize) -> f64 {
         let body = &self.bodies[at];
         self.placement.middle[at].clamp(body.upper + EDGE, body.lower - EDGE)
@@ -160,7 +160,7 @@ impl Router<'_> {
         self.bodies[at].top + LANE * (lane.unwrap_or(0) as f64 + 0.5)
     }
 
-    /// The heights at which a wire passes the columns between its ends, in its direction.
+    /// Returns the heights at which a wire passes the columns between its ends, in its direction.
     fn between(&mut self, wire: usize) -> Vec<(usize, f64)> {
         let (net, back) = (self.graph.wires[wire].from, self.placement.back[wire]);
         let passes = self.placement.passes[wire].iter();
@@ -172,7 +172,7 @@ impl Router<'_> {
             .collect()
     }
 
-    /// Where each wire enters its box: pins from above in the order in which the wires come.
+    /// Returns where each wire enters its box: pins from above in the order in which the wires come.
     fn pins(&mut self, order: &[usize]) -> Vec<f64> {
         let mut coming: Vec<Vec<(f64, usize)>> = vec![Vec::new(); self.graph.boxes.len()];
         for &at in order {

@@ -29,17 +29,17 @@ pub struct Trunk {
 }
 
 impl Trunk {
-    /// All taps.
+    /// Returns all taps.
     pub fn taps(&self) -> impl Iterator<Item = (f64, Side)> + '_ {
         std::iter::once(self.entry).chain(self.exits.iter().copied())
     }
 
-    /// The upper and the lower end.
+    /// Returns the upper and the lower end.
     pub fn reach(&self) -> (f64, f64) {
         self.taps().fold((f64::MAX, f64::MIN), |(low, high), (y, _)| (low.min(y), high.max(y)))
     }
 
-    /// Whether it goes straight from side to side.
+    /// Returns whether it goes straight from side to side.
     pub fn is_straight(&self) -> bool {
         let (low, high) = self.reach();
         high - low < 0.5
@@ -62,7 +62,7 @@ impl Trunk {
         crossings + OVERLAP * overlaps
     }
 
-    /// Whether the two cannot share a track.
+    /// Returns whether the two cannot share a track.
     fn meets(&self, other: &Self) -> bool {
         let ((low, high), (from, to)) = (self.reach(), other.reach());
         from < high + NEAR && low < to + NEAR

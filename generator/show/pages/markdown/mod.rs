@@ -68,7 +68,7 @@ impl Program {
     }
 }
 
-/// The page of a design, ending with a newline.
+/// Returns the page of a design, ending with a newline.
 ///
 /// # Errors
 /// A template that fails to print.

@@ -2,7 +2,7 @@
 
 use crate::pages::account::{Align, Table};
 
-/// The lines of a table, without the last newline. Its columns are padded, so that it reads well as text too; the last
+/// Returns the lines of a table, without the last newline. Its columns are padded, so that it reads well as text too; the last
 /// one is not.
 pub fn table(table: &Table) -> String {
     let headings: Vec<String> = table.columns.iter().map(|column| prose(&column.heading)).collect();

@@ -161,7 +161,7 @@ impl Arc {
         if self.gamma - self.lambda > 1.5 * PI { -self.lambda - TAU } else { -self.lambda }
     }
 
-    /// The line of `length` intervals with the light `intensity` (I·k_s, in output units) and the exponent n.
+    /// Returns the line of `length` intervals with the light `intensity` (I·k_s, in output units) and the exponent n.
     pub fn line(&self, intensity: f64, exponent: u32, length: u32) -> Line {
         Line {
             amplitude: intensity * libm::pow(self.peak.min(1.0), f64::from(exponent)),
@@ -176,7 +176,7 @@ impl Arc {
     }
 }
 
-/// The direction of the vector `name`.
+/// Returns the direction of the vector `name`.
 ///
 /// # Errors
 /// [`Error::NoDirection`].
@@ -204,7 +204,7 @@ fn turned(normal_1: Vector, normal_2: Vector, half_2: Vector) -> Vector {
     half_2 - once + v.cross(once) * (1.0 / (1.0 + cosine))
 }
 
-/// The angle between unit vectors; exact for small angles too, where the arc cosine is not.
+/// Returns the angle between unit vectors; exact for small angles too, where the arc cosine is not.
 fn angle(a: Vector, b: Vector) -> f64 {
     libm::atan2(a.cross(b).length(), a.dot(b))
 }

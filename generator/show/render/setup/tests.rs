@@ -28,7 +28,7 @@ fn random(random: &mut ChaCha8Rng) -> Vector {
     Vector([(); 3].map(|()| f64::from(random.next_u32()) / f64::from(u32::MAX) - 0.5))
 }
 
-/// The spherical interpolation between unit vectors.
+/// Returns the spherical interpolation between unit vectors.
 fn slerp(a: Vector, b: Vector, t: f64) -> Vector {
     let gamma = angle(a, b);
     let weight = |part: f64| (part * gamma).sin() / gamma.sin();
@@ -157,7 +157,7 @@ fn opposite_normals_and_half_vectors() {
     assert!(Arc::new(Z, Vector([f64::NAN, 0.0, 1.0]), Z, X).is_err());
 }
 
-/// The raw operands for the default of `quad-cosine`.
+/// Returns the raw operands for the default of `quad-cosine`.
 fn quad(line: &Line) -> Vec<i64> {
     let config = Config::defaults(&keys::quad_cosine::schema(), "line");
     operands(golden::quad_cosine::contract(&config).as_ref(), line).unwrap()

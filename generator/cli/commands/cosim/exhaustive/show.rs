@@ -66,7 +66,7 @@ pub fn report(
     Ok(proof.failures.is_empty())
 }
 
-/// The first combination that differs, with its waveform.
+/// Returns the first combination that differs, with its waveform.
 fn found(one: &Loaded, job: &Job<'_>, state: &State) -> Result<Option<(Difference, Reproducer)>> {
     let (Some(clocks), Some(place)) = (&job.clocks, state.clocks.differs) else {
         return Ok(None);
@@ -105,7 +105,7 @@ fn print(one: &Loaded, job: &Job<'_>, proof: &Proof, state: &State) {
     }
 }
 
-/// A proof for scripts, and for the record.
+/// Returns a proof for scripts, and for the record.
 fn as_json(
     one: &Loaded,
     job: &Job<'_>,
@@ -158,7 +158,7 @@ fn as_json(
     value
 }
 
-/// A difference for scripts: that of a run, with the combination in place of a seed.
+/// Returns a difference for scripts: that of a run, with the combination in place of a seed.
 fn mismatch_json((difference, reproducer): &(Difference, Reproducer)) -> Value {
     let mut value = reproducer.json(&difference.mismatch);
     let operands: BTreeMap<&str, String> = difference

@@ -113,7 +113,7 @@ impl<'a> Groups<'a> {
         }
     }
 
-    /// Whether an operator is part of another that takes it, if one statement made both.
+    /// Returns whether an operator is part of another that takes it, if one statement made both.
     fn belongs(&self, from: NetId, to: NetId) -> bool {
         let design = self.design;
         let kind = |id: NetId| operator(&design.net(id).driver).filter(|_| self.cell[id.index()]);
@@ -152,18 +152,18 @@ impl<'a> Groups<'a> {
         }
     }
 
-    /// Whether an adder adds a bit to a number, as rounding does.
+    /// Returns whether an adder adds a bit to a number, as rounding does.
     pub fn rounds(&self, adder: NetId) -> bool {
         let mut operands = self.operands(adder).into_iter();
         operands.any(|it| self.design.net(it).range == (0, 1))
     }
 
-    /// The operators, registers and tables that a net takes, through wires and gates, and in a pipeline through registers.
+    /// Returns the operators, registers and tables that a net takes, through wires and gates, and in a pipeline through registers.
     pub fn operators(&self, id: NetId) -> Vec<NetId> {
         self.through(self.operands(id))
     }
 
-    /// The operators, registers and tables that these nets are or take.
+    /// Returns the operators, registers and tables that these nets are or take.
     fn through(&self, mut pending: Vec<NetId>) -> Vec<NetId> {
         let (mut found, mut seen) = (Vec::new(), BTreeSet::new());
         while let Some(id) = pending.pop() {
@@ -177,7 +177,7 @@ impl<'a> Groups<'a> {
         found
     }
 
-    /// The nets that a net is made from: those of its cell, the data of a register and the address of a table.
+    /// Returns the nets that a net is made from: those of its cell, the data of a register and the address of a table.
     pub fn operands(&self, id: NetId) -> Vec<NetId> {
         match &self.design.net(id).driver {
             Driver::Op(op) => op.operands(),
@@ -228,7 +228,7 @@ impl<'a> Groups<'a> {
         }
     }
 
-    /// Whether blocks of a pipeline lead back to themselves.
+    /// Returns whether blocks of a pipeline lead back to themselves.
     fn is_tangled(&self) -> bool {
         if self.design.pipeline.is_none() {
             return false;
@@ -267,7 +267,7 @@ impl<'a> Groups<'a> {
         self.joints = read.into_iter().filter_map(|it| self.joint(it)).collect();
     }
 
-    /// Whether what meets at an operand of a block meets inside of it: bits beside its result, or gates of its statement.
+    /// Returns whether what meets at an operand of a block meets inside of it: bits beside its result, or gates of its statement.
     pub fn is_part(&self, operand: NetId, head: NetId) -> bool {
         let location = |id: NetId| self.design.net(id).location;
         let product = self.group.iter().filter(|it| **it == self.group[head.index()]).count() > 1;
@@ -277,7 +277,7 @@ impl<'a> Groups<'a> {
                 && self.joint(operand).is_some_and(|it| std::ptr::eq(location(it), location(head)))
     }
 
-    /// The net at which the signals meet that a net is made from, if several do.
+    /// Returns the net at which the signals meet that a net is made from, if several do.
     pub fn joint(&self, mut id: NetId) -> Option<NetId> {
         if self.sources[id.index()].len() < 2 {
             return None;
@@ -292,7 +292,7 @@ impl<'a> Groups<'a> {
         }
     }
 
-    /// The nets that are inside the block with this output: its cells, and wiring behind them.
+    /// Returns the nets that are inside the block with this output: its cells, and wiring behind them.
     pub fn inside(&self, head: NetId) -> Vec<NetId> {
         let group = self.group[head.index()];
         let nets = self.design.iter().map(|(id, _)| id);
@@ -300,7 +300,7 @@ impl<'a> Groups<'a> {
         inside.filter(|id| self.sources[id.index()] == [head]).collect()
     }
 
-    /// The block or port that drives what a net carries.
+    /// Returns the block or port that drives what a net carries.
     pub fn driver(&self, net: NetId) -> Option<NetId> {
         match self.sources[net.index()][..] {
             [] => None,
@@ -309,7 +309,7 @@ impl<'a> Groups<'a> {
         }
     }
 
-    /// The registers of a pipeline that hold what a block or port gives.
+    /// Returns the registers of a pipeline that hold what a block or port gives.
     pub fn held(&self, source: NetId) -> Vec<NetId> {
         let nets = self.design.iter().filter(|(id, net)| {
             let register = matches!(net.driver, Driver::Register(_)) && !self.cell[id.index()];
@@ -318,7 +318,7 @@ impl<'a> Groups<'a> {
         nets.map(|(id, _)| id).collect()
     }
 
-    /// The block or port whose value a register of a pipeline holds; of a part of a gate, that gate.
+    /// Returns the block or port whose value a register of a pipeline holds; of a part of a gate, that gate.
     fn holds(&self, register: NetId) -> Option<NetId> {
         let driver = self.driver(register);
         if self.sources[register.index()].len() < 2

@@ -88,7 +88,7 @@ pub const MULTIPLIER: usize = 0;
 pub const ADDER: usize = 1;
 pub const MUX: usize = 4;
 
-/// The place of an operator among [`OPERATORS`].
+/// Returns the place of an operator among [`OPERATORS`].
 pub fn operator(driver: &Driver) -> Option<usize> {
     match driver {
         Driver::Op(Op::Mul(..)) => Some(MULTIPLIER),

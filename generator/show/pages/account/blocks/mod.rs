@@ -14,7 +14,7 @@ use groups::Groups;
 pub use kind::BlockKind;
 use kind::{ADDER, MULTIPLIER, operator};
 
-/// The blocks in order of their number; those that the source does not number follow.
+/// Returns the blocks in order of their number; those that the source does not number follow.
 pub fn table(design: &Design) -> Table {
     let blocks = Blocks::new(design, false);
     let mut table = Table::of("no.: | block | kind | format | takes | what it is");
@@ -79,7 +79,7 @@ impl<'a> Blocks<'a> {
         Self { design, groups: Groups::new(design, figure) }
     }
 
-    /// All blocks, in order of their number; those without one follow.
+    /// Returns all blocks, in order of their number; those without one follow.
     pub fn all(&self) -> Vec<Block> {
         let heads = self.groups.head.iter().copied().flatten();
         let mut blocks: Vec<Block> = heads
@@ -178,13 +178,13 @@ impl<'a> Blocks<'a> {
         }
     }
 
-    /// The registers, tables and operators of the block with this output; in a pipeline with the registers that hold it.
+    /// Returns the registers, tables and operators of the block with this output; in a pipeline with the registers that hold it.
     fn cells(&self, head: NetId) -> Vec<NetId> {
         let nets = self.groups.inside(head).into_iter().filter(|it| self.groups.cell[it.index()]);
         nets.chain(self.groups.held(head)).collect()
     }
 
-    /// The block, port or constant that an operand comes from; none for what the control unit gives.
+    /// Returns the block, port or constant that an operand comes from; none for what the control unit gives.
     fn source(&self, operand: NetId) -> Option<NetId> {
         match self.groups.sources[operand.index()][..] {
             [] => self.constant(operand),
@@ -193,7 +193,7 @@ impl<'a> Blocks<'a> {
         }
     }
 
-    /// The constant that a net is.
+    /// Returns the constant that a net is.
     fn constant(&self, mut id: NetId) -> Option<NetId> {
         loop {
             match &self.design.net(id).driver {
@@ -204,7 +204,7 @@ impl<'a> Blocks<'a> {
         }
     }
 
-    /// The name of a block: in a pipeline the shortest of those of its parts, without the stage.
+    /// Returns the name of a block: in a pipeline the shortest of those of its parts, without the stage.
     fn called(&self, inside: &[NetId], head: NetId) -> String {
         let design = self.design;
         let Some(pipeline) = &design.pipeline else { return design.net(head).name.clone() };
@@ -215,7 +215,7 @@ impl<'a> Blocks<'a> {
         name.unwrap_or(value(head)).clone()
     }
 
-    /// The other names of a block's output in a pipeline, on its way through wires and registers.
+    /// Returns the other names of a block's output in a pipeline, on its way through wires and registers.
     fn aliases(&self, head: NetId, name: &str) -> Vec<String> {
         let design = self.design;
         let Some(pipeline) = &design.pipeline else { return Vec::new() };
@@ -234,7 +234,7 @@ impl<'a> Blocks<'a> {
         names
     }
 
-    /// Where signals meet by gates or side by side.
+    /// Returns where signals meet by gates or side by side.
     fn meeting(&self, joint: NetId) -> Block {
         let net = self.design.net(joint);
         let inputs = self.groups.sources[joint.index()].clone();
@@ -260,7 +260,7 @@ impl<'a> Blocks<'a> {
         matches!(self.design.net(id).driver, Driver::Constant(_)) && !self.groups.cell[id.index()]
     }
 
-    /// The name of the block, port or ROM that drives a net of [`Block::inputs`], or the value of a constant.
+    /// Returns the name of the block, port or ROM that drives a net of [`Block::inputs`], or the value of a constant.
     pub fn name(&self, id: NetId) -> String {
         let net = self.design.net(id);
         match &net.driver {
@@ -335,12 +335,12 @@ impl<'a> Blocks<'a> {
         }
     }
 
-    /// The outputs of the blocks, ports and ROMs behind a net.
+    /// Returns the outputs of the blocks, ports and ROMs behind a net.
     pub fn behind(&self, net: NetId) -> &[NetId] {
         &self.groups.sources[net.index()]
     }
 
-    /// The stages of a pipeline in which the operators of a block are.
+    /// Returns the stages of a pipeline in which the operators of a block are.
     pub fn stages(&self, block: &Block) -> (usize, usize) {
         let design = self.design;
         let Some(pipeline) = &design.pipeline else { return (0, 0) };
@@ -360,7 +360,7 @@ impl<'a> Blocks<'a> {
         }
     }
 
-    /// The fields of the control word that control a block: its select or enable, and what its logic takes of them; and
+    /// Returns the fields of the control word that control a block: its select or enable, and what its logic takes of them; and
     /// the strobes that write it.
     pub fn controls(&self, block: &Block) -> (Vec<FieldId>, Vec<NetId>) {
         let design = self.design;
@@ -402,12 +402,12 @@ impl<'a> Blocks<'a> {
         (fields, strobes)
     }
 
-    /// The block or port that drives what a net carries.
+    /// Returns the block or port that drives what a net carries.
     pub fn driver(&self, net: NetId) -> Option<NetId> {
         self.groups.driver(net)
     }
 
-    /// The registers of a pipeline that hold what a block or port gives.
+    /// Returns the registers of a pipeline that hold what a block or port gives.
     pub fn held(&self, source: NetId) -> Vec<NetId> {
         self.groups.held(source)
     }
