@@ -37,8 +37,6 @@ library ieee;
 use ieee.std_logic_1164.all;
 use ieee.fixed_pkg.all;
 
-use work.${ package }$.all;
-
 entity ${ entity }$ is
 <%- if !generics.is_empty() %>
   generic (
@@ -60,7 +58,8 @@ architecture wrapped of ${ entity }$ is
 <%- endfor %>
 begin
 
-  ${ label }$ : component ${ component }$
+  -- By its full name, which no port and no function hides.
+  ${ label }$ : component work.${ package }$.${ component }$
 <%- if !passed.is_empty() %>
     generic map (
 <%- for line in passed %>

@@ -76,13 +76,43 @@ fn the_entity_in_vhdl_is_the_core() {
 /// Names that VHDL takes as extended identifiers alone.
 #[test]
 fn names_that_vhdl_reserves_are_analysed() {
-    for name in ["entity", "out__put", "Upper", "ends_"] {
+    for name in [
+        "entity",
+        "out__put",
+        "Upper",
+        "ends_",
+        "std_logic",
+        "work",
+        "to_real",
+        "natural",
+        "START",
+        "Core",
+        "Wrapped",
+        "red_out_bits",
+        "clk_",
+    ] {
         let text = format!(
             "device = \"schlick\"\nname = \"{name}\"\n[interface]\nstream = true\n[package]\nvhdl = true\n"
         );
         let dir = Emitted::new(&parsed("core.toml", &text), 1, 1).beside("rtl_out/");
         ran("ghdl", ["-a", "--std=08", &format!("{name}.vhd")], dir.path());
     }
+}
+
+/// A number of one bit that is a sign.
+#[test]
+fn a_sign_alone_is_a_type_of_systemverilog() {
+    let text = "device = \"function\"\nname = \"f\"\n[function]\nformula = \"-x\"\nfrom = 0\nto = 1\nto_included = true\n\
+                [operand]\nfraction = 0\n[result]\nfraction = 0\n[package]\nsystemverilog = true\n";
+    let dir = Emitted::new(&parsed("core.toml", text), 1, 1).beside("rtl_out/");
+    let check = "module check;\n    import f_pkg::*;\n    initial $display(\"%0d %0d\", y_from(-3.0), y_from(2.0));\nendmodule\n";
+    let package = fs::read_to_string(dir.path().join("f_pkg.sv")).expect("a package");
+    let result = package.split("function automatic real ").nth(2).expect("the result");
+    let result = result.split("_value").next().expect("its name");
+    fs::write(dir.path().join("check.sv"), check.replace("y_from", &format!("{result}_from")))
+        .expect("written");
+    ran("iverilog", ["-g2012", "-Wall", "-o", "check.vvp", "f_pkg.sv", "check.sv"], dir.path());
+    assert_eq!(ran("vvp", ["-n", "check.vvp"], dir.path()).trim(), "-1 0");
 }
 
 /// The ports of a module: direction and width.

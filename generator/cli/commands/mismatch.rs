@@ -1,6 +1,6 @@
 //! A first difference, for people and for scripts, with the means to see it again.
 
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::BufWriter;
 use std::path::PathBuf;
 
@@ -9,6 +9,7 @@ use serde_json::{Value, json};
 
 use super::Loaded;
 use crate::destination::Destination;
+use crate::failure;
 use glint_base::program::Program;
 use glint_core::cosim::exhaustive::{Clocks, Difference};
 use glint_core::cosim::{Lockstep, Mismatch, Outcome};
@@ -139,8 +140,17 @@ fn write<T>(
         let design = &one.core.design;
         for (ending, text) in [("gtkw", views::gtkwave(design)), ("sucl", views::surfer(design))] {
             let view = path.with_extension(ending);
-            if !view.exists() {
-                Destination::open(&view)?.write(text)?;
+            let there = fs::read_to_string(&view);
+            if view.symlink_metadata().is_ok() {
+                if there.is_ok_and(|there| there != text) {
+                    let view = view.display();
+                    failure::warn(&format!(
+                        "`{view}` stays as it is; remove it for one of this waveform"
+                    ));
+                }
+            } else if let Err(error) = Destination::open(&view).and_then(|it| it.write(text)) {
+                // The waveform is there, and is what was asked for.
+                failure::warn(&format!("{error:#}"));
             }
         }
     }

@@ -42,7 +42,7 @@ struct Component<'a> {
 
 fn component<'a>(top: &'a Top, of_core: &[String]) -> Component<'a> {
     Component {
-        name: vhdl_name(&top.module),
+        name: module_name(&top.module),
         what: &top.what,
         generics: if top.face == Face::Core { of_core.to_vec() } else { Vec::new() },
         ports: listed(top.ports.iter().map(plain).collect()),
@@ -88,7 +88,7 @@ fn vhdl(job: &Job, tops: &[Top]) -> Result<String> {
     }
     fill!("vhdl.vhd" {
         name: &'a str,
-        component: String = vhdl_name(name),
+        component: String = module_name(name),
         package: String = vhdl_name(&format!("{name}_components")),
         entity: String = vhdl_name(&format!("{name}_fixed")),
         // The label of the component.
@@ -141,6 +141,12 @@ fn vhdl_name(name: &str) -> String {
     if plain && !reserved && (small || generic) { name.to_owned() } else { format!("\\{name}\\") }
 }
 
+/// Returns the name of a module as that of a component: extended too where it is a name that the package uses or makes visible.
+fn module_name(name: &str) -> String {
+    let used = ["ieee", "work", "std", "std_logic", "std_logic_vector", "std_ulogic", "string"];
+    if used.contains(&name) { format!("\\{name}\\") } else { vhdl_name(name) }
+}
+
 /// The reserved words of IEEE 1076-2008.
 const VHDL_2008: &str = "
     abs access after alias all and architecture array assert assume assume_guarantee attribute
@@ -182,6 +188,7 @@ impl Number {
     fn least(&self) -> String {
         let width = self.format.width();
         match self.format.signed {
+            true if width == 1 => "1'b1".to_owned(),
             true => format!("{{1'b1, {}}}", literal(0, width - 1)),
             false => literal(0, width),
         }

@@ -349,6 +349,11 @@ impl Design {
         &self.registers[id.index()]
     }
 
+    /// Returns whether a ROM has control words: the control ROM, or one beside it with what a word of that has no room for.
+    pub fn is_control_memory(&self, rom: &Rom) -> bool {
+        self.roms.get(self.control.rom.index()).is_some_and(|it| it.address == rom.address)
+    }
+
     /// Returns the ROM `id`.
     pub fn rom(&self, id: RomId) -> &Rom {
         &self.roms[id.index()]

@@ -63,8 +63,8 @@ impl Watch {
         }
         let mut words = 0;
         let mut addresses = Vec::new();
-        for (at, rom) in design.roms.iter().enumerate() {
-            if at != design.control.rom.index() {
+        for rom in &design.roms {
+            if !design.is_control_memory(rom) {
                 addresses.push((rom.address, words, rom.words.len()));
             }
             words += rom.words.len();

@@ -14,17 +14,19 @@ pub struct Memories {
 }
 
 impl Memories {
-    /// Gives each of so many lanes, a power of two, tables of its own; the control ROM is one for all.
+    /// Gives each of so many lanes, a power of two, tables of its own; control memories are one for all.
     pub fn copied(design: &mut Design, lanes: usize) -> Self {
         let lane_bits = lanes.ilog2();
         let lane = add(design, "lane", lane_bits, Driver::Input);
         design.ports.push(Port { net: lane, role: Role::Strobe });
         let mut roms = Vec::new();
         let (mut first, mut first_here) = (0, 0);
-        for at in 0..design.roms.len() {
+        let control: Vec<bool> =
+            design.roms.iter().map(|rom| design.is_control_memory(rom)).collect();
+        for (at, is_control) in control.into_iter().enumerate() {
             let count = design.roms[at].words.len();
             let mut apart = 0;
-            if at != design.control.rom.index() {
+            if !is_control {
                 let address = design.roms[at].address;
                 let bits = design.width(address);
                 apart = 1 << bits;

@@ -53,8 +53,8 @@ pub fn chosen(
     let random = Random::new(3);
     let mut search = Search { device, points, random, candidates, result: Chosen::default() };
     let mut widths = Vec::new();
-    for (at, rom) in design.roms.iter().enumerate() {
-        let width = if at == design.control.rom.index() { 0 } else { design.width(rom.data) };
+    for rom in &design.roms {
+        let width = if design.is_control_memory(rom) { 0 } else { design.width(rom.data) };
         widths.extend(std::iter::repeat_n(width, rom.words.len()));
     }
     for (word, readers) in readers(candidates) {
