@@ -24,9 +24,9 @@ RECEIVED_BYTES = ${ received.bytes }$
 
 
 def pack(operands):
-    """The transfers on s_axis, a row of bytes each, from a one-dimensional array of raw integers for each name.
+    """The transfers on s_axis, a row of bytes each, from an array of raw integers for each name.
 
-    Bits that the bytes of a number have no room for are dropped.
+    The arrays have one dimension. Bits that the bytes of a number have no room for are dropped.
     """
     unknown = set(operands) ^ {name for name, *_ in SENT}
     if unknown:

@@ -35,7 +35,7 @@ impl Number {
             (0, _) => format!("({kind})transfer[{}]", self.first),
             _ => format!("({kind})transfer[{}] << {}", self.first + at, 8 * at),
         };
-        self.bytes().map(byte).collect::<Vec<_>>().join(" | ")
+        self.bytes().map(byte).collect::<Vec<_>>().join("\n        | ")
     }
 
     /// Returns the number of the bit pattern `raw`, where that is another.
