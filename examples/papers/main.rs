@@ -1,4 +1,4 @@
-//! What becomes of what the seeds say of their functions and devices: `cargo run --release --example papers -- DIR`.
+//! Measures what the seeds claim of their functions and devices: `cargo run --release --example papers -- DIR`.
 //!
 //! Writes `report.html`, one page that needs no network, and `report.json` with all of its figures into a new directory: error curves
 //! of every device, the plots that the seeds 000 to 002 describe, and their claims, each with a verdict. With Yosys on PATH, W and Schlick's

@@ -24,7 +24,7 @@ pub const TWO_DRIVERS: Code = Code(201);
 pub const UNDRIVEN: Code = Code(202);
 /// A combinational loop.
 pub const LOOP: Code = Code(203);
-/// What no output depends on.
+/// Logic that no output depends on.
 pub const UNUSED: Code = Code(204);
 /// A signal of another designer.
 pub const FOREIGN: Code = Code(205);

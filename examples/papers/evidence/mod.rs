@@ -1,4 +1,4 @@
-//! What becomes of the claims and the plots of the sources, measured when the program runs; `report.json` is this.
+//! The evidence about the claims and the plots of the sources, measured when the program runs; `report.json` is this.
 
 pub mod benchmark;
 pub mod claims;

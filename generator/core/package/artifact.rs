@@ -23,7 +23,7 @@ pub enum Kind {
     Constraint,
     /// Scripts and descriptions for vendors' tools.
     Script,
-    /// By which designs in other languages know the core.
+    /// Files for designs in other languages.
     Language,
     /// Benches in Python.
     Python,

@@ -1,4 +1,4 @@
-//! By which designs in other languages know a core: `<name>.vhd`, and `<name>_pkg.sv`.
+//! The files for designs in VHDL and SystemVerilog: `<name>.vhd`, and `<name>_pkg.sv`.
 
 use anyhow::Result;
 use glint_base::fill;

@@ -1,4 +1,4 @@
-//! What a configuration asks of a schedule, and why it cannot have it.
+//! The request of a configuration for a schedule, and the words in which it is refused.
 
 use super::graph::NodeId;
 use super::interval;

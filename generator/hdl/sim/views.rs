@@ -1,4 +1,4 @@
-//! What a viewer shows of a waveform at first: every net in its scope, numbers by their values.
+//! Views of a waveform for its viewers: every net in its scope, numbers by their values.
 
 use std::fmt::Write;
 

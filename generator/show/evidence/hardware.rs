@@ -1,4 +1,4 @@
-//! What a core takes of each family of FPGAs, by a synthesis tool.
+//! The cells that a core takes of each family of FPGAs, by a synthesis tool.
 
 use anyhow::{Context, Result};
 use rayon::prelude::*;
