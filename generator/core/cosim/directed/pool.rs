@@ -154,14 +154,22 @@ fn corners(points: &Points<'_>, bright: &dyn Fn(&mut [i64])) -> Vec<Vec<i64>> {
         });
         of.collect()
     };
-    let count = |ends: &[Vec<i64>]| ends.iter().map(Vec::len).product::<usize>();
+    let count = |ends: &[Vec<i64>]| {
+        ends.iter().map(Vec::len).fold(1, |product: usize, ends| product.saturating_mul(ends))
+    };
     let ends = Some(ends(true)).filter(|ends| count(ends) <= MOST_CORNERS).unwrap_or(ends(false));
-    let mut corners = vec![Vec::new()];
-    for ends in ends {
-        let with = |corner: Vec<i64>| ends.iter().map(move |&end| [&corner[..], &[end]].concat());
-        corners = corners.into_iter().flat_map(with).collect();
-    }
-    corners.truncate(MOST_CORNERS);
+    // By their numbers: all of them would take more memory than there is where operands are many.
+    let corner = |mut number: usize| {
+        let digit = |ends: &Vec<i64>| {
+            let end = ends[number % ends.len()];
+            number /= ends.len();
+            end
+        };
+        let mut corner: Vec<i64> = ends.iter().rev().map(digit).collect();
+        corner.reverse();
+        corner
+    };
+    let mut corners: Vec<Vec<i64>> = (0..count(&ends).min(MOST_CORNERS)).map(corner).collect();
     corners.iter_mut().for_each(|corner| bright(corner));
     corners
 }
