@@ -1,4 +1,4 @@
-//! The user's input: files, standard input, or records in a directory.
+//! Reads the user's input: the text of a file or of standard input, or the JSON records in a directory.
 
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read};

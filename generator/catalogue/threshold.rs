@@ -1,9 +1,9 @@
-//! `threshold` — UA 30041 (the prototype in seed 001): `(n/2·(cos γ − 1) + 1)²`, gated by a comparator
-//! against ROM(n).
+//! `threshold` — UA 30041 (the prototype in seed 001): `(n/2·(cos γ − 1) + 1)²`, or 0 where a comparator finds the
+//! square below ROM(n).
 //!
-//! The patent's blocks follow one another without a control block; two registers that it does not have cut the chain
-//! so that no clock holds more than one multiplier before the outputs. Numbers count each kind of block, as the seed's
-//! text does: register 1, adder 1, multiplier 1.
+//! The patent's blocks follow one another without a control block. Two registers that the patent does not have cut the
+//! chain, so that no clock holds more than one multiplier before the outputs. Each kind of block is numbered on its
+//! own, as in the seed's text: register 1, adder 1, multiplier 1.
 
 use glint_base::fixed::{Format, Overflow, Rounding, exp2};
 use glint_config::Config;

@@ -1,4 +1,6 @@
-//! `cosine-squared`: cos²(a·δ) along a scan line (seed 000, the prototype), by formula.
+//! The golden model and the accuracy contract of `cosine-squared` (seed 000, the prototype): cos²(a·δ) along a line.
+//!
+//! The model reads the cosine's square from a table, ROM 12; the contract compares it with the formula.
 
 use std::f64::consts::FRAC_PI_2;
 

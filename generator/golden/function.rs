@@ -1,4 +1,5 @@
-//! `function`: a formula of one operand by a piecewise polynomial.
+//! The golden model and the accuracy contract of `function`: a formula of one operand, or the curve through samples,
+//! computed by a piecewise polynomial.
 
 use std::sync::Arc;
 

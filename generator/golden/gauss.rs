@@ -1,4 +1,6 @@
-//! `gauss`: exp(−n·γ²/2) (seed 002), by formula: 2^(−n·decay) with the decay γ²/(2 ln 2).
+//! The golden model and the accuracy contract of `gauss`: exp(−n·γ²/2) (seed 002).
+//!
+//! Both are those of [`decay`]: 2^(−n·decay) with the decay γ²/(2 ln 2).
 
 use super::decay;
 use super::{Contract, Model};

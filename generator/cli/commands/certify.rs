@@ -1,4 +1,4 @@
-//! `certify`.
+//! `glint certify`: proves the error bound of a contract with Gappa, from the netlist and the microprogram.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;

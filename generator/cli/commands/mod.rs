@@ -1,4 +1,6 @@
-//! The commands. Each returns whether everything holds.
+//! The commands of the command line, a module each, and what they share: loading configurations, and their verdicts.
+//!
+//! A command returns whether everything that it checks holds.
 
 pub mod certify;
 

@@ -69,7 +69,7 @@ struct Scored {
 }
 
 impl Scored {
-    /// Returns the share of all faults, of the netlist and of the Verilog, that is undecided.
+    /// Returns the share of undecided faults among all faults of the netlist and of the Verilog.
     fn share_undecided(&self) -> f64 {
         let verilog = self.verilog.as_ref();
         let (planted, undecided) =

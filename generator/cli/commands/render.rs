@@ -363,7 +363,7 @@ fn numbers(text: &str) -> Result<Vec<f64>, String> {
         .collect()
 }
 
-/// `NAME=VALUE`.
+/// Parses `NAME=VALUE`, where the value is one finite number.
 fn operand(text: &str) -> Result<(String, f64), String> {
     let (name, value) = text.split_once('=').ok_or("it takes NAME=VALUE, as in alpha2=0.04")?;
     match numbers(value)?.as_slice() {

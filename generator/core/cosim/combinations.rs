@@ -51,7 +51,8 @@ impl Space {
         free.map(|(port, _)| port.format.width()).sum()
     }
 
-    /// Returns the bit patterns of the operands at a place, in the order of the ports.
+    /// Returns the operand ports in their order, each with its bit pattern at a place: what is listed for the place, or
+    /// else the value at which the operand is held, or its bits of the combination.
     fn at(&self, place: u64) -> impl Iterator<Item = (&OperandPort, u64)> {
         let mut bits = place.wrapping_mul(SCATTER);
         let listed = usize::try_from(place).ok().and_then(|place| self.listed.get(place));

@@ -1,4 +1,4 @@
-//! A golden model on its own, a computation at a time.
+//! Drives a golden model on its own: starts a computation, clocks the model and reads its signals.
 
 use anyhow::{Context, Result};
 

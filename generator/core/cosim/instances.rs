@@ -38,7 +38,7 @@ impl<const LANES: usize> Instances<LANES> {
         self.simulator.set_lanes(self.ports.start, taking);
     }
 
-    /// Has no instance take a computation; the data stay.
+    /// Lowers `start` and all strobes, so that no instance takes a computation; the data stay.
     pub(super) fn release(&mut self) {
         for at in self.ports.operands.iter().map(|port| port.strobe).chain([self.ports.start]) {
             self.simulator.set_lanes(at, [0; LANES]);

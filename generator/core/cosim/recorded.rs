@@ -1,4 +1,4 @@
-//! Inputs that were recorded before, again and again.
+//! Replays recorded inputs clock by clock, from the beginning again after the end.
 
 use std::sync::Arc;
 

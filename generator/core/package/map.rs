@@ -76,7 +76,7 @@ pub struct Register {
 }
 
 impl Register {
-    /// In bytes.
+    /// Returns the address offset in bytes.
     pub fn offset(&self) -> u32 {
         4 * self.place
     }

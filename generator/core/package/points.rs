@@ -1,4 +1,4 @@
-//! The bench that computes a list of points: operands from a file, results to a file.
+//! Generates the test bench that computes a list of points: operands come from one file, results go to another.
 
 pub(super) mod pipeline;
 

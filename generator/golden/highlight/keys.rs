@@ -1,4 +1,6 @@
-//! The keys of cos γ, n and colours, for model and contract.
+//! Converts configuration keys to the products, the operands and the register slots of a highlight.
+//!
+//! Golden models and accuracy contracts of devices with the operands cos γ, n and colours share it.
 
 use super::Products;
 use crate::frame::{Frame, Slot};

@@ -1,4 +1,7 @@
-//! A walk along a scan line: an angle that grows by the same difference from point to point.
+//! Builds the hardware of a scan line: `angle` starts at `zeta_start` and grows by `delta_zeta` every clock.
+//!
+//! [`Line`] holds the operands, the adder, the mux, the register and the counter of intervals. It also writes the
+//! microprogram of a device that does nothing else.
 
 use crate::dsl::{Counter, Designer, Mux, Register, Signal, end, jump_if, loop_while, step};
 use glint_base::fixed::Format;

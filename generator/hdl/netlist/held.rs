@@ -1,9 +1,9 @@
-//! Registers within what follows from the operands alone.
+//! Inserts registers into the logic that depends on operands alone, to shorten the critical path.
 //!
-//! Operands cannot change while the device is busy. What is computed from them and nothing else is *steady*: it
-//! may take all the clocks from the first microinstruction, which every computation executes once after
-//! `start`, to the one that first takes it. Registers within it shorten the paths of those clocks and cost none.
-//! Outputs, which follow the operand registers at once, and what the first microinstruction takes stay without.
+//! Operands cannot change while the device is busy. A net that is computed from operands and constants alone is
+//! *steady*: it may take all the clocks from the first microinstruction, which every computation executes once after
+//! `start`, to the one that first uses it. Registers in steady logic shorten its paths and add no latency. Outputs,
+//! which follow the operand registers in the same clock, and nets that the first microinstruction uses get no register.
 
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 

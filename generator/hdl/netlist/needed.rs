@@ -1,4 +1,4 @@
-//! When a net's value first matters.
+//! Finds the first clock of a computation in which the value of each net is used.
 
 use std::collections::{HashSet, VecDeque};
 

@@ -1,4 +1,6 @@
-//! The request of a configuration for a schedule, and the words in which it is refused.
+//! Finds the interval and the schedule of the pipeline that a configuration asks for.
+//!
+//! An unreachable clock or number of stages is reported as a diagnostic on its key, with the nearest reachable value.
 
 use super::graph::NodeId;
 use super::interval;

@@ -1,4 +1,4 @@
-//! The comment at the head of each Verilog file.
+//! Writes the comment at the head of each Verilog file: formula, latency, ports, microprogram and origin.
 
 use super::naming::Naming;
 use super::text::comment;

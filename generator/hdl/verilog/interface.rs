@@ -1,4 +1,4 @@
-//! The ports of the two units.
+//! Finds the ports and the ROMs of the control unit and of the datapath, and the bits that nothing in a unit reads.
 
 use super::plan::{NetForm, Plan};
 use crate::netlist::{Driver, NetId, Partition, RomId};

@@ -1,4 +1,7 @@
-//! The formula on one way through the hardware, as terms.
+//! Translates the contract's formula to exact terms, with one branch for each way its `max`, `min` and `if` can choose.
+//!
+//! A branch has the signs of differences as its conditions. Operands have the range of one case of the proof, which may
+//! decide a choice.
 
 use std::collections::{BTreeMap, HashMap};
 

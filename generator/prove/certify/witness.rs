@@ -170,7 +170,9 @@ pub fn witness(script: &str) -> Option<String> {
     None
 }
 
-/// Returns the term of a text.
+/// Parses an expression of a script into `terms` and returns its term; `None` if it is not understood.
+///
+/// A name stands for its term in `names`, or else for a new variable.
 fn expression(text: &str, terms: &mut Terms, names: &HashMap<String, Id>) -> Option<Id> {
     if let Some(rounded) = text.strip_prefix("fixed<") {
         let (how, of) = rounded.split_once(">(")?;

@@ -22,7 +22,7 @@ const INK: RGBColor = RGBColor(1, 0, 0);
 const GRID: RGBColor = RGBColor(2, 0, 0);
 const MARK: RGBColor = RGBColor(3, 0, 0);
 
-/// Returns the colour that stands for series number `at`.
+/// Returns the stand-in colour of series number `at`, for which [`themed`] puts the class from [`class`].
 fn style(at: usize) -> RGBColor {
     RGBColor(4, 0, (at % STYLES) as u8)
 }

@@ -338,7 +338,8 @@ impl Feed {
         full.map_or(0.0, |(_, format, (_, most))| format.to_f64(i128::from(most)))
     }
 
-    /// By what the device takes the angles of a line: √(n/2), unless it has an exponent.
+    /// Returns the factor by which the host multiplies a line's angles: √(n/2), or 1 if the device takes n as an
+    /// operand.
     fn stretch(&self, line: &Line) -> f64 {
         if self.takes(Quantity::Exponent) { 1.0 } else { line.stretch() }
     }

@@ -21,7 +21,7 @@ impl Vector {
         ax * bx + ay * by + az * bz
     }
 
-    /// The vector product. Exchanging the factors changes the sign exactly, also when it rounds.
+    /// Returns the cross product. Swapping the operands negates it exactly, also when it rounds.
     #[inline]
     pub fn cross(self, other: Self) -> Self {
         let ([ax, ay, az], [bx, by, bz]) = (self.0, other.0);

@@ -37,8 +37,8 @@ pub fn netlist(
     sources.text(NETLIST)
 }
 
-/// Returns the files of the bench around a netlist of a family, of `sources`, those of device and bench: without those named in
-/// `rtl`, and with the models of the family's cells.
+/// Returns the files of a test bench around a netlist: `sources`, which are those of the device and its test bench,
+/// without the files named in `rtl`, and with the netlist and the models of the family's cells.
 ///
 /// # Errors
 /// The models are not where Yosys has them; there are none.

@@ -1,8 +1,8 @@
-//! The golden model's prediction of a pipeline, clock by clock.
+//! Predicts a pipelined core clock by clock, from the golden model of the sequential core.
 //!
-//! The model of the sequential core runs each point on its own. After every clock the handshake is predicted, the results
-//! and the side channel where there are any, and, for the point in each stage, every value that a register of the
-//! sequential core has: what the model's register holds in that microinstruction.
+//! The model runs each point on its own. After every clock the handshake is predicted, and the results and the side
+//! channel where there are any. At each checkpoint, the value of a register of the sequential core is predicted for the
+//! point in that stage: what the model's register holds in that microinstruction.
 
 mod reference;
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! The golden model's values for one point: its results, and its registers along the microprogram.
+//! Runs the golden model for one point, and returns its results and the value of its register at each checkpoint.
 
 use anyhow::{Result, bail};
 

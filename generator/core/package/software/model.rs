@@ -77,7 +77,7 @@ impl Field {
         }
     }
 
-    /// Returns the weight of the lowest bit's inverse, as a C double: 2^F exactly.
+    /// Returns the inverse of the lowest bit's weight as a C double: exactly 2^F, with F fraction bits.
     pub fn scale(&self) -> String {
         format!("{:?}", glint_base::fixed::exp2(self.format.frac))
     }

@@ -1,4 +1,6 @@
-//! A program in C that recomputes every operand with MPFR: evidence for the bound that needs no trust in Glint.
+//! Writes a C program that recomputes the result of every operand and compares it with the formula, evaluated by MPFR.
+//!
+//! It is evidence for the error bound that does not rest on Glint's own arithmetic.
 
 use anyhow::Result;
 

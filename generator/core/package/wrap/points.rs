@@ -1,4 +1,4 @@
-//! The computations that the stimulus of a core's bench holds, for the benches of its wrappers.
+//! Extracts the finished computations from the vectors of a core's test bench, for the test benches of its wrappers.
 
 use std::collections::VecDeque;
 

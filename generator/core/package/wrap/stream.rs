@@ -1,4 +1,4 @@
-//! `<name>_axis.v`: the core between two AXI4-Streams, and what is proved of it.
+//! Generates `<name>_axis.v`, a wrapper that puts the core between two AXI4-Streams, and the properties proved of it.
 
 use anyhow::{Context, Result};
 use glint_base::fill;

@@ -1,4 +1,4 @@
-//! The record of `glint synth`: area, frequency and rate on each target, and the longest paths.
+//! Tabulates the record of `glint synth` for the datasheet: area, frequency, rate and critical path on each target.
 
 use super::table::TableView;
 use crate::figures::{Figures, Frequency, Rate, Record};

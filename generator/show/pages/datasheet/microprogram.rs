@@ -1,4 +1,4 @@
-//! The microprogram as the patents print theirs: microinstructions by control lines.
+//! Tabulates the microprogram as the patents do: a row for each microinstruction, a column for each control line.
 
 use crate::pages::account;
 use crate::pages::markup::html;

@@ -228,7 +228,7 @@ impl<'a> Groups<'a> {
         }
     }
 
-    /// Returns whether blocks of a pipeline lead back to themselves.
+    /// Returns whether the blocks of a pipeline form a cycle; of a sequential core, always false.
     fn is_tangled(&self) -> bool {
         if self.design.pipeline.is_none() {
             return false;
