@@ -140,7 +140,7 @@ impl<'f> Seen<'f> {
         Ok(Some(seen))
     }
 
-    /// No more than `most` of the operands or so, taken evenly.
+    /// Returns a sample of the operands, taken evenly, of no more than `most` or so.
     pub(super) fn thinned(&self, most: usize) -> Self {
         // An odd one, so that the low bits take every value.
         let by = if self.right.len() > most { (self.right.len() / most) | 1 } else { 1 };

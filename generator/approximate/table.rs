@@ -76,7 +76,7 @@ impl Widths {
         Some(other)
     }
 
-    /// No variable wider than in another.
+    /// Limits every variable to its width in `most`.
     fn no_wider(mut self, most: &Self) -> Self {
         self.guard.iter_mut().zip(&most.guard).for_each(|(own, most)| *own = (*own).min(*most));
         self.offset.iter_mut().zip(&most.offset).for_each(|(own, most)| *own = (*own).min(*most));
@@ -330,7 +330,7 @@ impl<'s> Table<'s> {
         widths.guard.iter().enumerate().map(format).collect()
     }
 
-    /// By how many bits each coefficient that is multiplied is too wide for a multiplier.
+    /// Returns by how many bits each coefficient that is multiplied is too wide for a multiplier.
     fn excess(formats: &[Format]) -> impl Iterator<Item = u32> {
         let signed = |format: &Format| format.width() + u32::from(!format.signed);
         formats.iter().skip(1).map(move |format| signed(format).saturating_sub(FACTOR))

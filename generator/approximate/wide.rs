@@ -36,7 +36,7 @@ impl Piecewise {
         (low <= high).then_some((low, high))
     }
 
-    /// Fraction bits that a coefficient has beyond the result.
+    /// Returns the fraction bits that a coefficient has beyond the result.
     fn beyond(&self, k: usize) -> i32 {
         self.coefficients[k].frac - self.sums[0].frac
     }

@@ -12,7 +12,7 @@ use glint_rtl::netlist::About;
 
 use crate::piecewise::{Multiplier, Polynomial, Tables, flipped};
 
-/// The device.
+/// Describes `function`: a table of coefficients, and Horner's rule on one multiplier.
 ///
 /// # Panics
 /// If the check of the schema has not accepted the configuration.

@@ -99,7 +99,7 @@ impl Keys {
         Format::unsigned(whole as i32, self.argument as i32)
     }
 
-    /// Low bits of u that the table of the ratio does not see: of 1 − c it takes a bit more than the ratio has.
+    /// Returns the low bits of u that the table of the ratio does not see: of 1 − c it takes a bit more than the ratio has.
     pub fn unseen(&self) -> u32 {
         self.operands.cosine.fraction.saturating_sub(self.ratio_fraction + 1)
     }
@@ -162,7 +162,7 @@ pub(super) fn schema(device: &'static str, check: fn(&Config, &mut Problems)) ->
     Schema { device, keys, check }
 }
 
-/// The conditions between keys.
+/// Checks the conditions between keys.
 pub(super) fn check(config: &Config, decay: Decay, problems: &mut Problems) {
     let keys = Keys::of(config);
     common::check_exponents(&keys.domain, keys.operands.exponent_bits, problems);
