@@ -154,12 +154,12 @@ impl Formula for Cosine {
         Some([raw(normal.map(|it| length * it), fraction), raw(unit_vector(half), other)].concat())
     }
 
-    /// Returns the sum of squares determines the inverse root.
+    /// Returns every sum of squares, which determines the inverse root.
     fn sweep(&self) -> Option<Sweep> {
         Some(self.root.sweep())
     }
 
-    /// By the inverse root as it is; by the factors and the rounding as far as they can be off.
+    /// Returns the error of the inverse root as it is, and of the factors and the rounding as far as they can be off.
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let [_, factors, rounding] = self.errors();
         let error = self.root.relative_error(place[0]) + factors + rounding;

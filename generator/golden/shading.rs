@@ -207,7 +207,8 @@ impl Formula for Shading {
         (0..3).map(|at| colour(at).clamp(0.0, most)).collect()
     }
 
-    /// Returns an error of an operand of a part grows by the part's slope in it, and the part adds its own; each light adds its own.
+    /// Derives the terms of a colour's error. An error of an operand of a part grows by the part's slope in it, and the part adds
+    /// its own; each light adds its own.
     ///
     /// - A colour is diffuse·cosine + specular·f(cosine), saturated: its slopes are at most the largest colour, and that times
     ///   the slope of f. Where f jumps, cosine and exact cosine may lie on both sides.
@@ -241,7 +242,7 @@ impl Formula for Shading {
         terms
     }
 
-    /// None where the highlight's formula reads a table, or nobody wrote it.
+    /// Returns the formulas of the colours; none where the highlight's formula reads a table, or nobody wrote it.
     fn expressions(&self) -> Vec<String> {
         let squares = "(nx ** 2 + ny ** 2 + nz ** 2)";
         let cosine = |vector: &str, suffix: &str| {

@@ -113,7 +113,7 @@ impl Fixed {
 }
 
 impl Clocked {
-    /// The device with so many slots, all 0.
+    /// Makes the device at power-up, with so many slots, all 0.
     fn at_power_up(fixed: Fixed, slots: usize) -> Self {
         let mut model = Self {
             run: false,
