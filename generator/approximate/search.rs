@@ -183,8 +183,8 @@ fn cheapest(seen: &Seen, wish: Wish) -> Option<Piecewise> {
     })
 }
 
-/// Ways to cut the domain, into no more than `most` segments, that are fine enough for polynomials of the degree, before
-/// anything is rounded.
+/// Returns the ways to cut the domain, into no more than `most` segments, that are fine enough for polynomials of the degree,
+/// before anything is rounded.
 fn cuts(seen: &Seen, degree: u32, layout: Option<Layout>, most: usize) -> Vec<Segments> {
     let possible = |cut: &Segments| {
         cut.words() <= most.min(1 << ADDRESS)

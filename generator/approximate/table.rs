@@ -57,7 +57,7 @@ impl Widths {
         self.offset.iter().enumerate().map(of).collect()
     }
 
-    /// Returns one bit fewer or more of variable number `at`, if that may be.
+    /// Changes variable number `at` by `change` bits, one fewer or more, if that may be.
     fn with(&self, at: usize, change: i32) -> Option<Self> {
         let mut other = self.clone();
         match other.guard.get_mut(at) {
@@ -216,8 +216,8 @@ impl<'s> Table<'s> {
         Widths { guard: vec![guard; degree + 1], offset: vec![self.cut.rest(); degree] }
     }
 
-    /// Widths that were chosen by fewer operands, a bit wider where these are not right but none wider than these, and the words
-    /// with them.
+    /// Returns widths that were chosen by fewer operands, a bit wider where these are not right but none wider than these, and
+    /// the words with them.
     pub(super) fn settled(&self, mut widths: Widths, most: &Widths) -> Option<(Widths, Words)> {
         let count = widths.count();
         let wider = |widths: &Widths, at| {

@@ -201,7 +201,7 @@ fn base<'d>(d: &'d Designer, value: Signal<'d>, f: Format) -> Signal<'d> {
     d.choose("base", comparator, [zero, inverse]).doc("base of the power, or 0")
 }
 
-/// Holds every log2 of an exponent, rounded: 0 … `exponent.bits`.
+/// Returns a format that holds every log2 of an exponent, rounded: 0 … `exponent.bits`.
 fn shift_format(keys: &Keys) -> Format {
     Format::holding(0, keys.exponent_bits.into(), 0)
 }

@@ -122,7 +122,7 @@ impl Reflectance for Arithmetic {
         vec![contract::where_it_faces(&format!("{base} ** {power}"))]
     }
 
-    /// Bounds the slope n·base^(m − 1) by n, since the base is at most 1. At 0 W is (1 − n/m)^m, from where it falls to 0 at once
+    /// Limits the slope n·base^(m − 1) to n, since the base is at most 1. At 0 W is (1 − n/m)^m, from where it falls to 0 at once
     /// below n = m.
     fn variation(&self) -> Option<Variation> {
         let (least, most) = self.keys.domain.exponents();

@@ -235,7 +235,7 @@ impl Reflectance for Arithmetic {
         Some(self.formula(cosine, exponent as f64))
     }
 
-    /// Bounds the slope by the largest n, and the jump at a right angle by that of the smallest n:
+    /// Limits the slope by the largest n, and the jump at a right angle by that of the smallest n:
     /// - cosⁿγ: n·c^(n − 1), at most n; with n = 0 it jumps from 1.
     /// - exp(−n·γ²/2): n·(γ/sin γ)·exp(−n·γ²/2), at most n, since γ/sin γ ≤ exp(γ²/2) up to a right angle (its logarithm is
     ///   γ²/6 + γ⁴/180 + …, of positive terms that are together below γ²/2 there). There it jumps from exp(−n·π²/8).

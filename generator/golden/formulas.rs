@@ -61,7 +61,7 @@ pub fn parabola(c: f64, n: f64) -> f64 {
     rough(c, 1.0, false, n)
 }
 
-/// Returns, as UA 30041 does, a reflectance where it reaches the level of visibility, otherwise 0.
+/// Returns a reflectance where it reaches UA 30041's level of visibility, otherwise 0.
 #[inline]
 pub fn threshold(square: f64, level: f64) -> f64 {
     if square < level { 0.0 } else { square }

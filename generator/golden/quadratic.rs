@@ -114,7 +114,7 @@ impl Reflectance for Arithmetic {
         Some(formulas::quadratic(cosine, self.exact[exponent as usize]))
     }
 
-    /// Bounds the slope, 1 − a + 2·a·c where the formula is not clamped, by 1 + |a|; at a right angle the formula is 0.
+    /// Limits the slope, 1 − a + 2·a·c where the formula is not clamped, to 1 + |a|; at a right angle the formula is 0.
     fn variation(&self) -> Option<Variation> {
         let (least, most) = self.keys.domain.exponents();
         let exact = self.exact[least as usize..=most as usize].iter();

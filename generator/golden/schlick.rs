@@ -108,7 +108,7 @@ impl Reflectance for Arithmetic {
         Some(formulas::schlick(cosine, exponent as f64))
     }
 
-    /// Bounds the slope n/(n − nc + c)², largest at an end: n at 1, 1/n at 0. There the value is 0 as beyond, but for n = 0, with
+    /// Limits the slope n/(n − nc + c)², largest at an end: n at 1, 1/n at 0. There the value is 0 as beyond, but for n = 0, with
     /// which it is 1.
     fn variation(&self) -> Option<Variation> {
         let (least, most) = self.0.domain.exponents();

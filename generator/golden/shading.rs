@@ -311,7 +311,7 @@ impl Formula for Shading {
         Some(operands)
     }
 
-    /// Normals of one plane under one light, which the viewer is at, with four exponents.
+    /// Returns normals of one plane under one light, which the viewer is at, with four exponents.
     fn sweep(&self) -> Option<Sweep> {
         let Keys { normal, light, colour_bits, most, .. } = self.keys;
         let (one, to_light, white) = (1 << normal, 1 << light, (1 << colour_bits) - 1);

@@ -141,7 +141,7 @@ impl Reflectance for Arithmetic {
         Some(formulas::threshold(formulas::parabola(cosine, exponent as f64), level))
     }
 
-    /// Bounds the slope n·base by n, since the base is at most 1. The formula jumps from ROM(n), where either side is right
+    /// Limits the slope n·base to n, since the base is at most 1. The formula jumps from ROM(n), where either side is right
     /// within the margin, or at a right angle from (1 − n/2)² if that is more: since the base falls with the cosine, not at both.
     fn variation(&self) -> Option<Variation> {
         let (least, most) = self.keys.domain.exponents();

@@ -156,7 +156,7 @@ impl Designer {
         self.program(Vec::new(), true);
     }
 
-    /// The microprogram of the parts, where [`Designer::dataflow`] asks for it.
+    /// Makes the parts the microprogram where [`Designer::dataflow`] asks for it; elsewhere parts are an error.
     pub(super) fn with_parts(&self, program: &mut Program) {
         let mut parts = self.with(|inner| std::mem::take(&mut inner.parts));
         if program.of_parts {

@@ -134,7 +134,7 @@ fn held(graph: &Graph, results: &[NodeId], mut id: NodeId) -> NodeId {
 }
 
 impl<'a> Problems<'a> {
-    /// For the nodes that `results` need.
+    /// Makes the problems of a schedule of the nodes that `results` need.
     pub fn new(
         graph: &'a Graph,
         target: &'a Timing,
@@ -312,8 +312,8 @@ impl<'a> Problems<'a> {
         1 + usize::from(far && self.delay[user.index()] + self.target.logic > most)
     }
 
-    /// Nanoseconds until a register behind `user` has the value, of which the operand `from` is there after so many. What is
-    /// not the select of a reset goes past it.
+    /// Returns the nanoseconds until a register behind `user` has the value, of which the operand `from` is there after so many.
+    /// What is not the select of a reset goes past it.
     fn until_register(&self, from: NodeId, user: NodeId, after: f64) -> f64 {
         match self.reset_by[user.index()] {
             Some(select) if select != from => after,
@@ -373,7 +373,7 @@ impl<'a> Problems<'a> {
         results.map(|id| earliest[id.index()] + 1).max().unwrap_or(1)
     }
 
-    /// Differences are sorted by their first node, and a node stands after its operands.
+    /// Returns the earliest stage of each node. Differences are sorted by their first node, and a node stands after its operands.
     fn earliest(&self, differences: &[Difference], taken: &Taken) -> Vec<usize> {
         let mut earliest = vec![0; self.graph.nodes.len()];
         taken.iter().for_each(|(id, stage)| earliest[id.index()] = *stage);
@@ -590,7 +590,7 @@ impl<'a> Problems<'a> {
         &self.live
     }
 
-    /// For each node, the boundary up to which it is held: the number of the last stage that takes it.
+    /// Returns for each node the boundary up to which it is held: the number of the last stage that takes it.
     pub fn last_use(&self, schedule: &Schedule) -> Vec<usize> {
         let mut last = schedule.stage.clone();
         for &id in &self.live {

@@ -424,7 +424,7 @@ impl<'a> Executor<'a> {
         )
     }
 
-    /// No result depends on what an earlier computation has left.
+    /// Checks that no result depends on what an earlier computation has left.
     fn determined(&self, results: &[(NetId, NodeId)], what: &str) -> Result<(), Diagnostic> {
         let graph = &self.unrolled.graph;
         for &(port, value) in results {

@@ -104,7 +104,7 @@ impl Atom for Wire<'_> {
         self.id
     }
 
-    /// Only the value counts: rust_hdl emits no Verilog from a netlist.
+    /// Returns the value alone: rust_hdl emits no Verilog from a netlist.
     fn verilog(&self) -> VerilogLiteral {
         self.bits.into()
     }

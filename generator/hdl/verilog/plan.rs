@@ -242,7 +242,7 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Cells that nobody named and nothing needs are left out.
+    /// Leaves out the cells that nobody named and nothing needs.
     fn find_live(&mut self, order: &[NetId]) {
         let mut live = vec![false; self.design.nets.len()];
         let mut pending: Vec<Reader> = Vec::new();
