@@ -57,7 +57,7 @@ impl Widths {
         self.offset.iter().enumerate().map(of).collect()
     }
 
-    /// Changes variable number `at` by `change` bits, one fewer or more, if that may be.
+    /// Returns the widths with `change` bits more of variable number `at`, if that may be.
     fn with(&self, at: usize, change: i32) -> Option<Self> {
         let mut other = self.clone();
         match other.guard.get_mut(at) {

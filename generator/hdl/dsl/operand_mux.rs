@@ -143,7 +143,7 @@ impl<'d> OperandMux<'d> {
         Setting::pick_of(self.designer, self.field, &self.name, input, &self.inputs)
     }
 
-    /// Holds the operand that the microinstruction before selected in a register `<name>_held` behind the mux.
+    /// Holds in a register `<name>_held` behind the mux the operand that the microinstruction before selected.
     ///
     /// For a program that settles the operands in one microinstruction and takes the product in the next,
     /// under the same selection: the multiplier then has the second of the two clocks to itself.

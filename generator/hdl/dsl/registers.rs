@@ -152,7 +152,7 @@ impl Designer {
         Select { designer: self, field }
     }
 
-    /// Returns the select lines. Those of another designer are an error, and what to go on with is lines like them.
+    /// Returns the select lines. Those of another designer are an error, and lines like them take their place.
     #[track_caller]
     pub(crate) fn own_select<'d>(&'d self, select: Select<'d>) -> Select<'d> {
         if self.serial == select.designer.serial {

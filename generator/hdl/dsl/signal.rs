@@ -388,41 +388,41 @@ impl Designer {
         self.signal(self.add_wiring(name, format, range, Driver::Op(Op::Concat(parts))))
     }
 
-    /// Returns 1 when both are 1; operands of one bit.
+    /// Returns the signal that is 1 when both are 1; operands of one bit.
     #[track_caller]
     pub fn and<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = (self.one_bit(a), self.one_bit(b));
         self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::And(a, b))))
     }
 
-    /// Returns 1 when either is 1; operands of one bit.
+    /// Returns the signal that is 1 when either is 1; operands of one bit.
     #[track_caller]
     pub fn or<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = (self.one_bit(a), self.one_bit(b));
         self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::Or(a, b))))
     }
 
-    /// Returns 1 when `a < b`.
+    /// Returns the signal that is 1 when `a < b`.
     #[track_caller]
     pub fn less<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = self.comparable(a, b);
         self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::Less(a, b))))
     }
 
-    /// Returns 1 when `a = b`.
+    /// Returns the signal that is 1 when `a = b`.
     #[track_caller]
     pub fn equal<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = self.comparable(a, b);
         self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::Equal(a, b))))
     }
 
-    /// Returns 1 when any bit of `a` is 1: `a ≠ 0`.
+    /// Returns the signal that is 1 when any bit of `a` is 1: `a ≠ 0`.
     #[track_caller]
     pub fn any<'d>(&'d self, name: &str, a: Signal<'d>) -> Signal<'d> {
         self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::Any(self.own(a).id()))))
     }
 
-    /// Returns 1 when every bit of `a` is 1.
+    /// Returns the signal that is 1 when every bit of `a` is 1.
     #[track_caller]
     pub fn all<'d>(&'d self, name: &str, a: Signal<'d>) -> Signal<'d> {
         self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::All(self.own(a).id()))))

@@ -27,7 +27,7 @@ pub fn split(unrolled: &Unrolled, target: &Timing) -> Unrolled {
     })
 }
 
-/// Returns `a·b`, of one sign, exact.
+/// Returns `a·b`, exact; both are signed, or neither is.
 fn product(
     graph: &mut Graph,
     target: &Timing,

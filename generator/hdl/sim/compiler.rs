@@ -58,7 +58,7 @@ pub(super) struct Compiler<'a> {
 }
 
 impl<'a> Compiler<'a> {
-    /// Makes the slots of the input ports and the contents of the ROMs; no net is compiled yet.
+    /// Makes a compiler with the slots of the input ports and the contents of the ROMs; no net is compiled yet.
     pub(super) fn new(design: &'a Design) -> Self {
         let input_sources = (design.inputs().count() as u32).clamp(1, INPUTS);
         let mut compiler = Self {

@@ -254,7 +254,7 @@ fn power_up<W: Word, const LANES: usize>(bank: &Bank) -> Slots<W, LANES> {
     Slots::new(bank.initial.iter().map(|&bits| [W::low(bits); LANES]))
 }
 
-/// Sets the inputs. Returns the sources that are news, besides those that are already.
+/// Sets the inputs. Returns the `news` and the sources that have changed.
 #[inline(always)]
 fn take_inputs<W: Word, const LANES: usize>(
     bank: &Bank,
@@ -270,7 +270,7 @@ fn take_inputs<W: Word, const LANES: usize>(
     news
 }
 
-/// Performs the rising edge. Returns the sources that are news, besides those that are already.
+/// Performs the rising edge. Returns the `news` and the sources that have changed.
 #[inline(always)]
 fn clock<W: Word, const LANES: usize>(
     bank: &Bank,

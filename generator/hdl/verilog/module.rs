@@ -129,8 +129,8 @@ impl<'a> Builder<'a> {
         rows.collect()
     }
 
-    /// Sets registers to 0 before the first clock. What a ROM is read into is known after it, and block memories have no values
-    /// there on some targets.
+    /// Writes the statements that make registers 0 before the first clock. What a ROM is read into is known after it, and
+    /// block memories have no values there on some targets.
     fn initial(&self) -> Vec<String> {
         let design = self.plan.design;
         let zero =

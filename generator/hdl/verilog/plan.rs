@@ -242,7 +242,7 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Leaves out the cells that nobody named and nothing needs.
+    /// Finds the cells that are written: those that nobody named and nothing needs are left out.
     fn find_live(&mut self, order: &[NetId]) {
         let mut live = vec![false; self.design.nets.len()];
         let mut pending: Vec<Reader> = Vec::new();

@@ -68,7 +68,7 @@ impl Row {
         }
     }
 
-    /// Leaves the comment out.
+    /// Removes the comment.
     #[must_use]
     pub fn without_note(mut self) -> Self {
         self.note.clear();

@@ -78,7 +78,7 @@ impl Checker<'_> {
         }
     }
 
-    /// Returns the diagnostic: microinstruction `at` loads `register`, but the selection of microinstruction `under` is wrong for that.
+    /// Returns the diagnostic that microinstruction `at` loads `register` under a wrong selection, that of microinstruction `under`.
     fn wrong_product(
         &self,
         at: usize,
