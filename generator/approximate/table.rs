@@ -144,9 +144,9 @@ impl<'s> Table<'s> {
         })
     }
 
-    /// Returns whether polynomials of unlimited precision are so near to the function that a rounding to the nearest may be. The segment
-    /// of the operand `worst` is looked at first, and one that is too long leaves an operand there: where one cut is too coarse, others
-    /// mostly are.
+    /// Returns whether polynomials of unlimited precision are so near to the function that a rounding to the nearest may be. The
+    /// segment of the operand `worst` is looked at first, and one that is too long leaves an operand there: where one cut is too
+    /// coarse, others mostly are.
     pub(super) fn may_fit(
         seen: &'s Seen<'s>,
         cut: Segments,

@@ -83,8 +83,8 @@ impl Arithmetic {
         }
     }
 
-    /// Returns the decay of a distance in an octave, by its ratio to it, as a factor: whole if it is small, below ¼, which is told
-    /// too, and else with fewer bits.
+    /// Returns the decay of a distance in an octave, by its ratio to it, as a factor: whole if it is small, below ¼, which is
+    /// told too, and else with fewer bits.
     #[inline]
     fn factor(&self, octave: i64, distance: i64, ratio: i64) -> (i64, bool) {
         let (fraction, coarse) = (self.keys.decay_fraction, self.keys.coarse_fraction);
@@ -133,8 +133,8 @@ impl Arithmetic {
         }
     }
 
-    /// Returns the error of f from the decays of distances from one to another, in an octave: that of the ratio, that of the rounding of
-    /// the decay, and what the product does not see.
+    /// Returns the error of f from the decays of distances from one to another, in an octave: that of the ratio, that of the
+    /// rounding of the decay, and what the product does not see.
     fn of_distances(&self, (from, to): (i64, i64), octave: f64) -> [f64; 3] {
         let keys = &self.keys;
         let [from, to] = [from, to].map(|raw| raw as f64 * keys.operands.cosine.ulp());

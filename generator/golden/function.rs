@@ -63,7 +63,8 @@ pub(super) fn at(formula: &str, x: f64) -> f64 {
     value.map_or(f64::NAN, Enclosure::middle)
 }
 
-/// Returns a proven limit of the formula's slope over its domain, from interval derivatives; none where it may jump or be infinitely steep.
+/// Returns a proven limit of the formula's slope over its domain, from interval derivatives; none where it may jump or be
+/// infinitely steep.
 pub(super) fn slope(config: &Config) -> Option<f64> {
     let (function, it) = found(config).ok()?;
     let Curve::Formula(formula) = &function.curve else { return None };

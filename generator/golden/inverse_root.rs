@@ -59,8 +59,8 @@ impl Root {
         self.ends[at] - (((self.ends[at] - self.ends[at + 1]) * rest) >> along)
     }
 
-    /// Returns the errors of √m·f by the chords and by roundings, as values. Let m be the mantissa, 1 ≤ m < 4, f = 1/√m and r what
-    /// stands for it, u the last place of r.
+    /// Returns the errors of √m·f by the chords and by roundings, as values. Let m be the mantissa, 1 ≤ m < 4, f = 1/√m and r
+    /// what stands for it, u the last place of r.
     ///
     /// - f is convex, so that a chord lies above it, by at most h²/8·max f″ = h²/8·¾·a^(−5/2) in the segment from
     ///   a on, of length h.

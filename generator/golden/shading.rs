@@ -350,8 +350,8 @@ mod tests {
     use glint_config::Value;
     use glint_keys::shading::schema;
 
-    /// The largest error with a cosine of 12 fraction bits is beyond the bound that a part with a false claim would give, and within
-    /// the one that it gives.
+    /// The largest error with a cosine of 12 fraction bits is beyond the bound that a part with a false claim would give, and
+    /// within the one that it gives.
     #[test]
     fn the_bound_of_the_whole_falls_with_that_of_a_part() {
         let keys = [("cosine.fraction", 12), ("domain.exponent_max", 1000)];

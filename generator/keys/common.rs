@@ -254,8 +254,8 @@ pub fn check_rom_size(
     }
 }
 
-/// Returns every range of `key`, each a quarter of the one before it, has as many of the `bits` bits of 1 − cos as it is cut by. The
-/// most bits that a segment is left with, up to a range that has too few.
+/// Returns every range of `key`, each a quarter of the one before it, has as many of the `bits` bits of 1 − cos as it is cut by.
+/// The most bits that a segment is left with, up to a range that has too few.
 pub fn check_segments(segments: &[u32], key: &str, bits: u32, problems: &mut Problems) -> u32 {
     let mut most = 0;
     for (range, &prefix) in (0u32..).zip(segments) {

@@ -49,8 +49,8 @@ impl<'d> Instance<'d> {
 }
 
 impl Designer {
-    /// Returns a part: the description `describe` under the name `name`, with a signal for each of its operands. Its results are in
-    /// registers. A description with parts has no microprogram of its own: [`Designer::dataflow`].
+    /// Returns a part: the description `describe` under the name `name`, with a signal for each of its operands. Its results are
+    /// in registers. A description with parts has no microprogram of its own: [`Designer::dataflow`].
     ///
     /// ```
     /// use glint_rtl::dsl::{Designer, end, step, valid};

@@ -304,8 +304,8 @@ impl<'a> Problems<'a> {
         self.clocked[user.index()].map_or(0, |it| it.apart)
     }
 
-    /// Returns the registers between two nodes that are too long for one stage. Block memories and multipliers stand in columns of
-    /// their own: where the way to a multiplier has no room, the value of a memory takes one near each.
+    /// Returns the registers between two nodes that are too long for one stage. Block memories and multipliers stand in columns
+    /// of their own: where the way to a multiplier has no room, the value of a memory takes one near each.
     fn registers_between(&self, from: NodeId, user: NodeId, most: f64) -> usize {
         let product = matches!(self.graph.node(user).cell, Cell::Op(Op::Mul(..)));
         let far = product && delay::is_block(self.target, self.graph, from);
@@ -383,8 +383,8 @@ impl<'a> Problems<'a> {
         earliest
     }
 
-    /// Returns the stages of products that share multipliers: one after another, first the one that can be there first, and of those the
-    /// one on which most depends.
+    /// Returns the stages of products that share multipliers: one after another, first the one that can be there first, and of
+    /// those the one on which most depends.
     fn taken(&self, differences: &[Difference]) -> Taken {
         let mut after = vec![0; self.graph.nodes.len()];
         for &(from, to, apart) in differences.iter().rev() {
@@ -411,7 +411,8 @@ impl<'a> Problems<'a> {
         taken
     }
 
-    /// Returns the last stage that a node can stand in: operands are there from the beginning, and results need a boundary behind them.
+    /// Returns the last stage that a node can stand in: operands are there from the beginning, and results need a boundary behind
+    /// them.
     fn last_stage(&self, id: usize, latency: usize) -> usize {
         if matches!(self.graph.nodes[id].cell, Cell::Operand(_)) { 0 } else { latency - 1 }
     }

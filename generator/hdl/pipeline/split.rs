@@ -111,8 +111,8 @@ fn with_a_sign(graph: &Graph, [a, b]: [NodeId; 2]) -> Option<[NodeId; 2]> {
     (positive(factors[0]) && graph.width(factors[1]) > 1).then_some(factors)
 }
 
-/// Returns a product of a factor that is never negative and one that may be: that of the bits below the sign, less the former where
-/// the sign is set. Of two signed factors more bits would be cut.
+/// Returns a product of a factor that is never negative and one that may be: that of the bits below the sign, less the former
+/// where the sign is set. Of two signed factors more bits would be cut.
 fn below_the_sign(
     graph: &mut Graph,
     target: &Timing,

@@ -105,8 +105,8 @@ impl<'a> Compiler<'a> {
         (self.sources.len() - 1) as Slot
     }
 
-    /// Returns a slot that the edge writes where `enable` is 1. What has one enable changes together, and is one source; but what a
-    /// microinstruction loads is seldom all news.
+    /// Returns a slot that the edge writes where `enable` is 1. What has one enable changes together, and is one source; but what
+    /// a microinstruction loads is seldom all news.
     pub(super) fn source(&mut self, enable: Option<NetId>) -> Slot {
         let is_field = |net: &NetId| matches!(self.design.net(*net).driver, Driver::Field(_));
         let enable = enable.filter(|net| !is_field(net));

@@ -22,7 +22,8 @@ pub(super) enum Direction {
 pub(super) enum Seen<'a> {
     /// A net.
     Net { width: u32, signed: bool, direction: Direction },
-    /// The name of the microinstruction that is executed, `idle` when none is: of these, the one at the address that the bits are.
+    /// The name of the microinstruction that is executed, `idle` when none is: of these, the one at the address that the bits
+    /// are.
     Microinstruction { names: &'a [String], run: bool },
 }
 

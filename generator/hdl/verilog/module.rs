@@ -477,7 +477,8 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// Returns a statement for each word of a ROM; it begins with what `place` says for the number of the word, which has so many bits.
+/// Returns a statement for each word of a ROM; it begins with what `place` says for the number of the word, which has so many
+/// bits.
 fn words(
     design: &Design,
     id: RomId,

@@ -323,7 +323,8 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Returns whether a net of a pipeline is short wiring that needs no name: it has no comment, or the register behind it has that.
+    /// Returns whether a net of a pipeline is short wiring that needs no name: it has no comment, or the register behind it has
+    /// that.
     fn is_plain(&self, id: NetId, bits: &Bits) -> bool {
         const MOST_PIECES: usize = 3;
         let is_held = || {

@@ -78,7 +78,7 @@ impl Checker<'_> {
         }
     }
 
-    /// Returns the diagnostic that microinstruction `at` loads `register` under a wrong selection, that of microinstruction `under`.
+    /// Returns the diagnostic: microinstruction `at` loads `register` under a selection, that of `under`, which is wrong for it.
     fn wrong_product(
         &self,
         at: usize,
