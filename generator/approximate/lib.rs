@@ -95,7 +95,7 @@ pub struct Refusal {
 }
 
 impl Refusal {
-    /// A refusal that is about no place of the formula.
+    /// Makes a refusal that concerns no place of the formula.
     pub fn new(key: &'static str, message: String, remedy: impl Into<String>) -> Self {
         Self { key, place: None, message, remedy: remedy.into() }
     }

@@ -158,8 +158,8 @@ impl Reduction {
         }
     }
 
-    /// Returns the reduction of a function by an identity, and the function of its numbers. With `wider` the number of a size holds the
-    /// largest of them.
+    /// Returns the reduction of a function by an identity, and the function of its numbers. With `wider` the number of a size
+    /// holds the largest of them.
     ///
     /// # Errors
     /// The formula does not look as if the identity holds, or the domain does not suit it.

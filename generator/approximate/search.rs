@@ -111,8 +111,8 @@ fn attempt(function: &Function, wish: Wish) -> Result<Option<Piecewise>, Refusal
     unproved.map_or(Ok(None), Err)
 }
 
-/// Fraction bits of a polynomial beyond those of the result, and whether the largest size has a number of its own: these are
-/// tried one after the other where operands are reduced.
+/// Returns the forms of a polynomial that are tried one after the other where operands are reduced: its fraction bits beyond
+/// those of the result, and whether the largest size has a number of its own.
 fn variants(identity: Identity) -> &'static [(u32, bool)] {
     match identity {
         Identity::Odd | Identity::Even => &[(0, false), (0, true)],
@@ -123,7 +123,7 @@ fn variants(identity: Identity) -> &'static [(u32, bool)] {
     }
 }
 
-/// As [`attempt`], of operands that are reduced.
+/// Gives the first approximation, proved, that one of the [`variants`] of reduced operands has, if there is one.
 fn attempt_reduced(function: &Function, wish: Wish) -> Result<Option<Piecewise>, Refusal> {
     if function.is_wide() {
         let message = format!("the domain has more than 2^{MOST_BITS} operands to be computed");
@@ -183,8 +183,8 @@ fn cheapest(seen: &Seen, wish: Wish) -> Option<Piecewise> {
     })
 }
 
-/// Ways to cut the domain, into no more than `most` segments, that are fine enough for polynomials of the degree, before
-/// anything is rounded.
+/// Returns the ways to cut the domain, into no more than `most` segments, that are fine enough for polynomials of the degree,
+/// before anything is rounded.
 fn cuts(seen: &Seen, degree: u32, layout: Option<Layout>, most: usize) -> Vec<Segments> {
     let possible = |cut: &Segments| {
         cut.words() <= most.min(1 << ADDRESS)

@@ -57,8 +57,8 @@ impl Nearest {
 }
 
 impl Function {
-    /// Returns the result that is nearest at a raw operand, and the lowest and the highest that are right where less error is allowed
-    /// by `stricter`.
+    /// Returns the result that is nearest at a raw operand, and the lowest and the highest that are right where less error is
+    /// allowed by `stricter`.
     fn right(&self, raw: i64, stricter: f64) -> Result<(i64, i64, i64), Refusal> {
         let limits = self.limits(raw).map_err(|fault| self.refusal(raw, &fault))?;
         if limits.low.abs().max(limits.high.abs()) > exp2(48) {
@@ -140,7 +140,7 @@ impl<'f> Seen<'f> {
         Ok(Some(seen))
     }
 
-    /// No more than `most` of the operands or so, taken evenly.
+    /// Returns a sample of the operands, taken evenly, of no more than `most` or so.
     pub(super) fn thinned(&self, most: usize) -> Self {
         // An odd one, so that the low bits take every value.
         let by = if self.right.len() > most { (self.right.len() / most) | 1 } else { 1 };

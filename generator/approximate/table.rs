@@ -57,7 +57,7 @@ impl Widths {
         self.offset.iter().enumerate().map(of).collect()
     }
 
-    /// Returns one bit fewer or more of variable number `at`, if that may be.
+    /// Returns the widths with `change` bits more of variable number `at`, if that may be.
     fn with(&self, at: usize, change: i32) -> Option<Self> {
         let mut other = self.clone();
         match other.guard.get_mut(at) {
@@ -76,7 +76,7 @@ impl Widths {
         Some(other)
     }
 
-    /// No variable wider than in another.
+    /// Limits every variable to its width in `most`.
     fn no_wider(mut self, most: &Self) -> Self {
         self.guard.iter_mut().zip(&most.guard).for_each(|(own, most)| *own = (*own).min(*most));
         self.offset.iter_mut().zip(&most.offset).for_each(|(own, most)| *own = (*own).min(*most));
@@ -144,9 +144,9 @@ impl<'s> Table<'s> {
         })
     }
 
-    /// Returns whether polynomials of unlimited precision are so near to the function that a rounding to the nearest may be. The segment
-    /// of the operand `worst` is looked at first, and one that is too long leaves an operand there: where one cut is too coarse, others
-    /// mostly are.
+    /// Returns whether polynomials of unlimited precision are so near to the function that a rounding to the nearest may be. The
+    /// segment of the operand `worst` is looked at first, and one that is too long leaves an operand there: where one cut is too
+    /// coarse, others mostly are.
     pub(super) fn may_fit(
         seen: &'s Seen<'s>,
         cut: Segments,
@@ -216,8 +216,8 @@ impl<'s> Table<'s> {
         Widths { guard: vec![guard; degree + 1], offset: vec![self.cut.rest(); degree] }
     }
 
-    /// Widths that were chosen by fewer operands, a bit wider where these are not right but none wider than these, and the words
-    /// with them.
+    /// Returns widths that were chosen by fewer operands, a bit wider where these are not right but none wider than these, and
+    /// the words with them.
     pub(super) fn settled(&self, mut widths: Widths, most: &Widths) -> Option<(Widths, Words)> {
         let count = widths.count();
         let wider = |widths: &Widths, at| {
@@ -330,7 +330,7 @@ impl<'s> Table<'s> {
         widths.guard.iter().enumerate().map(format).collect()
     }
 
-    /// By how many bits each coefficient that is multiplied is too wide for a multiplier.
+    /// Returns by how many bits each coefficient that is multiplied is too wide for a multiplier.
     fn excess(formats: &[Format]) -> impl Iterator<Item = u32> {
         let signed = |format: &Format| format.width() + u32::from(!format.signed);
         formats.iter().skip(1).map(move |format| signed(format).saturating_sub(FACTOR))

@@ -158,7 +158,8 @@ fn the_curve_of_samples_is_met_and_a_wrong_coefficient_is_refused() {
     }
 }
 
-/// Checks a function of each identity: every operand of the whole domain is right against `libm`, and a wrong coefficient is refused.
+/// Checks a function of each identity: every operand of the whole domain is right against `libm`, and a wrong coefficient is
+/// refused.
 #[test]
 fn reduced_operands_serve_the_whole_domain() {
     type Whole = (&'static str, (f64, f64), Identity, fn(f64) -> f64);

@@ -36,7 +36,7 @@ impl Piecewise {
         (low <= high).then_some((low, high))
     }
 
-    /// Fraction bits that a coefficient has beyond the result.
+    /// Returns the fraction bits that a coefficient has beyond the result.
     fn beyond(&self, k: usize) -> i32 {
         self.coefficients[k].frac - self.sums[0].frac
     }
@@ -125,8 +125,8 @@ impl Piecewise {
         (0..self.words.len()).into_par_iter().map(of).try_reduce(|| 0.0, |a, b| Ok(a.max(b)))
     }
 
-    /// Returns the largest error of some operands of a word; none where the formula may jump among them or have no derivative, or where a
-    /// result may leave its format.
+    /// Returns the largest error of some operands of a word; none where the formula may jump among them or have no derivative, or
+    /// where a result may leave its format.
     fn error_between(
         &self,
         function: &Function,

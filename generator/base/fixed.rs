@@ -29,12 +29,12 @@ pub struct Format {
 }
 
 impl Format {
-    /// The unsigned format `uI.F`.
+    /// Makes the unsigned format `uI.F`.
     pub const fn unsigned(int: i32, frac: i32) -> Self {
         Self { signed: false, int, frac }
     }
 
-    /// The signed format `sI.F`.
+    /// Makes the signed format `sI.F`.
     pub const fn signed(int: i32, frac: i32) -> Self {
         Self { signed: true, int, frac }
     }
@@ -42,7 +42,7 @@ impl Format {
     /// One bit without a point: a flag, an enable, a select line.
     pub const BIT: Self = Self::unsigned(1, 0);
 
-    /// The smallest format with `frac` fraction bits that holds every raw value from `low` to `high`.
+    /// Returns the smallest format with `frac` fraction bits that holds every raw value from `low` to `high`.
     pub fn holding(low: i128, high: i128, frac: i32) -> Self {
         let magnitude = |raw: i128| 128 - if raw < 0 { !raw } else { raw }.leading_zeros() as i32;
         let signed = low < 0;
@@ -52,7 +52,7 @@ impl Format {
         Self { signed, int: bits - frac, frac }
     }
 
-    /// Width in bits.
+    /// Returns the width in bits.
     ///
     /// # Panics
     /// Never for a format that a constructor of the DSL or the configuration accepted; a format of
@@ -117,7 +117,7 @@ impl Format {
         }
     }
 
-    /// `raw`, which has `from_frac` fraction bits, brought to this format.
+    /// Brings `raw`, which has `from_frac` fraction bits, to this format.
     pub fn narrow(self, raw: i128, from_frac: i32, rounding: Rounding, overflow: Overflow) -> i128 {
         let shifted = rounding.shift(raw, from_frac - self.frac);
         match overflow {
@@ -165,7 +165,7 @@ pub enum Rounding {
 }
 
 impl Rounding {
-    /// `raw` divided by `2^places` and rounded; a negative `places` multiplies (exactly).
+    /// Divides `raw` by `2^places` and rounds; a negative `places` multiplies (exactly).
     pub fn shift(self, raw: i128, places: i32) -> i128 {
         match (self, places) {
             (_, ..=0) => raw << -places,
@@ -190,7 +190,7 @@ pub const fn mask(width: u32) -> u64 {
     if width >= 64 { u64::MAX } else { (1 << width) - 1 }
 }
 
-/// `2^exponent`, exact.
+/// Returns `2^exponent`, exact.
 #[inline]
 pub fn exp2(exponent: i32) -> f64 {
     match exponent {

@@ -2,7 +2,7 @@
 
 use crate::keywords::is_keyword;
 
-/// Whether `name` can name a net, a ROM or a module of the emitted Verilog.
+/// Checks that `name` can name a net, a ROM or a module of the emitted Verilog.
 ///
 /// # Errors
 /// The name is refused; the text says why.

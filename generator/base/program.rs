@@ -15,7 +15,7 @@ impl fmt::Display for Program {
     }
 }
 
-/// Names the running program; a second name has no effect.
+/// Sets the name of the running program; a second call has no effect.
 pub fn run_as(name: &str) {
     NAME.get_or_init(|| name.to_owned());
 }

@@ -167,7 +167,7 @@ impl Family {
         )
     }
 
-    /// For scripts: `ice40`.
+    /// Returns the name for scripts: `ice40`.
     pub const fn name(&self) -> &'static str {
         self.timing.name
     }
@@ -344,7 +344,7 @@ impl Timing {
         TIMINGS.iter().find(|timing| timing.name == name)
     }
 
-    /// Nanoseconds of an adder of so many bits.
+    /// Returns the delay of an adder of so many bits, in nanoseconds.
     pub fn chain(&self, width: u32) -> f64 {
         self.carry + self.carry_bit * f64::from(width)
     }
@@ -364,7 +364,7 @@ pub struct Usage {
 }
 
 impl Usage {
-    /// Look-up tables, DSP blocks and block RAMs.
+    /// Returns the numbers of look-up tables, DSP blocks and block RAMs.
     pub fn taken(&self) -> [u64; 3] {
         [self.luts, self.dsps, self.block_rams]
     }

@@ -13,7 +13,7 @@ use glint_rtl::netlist::About;
 use super::common;
 use super::decay::{self, Distance};
 
-/// The device.
+/// Describes `blinn`: cⁿ as 2^(−n·decay), with the decay −log₂ c.
 pub fn describe(d: &Designer, config: &Config) {
     let keys = Keys::of(config);
     d.about(about(&keys));

@@ -15,7 +15,7 @@ use glint_rtl::netlist::{About, Topic};
 
 use super::common;
 
-/// The device.
+/// Describes `cosine-power`: W(n,γ) by one multiplier and one accumulator.
 pub fn describe(d: &Designer, config: &Config) {
     let keys = Keys::of(config);
     let count = keys.power.ilog2();
@@ -75,8 +75,8 @@ pub fn describe(d: &Designer, config: &Config) {
     d.microprogram(steps.into_iter().chain(outputs));
 }
 
-/// `1 − n/m·(1 − cos γ)` as the complement of the accumulator: an ulp too small, which is what keeps it
-/// a fraction. 0 when cos γ ≤ 0.
+/// Returns the base `1 − n/m·(1 − cos γ)` as the complement of the accumulator: an ulp too small, which is what keeps it a
+/// fraction. 0 when cos γ ≤ 0.
 fn base<'d>(d: &'d Designer, cos_gamma: Signal<'d>, accumulator: Signal<'d>) -> Signal<'d> {
     let facing = d.any("facing", cos_gamma).doc("the surface faces the half vector");
     let inverse = d.not("inverse", accumulator).doc("1.0 - accumulator, less an ulp");

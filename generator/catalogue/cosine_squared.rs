@@ -13,7 +13,7 @@ use glint_rtl::netlist::{About, Topic};
 
 use super::{common, quad_cosine};
 
-/// The device.
+/// Describes `cosine-squared`: cos² of an angle along a scan line, from a single table.
 pub fn describe(d: &Designer, config: &Config) {
     let keys = Keys::of(config);
     let table = keys.table_address as i32;

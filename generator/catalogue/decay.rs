@@ -22,7 +22,7 @@ pub struct Distance<'d> {
     pub octave: Option<Signal<'d>>,
 }
 
-/// Everything behind the operand `cos_gamma`: operands, the products, 2^−y, outputs, microprogram.
+/// Describes everything behind the operand `cos_gamma`: operands, the products, 2^−y, outputs, microprogram.
 ///
 /// # Panics
 /// If the check of the schema has not accepted the configuration.
@@ -166,7 +166,8 @@ fn factor_of<'d>(
     (d.choose("factor_next", large, [fine, coarse]), large)
 }
 
-/// f where it is known without tables: 0 for cos γ ≤ 0, and all ones, as near 1 as it can be, where cos γ is 1.0.
+/// Returns f, with the values that are known without tables: 0 for cos γ ≤ 0, and all ones, as near 1 as it can be, where cos γ
+/// is 1.0.
 fn ends<'d>(d: &'d Designer, cos_gamma: Signal<'d>, rounded: Signal<'d>) -> Signal<'d> {
     let format = rounded.format();
     let facing = d.any("facing", cos_gamma).doc("the surface faces the half vector");

@@ -6,7 +6,7 @@ use glint_config::Config;
 use glint_keys::dot_product::Keys;
 use glint_rtl::dsl::{About, Designer, Signal, end, step, valid};
 
-/// The device.
+/// Describes `dot-product`: the cosine between a vector of any length and a unit vector.
 pub fn describe(d: &Designer, config: &Config) {
     let keys = Keys::of(config);
     let lower = if keys.two_sided { "abs(" } else { "max(0, " };

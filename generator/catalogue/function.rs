@@ -12,7 +12,7 @@ use glint_rtl::netlist::About;
 
 use crate::piecewise::{Multiplier, Polynomial, Tables, flipped};
 
-/// The device.
+/// Describes `function`: a table of coefficients, and Horner's rule on one multiplier.
 ///
 /// # Panics
 /// If the check of the schema has not accepted the configuration.
@@ -91,8 +91,8 @@ fn number<'d>(d: &'d Designer, x: Signal<'d>, it: &Piecewise) -> Signal<'d> {
 /// The fewest bits of a table that a family of FPGAs has a block memory for.
 const BLOCK: u64 = 2048;
 
-/// Returns whether each coefficient has a table of its own: in a pipeline the address then waits in place of the coefficient, which
-/// is wider. A block memory has all.
+/// Returns whether each coefficient has a table of its own: in a pipeline the address then waits in place of the coefficient,
+/// which is wider. A block memory has all.
 fn is_split(config: &Config, it: &Piecewise) -> bool {
     Shared::of(config).architecture == "pipelined" && it.rom_bits() < BLOCK
 }

@@ -12,7 +12,7 @@ use glint_rtl::netlist::About;
 use super::common;
 use super::decay::{self, Distance};
 
-/// The device.
+/// Describes `gauss`: exp(−n·γ²/2) as 2^(−n·decay), with the decay γ²/(2 ln 2).
 pub fn describe(d: &Designer, config: &Config) {
     let keys = Keys::of(config);
     d.about(about(&keys));

@@ -31,7 +31,7 @@ struct Scaled<'d> {
     squarings: Squarings<'d>,
 }
 
-/// The device.
+/// Describes `lyon`: `max(0, 1 − β·D²)^(2^s)` from the difference vector D = N − H.
 pub fn describe(d: &Designer, config: &Config) {
     let keys = Keys::of(config);
     let f = keys.f.format();
@@ -77,7 +77,7 @@ pub fn describe(d: &Designer, config: &Config) {
     d.microprogram(steps.into_iter().chain(outputs));
 }
 
-/// D² = dx² + dy² + dz², 0 … 12.0.
+/// Returns D² = dx² + dy² + dz², 0 … 12.0, with a multiplier for each square.
 fn distance<'d>(d: &'d Designer, keys: &Keys, components: [Signal<'d>; 3]) -> Distance<'d> {
     let mut number = 0;
     let squares = components.map(|component| {
@@ -191,8 +191,8 @@ fn by_multiplier<'d>(d: &'d Designer, keys: &Keys, distance: Distance<'d>) -> Sc
     Scaled { value: scaled.q(), steps, squarings }
 }
 
-/// `1 − β·D²` as the complement of β·D²: an ulp too small, which is what keeps it a fraction. The comparator
-/// with 1.0 makes the mux pass 0 instead.
+/// Returns `1 − β·D²` as the complement of β·D²: an ulp too small, which is what keeps it a fraction. The comparator with 1.0
+/// makes the mux pass 0 instead.
 fn base<'d>(d: &'d Designer, value: Signal<'d>, f: Format) -> Signal<'d> {
     let one = d.constant("one", 1.0, Format::unsigned(1, f.frac));
     let comparator = d.less("comparator", value, one).doc("beta*D^2 is below 1.0");
@@ -201,12 +201,12 @@ fn base<'d>(d: &'d Designer, value: Signal<'d>, f: Format) -> Signal<'d> {
     d.choose("base", comparator, [zero, inverse]).doc("base of the power, or 0")
 }
 
-/// Holds every log2 of an exponent, rounded: 0 … `exponent.bits`.
+/// Returns a format that holds every log2 of an exponent, rounded: 0 … `exponent.bits`.
 fn shift_format(keys: &Keys) -> Format {
     Format::holding(0, keys.exponent_bits.into(), 0)
 }
 
-/// From what the clocks of a point come.
+/// Returns the note that says what the clocks of a point are for.
 fn clocks_note(keys: &Keys, config: &Config) -> Note {
     let shift = keys.scale == Scale::Shift;
     let (squares, colours) = (keys.squares_in_turn(), keys.colours.in_turn());

@@ -10,7 +10,7 @@ fn integer(bits: i32) -> Format {
     Format::unsigned(bits, 0)
 }
 
-/// The device.
+/// Describes `normaliser`: the unit vector of a direction.
 pub fn describe(d: &Designer, config: &Config) {
     d.about(About {
         device: "normaliser".into(),
@@ -90,7 +90,7 @@ pub(super) fn by_pairs<'d>(d: &'d Designer, mut word: Signal<'d>) -> (Signal<'d>
     (word, d.join("pairs", &places, count))
 }
 
-/// 1/√m of the mantissa m, by a chord between two rounded values of the function.
+/// Returns 1/√m of the mantissa m, by a chord between two rounded values of the function.
 pub(super) fn inverse_root<'d>(
     d: &'d Designer,
     mantissa: Signal<'d>,

@@ -77,8 +77,9 @@ pub struct Polynomial<'d, 'p> {
 
 impl<'d, 'p> Polynomial<'d, 'p> {
     /// Makes the table and the registers of the sums, which have these names, the polynomial's first. `number` is the operand's
-    /// number within the domain, an integer of as many bits as [`glint_approximate::Segments::bits`] says; it stands while the sums
-    /// are loaded, and for a clock before where the table is read on the clock edge. Names of other nets begin with `prefix`.
+    /// number within the domain, an integer of as many bits as [`glint_approximate::Segments::bits`] says; it stands while the
+    /// sums are loaded, and for a clock before where the table is read on the clock edge. Names of other nets begin with
+    /// `prefix`.
     pub fn new(
         d: &'d Designer,
         prefix: &str,
@@ -105,8 +106,8 @@ impl<'d, 'p> Polynomial<'d, 'p> {
         (0..self.registers.len()).rev()
     }
 
-    /// Returns the factors of the product that a step adds to its coefficient: the sum of the step before, and the offset. A table of
-    /// results has none.
+    /// Returns the factors of the product that a step adds to its coefficient: the sum of the step before, and the offset. A
+    /// table of results has none.
     fn factors(&self, step: usize) -> Option<[Signal<'d>; 2]> {
         let offset = *self.offsets.get(step)?;
         let above = self.registers.get(step + 1).map(|register| register.q());

@@ -21,7 +21,7 @@ const POWERS: [u32; 4] = [1, 2, 4, 16];
 pub(super) const AMPLITUDE: ChannelBlocks =
     ChannelBlocks { inputs: (15, 16), register: 1, multiplier: 13, output: 27 };
 
-/// The device.
+/// Describes `quad-cosine`: `cosᵏ(√(n/k)·δ)` along a scan line, k ∈ {1, 2, 4, 16} by n.
 pub fn describe<'d>(d: &'d Designer, config: &Config) {
     let keys = Keys::of(config);
     let table = keys.table_address as i32;
@@ -78,7 +78,7 @@ pub fn describe<'d>(d: &'d Designer, config: &Config) {
     line.microprogram(keys.stages);
 }
 
-/// Decoder 10: outputs 30 to 33, one of them 1, and the number of the one.
+/// Makes decoder 10, with outputs 30 to 33, one of them 1, and returns the number of the one.
 fn decoder<'d>(d: &'d Designer, exponent: Signal<'d>) -> Signal<'d> {
     let constant = |name: &str, raw: i128| d.raw_constant(name, raw, exponent.format());
     let first = constant("first_exponent", 1);

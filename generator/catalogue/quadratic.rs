@@ -27,7 +27,7 @@ const fn channel(output: u16) -> ChannelBlocks {
     }
 }
 
-/// The device.
+/// Describes `quadratic`: `c + a(n)·(c² − c)`, with a(n) from ROM.
 pub fn describe(d: &Designer, config: &Config) {
     let keys = Keys::of(config);
     d.about(about(&keys));
@@ -78,7 +78,7 @@ pub fn describe(d: &Designer, config: &Config) {
     d.microprogram(steps.into_iter().chain(outputs));
 }
 
-/// Adder 1: multiplier 5's c² plus the inverted c plus its carry-in.
+/// Makes adder 1: multiplier 5's c² plus the inverted c plus its carry-in.
 fn adder1<'d>(d: &'d Designer, cos_gamma: Signal<'d>) -> Signal<'d> {
     let square = d.mul("multiplier5", cos_gamma, cos_gamma).block(5).doc("c^2");
     let wide = cos_gamma.with_fraction(square.format().frac).as_signed();
@@ -101,7 +101,7 @@ fn coefficient_rom<'d>(d: &'d Designer, keys: &Keys, exponent: Signal<'d>) -> Ro
         .comments(comments)
 }
 
-/// a(n) before it is rounded.
+/// Returns a(n) before it is rounded.
 fn value(scheme: Scheme, n: u32) -> f64 {
     match scheme {
         Scheme::Minimax => coefficient::minimax(n),

@@ -69,7 +69,7 @@ impl Formats {
     }
 }
 
-/// The device.
+/// Describes `rough`: the highlight of a rough surface, with the patent's blocks and microprogram.
 pub fn describe(d: &Designer, config: &Config) {
     let keys = Keys::of(config);
     let formats = Formats::of(&keys);
@@ -204,8 +204,8 @@ pub fn describe(d: &Designer, config: &Config) {
     d.microprogram(steps);
 }
 
-/// Registers 1 and 2. Exact arithmetic limits both to 0 … 1.0 as they are written; a negative cos γ
-/// becomes 0, which [`facing_only`] turns into f = 0.
+/// Makes registers 1 and 2. Exact arithmetic limits both to 0 … 1.0 as they are written; a negative cos γ becomes 0, which
+/// [`facing_only`] turns into f = 0.
 fn operands<'d>(d: &'d Designer, formats: &Formats) -> (Signal<'d>, Signal<'d>) {
     let operand = |name: &str, format: Format| {
         if formats.patent {
@@ -226,7 +226,7 @@ fn operands<'d>(d: &'d Designer, formats: &Formats) -> (Signal<'d>, Signal<'d>) 
     (r1.q(), r2.q())
 }
 
-/// Adder 15, n/2 and adder 16 with integer positions.
+/// Makes adder 15, n/2 and adder 16 with integer positions.
 ///
 /// Adder 15 = register 11 ∓ register 12 − 1.0. Mux 14 feeds it the inverse of 1.0 + register 12, to
 /// which the carry-in adds the missing ulp, or adder 31's register 12 − 1.0.
@@ -254,8 +254,8 @@ fn exact_sums<'d>(
     (adder15, exponent.shift_right(1), adder16)
 }
 
-/// Adder 15, n/2 and adder 16 as the patent has them: fractions modulo 1.0, where every "− 1" is the
-/// missing carry and the low bit of n is dropped.
+/// Makes adder 15, n/2 and adder 16 as the patent has them: fractions modulo 1.0, where every "− 1" is the missing carry and the
+/// low bit of n is dropped.
 ///
 /// Adder 31's second input is all ones in the claim and in the description, zeros in the summary: ones.
 fn patent_sums<'d>(

@@ -14,7 +14,7 @@ use glint_rtl::netlist::{About, Topic};
 
 use super::common;
 
-/// The device.
+/// Describes `schlick`: `c / (n − n·c + c)` by a multiplier and an iterative divider.
 pub fn describe(d: &Designer, config: &Config) {
     let keys = Keys::of(config);
     d.about(about(&keys));
@@ -46,8 +46,8 @@ pub fn describe(d: &Designer, config: &Config) {
     d.microprogram(steps.into_iter().chain(outputs));
 }
 
-/// `n·(1 − cos γ) + cos γ`, exact; an ulp more where cos γ = 0, which only keeps it above 0: the
-/// quotient is 0 then, whatever the divisor.
+/// Returns `n·(1 − cos γ) + cos γ`, exact; an ulp more where cos γ = 0, which only keeps it above 0: the quotient is 0 then,
+/// whatever the divisor.
 fn divisor<'d>(d: &'d Designer, cos_gamma: Signal<'d>, exponent: Signal<'d>) -> Signal<'d> {
     let (c, n) = (cos_gamma.format(), exponent.format());
     let one = d.constant("one", 1.0, Format::unsigned(1, c.frac));

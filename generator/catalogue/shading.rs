@@ -6,7 +6,7 @@ use glint_config::Config;
 use glint_keys::shading::{Highlight, Keys};
 use glint_rtl::dsl::{About, Designer, Signal};
 
-/// The device.
+/// Describes `shading`: colours from normals, by parts that are other devices.
 ///
 /// # Panics
 /// If the check of the schema has not accepted the configuration.

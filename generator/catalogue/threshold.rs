@@ -26,7 +26,7 @@ const fn channel(number: u16) -> ChannelBlocks {
     }
 }
 
-/// The device.
+/// Describes `threshold`: `(n/2·(cos γ − 1) + 1)²`, gated by a comparator against ROM(n).
 pub fn describe(d: &Designer, config: &Config) {
     let keys = Keys::of(config);
     let f = keys.f.format();

@@ -17,12 +17,12 @@ pub struct Enclosure {
 }
 
 impl Enclosure {
-    /// The number itself.
+    /// Makes the enclosure of a number that is known exactly.
     pub const fn exactly(value: f64) -> Self {
         Self { low: value, high: value }
     }
 
-    /// From one number to another.
+    /// Makes the enclosure from one number to another.
     pub const fn between(low: f64, high: f64) -> Self {
         Self { low, high }
     }
@@ -42,13 +42,13 @@ impl Enclosure {
         (self.low..=self.high).contains(&value)
     }
 
-    /// The smallest one with both.
+    /// Returns the smallest enclosure that contains both.
     #[must_use]
     pub fn hull(self, other: Self) -> Self {
         Self { low: self.low.min(other.low), high: self.high.max(other.high) }
     }
 
-    /// The enclosure of a number that was computed up to an error of [`MARGIN`], relative to it.
+    /// Makes the enclosure of a number that was computed up to an error of [`MARGIN`], relative to it.
     fn near(low: f64, high: f64) -> Self {
         let margin = |value: f64| value.abs() * MARGIN + f64::MIN_POSITIVE;
         Self { low: low - margin(low), high: high + margin(high) }
@@ -80,7 +80,7 @@ impl Enclosure {
         Self { low: (low - reach).next_down().max(-1.0), high: (high + reach).next_up().min(1.0) }
     }
 
-    /// The square root, of no negative number.
+    /// Returns the square root, of no negative number.
     pub(super) fn sqrt(self) -> Self {
         let root = |value: f64| {
             let root = value.sqrt();
@@ -89,7 +89,7 @@ impl Enclosure {
         Self { low: root(self.low).low, high: root(self.high).high }
     }
 
-    /// The size.
+    /// Returns the absolute value.
     pub(super) fn abs(self) -> Self {
         if self.low >= 0.0 {
             self
@@ -100,7 +100,7 @@ impl Enclosure {
         }
     }
 
-    /// A power with an exponent that is a whole number above 0.
+    /// Returns a power with an exponent that is a whole number above 0.
     pub(super) fn times_itself(self, exponent: u32) -> Self {
         let base = if exponent.is_multiple_of(2) { self.abs() } else { self };
         let power = |value: f64| {
@@ -111,7 +111,7 @@ impl Enclosure {
         Self { low: power(base.low).low, high: power(base.high).high }
     }
 
-    /// A power of no negative number, by `libm`.
+    /// Returns a power of no negative number, by `libm`.
     pub(super) fn power(self, exponent: Self) -> Self {
         self.corners(exponent, |base, exponent| {
             let power = libm::pow(base, exponent);
@@ -177,7 +177,7 @@ impl std::ops::Mul for Enclosure {
 impl std::ops::Div for Enclosure {
     type Output = Self;
 
-    /// By a number that is not 0.
+    /// Divides by a number that is not 0.
     fn div(self, other: Self) -> Self {
         self.corners(other, |a, b| {
             if b.is_infinite() {

@@ -126,7 +126,7 @@ impl PartialEq for Formula {
 }
 
 impl Formula {
-    /// The operand of this name, which comes from no text.
+    /// Makes the operand of this name, which comes from no text.
     pub fn operand(name: &str) -> Self {
         Self { kind: Kind::Operand(name.to_owned()), span: 0..0 }
     }
@@ -141,7 +141,7 @@ impl Formula {
         }
     }
 
-    /// The formula and all parts within it, each after those that it is made of.
+    /// Visits the formula and all parts within it, each after those that it is made of.
     pub fn walk<'f>(&'f self, visit: &mut dyn FnMut(&'f Self)) {
         self.parts().into_iter().for_each(|part| part.walk(visit));
         visit(self);

@@ -195,7 +195,7 @@ impl Parser<'_> {
         Ok(Comparison { left, right, or_equal: sign.len() == 2 })
     }
 
-    /// Operands of one rank from the left.
+    /// Parses operators of one rank, which apply from the left.
     fn chain(
         &mut self,
         signs: &[(&str, Operator)],

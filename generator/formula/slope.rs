@@ -92,7 +92,7 @@ fn of_unary(function: Function, a: Pair, value: Enclosure) -> Enclosure {
     }
 }
 
-/// None where the value may jump.
+/// Returns the slope of a binary operation; none where the value may jump.
 fn of_binary(operator: Operator, a: Pair, b: Pair, value: Enclosure) -> Option<Enclosure> {
     let number = Enclosure::exactly;
     Some(match operator {

@@ -36,7 +36,7 @@ impl Arithmetic {
         }
     }
 
-    /// `n/m·(1 − cos γ)`, saturated.
+    /// Returns `n/m·(1 − cos γ)`, saturated.
     #[inline]
     fn scaled(&self, cosine: i64, exponent: i64) -> i64 {
         self.scaled.apply((self.keys.operands.cosine.one() - cosine) * exponent)
@@ -122,7 +122,8 @@ impl Reflectance for Arithmetic {
         vec![contract::where_it_faces(&format!("{base} ** {power}"))]
     }
 
-    /// n·base^(m − 1) with a base of at most 1. At 0 it is (1 − n/m)^m, from where it falls to 0 at once below n = m.
+    /// Limits the slope n·base^(m − 1) to n, since the base is at most 1. At 0 W is (1 − n/m)^m, from where it falls to 0 at once
+    /// below n = m.
     fn variation(&self) -> Option<Variation> {
         let (least, most) = self.keys.domain.exponents();
         let power = f64::from(self.keys.power);
@@ -130,7 +131,7 @@ impl Reflectance for Arithmetic {
         Some(Variation { slope: most as f64, jump: libm::pow(base, power) })
     }
 
-    /// Returns every quantity here lies in 0 … 1, hardware's and formula's alike, so by the mean value
+    /// Derives the terms of f's error. Every quantity here lies in 0 … 1, hardware's and formula's alike, so by the mean value
     /// theorem an error ε before a power p grows to at most p·ε.
     ///
     /// - Base: the inverse stands for 1.0 − ulp − t where 1.0 − t is meant. With t rounded by an error
@@ -156,7 +157,7 @@ impl Reflectance for Arithmetic {
         ]
     }
 
-    /// Below n = m, W loses to a smaller m: its base no longer reaches 0 where cosⁿγ does.
+    /// Warns of n below m, where W loses to a smaller m: its base no longer reaches 0 where cosⁿγ does.
     fn remarks(&self) -> Vec<String> {
         let power = self.keys.power;
         let (first, last) = self.keys.domain.exponents();

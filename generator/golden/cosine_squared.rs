@@ -123,7 +123,7 @@ impl Reflectance for Arithmetic {
         Some(vec![0, line::raw_angle(&operands[1], stretched), 0])
     }
 
-    /// Returns the operand denotes an angle and n together.
+    /// Returns none: the operand denotes an angle and n together.
     fn cosine(&self, _: &[Operand], _: &[i64]) -> Option<f64> {
         None
     }
@@ -139,7 +139,7 @@ impl Reflectance for Arithmetic {
         Some(Sweep::ranges([("step of the table", (0, last))]))
     }
 
-    /// Returns the worst over the step's angles of either sign: the formula falls from one end to the other.
+    /// Returns the largest error over the step's angles of either sign: the formula falls from one end to the other.
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let step = place[0];
         let word = self.table.words[step as usize];

@@ -88,7 +88,7 @@ impl Curve {
         }));
     }
 
-    /// Base and slope of a segment, and its errors.
+    /// Fits the base and the slope of a segment, and states its errors.
     ///
     /// The slope is the chord's, rounded. Relative to it a concave function rises and then falls, so its
     /// extremes are the ends and the point from which on it rises less, from one operand to the next, than
@@ -165,12 +165,12 @@ impl Curve {
 mod tests {
     use super::*;
 
-    /// Three quarters of x·(2 − x) at x = u/16.
+    /// Returns three quarters of x·(2 − x) at x = u/16.
     fn lobe(u: f64) -> f64 {
         0.75 * (u / 16.0) * (2.0 - u / 16.0)
     }
 
-    /// C = 4 and the parabola: one range, 4 … 15, in prefixes of four operands; a tail of one segment.
+    /// Makes the curve of the parabola with C = 4: one range, 4 … 15, in prefixes of four operands; a tail of one segment.
     fn parabola(segments: &[u32], tail: u32) -> Curve {
         let params = Params {
             operand_bits: 4,

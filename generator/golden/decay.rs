@@ -36,6 +36,8 @@ struct Arithmetic {
 }
 
 impl Arithmetic {
+    /// Makes the tables of a configuration, and the roundings between them.
+    ///
     /// # Panics
     /// If the check of the schema has not accepted the configuration.
     fn new(of: Decay, keys: Keys) -> Self {
@@ -81,8 +83,8 @@ impl Arithmetic {
         }
     }
 
-    /// Returns the decay of a distance in an octave, by its ratio to it, as a factor: whole if it is small, below ¼, which is told
-    /// too, and else with fewer bits.
+    /// Returns the decay of a distance in an octave, by its ratio to it, as a factor: whole if it is small, below ¼, which is
+    /// told too, and else with fewer bits.
     #[inline]
     fn factor(&self, octave: i64, distance: i64, ratio: i64) -> (i64, bool) {
         let (fraction, coarse) = (self.keys.decay_fraction, self.keys.coarse_fraction);
@@ -94,7 +96,7 @@ impl Arithmetic {
         }
     }
 
-    /// n times the decay.
+    /// Returns n times the decay.
     #[inline]
     fn halvings(&self, (factor, small): (i64, bool), exponent: i64) -> i64 {
         let narrow = if small { self.from_fine } else { self.from_coarse };
@@ -107,7 +109,7 @@ impl Arithmetic {
         halvings & ((1 << self.keys.argument) - 1)
     }
 
-    /// f.
+    /// Returns f from the power 2^−x, which the integer of n·decay shifts.
     #[inline]
     fn reflectance(&self, cosine: i64, halvings: i64, power: i64) -> i64 {
         if cosine == 0 {
@@ -131,8 +133,8 @@ impl Arithmetic {
         }
     }
 
-    /// Returns the error of f from the decays of distances from one to another, in an octave: that of the ratio, that of the rounding of
-    /// the decay, and what the product does not see.
+    /// Returns the error of f from the decays of distances from one to another, in an octave: that of the ratio, that of the
+    /// rounding of the decay, and what the product does not see.
     fn of_distances(&self, (from, to): (i64, i64), octave: f64) -> [f64; 3] {
         let keys = &self.keys;
         let [from, to] = [from, to].map(|raw| raw as f64 * keys.operands.cosine.ulp());
@@ -233,6 +235,7 @@ impl Reflectance for Arithmetic {
         Some(self.formula(cosine, exponent as f64))
     }
 
+    /// Limits the slope by the largest n, and the jump at a right angle by that of the smallest n:
     /// - cosⁿγ: n·c^(n − 1), at most n; with n = 0 it jumps from 1.
     /// - exp(−n·γ²/2): n·(γ/sin γ)·exp(−n·γ²/2), at most n, since γ/sin γ ≤ exp(γ²/2) up to a right angle (its logarithm is
     ///   γ²/6 + γ⁴/180 + …, of positive terms that are together below γ²/2 there). There it jumps from exp(−n·π²/8).
@@ -253,7 +256,8 @@ impl Reflectance for Arithmetic {
         })]
     }
 
-    /// Let y = n·decay be exact and z the hardware's product before it is cut to the fraction bits of the table of 2^−x.
+    /// Derives the terms of f's error. Let y = n·decay be exact and z the hardware's product before it is cut to the fraction
+    /// bits of the table of 2^−x.
     ///
     /// - The ratio of decay to distance is off by what its table is, over every operand, and by what the distances that have one
     ///   operand differ, from their middle on, times the ratio's steepest slope. The distance multiplies that.

@@ -127,34 +127,34 @@ pub trait Formula: Send + Sync {
         Vec::new()
     }
 
-    /// As [`Bound::limit`].
+    /// Returns the error, in units, below which the accuracy contract wants it, as [`Bound::limit`].
     fn limit(&self) -> f64 {
         1.0
     }
 
-    /// As [`Contract::expressions`].
+    /// Returns the formula of each output as an expression of Python, as [`Contract::expressions`].
     fn expressions(&self) -> Vec<String> {
         Vec::new()
     }
 
-    /// As [`Contract::hint`].
+    /// Returns operands at which results say much, as [`Contract::hint`].
     fn hint(&self, unit: &mut dyn FnMut() -> f64) -> Option<Vec<i64>> {
         let _ = unit;
         None
     }
 
-    /// As [`Contract::sweep`]; none for every combination of the operands.
+    /// Returns the places of an exhaustive check, as [`Contract::sweep`]; none for every combination of the operands.
     fn sweep(&self) -> Option<Sweep> {
         None
     }
 
-    /// As [`Contract::sweep_error`]; none where a place has the operands.
+    /// Returns the error at a place of the sweep, as [`Contract::sweep_error`]; none where a place has the operands.
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let _ = place;
         None
     }
 
-    /// As [`Contract::remarks`].
+    /// Returns facts about the formula that a user should know, as [`Contract::remarks`].
     fn remarks(&self) -> Vec<String> {
         Vec::new()
     }
@@ -206,7 +206,8 @@ impl<F: Formula> Contract for OfModel<F> {
         &self.device.outputs
     }
 
-    /// A result that is never shown is a number further off than any bound.
+    /// Appends the results of the formula where it has them, else the model's. A result that is never shown is a number further
+    /// off than any bound.
     fn results(&self, operands: &[i64], index: u64, raw: &mut Vec<i64>) {
         if index == 0 && self.formula.results(operands, raw) {
             return;

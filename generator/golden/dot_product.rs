@@ -101,8 +101,8 @@ impl Cosine {
     ///
     /// Let m be the squares shifted to 1 ≤ m < 4, f = 1/√m, and t the products as far, of which the cosine is t·f. What
     /// stands for f is off by `Root::error`, which counts √m times, and by what its own rounding leaves, half a place
-    /// below √m < 2 times. What stands for t is off by half a place, and for a t of 2.0 by a whole one, where f is a half; f is at most 1.
-    /// Beyond t = √m the cosine stays 1, and what is computed does not fall.
+    /// below √m < 2 times. What stands for t is off by half a place, and for a t of 2.0 by a whole one, where f is a half; f is
+    /// at most 1. Beyond t = √m the cosine stays 1, and what is computed does not fall.
     fn errors(&self) -> [f64; 3] {
         let Keys { factor, kept, rounding, .. } = self.keys;
         let (root, place) = (self.root.error(), exp2(-(factor as i32)));
@@ -154,12 +154,12 @@ impl Formula for Cosine {
         Some([raw(normal.map(|it| length * it), fraction), raw(unit_vector(half), other)].concat())
     }
 
-    /// Returns the sum of squares determines the inverse root.
+    /// Returns every sum of squares, which determines the inverse root.
     fn sweep(&self) -> Option<Sweep> {
         Some(self.root.sweep())
     }
 
-    /// By the inverse root as it is; by the factors and the rounding as far as they can be off.
+    /// Returns the error of the inverse root as it is, and of the factors and the rounding as far as they can be off.
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let [_, factors, rounding] = self.errors();
         let error = self.root.relative_error(place[0]) + factors + rounding;

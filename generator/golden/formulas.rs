@@ -6,7 +6,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-/// Blinn's function `cⁿ` itself (seeds 000–002), which all the others approximate.
+/// Returns Blinn's function `cⁿ` itself (seeds 000–002), which all the others approximate.
 ///
 /// `c` is the cosine of the angle between the normal and the half vector, `n` the exponent.
 pub fn blinn(c: f64, n: f64) -> f64 {
@@ -32,7 +32,7 @@ fn rough_base(c: f64, cd: f64, dgamma_negative: bool, n: f64) -> f64 {
     n / 2.0 * (turned_cosine(c, cd, dgamma_negative) - 1.0) + 1.0
 }
 
-/// UA 60139 (seed 001): `(n/2·(cos(γ ± dγ) − 1) + 1)²`, 0 where the base is negative.
+/// Returns the formula of UA 60139 (seed 001): `(n/2·(cos(γ ± dγ) − 1) + 1)²`, 0 where the base is negative.
 ///
 /// `c = cos γ`, `cd = cos dγ`; `dgamma_negative` is trigger 4 (false: `cos(γ + dγ)`).
 #[inline]
@@ -44,8 +44,8 @@ pub fn rough(c: f64, cd: f64, dgamma_negative: bool, n: f64) -> f64 {
     base * base
 }
 
-/// [`rough`] without the clamp of the base: the parabola rises again beyond its zero, and stays at 1
-/// where it would exceed it.
+/// Returns [`rough`] without the clamp of the base: the parabola rises again beyond its zero, and stays at 1 where it would
+/// exceed it.
 #[inline]
 pub fn rough_unclamped(c: f64, cd: f64, dgamma_negative: bool, n: f64) -> f64 {
     if c <= 0.0 {
@@ -55,19 +55,19 @@ pub fn rough_unclamped(c: f64, cd: f64, dgamma_negative: bool, n: f64) -> f64 {
     (base * base).min(1.0)
 }
 
-/// `(n/2·(c − 1) + 1)²`, 0 where the base is negative: what UA 30041 (seed 001) compares with its level.
+/// Returns `(n/2·(c − 1) + 1)²`, 0 where the base is negative: what UA 30041 (seed 001) compares with its level.
 #[inline]
 pub fn parabola(c: f64, n: f64) -> f64 {
     rough(c, 1.0, false, n)
 }
 
-/// UA 30041: a reflectance where it reaches the level of visibility, otherwise 0.
+/// Returns a reflectance where it reaches UA 30041's level of visibility, otherwise 0.
 #[inline]
 pub fn threshold(square: f64, level: f64) -> f64 {
     if square < level { 0.0 } else { square }
 }
 
-/// US 5 739 820 (seed 000): `(1 − β·D²)^m`, 0 where β·D² is 1 or more, with D² = |N − H|².
+/// Returns the formula of US 5 739 820 (seed 000): `(1 − β·D²)^m`, 0 where β·D² is 1 or more, with D² = |N − H|².
 ///
 /// `m` is a power of two; with β = n/(2·m) and unit vectors it is [`cosine_power`], save for surfaces that face away.
 #[inline]
@@ -76,7 +76,7 @@ pub fn lyon(distance: f64, beta: f64, m: u32) -> f64 {
     (0..m.ilog2()).fold(base, |power, _| power * power)
 }
 
-/// UA 20998 (seed 001): `c + a·(c² − c)` with a = a(n), 0 where that is negative.
+/// Returns the formula of UA 20998 (seed 001): `c + a·(c² − c)` with a = a(n), 0 where that is negative.
 ///
 /// For a < 0, which no table has, it would exceed c.
 #[inline]
@@ -111,8 +111,7 @@ pub fn quad_power(n: i64) -> u32 {
     }
 }
 
-/// `cosᵏ` of an angle in radians of whatever sign, 0 where it is a right angle or more. k is a power
-/// of two.
+/// Returns `cosᵏ` of an angle in radians of whatever sign, 0 where it is a right angle or more. k is a power of two.
 #[inline]
 fn lobe(angle: f64, k: u32) -> f64 {
     let angle = angle.abs();
@@ -122,8 +121,8 @@ fn lobe(angle: f64, k: u32) -> f64 {
     (0..k.ilog2()).fold(libm::cos(angle), |power, _| power * power)
 }
 
-/// Seed 000's `cosᵏ(√(n/k)·δ)`, with k of [`quad_power`]; δ in radians. 0 where `√(n/k)·δ` is a right angle or
-/// more, and where δ itself is beyond one: the surface faces away.
+/// Returns seed 000's `cosᵏ(√(n/k)·δ)`, with k of [`quad_power`]; δ in radians. 0 where `√(n/k)·δ` is a right angle or more, and
+/// where δ itself is beyond one: the surface faces away.
 #[inline]
 pub fn quad_cosine(delta: f64, n: i64) -> f64 {
     if delta.abs() > FRAC_PI_2 {
@@ -133,8 +132,8 @@ pub fn quad_cosine(delta: f64, n: i64) -> f64 {
     lobe((n as f64 / f64::from(k)).sqrt() * delta, k)
 }
 
-/// Abbas, Szirmay-Kalos and Horváth's `cos²(a·δ)` (seed 000), of the stretched angle `a·δ` in radians; 0
-/// where it is a right angle or more.
+/// Returns Abbas, Szirmay-Kalos and Horváth's `cos²(a·δ)` (seed 000), of the stretched angle `a·δ` in radians; 0 where it is a
+/// right angle or more.
 #[inline]
 pub fn cosine_squared(stretched: f64) -> f64 {
     lobe(stretched, 2)
@@ -150,15 +149,15 @@ pub fn gauss(c: f64, n: f64) -> f64 {
     libm::exp(-n * gamma * gamma / 2.0)
 }
 
-/// Schlick's function (seed 002): `c / (n − n·c + c)`, 0 where `c ≤ 0`, `n = 0` included.
+/// Returns Schlick's function (seed 002): `c / (n − n·c + c)`, 0 where `c ≤ 0`, `n = 0` included.
 #[inline]
 pub fn schlick(c: f64, n: f64) -> f64 {
     // n·(1 − c) keeps what n − n·c loses to cancellation where c is near 1.
     if c <= 0.0 { 0.0 } else { c / (n * (1.0 - c) + c) }
 }
 
-/// Seed 000's approximation with any power: `cosᵏ(√(n/k)·δ)`, δ in radians; 0 where `√(n/k)·δ` is a right angle
-/// or more. k = 2 is the prototype's `cos²(aδ)`.
+/// Returns seed 000's approximation with any power: `cosᵏ(√(n/k)·δ)`, δ in radians; 0 where `√(n/k)·δ` is a right angle or more.
+/// k = 2 is the prototype's `cos²(aδ)`.
 #[inline]
 pub fn stretched_cosine(delta: f64, n: f64, k: u32) -> f64 {
     let angle = (n / f64::from(k)).sqrt() * delta.abs();

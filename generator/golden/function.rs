@@ -16,8 +16,8 @@ use glint_keys::function::found;
 /// The pieces of a domain in which a slope is enclosed: a power of two, so that their ends are exact.
 const PIECES: u32 = 4096;
 
-/// Registers: the operand, the sums from each coefficient on, of which the first is the result, or the polynomial from which the
-/// result comes.
+/// Makes the device. Its registers are the operand, the sums from each coefficient on, of which the first is the result, or the
+/// polynomial from which the result comes.
 fn device(it: &Arc<Piecewise>) -> device::Device {
     let (first, last) = it.domain;
     let mut frame = Frame::default();
@@ -64,7 +64,8 @@ pub(super) fn at(formula: &str, x: f64) -> f64 {
     value.map_or(f64::NAN, Enclosure::middle)
 }
 
-/// Returns a proven limit of the formula's slope over its domain, from interval derivatives; none where it may jump or be infinitely steep.
+/// Returns a proven limit of the formula's slope over its domain, from interval derivatives; none where it may jump or be
+/// infinitely steep.
 pub(super) fn slope(config: &Config) -> Option<f64> {
     let (function, it) = found(config).ok()?;
     let Curve::Formula(formula) = &function.curve else { return None };
@@ -85,14 +86,14 @@ struct Stated {
 }
 
 impl Formula for Stated {
-    /// No number where the formula has no value.
+    /// Returns the formula's value, no number where it has none.
     fn exact(&self, operands: &[f64]) -> Vec<f64> {
         let raw = (operands[0] * exp2(self.function.operand.frac)) as i64;
         let value = self.function.limits(raw).map_or(f64::NAN, |limits| limits.middle());
         vec![value * exp2(-(self.function.fraction as i32))]
     }
 
-    /// Within the domain no sum leaves its format: that was proved at every operand.
+    /// Appends the result within the domain. No sum leaves its format there: that was proved at every operand.
     fn results(&self, operands: &[i64], raw: &mut Vec<i64>) -> bool {
         let (first, last) = self.polynomials.domain;
         let inside = (first..=last).contains(&operands[0]);

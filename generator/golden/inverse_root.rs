@@ -29,7 +29,7 @@ impl Root {
         Self { width: 2 * components + 4, address, fraction, ends }
     }
 
-    /// Pairs of leading zeros, as many as the shifter counts.
+    /// Returns the pairs of leading zeros, as many as the shifter counts.
     pub fn pairs(&self, sum: i64) -> i64 {
         match sum {
             0 => (1 << self.pair_bits()) - 1,
@@ -37,7 +37,7 @@ impl Root {
         }
     }
 
-    /// Returns bits of that count.
+    /// Returns the bits of that count.
     pub fn pair_bits(&self) -> u32 {
         (self.width - 1).ilog2()
     }
@@ -47,7 +47,7 @@ impl Root {
         if sum == 0 { 0 } else { sum << (2 * pairs) }
     }
 
-    /// 1/√m by the chord of the segment.
+    /// Returns 1/√m by the chord of the segment.
     pub fn inverse(&self, mantissa: i64) -> i64 {
         if mantissa == 0 {
             return 0;
@@ -59,8 +59,8 @@ impl Root {
         self.ends[at] - (((self.ends[at] - self.ends[at + 1]) * rest) >> along)
     }
 
-    /// Returns the errors of √m·f by the chords and by roundings, as values. Let m be the mantissa, 1 ≤ m < 4, f = 1/√m and r what
-    /// stands for it, u the last place of r.
+    /// Returns the errors of √m·f by the chords and by roundings, as values. Let m be the mantissa, 1 ≤ m < 4, f = 1/√m and r
+    /// what stands for it, u the last place of r.
     ///
     /// - f is convex, so that a chord lies above it, by at most h²/8·max f″ = h²/8·¾·a^(−5/2) in the segment from
     ///   a on, of length h.
@@ -83,7 +83,7 @@ impl Root {
         Sweep::ranges([("sum of squares", (1, FARTHEST << (self.width - 4)))])
     }
 
-    /// √m·r − 1 of a sum of squares.
+    /// Returns |√m·r − 1| of a sum of squares.
     pub fn relative_error(&self, sum: i64) -> f64 {
         let mantissa = self.mantissa(sum, self.pairs(sum));
         let root = (mantissa as f64 * exp2(2 - self.width as i32)).sqrt();
@@ -91,7 +91,7 @@ impl Root {
     }
 }
 
-/// The unit vector of a direction; the zero vector stays.
+/// Returns the unit vector of a direction; the zero vector stays.
 pub(super) fn unit_vector(vector: [f64; 3]) -> [f64; 3] {
     let now = vector.map(|it| it * it).iter().sum::<f64>().sqrt();
     vector.map(|it| if now == 0.0 { 0.0 } else { it / now })

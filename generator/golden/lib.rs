@@ -57,7 +57,7 @@ pub trait Model: CloneModel + Send + Sync {
     /// block (pipeline stages, synchronous ROMs) need not be there.
     fn signals(&self) -> &[String];
 
-    /// One rising edge, with the inputs as they stand just before it.
+    /// Takes one rising edge, with the inputs as they stand just before it.
     fn clock(&mut self, inputs: &[u64]);
 
     /// Returns the device at power-up with a register `<output>_reg` behind each result that is logic, loaded in the
@@ -158,9 +158,9 @@ pub trait Contract: Send + Sync {
         Ok(())
     }
 
-    /// Appends, for each output, what the formula says in f64, unrounded, at the raw (that is, quantised) operands,
-    /// twice. Where the formula jumps and fixed point may come out on its other side, these are the values on both
-    /// sides. An error is taken from the nearer.
+    /// Appends for each output what the formula says in f64, unrounded, at the raw (that is, quantised) operands, twice. Where
+    /// the formula jumps and fixed point may come out on its other side, these are the values on both sides. An error is taken
+    /// from the nearer.
     fn exact(&self, operands: &[i64], index: u64, values: &mut Vec<[f64; 2]>);
 
     /// Returns a proven bound on the error, stated before anything is simulated. One without terms is not stated:
@@ -178,9 +178,8 @@ pub trait Contract: Send + Sync {
         None
     }
 
-    /// Operands at which results say much: where the formula is steep, bends or ends. Half of the points of a test
-    /// are such. `unit` gives numbers from 0 to below 1, drawn evenly; what is outside the domain is moved to its
-    /// end.
+    /// Returns operands at which results say much: where the formula is steep, bends or ends. Half of the points of a test are
+    /// such. `unit` gives numbers from 0 to below 1, drawn evenly; what is outside the domain is moved to its end.
     ///
     /// `None`: points are drawn over the domain alone, its ends more often than the rest. Those of a [`Highlight`]
     /// are drawn by the value of its formula.
@@ -218,8 +217,8 @@ pub trait Contract: Send + Sync {
         errors.fold(0.0, f64::max)
     }
 
-    /// Facts about the formula itself that a user of this configuration should know, with figures: where in the
-    /// domain another choice of the same device would come closer to what it stands for.
+    /// Returns facts about the formula itself that a user of this configuration should know, with figures: where in the domain
+    /// another choice of the same device would come closer to what it stands for.
     fn remarks(&self) -> Vec<String> {
         Vec::new()
     }
@@ -266,12 +265,12 @@ pub enum Values {
 }
 
 impl Sweep {
-    /// Every combination of some operands.
+    /// Makes the sweep of every combination of some operands.
     pub fn all<'a>(operands: impl Iterator<Item = &'a Operand>) -> Self {
         Self::ranges(operands.map(|operand| (operand.name.as_str(), operand.domain)))
     }
 
-    /// Every combination of values by name, each from the first to the last.
+    /// Makes the sweep of every combination of values by name, each from the first to the last.
     pub fn ranges<'a>(ranges: impl IntoIterator<Item = (&'a str, (i64, i64))>) -> Self {
         let axes = ranges.into_iter().map(|(name, (low, high))| Axis {
             name: name.to_owned(),
@@ -305,7 +304,7 @@ impl Values {
         }
     }
 
-    /// Value number `at`.
+    /// Returns value number `at`.
     #[inline]
     pub fn value(&self, at: u64) -> i64 {
         match self {
@@ -341,7 +340,7 @@ pub struct Term {
 }
 
 impl Bound {
-    /// The sum of its terms, of a device that is no highlight; infinite without any.
+    /// Makes the bound of a device that is no highlight: the sum of its terms; infinite without any.
     pub fn of(terms: Vec<Term>) -> Self {
         let sum: f64 = terms.iter().map(|term| term.units).sum();
         // What is no number limits nothing.
@@ -349,7 +348,7 @@ impl Bound {
         Self { f: units, units, limit: 1.0, terms }
     }
 
-    /// It in units, or that there is none.
+    /// Returns the bound in units, or says that there is none.
     pub fn words(&self) -> String {
         if self.is_stated() { text::rounded_up(self.units, 3) } else { "not stated".to_owned() }
     }

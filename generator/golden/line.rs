@@ -16,9 +16,9 @@ pub fn raw_angle(operand: &Operand, angle: f64) -> i64 {
     raw.clamp(low, high)
 }
 
-/// Control block 14 with the accumulator: counter 5, adder 6, mux 7, register 8, and the operand registers
-/// that they use, with angles of `format`. The slot of register 8, and the microinstructions; the outputs show a point
-/// `stages` clocks after the pulse on output 37.
+/// Adds control block 14 with the accumulator: counter 5, adder 6, mux 7, register 8, and the operand registers that they use,
+/// with angles of `format`. Returns the slot of register 8, and the microinstructions; the outputs show a point `stages` clocks
+/// after the pulse on output 37.
 pub fn walker(
     frame: &mut Frame,
     format: Format,
@@ -86,7 +86,7 @@ pub fn angle_expression(format: Format) -> String {
     format!("((zeta_start + index * delta_zeta + {half}) % {turn} - {half})")
 }
 
-/// `delta_zeta` and `zeta_start` as the contract sees them: every value is in the domain.
+/// Returns `delta_zeta` and `zeta_start` as the contract sees them: every value is in the domain.
 pub fn angle_operands(format: Format) -> [Operand; 2] {
     let domain = (format.min_raw() as i64, format.max_raw() as i64);
     let operand = |name: &str, doc: &str| control(name, format, domain, doc);
@@ -96,7 +96,7 @@ pub fn angle_operands(format: Format) -> [Operand; 2] {
     ]
 }
 
-/// `length` as the contract sees it: every value is in the domain.
+/// Returns `length` as the contract sees it: every value is in the domain.
 pub fn length_operand(length_bits: u32) -> Operand {
     let format = length_format(length_bits);
     let doc = "intervals of the line: one less than its points";
@@ -132,7 +132,7 @@ pub struct CosineTable {
 }
 
 impl CosineTable {
-    /// k is a power of two; 2^`address` steps.
+    /// Makes the table of `cosᵏ`: k is a power of two; 2^`address` steps.
     pub fn new(power: u32, address: u32, fraction: u32) -> Self {
         let steps = 1u64 << address;
         let one = exp2(fraction as i32);

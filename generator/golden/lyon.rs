@@ -110,7 +110,7 @@ impl Arithmetic {
         }
     }
 
-    /// D² as the register takes it.
+    /// Returns D² as the register takes it.
     #[inline]
     fn distance(&self, vector: [i64; 3]) -> i64 {
         let [x, y, z] = vector;
@@ -123,7 +123,7 @@ impl Arithmetic {
         (2 * word).min(self.shifted_most)
     }
 
-    /// β·D² from the word of D² and the operand `shift` or `exponent`.
+    /// Returns β·D² from the word of D² and the operand `shift` or `exponent`.
     #[inline]
     fn beta_distance(&self, distance: i64, operand: i64) -> i64 {
         self.scaled.apply(match self.keys.scale {
@@ -132,7 +132,7 @@ impl Arithmetic {
         })
     }
 
-    /// `1.0 − ulp − β·D²`, or 0 where β·D² is not below 1.0.
+    /// Returns `1.0 − ulp − β·D²`, or 0 where β·D² is not below 1.0.
     #[inline]
     fn base(&self, scaled: i64) -> i64 {
         (self.one - 1 - scaled).max(0)
@@ -143,7 +143,7 @@ impl Arithmetic {
         self.square.apply(x * x)
     }
 
-    /// f from the word of D².
+    /// Returns f from the word of D².
     #[inline]
     fn f_of(&self, distance: i64, operand: i64) -> i64 {
         let base = self.base(self.beta_distance(distance, operand));

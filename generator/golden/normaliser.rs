@@ -104,8 +104,9 @@ impl Formula for Normaliser {
         unit_vector([vector[0], vector[1], vector[2]]).into()
     }
 
-    /// Returns the shifted component x has x² ≤ m, so that the error of the product is at most √m times that of r: [`Root::error`]. The
-    /// product is rounded once. It does not saturate: |x·f| ≤ 1, and the rest is far below 1.
+    /// Returns the terms of a component's error. The shifted component x has x² ≤ m, so that the error of the product is at most
+    /// √m times that of r: [`Root::error`]. The product is rounded once. It does not saturate: |x·f| ≤ 1, and the rest is far
+    /// below 1.
     ///
     /// The zero vector has zeros, as the formula has it here.
     fn terms(&self) -> Vec<Term> {
@@ -119,14 +120,14 @@ impl Formula for Normaliser {
         ]
     }
 
-    /// Vectors of any length, each octave as often as any other: the shift goes by the length.
+    /// Draws vectors of any length, each octave as often as any other: the shift goes by the length.
     fn hint(&self, unit: &mut dyn FnMut() -> f64) -> Option<Vec<i64>> {
         let most = exp2(1 + self.keys.fraction as i32)
             * libm::exp2(-unit() * f64::from(self.keys.fraction));
         Some((0..3).map(|_| ((2.0 * unit() - 1.0) * most).round() as i64).collect())
     }
 
-    /// Returns the sum of squares determines the inverse root, and the largest error of any component with it.
+    /// Returns every sum of squares: it determines the inverse root, and the largest error of any component with it.
     fn sweep(&self) -> Option<Sweep> {
         Some(self.root.sweep())
     }

@@ -15,7 +15,7 @@ pub struct Occupancy<P> {
 }
 
 impl<P> Occupancy<P> {
-    /// A pipeline of `latency` stages without any point, which takes one every `interval` clocks.
+    /// Makes a pipeline of `latency` stages without any point, which takes one every `interval` clocks.
     pub fn empty(latency: usize, interval: usize) -> Self {
         Self { stages: (0..latency).map(|_| None).collect(), interval, slot: 0 }
     }
@@ -46,7 +46,7 @@ impl<P> Occupancy<P> {
         stages.filter_map(|(at, point)| point.as_ref().map(|point| (at + 1, point)))
     }
 
-    /// Returns a rising edge. The point whose results were taken.
+    /// Performs a rising edge, and returns the point whose results were taken.
     pub fn clock(&mut self, rst_n: bool, offered: Option<P>, out_ready: bool) -> Option<P> {
         let taken = if self.moves(out_ready) {
             self.stages.push_front(offered.filter(|_| self.slot == 0));

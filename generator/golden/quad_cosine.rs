@@ -78,7 +78,7 @@ impl Arithmetic {
     }
 }
 
-/// `√(n/k)` rounded to the nearest word, by integers: the r with (r − ½)² ≤ n·2^2G/k < (r + ½)².
+/// Returns `√(n/k)` rounded to the nearest word, by integers: the r with (r − ½)² ≤ n·2^2G/k < (r + ½)².
 fn root(n: i64, k: i64, fraction: u32) -> i64 {
     let square = n << (2 * fraction);
     let floor = (square / k).isqrt();

@@ -46,13 +46,13 @@ impl Arithmetic {
         }
     }
 
-    /// `c² − c`.
+    /// Returns `c² − c`.
     #[inline]
     fn difference(&self, cosine: i64) -> i64 {
         self.difference.apply(cosine * cosine - (cosine << self.keys.operands.cosine.fraction))
     }
 
-    /// `c + a(n)·(c² − c)`, limited to a fraction.
+    /// Returns `c + a(n)·(c² − c)`, limited to a fraction.
     #[inline]
     fn intensity(&self, cosine: i64, exponent: i64, difference: i64) -> i64 {
         let product = difference * self.words[exponent as usize];
@@ -101,7 +101,7 @@ impl Reflectance for Arithmetic {
         self.intensity(cosine, control[1], self.difference(cosine))
     }
 
-    /// With a(n) as it was before ROM(n) rounded it.
+    /// Returns the formula with a(n) as it was before ROM(n) rounded it.
     #[inline]
     fn reference(&self, control: &[i64]) -> f64 {
         formulas::quadratic(
@@ -114,14 +114,14 @@ impl Reflectance for Arithmetic {
         Some(formulas::quadratic(cosine, self.exact[exponent as usize]))
     }
 
-    /// 1 − a + 2·a·c where it is not clamped; at a right angle it is 0.
+    /// Limits the slope, 1 − a + 2·a·c where the formula is not clamped, to 1 + |a|; at a right angle the formula is 0.
     fn variation(&self) -> Option<Variation> {
         let (least, most) = self.keys.domain.exponents();
         let exact = self.exact[least as usize..=most as usize].iter();
         Some(Variation { slope: 1.0 + exact.fold(0.0, |a: f64, it| a.max(it.abs())), jump: 0.0 })
     }
 
-    /// Returns the coefficient of the least largest error has no closed form; ROM(n) holds it.
+    /// Returns the formula with ROM(n) for the coefficient of the least largest error, which has no closed form.
     fn expressions(&self) -> Vec<String> {
         let coefficient = match self.keys.scheme {
             Scheme::Taylor => "(max(exponent, 1) - 1)",

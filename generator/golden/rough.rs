@@ -182,7 +182,7 @@ impl Arithmetic {
         }
     }
 
-    /// Adder 15: cos(γ ± dγ) − 1.0 from registers 11 and 12.
+    /// Computes adder 15: cos(γ ± dγ) − 1.0 from registers 11 and 12.
     ///
     /// In the patent's words the 1.0 is the integer position that they lack. Mux 14 offers the inverse
     /// of register 12, which without a carry subtracts an ulp too much, or (trigger 4) what adder 31

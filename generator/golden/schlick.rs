@@ -14,7 +14,7 @@ use glint_keys::schlick::Keys;
 struct Arithmetic(Keys);
 
 impl Arithmetic {
-    /// `n − n·cos γ + cos γ`, and an ulp for a surface that faces away.
+    /// Returns `n − n·cos γ + cos γ`, and an ulp more for a surface that faces away.
     #[inline]
     fn divisor(&self, cosine: i64, exponent: i64) -> i64 {
         exponent * self.0.operands.cosine.one() - exponent * cosine
@@ -108,13 +108,14 @@ impl Reflectance for Arithmetic {
         Some(formulas::schlick(cosine, exponent as f64))
     }
 
-    /// n/(n − nc + c)², largest at an end: n at 1, 1/n at 0, where it is 0 as beyond, but for n = 0, with which it is 1.
+    /// Limits the slope n/(n − nc + c)², largest at an end: n at 1, 1/n at 0. There the value is 0 as beyond, but for n = 0, with
+    /// which it is 1.
     fn variation(&self) -> Option<Variation> {
         let (least, most) = self.0.domain.exponents();
         Some(Variation { slope: most as f64, jump: if least > 0 { 0.0 } else { 1.0 } })
     }
 
-    /// Dividend and divisor are exact, so that nothing but the quotient's own last bit is lost: it is
+    /// Returns the one term. Dividend and divisor are exact, so that nothing but the quotient's own last bit is lost: it is
     /// truncated, and 1.0 becomes the largest fraction. Both are at most an ulp below the formula.
     fn shares(&self) -> Vec<ErrorShare> {
         let ulp = exp2(-(self.0.fraction as i32));

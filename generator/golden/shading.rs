@@ -207,7 +207,8 @@ impl Formula for Shading {
         (0..3).map(|at| colour(at).clamp(0.0, most)).collect()
     }
 
-    /// Returns an error of an operand of a part grows by the part's slope in it, and the part adds its own; each light adds its own.
+    /// Derives the terms of a colour's error. An error of an operand of a part grows by the part's slope in it, and the part adds
+    /// its own; each light adds its own.
     ///
     /// - A colour is diffuse·cosine + specular·f(cosine), saturated: its slopes are at most the largest colour, and that times
     ///   the slope of f. Where f jumps, cosine and exact cosine may lie on both sides.
@@ -241,7 +242,7 @@ impl Formula for Shading {
         terms
     }
 
-    /// None where the highlight's formula reads a table, or nobody wrote it.
+    /// Returns the formulas of the colours; none where the highlight's formula reads a table, or nobody wrote it.
     fn expressions(&self) -> Vec<String> {
         let squares = "(nx ** 2 + ny ** 2 + nz ** 2)";
         let cosine = |vector: &str, suffix: &str| {
@@ -310,7 +311,7 @@ impl Formula for Shading {
         Some(operands)
     }
 
-    /// Normals of one plane under one light, which the viewer is at, with four exponents.
+    /// Returns normals of one plane under one light, which the viewer is at, with four exponents.
     fn sweep(&self) -> Option<Sweep> {
         let Keys { normal, light, colour_bits, most, .. } = self.keys;
         let (one, to_light, white) = (1 << normal, 1 << light, (1 << colour_bits) - 1);
@@ -349,8 +350,8 @@ mod tests {
     use glint_config::Value;
     use glint_keys::shading::schema;
 
-    /// The largest error with a cosine of 12 fraction bits is beyond the bound that a part with a false claim would give, and within
-    /// the one that it gives.
+    /// The largest error with a cosine of 12 fraction bits is beyond the bound that a part with a false claim would give, and
+    /// within the one that it gives.
     #[test]
     fn the_bound_of_the_whole_falls_with_that_of_a_part() {
         let keys = [("cosine.fraction", 12), ("domain.exponent_max", 1000)];

@@ -148,7 +148,7 @@ impl Sine {
     }
 }
 
-/// `√(1 − x²)` at u = 1.0 − x, an integer 0 … 2^C. The radicand is exact for C ≤ 26.
+/// Returns `√(1 − x²)` at u = 1.0 − x, an integer 0 … 2^C. The radicand is exact for C ≤ 26.
 fn sine_of(operand: u32, u: i64) -> f64 {
     let one = 1i64 << operand;
     let x = one - u;

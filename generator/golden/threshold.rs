@@ -61,13 +61,13 @@ impl Arithmetic {
         keys.levels.iter().map(|&level| word(level.into()).min(largest)).collect()
     }
 
-    /// `n/2·(cos γ − 1)`, not below −1.0.
+    /// Returns `n/2·(cos γ − 1)`, not below −1.0.
     #[inline]
     fn scaled(&self, cosine: i64, exponent: i64) -> i64 {
         self.scaled.apply((cosine - self.keys.operands.cosine.one()) * exponent)
     }
 
-    /// ROM(n).
+    /// Returns the word of ROM(n).
     #[inline]
     fn threshold(&self, exponent: i64) -> i64 {
         let octave = exponent.max(1).ilog2() as usize;
@@ -141,8 +141,8 @@ impl Reflectance for Arithmetic {
         Some(formulas::threshold(formulas::parabola(cosine, exponent as f64), level))
     }
 
-    /// n·base with a base of at most 1. It jumps from ROM(n), where either side is right within the margin, or at a right angle from
-    /// (1 − n/2)² if that is more: since the base falls with the cosine, not at both.
+    /// Limits the slope n·base to n, since the base is at most 1. The formula jumps from ROM(n), where either side is right
+    /// within the margin, or at a right angle from (1 − n/2)² if that is more: since the base falls with the cosine, not at both.
     fn variation(&self) -> Option<Variation> {
         let (least, most) = self.keys.domain.exponents();
         let jump = |n: i64| {
@@ -153,7 +153,7 @@ impl Reflectance for Arithmetic {
         Some(Variation { slope: most as f64, jump: (least..=most).map(jump).fold(0.0, f64::max) })
     }
 
-    /// Returns where the exact square is within the bound on its error of ROM(n), the word may be on either side.
+    /// Returns the square and 0 where the exact square is within the bound on its error of ROM(n): either is right there.
     #[inline]
     fn references(&self, control: &[i64]) -> [f64; 2] {
         let (square, level) = self.square_and_level(control);
@@ -164,7 +164,7 @@ impl Reflectance for Arithmetic {
         }
     }
 
-    /// With ROM(n) as it stands.
+    /// Returns the formula on either side of its jump, with ROM(n) as it stands.
     fn expressions(&self) -> Vec<String> {
         let square =
             format!("{} ** 2", contract::clamped_at_0("exponent / 2 * (cos_gamma - 1) + 1"));
@@ -177,7 +177,8 @@ impl Reflectance for Arithmetic {
             .to_vec()
     }
 
-    /// Returns all of base, square and formula lie in 0 … 1, so that an error ε of the base is at most 2·ε in the square.
+    /// Derives the terms of f's error. Base, square and formula lie in 0 … 1, so that an error ε of the base is at most 2·ε in
+    /// the square.
     ///
     /// The product is rounded into the base, and limited to −1.0 where the formula is clamped. The square
     /// is rounded; the square of 1.0 is an ulp low. The gates add nothing: within the sum of these of
@@ -195,7 +196,7 @@ impl Reflectance for Arithmetic {
         ]
     }
 
-    /// Returns a level above what rounds to 0 is seen as an edge around the highlight.
+    /// Warns of a level above what rounds to 0, which is seen as an edge around the highlight.
     fn remarks(&self) -> Vec<String> {
         let largest = (1 << self.keys.operands.colours.bits) - 1;
         let (first, last) = self.keys.domain.exponents();

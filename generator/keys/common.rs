@@ -19,7 +19,7 @@ impl Cosine {
         Format { signed: self.signed, int: 1, frac: self.fraction as i32 }
     }
 
-    /// 1.0 as a raw cosine.
+    /// Returns 1.0 as a raw cosine.
     pub fn one(&self) -> i64 {
         1 << self.fraction
     }
@@ -58,7 +58,7 @@ impl Colours {
         self.multipliers == 1
     }
 
-    /// Words of four bits.
+    /// Makes keys for words of four bits.
     #[doc(hidden)]
     pub fn small() -> Self {
         Self { bits: 4, multipliers: 3 }
@@ -80,7 +80,7 @@ impl Operands {
         Format::unsigned(self.exponent_bits as i32, 0)
     }
 
-    /// Words of four bits, small enough to follow by hand.
+    /// Makes keys for words of four bits, small enough to follow by hand.
     #[doc(hidden)]
     pub fn small() -> Self {
         Self {
@@ -107,7 +107,7 @@ impl Intensity {
         Format::unsigned(0, self.fraction as i32)
     }
 
-    /// Words of four bits.
+    /// Makes keys for words of four bits.
     #[doc(hidden)]
     pub fn small() -> Self {
         let (rounding, output_rounding) = (Rounding::Truncate, Rounding::Nearest);
@@ -131,19 +131,19 @@ impl Domain {
         (self.least, self.most)
     }
 
-    /// The exponents of four bits.
+    /// Makes the domain of the exponents of four bits.
     #[doc(hidden)]
     pub fn small() -> Self {
         Self { least: 1, most: 15 }
     }
 }
 
-/// `exponent.bits`.
+/// Makes the key `exponent.bits`.
 pub fn exponent_bits() -> Key {
     Key::integer("exponent.bits", 10, 1..=12, "Bits of the specular exponent n.")
 }
 
-/// `power`.
+/// Makes the key `power`.
 pub fn power() -> Key {
     Key::choice(
         "power",
@@ -153,12 +153,12 @@ pub fn power() -> Key {
     )
 }
 
-/// `colour.bits`.
+/// Makes the key `colour.bits`.
 pub fn colour_bits() -> Key {
     Key::integer("colour.bits", 8, 1..=12, "Bits of a colour operand, and of an output.")
 }
 
-/// `intensity.fraction`.
+/// Makes the key `intensity.fraction`.
 pub fn intensity_fraction(default: i64) -> Key {
     Key::integer(
         "intensity.fraction",
@@ -168,12 +168,12 @@ pub fn intensity_fraction(default: i64) -> Key {
     )
 }
 
-/// `output.rounding`.
+/// Makes the key `output.rounding`.
 pub fn output_rounding() -> Key {
     Key::rounding("output.rounding", "nearest", "Rounding of the colour outputs to integers.")
 }
 
-/// `angle.fraction`.
+/// Makes the key `angle.fraction`.
 pub fn angle_fraction(default: i64) -> Key {
     Key::integer(
         "angle.fraction",
@@ -183,7 +183,7 @@ pub fn angle_fraction(default: i64) -> Key {
     )
 }
 
-/// `table.address`.
+/// Makes the key `table.address`.
 pub fn table_address(default: i64) -> Key {
     Key::integer(
         "table.address",
@@ -193,7 +193,7 @@ pub fn table_address(default: i64) -> Key {
     )
 }
 
-/// `length.bits`.
+/// Makes the key `length.bits`.
 pub fn length_bits() -> Key {
     Key::integer(
         "length.bits",
@@ -203,7 +203,7 @@ pub fn length_bits() -> Key {
     )
 }
 
-/// `line.stages`.
+/// Makes the key `line.stages`.
 pub fn line_stages(choices: &'static [&'static str]) -> Key {
     Key::choice(
         "line.stages",
@@ -214,7 +214,7 @@ pub fn line_stages(choices: &'static [&'static str]) -> Key {
     .joined_later()
 }
 
-/// The domain of n is not empty and fits the operand.
+/// Checks that the domain of n is not empty and fits the operand.
 pub fn check_exponents(domain: &Domain, bits: u32, problems: &mut Problems) {
     let (min, max) = domain.exponents();
     if min > max {
@@ -236,7 +236,7 @@ pub fn check_exponents(domain: &Domain, bits: u32, problems: &mut Problems) {
 /// The most bits of a ROM: a megabit.
 const ROM_LIMIT: i64 = 1 << 20;
 
-/// The ROM with as many address bits and bits in a word as `size` says is not too large. `key` governs it.
+/// Checks that a ROM with so many address bits and bits in a word is not too large. `key` governs it.
 pub fn check_rom_size(
     key: &str,
     rom: &str,
@@ -254,8 +254,8 @@ pub fn check_rom_size(
     }
 }
 
-/// Returns every range of `key`, each a quarter of the one before it, has as many of the `bits` bits of 1 − cos as it is cut by. The
-/// most bits that a segment is left with, up to a range that has too few.
+/// Returns every range of `key`, each a quarter of the one before it, has as many of the `bits` bits of 1 − cos as it is cut by.
+/// The most bits that a segment is left with, up to a range that has too few.
 pub fn check_segments(segments: &[u32], key: &str, bits: u32, problems: &mut Problems) -> u32 {
     let mut most = 0;
     for (range, &prefix) in (0u32..).zip(segments) {

@@ -56,8 +56,8 @@ impl Decay {
         }
     }
 
-    /// Returns the most that the decay over the distance rises for a rise of the distance: its slope at the last distance, since it is
-    /// convex. That is 1/(ln 2·(1 − v)·v) + log₂(1 − v)/v² at v = ½, and (π − π²/4)/(2 ln 2) at 1.
+    /// Returns the most that the decay over the distance rises for a rise of the distance: its slope at the last distance, since
+    /// it is convex. That is 1/(ln 2·(1 − v)·v) + log₂(1 − v)/v² at v = ½, and (π − π²/4)/(2 ln 2) at 1.
     pub fn steepest(self) -> f64 {
         match self {
             Self::Logarithm => 1.771,
@@ -88,7 +88,8 @@ impl Keys {
         1 + octave * decay.known()
     }
 
-    /// Returns bits of a decay as a factor: of a small one, below ¼, all that are not 0, of others the integer and the coarse fraction.
+    /// Returns bits of a decay as a factor: of a small one, below ¼, all that are not 0, of others the integer and the coarse
+    /// fraction.
     pub fn factor_bits(&self, decay: Decay) -> u32 {
         (self.decay_fraction - 2).max(self.whole_bits(decay) + self.coarse_fraction)
     }
@@ -99,13 +100,13 @@ impl Keys {
         Format::unsigned(whole as i32, self.argument as i32)
     }
 
-    /// Low bits of u that the table of the ratio does not see: of 1 − c it takes a bit more than the ratio has.
+    /// Returns the low bits of u that the table of the ratio does not see: of 1 − c it takes a bit more than the ratio has.
     pub fn unseen(&self) -> u32 {
         self.operands.cosine.fraction.saturating_sub(self.ratio_fraction + 1)
     }
 
-    /// Returns the table of the decay over the distance, whose operand is u without the bits that are not seen: a value for the middle
-    /// of the distances that it stands for.
+    /// Returns the table of the decay over the distance, whose operand is u without the bits that are not seen: a value for the
+    /// middle of the distances that it stands for.
     ///
     /// # Errors
     /// Why there is none.
@@ -162,7 +163,7 @@ pub(super) fn schema(device: &'static str, check: fn(&Config, &mut Problems)) ->
     Schema { device, keys, check }
 }
 
-/// The conditions between keys.
+/// Checks the conditions between keys.
 pub(super) fn check(config: &Config, decay: Decay, problems: &mut Problems) {
     let keys = Keys::of(config);
     common::check_exponents(&keys.domain, keys.operands.exponent_bits, problems);

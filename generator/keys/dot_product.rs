@@ -30,7 +30,7 @@ pub(super) fn two_sided() -> Key {
 }
 
 impl Keys {
-    /// Fraction bits of a product of components.
+    /// Returns the fraction bits of a product of components.
     pub fn products(&self) -> u32 {
         self.fraction + self.other
     }

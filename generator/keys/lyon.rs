@@ -37,7 +37,7 @@ glint_config::keys! {
 }
 
 impl Keys {
-    /// s, the number of squarings.
+    /// Returns s, the number of squarings.
     pub fn squarings(&self) -> u32 {
         self.power.ilog2()
     }

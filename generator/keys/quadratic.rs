@@ -32,7 +32,7 @@ glint_config::keys! {
 }
 
 impl Keys {
-    /// Fraction bits of a(n).
+    /// Returns the fraction bits of a(n).
     pub fn coefficient_fraction(&self) -> u32 {
         if self.scheme == Scheme::Minimax { self.fraction } else { 0 }
     }

@@ -106,12 +106,12 @@ impl Keys {
         Format::unsigned(self.exponent_bits as i32, 0)
     }
 
-    /// Fraction bits of a highlight in units of a result, as far as its colours have bits.
+    /// Returns the fraction bits of a highlight in units of a result, as far as its colours have bits.
     pub fn guard(&self) -> u32 {
         (12 - self.colour_bits).min(4)
     }
 
-    /// Fraction bits of the cosine between normal and light, whose slope in a colour is the smaller.
+    /// Returns the fraction bits of the cosine between normal and light, whose slope in a colour is the smaller.
     pub fn facing(&self) -> u32 {
         self.cosine.min(self.colour_bits + 6)
     }

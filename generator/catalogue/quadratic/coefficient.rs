@@ -3,7 +3,7 @@
 //! With x = 1 − c the parabola is `(1 − x)·(1 − a·x)`, zero at x = 1/a. For 1 < a < n − 1 it is above cⁿ
 //! near the peak, by the most where the slopes agree, and below it beyond, by the most at its own zero.
 
-/// n − 1: value and slope agree with cⁿ at c = 1. For n = 0, where that is negative, 0.
+/// Returns n − 1: value and slope agree with cⁿ at c = 1. For n = 0, where that is negative, 0.
 pub fn taylor(n: u32) -> f64 {
     f64::from(n.max(1) - 1)
 }

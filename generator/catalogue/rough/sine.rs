@@ -6,7 +6,7 @@ use glint_keys::rough::{Keys, Scheme};
 use glint_rtl::blocks::segmented::{self, Segment, Segmentation, SegmentedFormats};
 use glint_rtl::dsl::{Designer, Signal};
 
-/// ROM 18: sin = √(1 − cos²).
+/// Makes ROM 18: sin = √(1 − cos²).
 pub(super) fn sine_rom<'d>(
     d: &'d Designer,
     keys: &Keys,

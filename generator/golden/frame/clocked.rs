@@ -113,7 +113,7 @@ impl Fixed {
 }
 
 impl Clocked {
-    /// The device with so many slots, all 0.
+    /// Makes the device at power-up, with so many slots, all 0.
     fn at_power_up(fixed: Fixed, slots: usize) -> Self {
         let mut model = Self {
             run: false,
@@ -132,8 +132,8 @@ impl Clocked {
         self.values[0] == 1
     }
 
-    /// Returns the device with registers behind the results that are logic. These are taken in the microinstruction that was to set
-    /// `valid`, and one more sets it; where `valid` comes later than a microinstruction says, in every clock.
+    /// Returns the device with registers behind the results that are logic. These are taken in the microinstruction that was to
+    /// set `valid`, and one more sets it; where `valid` comes later than a microinstruction says, in every clock.
     pub(crate) fn registered(&self) -> Option<Self> {
         let mut it = Fixed::clone(&self.fixed);
         let mut slots = self.state.len();

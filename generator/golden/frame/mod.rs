@@ -111,22 +111,22 @@ pub fn step_by<A: Send + Sync + 'static>(
 }
 
 impl Microinstruction {
-    /// The results are on the outputs.
+    /// States that the results are on the outputs.
     pub fn valid(self) -> Self {
         Self { valid: true, ..self }
     }
 
-    /// The program ends here.
+    /// Ends the program here.
     pub fn end(self) -> Self {
         Self { next: Next::End, ..self }
     }
 
-    /// It is in force once more while this holds of the values before the edge.
+    /// Repeats the microinstruction while this holds of the values before the edge.
     pub fn repeat_while(self, holds: impl Fn(&State) -> bool + Send + Sync + 'static) -> Self {
         Self { next: Next::RepeatWhile(Arc::new(holds)), ..self }
     }
 
-    /// It skips the next `count` microinstructions if this holds of the values before the edge.
+    /// Skips the next `count` microinstructions if this holds of the values before the edge.
     pub fn skip_if(
         self,
         count: u32,
@@ -135,7 +135,7 @@ impl Microinstruction {
         Self { next: Next::SkipIf(count, Arc::new(holds)), ..self }
     }
 
-    /// A flag that is 1 in this microinstruction.
+    /// Sets a flag to 1 in this microinstruction.
     pub fn asserts(mut self, flag: Slot) -> Self {
         self.asserts.push(flag);
         self
@@ -183,7 +183,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// State that no signal of the design shows.
+    /// Adds state that no signal of the design shows.
     pub fn hidden(&mut self) -> Slot {
         self.slots += 1;
         Slot(self.slots - 1)
@@ -195,12 +195,12 @@ impl Frame {
         slot
     }
 
-    /// Returns a register, of which the low bits that `format` has are shown.
+    /// Adds a register, of which the low bits that `format` has are shown.
     pub fn register(&mut self, name: &str, format: Format) -> Slot {
         self.shown(name.to_owned(), format, false)
     }
 
-    /// Returns an output that is logic: a function of operands and registers.
+    /// Adds an output that is logic: a function of operands and registers.
     pub fn output(
         &mut self,
         name: &str,
@@ -211,7 +211,7 @@ impl Frame {
         self.logic.push((slot, Arc::new(value)));
     }
 
-    /// An output that shows a register.
+    /// Adds an output that shows a register.
     ///
     /// # Panics
     /// If the slot is not that of a register.
@@ -221,19 +221,19 @@ impl Frame {
         self.shown.push(Signal { name: name.to_owned(), output: true, slot: register, format });
     }
 
-    /// Returns an output of one bit that is 1 in the microinstructions that assert it.
+    /// Adds an output of one bit that is 1 in the microinstructions that assert it.
     pub fn flag(&mut self, name: &str) -> Slot {
         let slot = self.shown(name.to_owned(), Format::BIT, true);
         self.flags.push(slot);
         slot
     }
 
-    /// Returns an operand with its register, which holds whatever `format` can denote.
+    /// Adds an operand with its register, which holds whatever `format` can denote.
     pub fn operand(&mut self, name: &str, format: Format) -> Slot {
         self.clamped(name, format, format.min_raw() as i64, format.max_raw() as i64)
     }
 
-    /// Returns an operand whose register moves what it loads into `min ..= max`, raw.
+    /// Adds an operand whose register moves what it loads into `min ..= max`, raw.
     pub fn clamped(&mut self, name: &str, format: Format, min: i64, max: i64) -> Slot {
         let slot = self.shown(format!("{name}_reg"), format, false);
         self.operands.push(Operand { name: name.to_owned(), slot, format, min, max });
@@ -257,8 +257,7 @@ impl Frame {
         results.map(|it| (it.name.as_str(), it.format))
     }
 
-    /// `valid` comes this number of clocks after the microinstructions that say it, through registers that a reset
-    /// clears.
+    /// Delays `valid` by this number of clocks after the microinstructions that say it, through registers that a reset clears.
     pub fn delay_valid(&mut self, clocks: u32) {
         self.valid_delay = clocks;
     }

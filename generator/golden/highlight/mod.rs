@@ -77,7 +77,7 @@ pub trait Reflectance: Send + Sync {
         None
     }
 
-    /// As [`Contract::length`].
+    /// Returns the operand that says how many results a computation has, as [`Contract::length`].
     fn length(&self) -> Option<&str> {
         None
     }
@@ -118,7 +118,7 @@ pub trait Reflectance: Send + Sync {
         Vec::new()
     }
 
-    /// As [`Contract::remarks`].
+    /// Returns facts about the formula that a user should know, as [`Contract::remarks`].
     fn remarks(&self) -> Vec<String> {
         Vec::new()
     }
@@ -155,7 +155,7 @@ impl Deref for Highlight {
 }
 
 impl Highlight {
-    /// The contract of a reflectance with these control operands, in the order in which it takes them.
+    /// Makes the contract of a reflectance with these control operands, in the order in which it takes them.
     pub fn new(
         reflectance: impl Reflectance + 'static,
         control: Vec<Operand>,
@@ -184,12 +184,12 @@ impl Highlight {
         self.products.narrow.apply(f * colour)
     }
 
-    /// As [`Reflectance::expressions`].
+    /// Returns [`Reflectance::expressions`] of the reflectance.
     pub fn expressions(&self) -> Vec<String> {
         self.reflectance.expressions()
     }
 
-    /// As [`Reflectance::point`]: the operands themselves where a computation has one result.
+    /// Returns the control operands of a point, as [`Reflectance::point`]: those given where a computation has one result.
     #[inline]
     pub fn point<'c>(&self, control: &'c [i64], index: u64) -> Cow<'c, [i64]> {
         let mut point = Cow::Borrowed(control);
@@ -199,8 +199,8 @@ impl Highlight {
         point
     }
 
-    /// The f of result number `index` (from 0) of raw operands; `exact` takes what [`Contract::exact`] says of it. `point`
-    /// is room for its control operands.
+    /// Returns the f of result number `index` (from 0) of raw operands; `exact` takes what [`Contract::exact`] says of it.
+    /// `point` is room for its control operands.
     #[inline]
     pub fn measured(
         &self,
@@ -227,12 +227,12 @@ impl Highlight {
         }));
     }
 
-    /// As [`Reflectance::at`].
+    /// Returns [`Reflectance::at`] with the operands of the contract.
     pub fn at(&self, gamma: f64, n: f64) -> Option<Vec<i64>> {
         self.reflectance.at(&self.operands, gamma, n)
     }
 
-    /// As [`Reflectance::cosine`].
+    /// Returns [`Reflectance::cosine`] with the operands of the contract.
     pub fn cosine(&self, control: &[i64]) -> Option<f64> {
         self.reflectance.cosine(&self.operands, control)
     }

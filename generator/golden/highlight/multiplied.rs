@@ -30,7 +30,7 @@ enum Schedule {
 }
 
 impl Products {
-    /// The colours of the building block `Colours`; every value is in the domain.
+    /// Makes the products with the colours of the building block `Colours`; every value is in the domain.
     pub fn colours(f: Format, bits: u32, rounding: Rounding) -> Self {
         let colours = ["red", "green", "blue"];
         let doc =
@@ -39,14 +39,14 @@ impl Products {
         Self::new(f, bits, rounding, colours.map(|it| (it, doc(it))).into(), outputs.into())
     }
 
-    /// The amplitude of the building block `Colours::amplitude`; every value is in the domain.
+    /// Makes the product with the amplitude of the building block `Colours::amplitude`; every value is in the domain.
     pub fn amplitude(f: Format, bits: u32, rounding: Rounding) -> Self {
         let doc = "intensity of the light times the surface's specular coefficient, at the peak";
         let operand = vec![("amplitude", doc.to_owned())];
         Self::new(f, bits, rounding, operand, vec!["intensity_out".to_owned()])
     }
 
-    /// Nothing: f alone.
+    /// Makes no product: the contract is on f alone.
     pub fn none(f: Format) -> Self {
         Self::new(f, 1, Rounding::Nearest, Vec::new(), Vec::new())
     }
@@ -89,7 +89,7 @@ impl Products {
         Self { schedule: if at_edges { Schedule::AtEdges } else { Schedule::AtOnce }, ..self }
     }
 
-    /// Their operands and outputs in a clock model that has the raw f in a slot, and the microinstructions that make the
+    /// Adds their operands and outputs to a clock model that has the raw f in a slot. Returns the microinstructions that make the
     /// products, before the one with the result; none where they are made at once.
     pub fn slots(&self, frame: &mut Frame, f: Slot) -> Vec<Microinstruction> {
         let mut program = Vec::new();

@@ -36,7 +36,7 @@ pub(super) fn of_keys(keys: Keys) -> Highlight {
 }
 
 impl Arithmetic {
-    /// D² of the raw components.
+    /// Returns D² of the raw components.
     #[inline]
     fn exact_distance(&self, vector: &[i64]) -> f64 {
         let squares = vector[..3].iter().map(|component| component * component);
@@ -74,7 +74,7 @@ impl Reflectance for Arithmetic {
         vec![format!("{} ** {power}", shared::clamped_at_0(&base))]
     }
 
-    /// Returns the normal is (0, 0, 1), and the half vector (sin γ, 0, cos γ).
+    /// Returns the operands for the normal (0, 0, 1) and the half vector (sin γ, 0, cos γ).
     fn at(&self, operands: &[Operand], gamma: f64, n: f64) -> Option<Vec<i64>> {
         let (first, last) = self.keys.domain.exponents();
         let exponent = n as i64;
@@ -97,7 +97,8 @@ impl Reflectance for Arithmetic {
         Some((1.0 - self.exact_distance(control) / 2.0).max(0.0))
     }
 
-    /// Returns the word of D² and the operand that scales it determine f: adders 1 and 2 and multipliers 1 to 3 are exact.
+    /// Returns every word of D² with every operand that scales it: they determine f, since adders 1 and 2 and multipliers 1 to 3
+    /// are exact.
     fn sweep(&self) -> Option<Sweep> {
         let most = FARTHEST << self.keys.distance_fraction;
         Some(Sweep::ranges([
@@ -106,7 +107,8 @@ impl Reflectance for Arithmetic {
         ]))
     }
 
-    /// Returns the worst over every D² that is rounded to the word. The formula falls as D² grows, so that it is at an end.
+    /// Returns the largest error over every D² that is rounded to the word. The formula falls as D² grows, so that it is at an
+    /// end.
     #[inline]
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let (operand, word) = (place[0], place[1]);
@@ -128,8 +130,8 @@ impl Reflectance for Arithmetic {
         Some((f - nearest).abs().max((f - formula(high)).abs()))
     }
 
-    /// Base and powers lie in 0 … 1, hardware's and formula's alike, so by the mean value theorem an error
-    /// ε before a power p grows to at most p·ε.
+    /// Derives the terms of f's error. Base and powers lie in 0 … 1, hardware's and formula's alike, so by the mean value theorem
+    /// an error ε before a power p grows to at most p·ε.
     ///
     /// - An error of D² is multiplied by β = n/(2·m), and raised to m: n/2 in all.
     /// - Base: as in `cosine-power`, the inverse stands for 1.0 − ulp − t where 1.0 − t is meant. With t

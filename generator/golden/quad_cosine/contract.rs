@@ -51,7 +51,7 @@ impl Reflectance for Arithmetic {
         self.cosine_of(n, self.magnitude(angle), self.root(n))
     }
 
-    /// Returns the surface faces from −90° to less than 90°, as two's complement has it.
+    /// Returns the formula; the surface faces from −90° to less than 90°, as two's complement has it.
     #[inline]
     fn reference(&self, control: &[i64]) -> f64 {
         let (angle, n) = (control[1], control[2]);
@@ -104,8 +104,8 @@ impl Reflectance for Arithmetic {
         ]))
     }
 
-    /// Returns the worst over the angles of either sign that have this magnitude: the formula falls from one end
-    /// of them to the other.
+    /// Returns the largest error over the angles of either sign that have this magnitude: the formula falls from one end of them
+    /// to the other.
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let (n, magnitude) = (place[0], place[1]);
         let word = self.cosine_of(n, Some(magnitude), self.root(n));
@@ -115,8 +115,8 @@ impl Reflectance for Arithmetic {
         Some((end(magnitude) - f).max(f - end(magnitude + 1)))
     }
 
-    /// For each n: how far ROM 12 is from the formula within a step, and the error of the stretched angle
-    /// by the steepest slope of the power. The terms are those of the worst n.
+    /// Returns the terms of the worst n: how far ROM 12 is from the formula within a step, and the error of the stretched angle
+    /// by the steepest slope of the power.
     fn shares(&self) -> Vec<ErrorShare> {
         let keys = &self.keys;
         let (low, high) = keys.domain.exponents();

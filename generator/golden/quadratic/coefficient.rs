@@ -5,7 +5,7 @@
 
 use glint_keys::quadratic::Scheme;
 
-/// a(n) for n = 0 … `count` − 1, unrounded. n = 0 is as n = 1.
+/// Returns a(n) for n = 0 … `count` − 1, unrounded. n = 0 is as n = 1.
 pub fn table(scheme: Scheme, count: u32) -> Vec<f64> {
     (0..count)
         .map(|n| match scheme {
@@ -15,7 +15,7 @@ pub fn table(scheme: Scheme, count: u32) -> Vec<f64> {
         .collect()
 }
 
-/// Newton's iteration on the difference of the two errors, for n > 2.
+/// Finds a(n) for n > 2, by Newton's iteration on the difference of the two errors.
 fn minimax(n: f64) -> f64 {
     // For large n the solution of 1 + α·ln α − α = exp(−1/α) is a/n.
     let mut a = 0.513 * (n - 1.0) + 0.5;

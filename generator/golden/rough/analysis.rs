@@ -63,7 +63,7 @@ pub struct Weight {
 }
 
 impl Weight {
-    /// `anywhere` is the largest error of the base for whatever angles.
+    /// Makes the weight for a number of bins; `anywhere` is the largest error of the base for whatever angles.
     fn new(keys: &Keys, distance: usize, anywhere: f64) -> Self {
         let (least, most) = exponents(keys);
         let sine = libm::sin((distance.saturating_sub(1)) as f64 * BIN / 2.0);
@@ -108,7 +108,7 @@ pub struct Analysis {
 }
 
 impl Analysis {
-    /// The bounds with the errors of a table.
+    /// Makes the bounds with the errors of a table.
     pub fn new(keys: &Keys, sine: &Sine) -> Self {
         let errors = Errors::new(sine);
         let deviation = bin(keys.deviation.to_radians() + SLACK);

@@ -29,7 +29,7 @@ impl Reflectance for Arithmetic {
         it.f_of(it.squared(scaled, cos_gamma))
     }
 
-    /// Returns the patent's arithmetic is held against the clamped formula, which shows what it costs.
+    /// Returns the clamped formula for the patent's arithmetic too, which shows what it costs.
     #[inline]
     fn reference(&self, control: &[i64]) -> f64 {
         let cosine = |raw| self.keys.clamped(raw) as f64 * self.keys.ulp();
@@ -53,13 +53,13 @@ impl Reflectance for Arithmetic {
         })]
     }
 
-    /// With dγ = 0.
+    /// Returns the operands of γ and n with dγ = 0.
     fn at(&self, operands: &[Operand], gamma: f64, n: f64) -> Option<Vec<i64>> {
         let no_deviation = [("cos_dgamma", self.keys.largest_cosine())];
         shared::operands_at(operands, gamma, n, &no_deviation)
     }
 
-    /// Returns where γ is dγ; where dγ is added to it, both are 0.
+    /// Returns the operands where γ is dγ; where dγ is added to it, both are 0.
     fn peak(&self, control: &[i64]) -> Option<Vec<i64>> {
         let deviation = if control[3] == 1 { control[1] } else { self.keys.largest_cosine() };
         Some(vec![deviation, deviation, control[2], control[3]])

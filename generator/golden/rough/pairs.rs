@@ -182,7 +182,7 @@ impl Search<'_> {
     }
 }
 
-/// n·b where cos(γ ± dγ) is this much below 1.
+/// Returns n·b where cos(γ ± dγ) is this much below 1.
 fn weight(n: f64, below: f64) -> f64 {
     n * (1.0 - n * below / 2.0).max(0.0)
 }

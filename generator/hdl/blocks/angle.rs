@@ -86,7 +86,7 @@ pub fn cosine_power_table(power: u32, bits: i32, fraction: i32) -> Vec<i128> {
         .collect()
 }
 
-/// For each word of such a table the angles that it stands for.
+/// Returns the comments of such a table: for each word the angles that it stands for.
 pub fn step_comments(power: u32, bits: i32) -> Vec<String> {
     let degrees = |step: u32| f64::from(step) * exp2(-bits) * 90.0;
     let steps = 1u32 << bits;

@@ -31,7 +31,7 @@ struct Channel<'d> {
 }
 
 impl<'d> Colours<'d> {
-    /// The operands `red`, `green`, `blue` of `bits` bits, with the source's numbers where it has some.
+    /// Makes the operands `red`, `green`, `blue` of `bits` bits, with the source's numbers where it has some.
     #[track_caller]
     pub fn new(designer: &'d Designer, bits: i32, blocks: Option<[ChannelBlocks; 3]>) -> Self {
         let format = Format::unsigned(bits, 0);
@@ -49,8 +49,8 @@ impl<'d> Colours<'d> {
         Self { designer, format, channels }
     }
 
-    /// One operand, `amplitude`, of `bits` bits, for the output `intensity_out`: a device that is there
-    /// once for each colour, or whose light has none.
+    /// Makes one operand, `amplitude`, of `bits` bits, for the output `intensity_out`: a device that is there once for each
+    /// colour, or whose light has none.
     #[track_caller]
     pub fn amplitude(designer: &'d Designer, bits: i32, blocks: Option<ChannelBlocks>) -> Self {
         let format = Format::unsigned(bits, 0);
@@ -90,7 +90,7 @@ impl<'d> Colours<'d> {
         steps
     }
 
-    /// The outputs, `<colour>_out` or `intensity_out`, each f times its operand, rounded to integers.
+    /// Makes the outputs, `<colour>_out` or `intensity_out`, each f times its operand, rounded to integers.
     #[track_caller]
     pub fn outputs(&self, f: Signal<'d>, rounding: Rounding) {
         self.outputs_of(f, rounding, false);

@@ -57,7 +57,7 @@ pub struct Line<'d> {
 }
 
 impl<'d> Line<'d> {
-    /// Angles of `format`, signed, and up to 2^`length_bits` − 1 intervals.
+    /// Makes a line with angles of `format`, signed, and up to 2^`length_bits` − 1 intervals.
     #[track_caller]
     pub fn new(
         d: &'d Designer,
@@ -114,9 +114,8 @@ impl<'d> Line<'d> {
         self.angle.q()
     }
 
-    /// The microprogram of a device that does nothing else: its results are on the outputs `clocks` clocks
-    /// after the word that writes their angle, one for the register itself and one for every register
-    /// between it and the outputs.
+    /// Sets the microprogram of a device that does nothing else: its results are on the outputs `clocks` clocks after the word
+    /// that writes their angle, one for the register itself and one for every register between it and the outputs.
     #[track_caller]
     pub fn microprogram(&self, clocks: u32) {
         let clocks = clocks.max(1);

@@ -30,7 +30,7 @@ pub fn quadrant<'d>(d: &'d Designer, name: &str, turn: Signal<'d>, ahead: u32) -
     Quadrant { way, negative: number.bit(1) }
 }
 
-/// 2^bits − `way`, and the largest number in place of 2^bits itself.
+/// Returns 2^bits − `way`, and the largest number in place of 2^bits itself.
 #[track_caller]
 pub fn mirrored<'d>(d: &'d Designer, name: &str, way: Signal<'d>) -> Signal<'d> {
     let format = way.format();

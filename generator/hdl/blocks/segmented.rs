@@ -258,7 +258,7 @@ struct Picker<'a, 'd> {
 }
 
 impl<'d> Picker<'_, 'd> {
-    /// Between the arms `from` to `to`, less one.
+    /// Chooses between the arms from number `from` to `to` − 1.
     #[track_caller]
     fn pick(&self, from: usize, to: usize) -> Arm<'d> {
         if to - from == 1 {

@@ -3,8 +3,8 @@
 use crate::dsl::{Designer, Signal};
 use glint_base::fixed::Format;
 
-/// `x` divided by 2^`places` and rounded down to the fraction bits that it has: a barrel shifter, with one
-/// row of muxes for each bit of `places`.
+/// Divides `x` by 2^`places` and rounds down to the fraction bits that it has: a barrel shifter, with one row of muxes for each
+/// bit of `places`.
 ///
 /// `x` is unsigned, `places` an unsigned integer.
 #[track_caller]

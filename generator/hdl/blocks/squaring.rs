@@ -15,7 +15,7 @@ pub struct Squarings<'d> {
 }
 
 impl<'d> Squarings<'d> {
-    /// `count` squarings, 1 to 4: the power is 2^count.
+    /// Makes `count` squarings, 1 to 4: the power is 2^count.
     #[track_caller]
     pub fn new(designer: &'d Designer, count: u32) -> Self {
         let counter = (count > 1).then(|| {
@@ -24,8 +24,8 @@ impl<'d> Squarings<'d> {
         Self { designer, counter, start: None }
     }
 
-    /// `count` squarings under a counter that counts something else too, before them: it is returned
-    /// with the setting that makes it start from `other`.
+    /// Makes `count` squarings under a counter that counts something else too, before them. Returns the counter too, with the
+    /// settings that make it start from `other`.
     #[track_caller]
     pub fn sharing(
         designer: &'d Designer,

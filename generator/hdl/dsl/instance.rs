@@ -49,8 +49,8 @@ impl<'d> Instance<'d> {
 }
 
 impl Designer {
-    /// Returns a part: the description `describe` under the name `name`, with a signal for each of its operands. Its results are in
-    /// registers. A description with parts has no microprogram of its own: [`Designer::dataflow`].
+    /// Returns a part: the description `describe` under the name `name`, with a signal for each of its operands. Its results are
+    /// in registers. A description with parts has no microprogram of its own: [`Designer::dataflow`].
     ///
     /// ```
     /// use glint_rtl::dsl::{Designer, end, step, valid};
@@ -156,7 +156,7 @@ impl Designer {
         self.program(Vec::new(), true);
     }
 
-    /// The microprogram of the parts, where [`Designer::dataflow`] asks for it.
+    /// Makes the parts the microprogram where [`Designer::dataflow`] asks for it; elsewhere parts are an error.
     pub(super) fn with_parts(&self, program: &mut Program) {
         let mut parts = self.with(|inner| std::mem::take(&mut inner.parts));
         if program.of_parts {

@@ -170,7 +170,7 @@ pub(crate) struct Inner {
 }
 
 impl Designer {
-    /// An empty design; `name` becomes the name of the top module.
+    /// Makes an empty design; `name` becomes the name of the top module.
     ///
     /// The common handshake is there from the start: inputs `rst_n` and `start`, outputs `valid`,
     /// `busy` and `done` (the outputs join when the microprogram is known).
@@ -317,13 +317,13 @@ impl Designer {
         Rom { designer: self, id }
     }
 
-    /// Returns an output port that carries a result.
+    /// Adds an output port that carries a result.
     #[track_caller]
     pub fn output<'d>(&'d self, name: &str, source: Signal<'d>) -> Signal<'d> {
         self.output_as(name, source, Role::Result)
     }
 
-    /// Returns an output port that shows a signal of the control block.
+    /// Adds an output port that shows a signal of the control block.
     #[track_caller]
     pub fn status<'d>(&'d self, name: &str, source: Signal<'d>) -> Signal<'d> {
         self.output_as(name, source, Role::Status)
@@ -343,8 +343,8 @@ impl Designer {
         self.signal(id)
     }
 
-    /// The microprogram. Microinstruction 0 is where the device waits for `start`; it is executed once more after
-    /// it, so that operands written together with `start` have settled.
+    /// Sets the microprogram. Microinstruction 0 is where the device waits for `start`; it is executed once more after it, so
+    /// that operands written together with `start` have settled.
     #[track_caller]
     pub fn microprogram(&self, steps: impl IntoIterator<Item = Step>) {
         self.program(steps.into_iter().collect(), false);

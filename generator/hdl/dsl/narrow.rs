@@ -7,7 +7,7 @@ use crate::netlist::{Driver, NetId, Op};
 use glint_base::fixed::{Format, Overflow, Rounding};
 
 impl Designer {
-    /// `a` brought to `format`.
+    /// Brings `a` to `format`.
     ///
     /// Costs what it must: truncation is wiring; rounding to nearest is an incrementer; saturation is a
     /// test of the upper bits, and of those only that the range of `a` lets differ. With
@@ -210,12 +210,12 @@ impl Designer {
     }
 }
 
-/// `format` without a sign bit, as wide.
+/// Returns `format` without a sign bit, as wide.
 fn unsigned_as(format: Format) -> Format {
     Format { signed: false, int: format.int + i32::from(format.signed), frac: format.frac }
 }
 
-/// `format` with a sign bit, as wide.
+/// Returns `format` with a sign bit, as wide.
 fn signed_as(format: Format) -> Format {
     Format { signed: true, int: format.int - i32::from(!format.signed), frac: format.frac }
 }

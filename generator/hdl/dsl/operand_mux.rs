@@ -104,8 +104,8 @@ impl Designer {
         }
     }
 
-    /// The product of the bits of one bus below its sign by the other bus, in the order that `ordered`
-    /// says, and what is to be taken off above them.
+    /// Returns the product of the bits of one bus below its sign by the other bus, in the order that `ordered` says, and what is
+    /// to be taken off above them.
     #[track_caller]
     fn unsigned_core<'d>(
         &'d self,
@@ -143,7 +143,7 @@ impl<'d> OperandMux<'d> {
         Setting::pick_of(self.designer, self.field, &self.name, input, &self.inputs)
     }
 
-    /// The operand that the microinstruction before selected, in a register `<name>_held` behind the mux.
+    /// Holds in a register `<name>_held` behind the mux the operand that the microinstruction before selected.
     ///
     /// For a program that settles the operands in one microinstruction and takes the product in the next,
     /// under the same selection: the multiplier then has the second of the two clocks to itself.

@@ -75,7 +75,7 @@ fn behind(d: &Designer, port: NetId, kind: RegisterKind, enable: Option<NetId>) 
     });
 }
 
-/// Every microinstruction that sets `valid` loads instead, and one after it sets `valid`.
+/// Makes every microinstruction that sets `valid` load instead, and one after it set `valid`.
 fn loaded(d: &Designer, steps: &mut Vec<Step>, load: &Setting) {
     let mut at = 0;
     while at < steps.len() {
@@ -98,7 +98,7 @@ fn loaded(d: &Designer, steps: &mut Vec<Step>, load: &Setting) {
     }
 }
 
-/// One more microinstruction at the end, while the last result goes through the registers.
+/// Adds a microinstruction at the end, while the last result goes through the registers.
 fn followed(steps: &mut Vec<Step>) {
     if let Some(last) = steps.last_mut() {
         let after = last.divided();

@@ -59,7 +59,7 @@ impl Setting {
         Self { kind, of: None, location: Location::caller() }
     }
 
-    /// A mux passes `input` on: found by what the mux's net selects from.
+    /// Returns the setting with which a mux passes `input` on: found by what the mux's net selects from.
     #[track_caller]
     pub(crate) fn pick(d: &Designer, field: FieldId, mux: &str, input: Signal<'_>) -> Self {
         if input.designer().serial != d.serial {

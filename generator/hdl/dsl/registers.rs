@@ -56,7 +56,7 @@ impl Designer {
         })
     }
 
-    /// A two-input mux of which it is known that the result stays within `range`.
+    /// Makes a two-input mux of which it is known that the result stays within `range`.
     #[track_caller]
     fn chosen_within<'d>(
         &'d self,
@@ -143,8 +143,7 @@ impl Designer {
         self.signal(q)
     }
 
-    /// Select lines that several muxes share, with a name for each value: what the muxes then pass on
-    /// together.
+    /// Makes select lines that several muxes share, with a name for each value: what the muxes then pass on together.
     #[track_caller]
     pub fn select(&self, name: &str, choices: &[&str]) -> Select<'_> {
         let width = usize::BITS - choices.len().saturating_sub(1).leading_zeros();
@@ -153,7 +152,7 @@ impl Designer {
         Select { designer: self, field }
     }
 
-    /// Select lines; of another designer that is an error.
+    /// Returns the select lines. Those of another designer are an error, and lines like them take their place.
     #[track_caller]
     pub(crate) fn own_select<'d>(&'d self, select: Select<'d>) -> Select<'d> {
         if self.serial == select.designer.serial {
@@ -342,7 +341,7 @@ impl<'d> Select<'d> {
         })
     }
 
-    /// Mux `name` has as many inputs as the field has values.
+    /// Checks that mux `name` has as many inputs as the field has values.
     #[track_caller]
     pub(crate) fn check_inputs(self, name: &str, inputs: usize) {
         let choices = self.choices().len();

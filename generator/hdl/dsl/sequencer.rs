@@ -33,7 +33,7 @@ pub struct Sequencer {
 }
 
 impl Sequencer {
-    /// Address counter, run flag, control ROM, and the outputs of the handshake.
+    /// Builds address counter, run flag, control ROM, and the outputs of the handshake.
     pub fn build(
         &self,
         d: &Designer,

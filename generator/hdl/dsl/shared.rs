@@ -117,7 +117,7 @@ impl Designer {
         })
     }
 
-    /// Returns a register; returns the net that it drives.
+    /// Adds a register and returns the net that it drives.
     #[track_caller]
     pub(crate) fn add_register(
         &self,
@@ -195,7 +195,7 @@ impl Designer {
         own
     }
 
-    /// `source` as a net of exactly `format`, or an error that names `what` it was for.
+    /// Returns `source` as a net of exactly `format`, or reports an error that names `what` it was for.
     #[track_caller]
     pub(crate) fn fitted(&self, source: Signal<'_>, format: Format, what: &str) -> Option<NetId> {
         let (low, high) = source.range();

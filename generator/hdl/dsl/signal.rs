@@ -127,7 +127,7 @@ impl<'d> Signal<'d> {
         )
     }
 
-    /// Bits `low` … `low + width − 1`, read in `format` (which must be that wide).
+    /// Returns bits `low` … `low + width − 1`, read in `format` (which must be that wide).
     #[must_use]
     #[track_caller]
     pub fn bits(self, low: u32, format: Format) -> Self {
@@ -152,15 +152,15 @@ impl<'d> Signal<'d> {
         self.wiring("bits", format, range, Op::Slice { of: self.id, low })
     }
 
-    /// Bit number `at`.
+    /// Returns bit number `at`.
     #[must_use]
     #[track_caller]
     pub fn bit(self, at: u32) -> Self {
         self.bits(at, Format::BIT)
     }
 
-    /// The bits of this signal above those of `low`, read in `format` (which must be as wide as both
-    /// together): what a shift register takes.
+    /// Returns the bits of this signal above those of `low`, read in `format` (which must be as wide as both together): what a
+    /// shift register takes.
     #[must_use]
     #[track_caller]
     pub fn above(self, low: Signal<'d>, format: Format) -> Self {
@@ -183,7 +183,7 @@ impl<'d> Signal<'d> {
         self.wiring("above", format, format.range(), op)
     }
 
-    /// The signal as a signed number of the same value, one bit wider when it was unsigned.
+    /// Returns the signal as a signed number of the same value, one bit wider when it was unsigned.
     #[must_use]
     #[track_caller]
     pub fn as_signed(self) -> Self {
@@ -208,7 +208,7 @@ impl<'d> Signal<'d> {
         self.wiring("shifted", format, range, Op::Relabel(self.id))
     }
 
-    /// A wiring net named after this one.
+    /// Makes a wiring net named after this one.
     #[track_caller]
     pub(crate) fn wiring(self, suffix: &str, format: Format, range: Interval, op: Op) -> Self {
         let name = format!("{}_{suffix}", self.name());
@@ -219,13 +219,13 @@ impl<'d> Signal<'d> {
 
 /// The arithmetic blocks. Results are exact: their formats hold every value that the operands can give.
 impl Designer {
-    /// `a + b`. Operands may differ in format: their points are aligned, and nothing is dropped.
+    /// Returns `a + b`. Operands may differ in format: their points are aligned, and nothing is dropped.
     #[track_caller]
     pub fn add<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         self.sum(name, a, b, None)
     }
 
-    /// `a + b`, and one ulp (of the finer operand) when `carry` is 1.
+    /// Returns `a + b`, and one ulp (of the finer operand) more when `carry` is 1.
     #[track_caller]
     pub fn add_carry<'d>(
         &'d self,
@@ -259,7 +259,7 @@ impl Designer {
         self.signal(self.add_net(name, format, range, Driver::Op(op), true))
     }
 
-    /// `a + b` modulo the width, with the carry in when given: words without an integer position.
+    /// Returns `a + b` modulo the width, with the carry in when given: words without an integer position.
     #[track_caller]
     pub fn add_modulo<'d>(
         &'d self,
@@ -283,7 +283,7 @@ impl Designer {
         self.signal(self.add_net(name, format, format.range(), Driver::Op(op), true))
     }
 
-    /// `a − b`, aligned as in [`Designer::add`]; unsigned where the ranges show that it is never negative.
+    /// Returns `a − b`, aligned as in [`Designer::add`]; unsigned where the ranges show that it is never negative.
     #[track_caller]
     pub fn sub<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = aligned(self.own(a), self.own(b));
@@ -294,7 +294,7 @@ impl Designer {
         self.signal(self.add_net(name, format, range, Driver::Op(op), true))
     }
 
-    /// `a · b`, whole.
+    /// Returns `a · b`, whole.
     #[track_caller]
     pub fn mul<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = (self.own(a), self.own(b));
@@ -323,8 +323,8 @@ impl Designer {
         self.signal(net)
     }
 
-    /// `high` and `low` side by side, by wiring: an address made of two parts. Integers without a sign; a signed part is
-    /// an error, because its bits would be read as another number.
+    /// Puts `high` and `low` side by side, by wiring: an address made of two parts. Integers without a sign; a signed part is an
+    /// error, because its bits would be read as another number.
     #[track_caller]
     pub fn concat<'d>(&'d self, name: &str, high: Signal<'d>, low: Signal<'d>) -> Signal<'d> {
         let (mut high, mut low) = (self.own(high), self.own(low));
@@ -347,8 +347,8 @@ impl Designer {
         self.signal(self.add_net(name, format, range, Driver::Op(op), true))
     }
 
-    /// `low` in place of the low bits of the constant `high`, which must be zero there: an address made
-    /// of a constant and a prefix, by wiring.
+    /// Puts `low` in place of the low bits of the constant `high`, which must be zero there: an address made of a constant and a
+    /// prefix, by wiring.
     #[track_caller]
     pub fn beside<'d>(&'d self, high: Signal<'d>, low: Signal<'d>, format: Format) -> Signal<'d> {
         let low_bits = low.format().width();
@@ -388,48 +388,48 @@ impl Designer {
         self.signal(self.add_wiring(name, format, range, Driver::Op(Op::Concat(parts))))
     }
 
-    /// 1 when both are 1; operands of one bit.
+    /// Returns the signal that is 1 when both are 1; operands of one bit.
     #[track_caller]
     pub fn and<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = (self.one_bit(a), self.one_bit(b));
         self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::And(a, b))))
     }
 
-    /// 1 when either is 1; operands of one bit.
+    /// Returns the signal that is 1 when either is 1; operands of one bit.
     #[track_caller]
     pub fn or<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = (self.one_bit(a), self.one_bit(b));
         self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::Or(a, b))))
     }
 
-    /// 1 when `a < b`.
+    /// Returns the signal that is 1 when `a < b`.
     #[track_caller]
     pub fn less<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = self.comparable(a, b);
         self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::Less(a, b))))
     }
 
-    /// 1 when `a = b`.
+    /// Returns the signal that is 1 when `a = b`.
     #[track_caller]
     pub fn equal<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = self.comparable(a, b);
         self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::Equal(a, b))))
     }
 
-    /// 1 when any bit of `a` is 1: `a ≠ 0`.
+    /// Returns the signal that is 1 when any bit of `a` is 1: `a ≠ 0`.
     #[track_caller]
     pub fn any<'d>(&'d self, name: &str, a: Signal<'d>) -> Signal<'d> {
         self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::Any(self.own(a).id()))))
     }
 
-    /// 1 when every bit of `a` is 1.
+    /// Returns the signal that is 1 when every bit of `a` is 1.
     #[track_caller]
     pub fn all<'d>(&'d self, name: &str, a: Signal<'d>) -> Signal<'d> {
         self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::All(self.own(a).id()))))
     }
 
-    /// Input 0 or 1 by the one-bit signal `select`, a signal of the datapath. Inputs have one point;
-    /// the result holds them all.
+    /// Returns input 0 or 1 by the one-bit signal `select`, a signal of the datapath. Inputs have one point; the result holds
+    /// them all.
     #[track_caller]
     pub fn choose<'d>(
         &'d self,
@@ -514,8 +514,8 @@ impl Designer {
         (self.resized(a, format), self.resized(b, format))
     }
 
-    /// `a` as a net of exactly `format`, which has the same point. Where the format does not hold the
-    /// range of `a`, the upper bits are dropped: an operand of a sum whose result the format holds.
+    /// Returns `a` as a net of exactly `format`, which has the same point. Where the format does not hold the range of `a`, the
+    /// upper bits are dropped: an operand of a sum whose result the format holds.
     #[track_caller]
     pub(crate) fn resized(&self, a: Signal<'_>, format: Format) -> NetId {
         let a = self.own(a);
@@ -536,7 +536,7 @@ impl Designer {
     }
 }
 
-/// Both with as many fraction bits as the finer one.
+/// Returns both with as many fraction bits as the finer one.
 #[track_caller]
 fn aligned<'d>(a: Signal<'d>, b: Signal<'d>) -> (Signal<'d>, Signal<'d>) {
     let frac = a.format().frac.max(b.format().frac);

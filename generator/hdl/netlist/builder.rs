@@ -8,7 +8,7 @@ use glint_base::diagnostic::SourceLocation;
 use glint_base::fixed::Format;
 
 impl Design {
-    /// A design of which nothing but the name is there.
+    /// Makes a design of which nothing but the name is there.
     pub fn empty(name: &str) -> Self {
         Self {
             name: name.to_owned(),
@@ -29,7 +29,7 @@ impl Design {
         NetId(self.nets.len() as u32 - 1)
     }
 
-    /// Has a net driven by a new register, which takes nothing yet.
+    /// Lets a new register, which takes nothing yet, drive a net.
     pub fn add_register(&mut self, q: NetId, kind: RegisterKind) -> &mut Register {
         let at = self.registers.len();
         self.nets[q.index()].driver = Driver::Register(RegId(at as u32));
@@ -47,7 +47,7 @@ impl Design {
 }
 
 impl Net {
-    /// A named net of the datapath that can have every value of its format.
+    /// Makes a named net of the datapath that can have every value of its format.
     pub fn new(name: String, format: Format, driver: Driver, location: SourceLocation) -> Self {
         Self {
             name,
@@ -65,7 +65,7 @@ impl Net {
 }
 
 impl Rom {
-    /// A memory that is read at once.
+    /// Makes a memory that is read at once.
     pub fn new(
         name: &str,
         address: NetId,

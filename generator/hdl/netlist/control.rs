@@ -81,7 +81,7 @@ pub enum Sequence {
 }
 
 impl Control {
-    /// That of a pipeline: no microinstruction, and so neither fields nor a sequencer.
+    /// Makes the control of a pipeline: no microinstruction, and so neither fields nor a sequencer.
     pub fn none() -> Self {
         Self {
             fields: Vec::new(),

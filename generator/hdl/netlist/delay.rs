@@ -48,9 +48,9 @@ impl Delayed {
 impl Design {
     /// Returns the delay lines that are emitted as memories: those that take less so on a target that has small ones.
     ///
-    /// Points find the same there as in these registers, whatever the enable does; a reset, which drops all points, begins with the
-    /// first word again. The side channel stays in registers: the proof by induction follows its value from stage to stage. So
-    /// does what is inside a multiplier.
+    /// Points find the same there as in these registers, whatever the enable does; a reset, which drops all points, begins with
+    /// the first word again. The side channel stays in registers: the proof by induction follows its value from stage to stage.
+    /// So does what is inside a multiplier.
     pub fn delay_lines(&self) -> Vec<DelayLine> {
         let Some(pipeline) = &self.pipeline else { return Vec::new() };
         let Some(memory) = pipeline.delay_memory else { return Vec::new() };

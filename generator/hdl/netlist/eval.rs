@@ -98,7 +98,7 @@ pub struct Interpreter<'a> {
 }
 
 impl<'a> Interpreter<'a> {
-    /// At power-up: inputs, registers and the outputs of synchronous ROMs are 0.
+    /// Makes an interpreter at power-up: inputs, registers and the outputs of synchronous ROMs are 0.
     ///
     /// # Errors
     /// A combinational loop, as the nets along it.
@@ -130,7 +130,7 @@ impl<'a> Interpreter<'a> {
         }
     }
 
-    /// The rising edge after [`Interpreter::settle`]: registers and synchronous ROMs take their new values.
+    /// Performs the rising edge after [`Interpreter::settle`]: registers and synchronous ROMs take their new values.
     pub fn edge(&mut self) {
         let design = self.design;
         let reset = design.port(|role| role == super::Role::Reset);

@@ -250,8 +250,8 @@ impl<'a> Steady<'a> {
     }
 }
 
-/// About how long a cell of an FPGA takes, with the wires to it, in hundredths of a nanosecond. Only which of
-/// two places is the better one depends on it.
+/// Estimates how long a cell of an FPGA takes, with the wires to it, in hundredths of a nanosecond. Only which of two places is
+/// the better one depends on it.
 fn delay(design: &Design, op: &Op) -> u32 {
     let width = op.operands().iter().map(|&of| design.width(of)).max().unwrap_or(0);
     // Trees of LUTs with four inputs.
@@ -353,7 +353,7 @@ mod tests {
         assert!(design.nets.iter().all(|net| !net.name.ends_with("_held")));
     }
 
-    /// Returns the sum of two operands is on an output at once, its cube in a register by the microprogram's load.
+    /// Makes a device with the sum of two operands on an output at once, its cube in a register by the microprogram's load.
     fn device(program: fn(Step, Step) -> Vec<Step>) -> Design {
         let d = Designer::new("device");
         let (a, b) = (d.operand("a", BYTE), d.operand("b", BYTE));

@@ -370,12 +370,12 @@ impl Design {
         self.nets.iter().enumerate().map(|(at, net)| (NetId(at as u32), net))
     }
 
-    /// Ports that are inputs, in order.
+    /// Returns the ports that are inputs, in order.
     pub fn inputs(&self) -> impl Iterator<Item = &Port> {
         self.ports.iter().filter(|port| port.role.is_input())
     }
 
-    /// Ports that are outputs, in order.
+    /// Returns the ports that are outputs, in order.
     pub fn outputs(&self) -> impl Iterator<Item = &Port> {
         self.ports.iter().filter(|port| !port.role.is_input())
     }

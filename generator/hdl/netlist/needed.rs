@@ -5,8 +5,8 @@ use std::collections::{HashSet, VecDeque};
 use super::{Design, Driver, Microinstruction, NetId, Op};
 use glint_base::fixed::mask;
 
-/// For each net the clock, counted from that of the first microinstruction of a computation, in which its value
-/// first matters: reaches an output, the sequencer, or a register that is loaded. `usize::MAX` if it never does.
+/// Returns for each net the clock, counted from that of the first microinstruction of a computation, in which its value first
+/// matters: reaches an output, the sequencer, or a register that is loaded. `usize::MAX` if it never does.
 ///
 /// A microinstruction that controls a mux needs its chosen input alone.
 pub fn needed(design: &Design) -> Vec<usize> {
@@ -69,12 +69,12 @@ struct Walk<'a> {
 }
 
 impl Walk<'_> {
-    /// `net` matters in every clock.
+    /// Notes that `net` matters in every clock.
     fn at_once(&mut self, net: NetId) {
         (0..self.design.control.microprogram.len()).for_each(|at| self.from(at, net));
     }
 
-    /// `net` matters in microinstruction `at`.
+    /// Notes that `net` matters in microinstruction `at`, and what it depends on.
     fn from(&mut self, at: usize, net: NetId) {
         let design = self.design;
         let mut pending = vec![(at, net)];

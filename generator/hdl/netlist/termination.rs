@@ -15,8 +15,8 @@ pub struct Left {
     pub counter: Option<RegId>,
 }
 
-/// For each microinstruction what is left when it is executed; `None` if a microinstruction waits for `start`, or if something
-/// else than a counter decides about a loop.
+/// Returns for each microinstruction what is left when it is executed; `None` if a microinstruction waits for `start`, or if
+/// something else than a counter decides about a loop.
 pub fn remaining(design: &Design) -> Option<Vec<Left>> {
     let microprogram = &design.control.microprogram;
     let mut left: Vec<Left> = Vec::with_capacity(microprogram.len());
@@ -79,7 +79,7 @@ mod tests {
 
     type Condition = for<'d> fn(&'d Designer, Signal<'d>, Signal<'d>) -> Signal<'d>;
 
-    /// Returns a counter of three bits goes from the operand to 0 in microinstruction 2.
+    /// Makes a counter of three bits that goes from the operand to 0 in microinstruction 2.
     fn counted(condition: Condition) -> Design {
         design(|d| {
             let x = d.operand("x", Format::unsigned(3, 0));

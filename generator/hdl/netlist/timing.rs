@@ -23,8 +23,8 @@ pub struct Timing {
 }
 
 impl Timing {
-    /// Clocks from a point to the next without a pause: of a line once it is under way, where a computation
-    /// has several results; of computations back to back elsewhere. `None` where they depend on the data.
+    /// Returns the clocks from a point to the next without a pause: of a line once it is under way, where a computation has
+    /// several results; of computations back to back elsewhere. `None` where they depend on the data.
     pub fn clocks_per_point(&self) -> Option<u32> {
         self.valid_to_valid.or(self.start_to_start)
     }

@@ -210,7 +210,7 @@ impl Design {
         }
     }
 
-    /// The widths that an [`Op`] asks for.
+    /// Checks that a cell and its operands have the widths that its [`Op`] asks for.
     fn cell(&self, id: NetId, op: &Op) -> Result<(), &'static str> {
         let width = |id: NetId| self.width(id);
         let signed = |id: NetId| self.net(id).format.signed;

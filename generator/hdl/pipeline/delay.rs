@@ -4,7 +4,7 @@ use super::graph::{Cell, Graph, NodeId};
 use crate::netlist::Op;
 use glint_base::target::Timing;
 
-/// Nanoseconds from the operands of a cell to its value, when operands have these widths.
+/// Returns the delay from the operands of a cell to its value, in nanoseconds, when operands have these widths.
 pub fn delay_of<N: Copy>(timing: &Timing, op: &Op<N>, width: &impl Fn(N) -> u32) -> f64 {
     // Look-up tables have four inputs.
     let levels = |inputs: u32| {
@@ -23,13 +23,13 @@ pub fn delay_of<N: Copy>(timing: &Timing, op: &Op<N>, width: &impl Fn(N) -> u32)
     }
 }
 
-/// Nanoseconds through a choice among this number of values.
+/// Returns the delay of a choice among this number of values, in nanoseconds.
 pub fn of_choice(timing: &Timing, values: usize) -> f64 {
     let select = usize::BITS - values.saturating_sub(1).leading_zeros();
     delay_of(timing, &Op::Mux { select: 0, inputs: vec![0; values] }, &|_| select)
 }
 
-/// Nanoseconds from the operands of a node to its value.
+/// Returns the delay from the operands of a node to its value, in nanoseconds.
 pub fn node_delay(timing: &Timing, graph: &Graph, id: NodeId) -> f64 {
     match &graph.node(id).cell {
         Cell::Operand(_) => timing.input,
@@ -46,7 +46,7 @@ pub fn node_delay(timing: &Timing, graph: &Graph, id: NodeId) -> f64 {
     }
 }
 
-/// Nanoseconds that a register behind a node takes beyond those of any other.
+/// Returns the nanoseconds that a register behind a node takes beyond those of any other.
 ///
 /// Synthesis makes a mux with a constant the set or the reset of the register behind it. Its select goes through a
 /// look-up table with the clock enable first, and then a longer way.

@@ -57,7 +57,7 @@ pub struct Label {
 }
 
 impl Label {
-    /// The label of a part of the value, or of the value that this is a part of: names do not grow with the depth.
+    /// Returns the label of a part of the value, or of the value that this is a part of: names do not grow with the depth.
     pub fn part(&self, name: &str) -> Self {
         let whole = self.part_of.as_ref().unwrap_or(&self.name);
         Self {
@@ -124,7 +124,7 @@ impl Graph {
         (0..live.len()).filter(|&at| live[at]).map(|at| NodeId(at as u32)).collect()
     }
 
-    /// Returns the node, which from now on has the values of `range` alone.
+    /// Limits a node, from now on, to the values of `range`.
     pub fn refine(&mut self, id: NodeId, range: Interval) -> NodeId {
         let node = &mut self.nodes[id.index()];
         // Of a path that is never taken, the intersection can be empty.
@@ -132,7 +132,7 @@ impl Graph {
         id
     }
 
-    /// The value is what a register takes: it is known by the register's name from now on.
+    /// Gives a value the name of the register that takes it: it is known by that from now on.
     pub fn name_after(&mut self, id: NodeId, register: &Label) {
         let node = &mut self.nodes[id.index()];
         if !matches!(node.cell, Cell::Constant(_)) && !node.held {

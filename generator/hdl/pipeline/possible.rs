@@ -49,7 +49,7 @@ struct Cone {
 }
 
 impl Cone {
-    /// Down to leaves and the nodes `free`.
+    /// Finds the nodes on which conditions depend, down to leaves and the nodes `free`.
     fn of(graph: &Graph, conditions: &[NodeId], free: &[NodeId]) -> Self {
         let free: HashSet<NodeId> = free.iter().copied().collect();
         let (mut seen, mut pending) = (HashSet::new(), conditions.to_vec());

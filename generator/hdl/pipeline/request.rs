@@ -105,7 +105,7 @@ impl<'a> Request<'a> {
         self.wrong("pipeline.stages", message, format!("set pipeline.stages to {wanted}"), at)
     }
 
-    /// Returns a clock for which one operation alone is too slow.
+    /// Returns the diagnostic of a clock for which one operation alone is too slow.
     fn too_fast(&self, clock: f64, interval: usize, limit: &Unreachable) -> Diagnostics {
         let Unreachable { limiting, period } = *limit;
         let nearest = schedule::megahertz(period);
@@ -126,7 +126,7 @@ impl<'a> Request<'a> {
         wrong
     }
 
-    /// Returns a problem without a solution, which there always is.
+    /// Returns the diagnostic of a problem without a solution, which there always is.
     fn unsolved(&self, why: &str, at: Option<NodeId>) -> Diagnostics {
         let name = &self.sequential.name;
         let message = format!("`{name}` has no schedule: {why}; this is a mistake of Glint's");

@@ -134,7 +134,7 @@ fn held(graph: &Graph, results: &[NodeId], mut id: NodeId) -> NodeId {
 }
 
 impl<'a> Problems<'a> {
-    /// For the nodes that `results` need.
+    /// Makes the problems of a schedule of the nodes that `results` need.
     pub fn new(
         graph: &'a Graph,
         target: &'a Timing,
@@ -304,16 +304,16 @@ impl<'a> Problems<'a> {
         self.clocked[user.index()].map_or(0, |it| it.apart)
     }
 
-    /// Returns the registers between two nodes that are too long for one stage. Block memories and multipliers stand in columns of
-    /// their own: where the way to a multiplier has no room, the value of a memory takes one near each.
+    /// Returns the registers between two nodes that are too long for one stage. Block memories and multipliers stand in columns
+    /// of their own: where the way to a multiplier has no room, the value of a memory takes one near each.
     fn registers_between(&self, from: NodeId, user: NodeId, most: f64) -> usize {
         let product = matches!(self.graph.node(user).cell, Cell::Op(Op::Mul(..)));
         let far = product && delay::is_block(self.target, self.graph, from);
         1 + usize::from(far && self.delay[user.index()] + self.target.logic > most)
     }
 
-    /// Nanoseconds until a register behind `user` has the value, of which the operand `from` is there after so many. What is
-    /// not the select of a reset goes past it.
+    /// Returns the nanoseconds until a register behind `user` has the value, of which the operand `from` is there after so many.
+    /// What is not the select of a reset goes past it.
     fn until_register(&self, from: NodeId, user: NodeId, after: f64) -> f64 {
         match self.reset_by[user.index()] {
             Some(select) if select != from => after,
@@ -373,7 +373,7 @@ impl<'a> Problems<'a> {
         results.map(|id| earliest[id.index()] + 1).max().unwrap_or(1)
     }
 
-    /// Differences are sorted by their first node, and a node stands after its operands.
+    /// Returns the earliest stage of each node. Differences are sorted by their first node, and a node stands after its operands.
     fn earliest(&self, differences: &[Difference], taken: &Taken) -> Vec<usize> {
         let mut earliest = vec![0; self.graph.nodes.len()];
         taken.iter().for_each(|(id, stage)| earliest[id.index()] = *stage);
@@ -383,8 +383,8 @@ impl<'a> Problems<'a> {
         earliest
     }
 
-    /// Returns the stages of products that share multipliers: one after another, first the one that can be there first, and of those the
-    /// one on which most depends.
+    /// Returns the stages of products that share multipliers: one after another, first the one that can be there first, and of
+    /// those the one on which most depends.
     fn taken(&self, differences: &[Difference]) -> Taken {
         let mut after = vec![0; self.graph.nodes.len()];
         for &(from, to, apart) in differences.iter().rev() {
@@ -411,7 +411,8 @@ impl<'a> Problems<'a> {
         taken
     }
 
-    /// Returns the last stage that a node can stand in: operands are there from the beginning, and results need a boundary behind them.
+    /// Returns the last stage that a node can stand in: operands are there from the beginning, and results need a boundary behind
+    /// them.
     fn last_stage(&self, id: usize, latency: usize) -> usize {
         if matches!(self.graph.nodes[id].cell, Cell::Operand(_)) { 0 } else { latency - 1 }
     }
@@ -590,7 +591,7 @@ impl<'a> Problems<'a> {
         &self.live
     }
 
-    /// For each node, the boundary up to which it is held: the number of the last stage that takes it.
+    /// Returns for each node the boundary up to which it is held: the number of the last stage that takes it.
     pub fn last_use(&self, schedule: &Schedule) -> Vec<usize> {
         let mut last = schedule.stage.clone();
         for &id in &self.live {

@@ -59,7 +59,7 @@ fn run(graph: &Graph, id: NodeId) -> Option<(NodeId, u32, u32)> {
     }
 }
 
-/// `id` where `over` is 0, through wiring: choices whose own condition is 0 then are what they are below the limit.
+/// Returns `id` where `over` is 0, through wiring: choices whose own condition is 0 then are what they are below the limit.
 fn below(graph: &mut Graph, id: NodeId, over: NodeId) -> NodeId {
     let node = graph.node(id).clone();
     if let Some((inner, rest, _)) = limit(graph, id) {

@@ -39,7 +39,8 @@ fn factors(graph: &Graph, id: NodeId) -> Option<[NodeId; 2]> {
     }
 }
 
-/// Returns the products of a computation that take a multiplier of the target, which those that synthesis makes of look-up tables do not.
+/// Returns the products of a computation that take a multiplier of the target, which those that synthesis makes of look-up tables
+/// do not.
 pub fn products(graph: &Graph, target: &Timing, live: &[NodeId]) -> Vec<NodeId> {
     let family = FAMILIES.iter().find(|family| family.name() == target.name);
     let least = family.map_or(0, |family| family.estimate.least_product);
@@ -73,8 +74,8 @@ pub fn kinds(graph: &Graph, target: &Timing, live: &[NodeId], interval: usize) -
     kinds.filter(|kind| kind.units < kind.products.len()).collect()
 }
 
-/// Returns the units that serve the products of a kind in these stages. Of those that are free in its slot, a product takes the one
-/// whose muxes and registers grow the least.
+/// Returns the units that serve the products of a kind in these stages. Of those that are free in its slot, a product takes the
+/// one whose muxes and registers grow the least.
 pub fn units(
     graph: &Graph,
     target: &Timing,

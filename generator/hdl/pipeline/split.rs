@@ -27,7 +27,7 @@ pub fn split(unrolled: &Unrolled, target: &Timing) -> Unrolled {
     })
 }
 
-/// `a·b`, of one sign, exact.
+/// Returns `a·b`, exact; both are signed, or neither is.
 fn product(
     graph: &mut Graph,
     target: &Timing,
@@ -73,8 +73,8 @@ fn reaches_a_power_of_two(graph: &Graph, factor: NodeId) -> bool {
     low >= 0 && high == 1 << (graph.width(factor) - 1)
 }
 
-/// A product of a factor that is a power of two where its highest bit is set: the other factor there, else that of the bits
-/// below.
+/// Returns a product of a factor that is a power of two where its highest bit is set: the other factor there, else that of the
+/// bits below.
 fn below_the_highest(
     graph: &mut Graph,
     target: &Timing,
@@ -104,15 +104,15 @@ fn below_the_highest(
     graph.op(Op::Extend(whole), format, label)
 }
 
-/// Returns, of two signed factors, the one that is never negative, and the other, which has bits below its sign.
+/// Returns the one of two signed factors that is never negative, and the other, which has bits below its sign.
 fn with_a_sign(graph: &Graph, [a, b]: [NodeId; 2]) -> Option<[NodeId; 2]> {
     let positive = |id: NodeId| graph.node(id).format.signed && graph.node(id).range.0 >= 0;
     let factors = if positive(a) { [a, b] } else { [b, a] };
     (positive(factors[0]) && graph.width(factors[1]) > 1).then_some(factors)
 }
 
-/// Returns a product of a factor that is never negative and one that may be: that of the bits below the sign, less the former where
-/// the sign is set. Of two signed factors more bits would be cut.
+/// Returns a product of a factor that is never negative and one that may be: that of the bits below the sign, less the former
+/// where the sign is set. Of two signed factors more bits would be cut.
 fn below_the_sign(
     graph: &mut Graph,
     target: &Timing,

@@ -191,7 +191,7 @@ impl Builder<'_> {
         self.documented(id, doc)
     }
 
-    /// The inputs.
+    /// Makes the inputs, and keeps the names of the outputs for them.
     fn ports(&mut self, unrolled: &Unrolled, options: &Options) {
         self.port("rst_n", 1, Role::Reset, "reset, active low: drops the points on their way");
         self.port("in_valid", 1, Role::InValid, "the operands are those of a point");
@@ -221,7 +221,7 @@ impl Builder<'_> {
         self.taken.extend(outputs);
     }
 
-    /// A name for every value.
+    /// Gives every value a name.
     fn names(&mut self) {
         for &id in self.problems.live() {
             if !self.names.contains_key(&id) {
@@ -232,7 +232,7 @@ impl Builder<'_> {
         }
     }
 
-    /// `wish`, with a number where another value has it in any stage.
+    /// Returns `wish`, with a number where another value has it in any stage.
     fn distinct(&self, wish: &str) -> String {
         let taken = |name: &String| self.names.values().any(|other| other == name);
         let mut name = wish.to_owned();
@@ -244,12 +244,12 @@ impl Builder<'_> {
         name
     }
 
-    /// `name` in a stage, as no other net has it.
+    /// Returns `name` in a stage, as no other net has it.
     fn staged(&self, name: &str, stage: usize) -> String {
         self.free(format!("{name}_s{stage}"))
     }
 
-    /// `name`, or one like it that no other net has.
+    /// Returns `name`, or one like it that no other net has.
     fn free(&self, mut name: String) -> String {
         while self.taken.contains(&name) {
             name.push('_');
@@ -257,7 +257,7 @@ impl Builder<'_> {
         name
     }
 
-    /// The points on their way, and when they move.
+    /// Makes the valid bits of the points on their way, and says when points move.
     fn handshake(&mut self) {
         let latency = self.schedule.latency;
         let find = |design: &Design, role: Role| design.port(|it| it == role).map(|it| it.net);
@@ -420,7 +420,7 @@ impl Builder<'_> {
         made
     }
 
-    /// The factors of shared multipliers: registers behind a choice by the slot, two stages before the product is there.
+    /// Makes the factors of shared multipliers: registers behind a choice by the slot, two stages before the product is there.
     fn muxes(&mut self, units: Vec<(sharing::Unit, [NetId; 2])>) {
         for (at, (unit, factors)) in units.into_iter().enumerate() {
             for (side, q) in factors.into_iter().enumerate() {
@@ -468,7 +468,7 @@ impl Builder<'_> {
         wide
     }
 
-    /// The value of every node in its stage, and registers up to its last use: each holds it until the next point is there.
+    /// Makes the value of every node in its stage, and registers up to its last use: each holds it until the next point is there.
     fn cells(&mut self) {
         let last = self.problems.last_use(self.schedule);
         for &id in self.problems.live() {
@@ -594,7 +594,7 @@ impl Builder<'_> {
         data
     }
 
-    /// The outputs.
+    /// Makes the outputs.
     fn results(&mut self, unrolled: &Unrolled) {
         let latency = self.schedule.latency;
         for &(port, id) in &unrolled.results {

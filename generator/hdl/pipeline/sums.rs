@@ -25,7 +25,7 @@ pub fn shortened(
     within(graph, op, format, range, label, behind)
 }
 
-/// As [`shortened`]. Choices are made behind a sum with a constant where `behind` says so.
+/// Returns a cell as [`shortened`] does. Choices are made behind a sum with a constant where `behind` says so.
 fn within(
     graph: &mut Graph,
     op: Op,

@@ -225,8 +225,8 @@ impl<'a> Executor<'a> {
     /// is one; `state` is that after the first. The loop is bounded whatever the registers `free`, with
     /// which it begins, hold.
     ///
-    /// The values behind the condition go from iteration to iteration as if every iteration were taken: an iteration counts only where those
-    /// before it were taken, and a counter needs no muxes then.
+    /// The values behind the condition go from iteration to iteration as if every iteration were taken: an iteration counts only
+    /// where those before it were taken, and a counter needs no muxes then.
     fn iterations(
         &mut self,
         mut state: State,
@@ -276,9 +276,9 @@ impl<'a> Executor<'a> {
         }
     }
 
-    /// Returns the state after the iterations of a loop, of which there are as many as `conditions` hold, but for the registers that
-    /// count them: 8, 4, 2 and 1 iterations, each under a bit of their number. None if an iteration depends on the registers that
-    /// count them or on a memory, or the number on more than a few bits.
+    /// Returns the state after the iterations of a loop, of which there are as many as `conditions` hold, but for the registers
+    /// that count them: 8, 4, 2 and 1 iterations, each under a bit of their number. None if an iteration depends on the registers
+    /// that count them or on a memory, or the number on more than a few bits.
     fn in_powers(
         &mut self,
         first: &State,
@@ -424,7 +424,7 @@ impl<'a> Executor<'a> {
         )
     }
 
-    /// No result depends on what an earlier computation has left.
+    /// Checks that no result depends on what an earlier computation has left.
     fn determined(&self, results: &[(NetId, NodeId)], what: &str) -> Result<(), Diagnostic> {
         let graph = &self.unrolled.graph;
         for &(port, value) in results {

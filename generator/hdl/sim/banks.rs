@@ -214,7 +214,7 @@ impl Divider<'_> {
         }
     }
 
-    /// An instruction as it is, in the wide bank if any of its slots is there.
+    /// Emits an instruction as it is, in the wide bank if any of its slots is there.
     fn within_a_bank(&mut self, step: &Ordered, mut instruction: Instruction) {
         let sources = step.sources;
         let result_wide = self.is_wide[step.to as usize];

@@ -98,8 +98,8 @@ impl<const LANES: usize> Circuit<LANES> {
         Ok(circuit)
     }
 
-    /// Returns the input ports in order of declaration, each with its lanes; bits beyond a port's width are ignored. What is set takes
-    /// effect with rust_hdl's next update.
+    /// Returns the input ports in order of declaration, each with its lanes; bits beyond a port's width are ignored. What is set
+    /// takes effect with rust_hdl's next update.
     pub fn inputs_mut(&mut self) -> &mut Vec<[u64; LANES]> {
         self.input_set = true;
         &mut self.inputs

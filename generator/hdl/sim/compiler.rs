@@ -58,7 +58,7 @@ pub(super) struct Compiler<'a> {
 }
 
 impl<'a> Compiler<'a> {
-    /// The slots of the input ports and the contents of the ROMs; no net is compiled yet.
+    /// Makes a compiler with the slots of the input ports and the contents of the ROMs; no net is compiled yet.
     pub(super) fn new(design: &'a Design) -> Self {
         let input_sources = (design.inputs().count() as u32).clamp(1, INPUTS);
         let mut compiler = Self {
@@ -105,8 +105,8 @@ impl<'a> Compiler<'a> {
         (self.sources.len() - 1) as Slot
     }
 
-    /// Returns a slot that the edge writes where `enable` is 1. What has one enable changes together, and is one source; but what a
-    /// microinstruction loads is seldom all news.
+    /// Returns a slot that the edge writes where `enable` is 1. What has one enable changes together, and is one source; but what
+    /// a microinstruction loads is seldom all news.
     pub(super) fn source(&mut self, enable: Option<NetId>) -> Slot {
         let is_field = |net: &NetId| matches!(self.design.net(*net).driver, Driver::Field(_));
         let enable = enable.filter(|net| !is_field(net));

@@ -98,7 +98,7 @@ impl Compiler<'_> {
         }
     }
 
-    /// `width` bits of `of` from `low` up.
+    /// Returns `width` bits of `of` from `low` up.
     pub(super) fn slice(&mut self, of: NetId, low: u32, width: u32) -> Slot {
         let whole = self.design.width(of);
         if width == whole {

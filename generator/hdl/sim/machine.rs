@@ -24,7 +24,7 @@ pub struct Machine<const LANES: usize = 1> {
 }
 
 impl<const LANES: usize> Machine<LANES> {
-    /// Power-up: registers, outputs of synchronous ROMs and inputs are 0; settled.
+    /// Makes a machine at power-up: registers, outputs of synchronous ROMs and inputs are 0; settled.
     pub fn new(program: Arc<Program>) -> Self {
         let mut machine = Self {
             narrow: power_up(&program.narrow),
@@ -46,8 +46,8 @@ impl<const LANES: usize> Machine<LANES> {
         self.changed = Sources::MAX;
     }
 
-    /// A rising edge, if there is one; then the inputs change, if there are new ones; then all nets are
-    /// brought up to date. Whether anything that starts a change has changed.
+    /// Performs a rising edge, if there is one; then changes the inputs, if there are new ones; then brings all nets up to date.
+    /// Returns whether anything that starts a change has changed.
     ///
     /// At the edge, registers and synchronous ROMs take what their operands carry. `inputs` are the bit
     /// patterns of the input ports, in order of declaration; bits beyond the width of a port are
@@ -139,7 +139,7 @@ impl<const LANES: usize> Machine<LANES> {
         }
     }
 
-    /// For each lane, a pattern that is 0 exactly if each net carries what is expected of it, in the bits that are `known`
+    /// Returns for each lane a pattern that is 0 exactly if each net carries what is expected of it, in the bits that are `known`
     /// of it: all, when there is nothing.
     ///
     /// # Panics
@@ -254,7 +254,7 @@ fn power_up<W: Word, const LANES: usize>(bank: &Bank) -> Slots<W, LANES> {
     Slots::new(bank.initial.iter().map(|&bits| [W::low(bits); LANES]))
 }
 
-/// The sources that are news, besides those that are already.
+/// Sets the inputs. Returns the `news` and the sources that have changed.
 #[inline(always)]
 fn take_inputs<W: Word, const LANES: usize>(
     bank: &Bank,
@@ -270,7 +270,7 @@ fn take_inputs<W: Word, const LANES: usize>(
     news
 }
 
-/// The rising edge, and the sources that are news besides those that are already.
+/// Performs the rising edge. Returns the `news` and the sources that have changed.
 #[inline(always)]
 fn clock<W: Word, const LANES: usize>(
     bank: &Bank,
@@ -311,8 +311,7 @@ fn clock<W: Word, const LANES: usize>(
     news
 }
 
-/// A register takes its data in the lanes that are enabled; `source` when that changes any, unless it is among the `news`
-/// already.
+/// Loads a register in the lanes that are enabled. Returns `source` when that changes any, unless it is among the `news` already.
 #[inline(always)]
 fn load<W: Word, const LANES: usize>(
     q: &mut [W; LANES],
@@ -360,7 +359,7 @@ fn store<W: Word, const LANES: usize>(
     changed
 }
 
-/// `source` when any lane has a difference, unless it is among the `news` already.
+/// Returns `source` when any lane has a difference, unless it is among the `news` already.
 #[inline(always)]
 fn changed<W: Word, const LANES: usize>(
     source: Sources,
@@ -475,7 +474,7 @@ fn read(words: &[u64], span: Span, address: u64) -> u64 {
     if address < u64::from(span.len) { words[span.start as usize + address as usize] } else { 0 }
 }
 
-/// The last of the choices where `select` is beyond them.
+/// Selects one of the choices in each lane: the last of them where `select` is beyond them.
 #[inline(always)]
 fn mux<W: Word, const LANES: usize>(
     slots: &mut [[W; LANES]],

@@ -69,7 +69,7 @@ pub struct Simulator<const LANES: usize = 1> {
 }
 
 impl<const LANES: usize> Simulator<LANES> {
-    /// At power-up: all inputs, registers and outputs of synchronous ROMs are 0.
+    /// Makes a simulator at power-up: all inputs, registers and outputs of synchronous ROMs are 0.
     ///
     /// # Errors
     /// As of [`Circuit::new`].
@@ -124,7 +124,7 @@ impl<const LANES: usize> Simulator<LANES> {
         self.circuit.machine.lane(net, lane)
     }
 
-    /// For each lane, a pattern that is 0 exactly if each net carries what is expected of it, in the bits that are `known`
+    /// Returns for each lane a pattern that is 0 exactly if each net carries what is expected of it, in the bits that are `known`
     /// of it: all, when there is nothing.
     ///
     /// # Panics
@@ -138,7 +138,7 @@ impl<const LANES: usize> Simulator<LANES> {
         self.circuit.machine.differences(nets, expected, known)
     }
 
-    /// One clock: the falling edge, with which inputs change, and the rising edge.
+    /// Runs one clock: the falling edge, with which inputs change, and the rising edge.
     ///
     /// # Errors
     /// The waveform cannot be written; or the circuit does not settle, which would be a bug.
@@ -148,8 +148,8 @@ impl<const LANES: usize> Simulator<LANES> {
         self.half(true)
     }
 
-    /// One clock in which the input ports, in order of position, carry these bits: read where they stand, not copied.
-    /// From the next on, what was set before holds again.
+    /// Runs one clock in which the input ports, in order of position, carry these bits: read where they stand, not copied. From
+    /// the next on, what was set before holds again.
     ///
     /// # Errors
     /// As of [`Simulator::clock`].
@@ -187,7 +187,7 @@ impl<const LANES: usize> Simulator<LANES> {
         }
     }
 
-    /// From now on, writes the waveform of lane 0: VCD, a clock of 10 ns, starting at time 0.
+    /// Writes the waveform of lane 0 from now on: VCD, a clock of 10 ns, starting at time 0.
     ///
     /// # Errors
     /// The file cannot be written.

@@ -22,7 +22,8 @@ pub(super) enum Direction {
 pub(super) enum Seen<'a> {
     /// A net.
     Net { width: u32, signed: bool, direction: Direction },
-    /// The name of the microinstruction that is executed, `idle` when none is: of these, the one at the address that the bits are.
+    /// The name of the microinstruction that is executed, `idle` when none is: of these, the one at the address that the bits
+    /// are.
     Microinstruction { names: &'a [String], run: bool },
 }
 
@@ -104,7 +105,7 @@ impl Atom for Wire<'_> {
         self.id
     }
 
-    /// Only the value counts: rust_hdl emits no Verilog from a netlist.
+    /// Returns the value alone: rust_hdl emits no Verilog from a netlist.
     fn verilog(&self) -> VerilogLiteral {
         self.bits.into()
     }

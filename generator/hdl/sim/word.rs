@@ -16,7 +16,7 @@ pub(super) trait Word:
     + Shr<u8, Output = Self>
 {
     const ZERO: Self;
-    /// The low bits.
+    /// Returns the low bits.
     fn low(bits: u64) -> Self;
     fn wrapping_add(self, other: Self) -> Self;
     fn wrapping_sub(self, other: Self) -> Self;

@@ -39,7 +39,7 @@ pub enum Piece {
 }
 
 impl Piece {
-    /// Width in bits.
+    /// Returns the width in bits.
     pub fn width(self) -> u32 {
         match self {
             Self::Net { width, .. } | Self::Constant { width, .. } => width,
@@ -47,7 +47,7 @@ impl Piece {
         }
     }
 
-    /// `width` bits from `low` up.
+    /// Returns `width` bits from `low` up.
     fn slice(self, low: u32, width: u32) -> Self {
         match self {
             Self::Net { net, low: from, .. } => Self::Net { net, low: from + low, width },
@@ -59,7 +59,7 @@ impl Piece {
         }
     }
 
-    /// Both pieces as one, `self` above `below`, where they are neighbours of one origin.
+    /// Joins both pieces into one, `self` above `below`, where they are neighbours of one origin.
     fn join(self, below: Self) -> Option<Self> {
         match (self, below) {
             (Self::Net { net, low, width }, Self::Net { net: other, low: from, width: count })
@@ -82,12 +82,12 @@ impl Piece {
 pub struct Bits(Vec<Piece>);
 
 impl Bits {
-    /// A whole net.
+    /// Makes the bits of a whole net.
     pub fn net(net: NetId, width: u32) -> Self {
         Self(vec![Piece::Net { net, low: 0, width }])
     }
 
-    /// A bit pattern.
+    /// Makes a bit pattern.
     pub fn constant(value: u64, width: u32) -> Self {
         Self(vec![Piece::Constant { value, width }])
     }
@@ -105,12 +105,12 @@ impl Bits {
         }
     }
 
-    /// Width in bits.
+    /// Returns the width in bits.
     pub fn width(&self) -> u32 {
         self.0.iter().map(|piece| piece.width()).sum()
     }
 
-    /// `width` bits from `low` up.
+    /// Returns `width` bits from `low` up.
     pub fn slice(&self, low: u32, width: u32) -> Self {
         let mut taken = Self::default();
         let mut top = self.width();
@@ -125,7 +125,7 @@ impl Bits {
         taken
     }
 
-    /// `lower` below these bits.
+    /// Puts `lower` below these bits.
     pub fn followed_by(mut self, lower: &Self) -> Self {
         for piece in &lower.0 {
             self.append(*piece);
@@ -133,7 +133,7 @@ impl Bits {
         self
     }
 
-    /// Copies of the top bit (signed) or zeros above, up to `width`.
+    /// Adds copies of the top bit (signed) or zeros above, up to `width`.
     pub fn extend(&self, width: u32, signed: bool) -> Self {
         let count = width.saturating_sub(self.width());
         if count == 0 {

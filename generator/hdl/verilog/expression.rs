@@ -35,12 +35,12 @@ pub struct Expressions<'a> {
 }
 
 impl<'a> Expressions<'a> {
-    /// For a module in which nothing was written yet.
+    /// Makes the expressions of a module in which nothing was written yet.
     pub fn new(plan: &'a Plan<'a>, names: Names) -> Self {
         Self { plan, names, constants: Vec::new() }
     }
 
-    /// `wish`, or a name like it that nothing else has.
+    /// Returns `wish`, or a name like it that nothing else has.
     pub fn fresh(&mut self, wish: &str) -> String {
         self.names.fresh(wish)
     }
@@ -153,7 +153,7 @@ impl<'a> Expressions<'a> {
         }
     }
 
-    /// Wiring.
+    /// Writes wiring: one piece, or several side by side.
     pub fn bits(&self, bits: &Bits) -> String {
         let parts: Vec<_> = bits.pieces().iter().map(|piece| self.piece(*piece)).collect();
         match &parts[..] {
@@ -256,7 +256,7 @@ impl<'a> Expressions<'a> {
     }
 }
 
-/// `one_2` without its number.
+/// Returns a name such as `one_2` without its number.
 fn unnumbered(name: &str) -> &str {
     let base = name.trim_end_matches(|sign: char| sign.is_ascii_digit());
     match base.strip_suffix('_') {

@@ -67,7 +67,7 @@ fn paragraph(text: &str) -> Vec<String> {
     lines
 }
 
-/// Returns where a file comes from.
+/// Returns the lines that say where a file comes from.
 pub fn regenerated(origin: &Origin) -> Vec<String> {
     let again = match origin.regenerate {
         "" => String::new(),

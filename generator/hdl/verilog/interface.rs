@@ -17,7 +17,7 @@ pub struct Interface {
 }
 
 impl Interface {
-    /// The interface of one of the units.
+    /// Makes the interface of one of the units.
     pub fn new(plan: &Plan, partition: Partition) -> Self {
         let design = plan.design;
         let other = match partition {

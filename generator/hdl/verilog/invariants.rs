@@ -14,7 +14,7 @@ pub fn invariants(design: &Design, naming: &Naming, partition: Partition) -> Vec
     lines.into_iter().map(|line| format!("    {line}")).collect()
 }
 
-/// From the first clock on, which has the reset.
+/// Writes the assertions on the sequencer, from the first clock on, which has the reset.
 fn control(design: &Design) -> Vec<String> {
     let name = |register| design.net(design.register(register).q).name.as_str();
     let (address, run) = (name(design.control.address), name(design.control.run));
@@ -35,7 +35,7 @@ fn control(design: &Design) -> Vec<String> {
     lines
 }
 
-/// Operands are stable while the device is busy.
+/// Writes the assertions that operands are stable while the device is busy.
 fn datapath(design: &Design, was_busy: &str) -> Vec<String> {
     let operands: Vec<&str> = design
         .registers

@@ -28,7 +28,7 @@ pub struct Builder<'a> {
 }
 
 impl<'a> Builder<'a> {
-    /// For a partition.
+    /// Makes the builder of a partition.
     pub fn new(
         plan: &'a Plan<'a>,
         naming: &'a Naming,
@@ -96,7 +96,7 @@ impl<'a> Builder<'a> {
         Row::ports(&rows)
     }
 
-    /// `reg` where a procedural block assigns the net.
+    /// Returns `reg` where a procedural block assigns the net, else `wire`.
     fn kind(&self, net: NetId) -> &'static str {
         match &self.plan.design.net(net).driver {
             Driver::Register(register) if self.plan.delayed(*register).is_some() => "wire",
@@ -129,8 +129,8 @@ impl<'a> Builder<'a> {
         rows.collect()
     }
 
-    /// Registers are 0 before the first clock. What a ROM is read into is known after it, and block memories have no
-    /// values there on some targets.
+    /// Writes the statements that make registers 0 before the first clock. What a ROM is read into is known after it, and
+    /// block memories have no values there on some targets.
     fn initial(&self) -> Vec<String> {
         let design = self.plan.design;
         let zero =
@@ -241,7 +241,7 @@ impl<'a> Builder<'a> {
         lines
     }
 
-    /// Names where the select is a field of the control word, else numbers.
+    /// Returns the labels of a case: names where the select is a field of the control word, else numbers.
     fn case_labels(&mut self, select: NetId, count: usize) -> Vec<String> {
         let design = self.plan.design;
         let width = design.width(select);
@@ -355,7 +355,7 @@ impl<'a> Builder<'a> {
         lines
     }
 
-    /// Registers with the same enable and the same reset behaviour share a block.
+    /// Writes the blocks of registers: those with the same enable and the same reset behaviour share one.
     pub(super) fn groups(&mut self, wanted: &dyn Fn(NetId) -> bool) -> Vec<Vec<String>> {
         /// The enable, and whether reset sets the registers.
         type Key = (Option<NetId>, bool);
@@ -477,7 +477,8 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// Returns a statement for each word of a ROM; it begins with what `place` says for the number of the word, which has so many bits.
+/// Returns a statement for each word of a ROM; it begins with what `place` says for the number of the word, which has so many
+/// bits.
 fn words(
     design: &Design,
     id: RomId,

@@ -125,7 +125,7 @@ fn choices(control: &Control, names: &mut Names) -> Vec<Vec<String>> {
     control.fields.iter().map(&mut of_field).collect()
 }
 
-/// Returns the control ROM or not.
+/// Returns whether a ROM is the control ROM.
 pub fn is_control_rom(design: &Design, rom: RomId) -> bool {
     design.control.rom == rom
 }
@@ -162,7 +162,7 @@ pub fn remark(design: &Design, id: NetId) -> String {
     }
 }
 
-/// `ROM 18`, or `ROM sine` where the source has no number.
+/// Returns `ROM 18`, or `ROM sine` where the source has no number.
 pub fn rom_label(rom: &Rom) -> String {
     match rom.block {
         Some(number) => format!("ROM {number}"),

@@ -75,8 +75,8 @@ pub fn module(plan: &Plan, naming: &Naming, pipeline: &Pipeline, origin: &Origin
     )
 }
 
-/// `multiplier_1: in slots 0, 1, 2, 3 it takes the factors of base, -, red_product, green_product`: a slot before it computes
-/// them.
+/// Writes `multiplier_1: in slots 0, 1, 2, 3 it takes the factors of base, -, red_product, green_product`: a slot before it
+/// computes them.
 fn reservations(unit: &Unit) -> Vec<String> {
     let slots = unit.serves.len();
     let numbers: Vec<String> = (0..slots).map(|slot| slot.to_string()).collect();
@@ -179,12 +179,12 @@ fn handshake(plan: &Plan, naming: &Naming, pipeline: &Pipeline) -> Vec<String> {
     )
 }
 
-/// When all points move on; none if they always do.
+/// Returns the net that says when all points move on; none if they always do.
 fn enable(design: &Design, pipeline: &Pipeline) -> Option<NetId> {
     design.registers.iter().find(|it| pipeline.valid.contains(&it.q))?.enable
 }
 
-/// `Stage 3, part of: accumulator <- base^2`.
+/// Writes `Stage 3, part of: accumulator <- base^2`.
 fn title(number: usize, microinstructions: &[String]) -> Vec<String> {
     let what = match microinstructions {
         [] => ": values on their way".to_owned(),

@@ -242,7 +242,7 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Cells that nobody named and nothing needs are left out.
+    /// Finds the cells that are written: those that nobody named and nothing needs are left out.
     fn find_live(&mut self, order: &[NetId]) {
         let mut live = vec![false; self.design.nets.len()];
         let mut pending: Vec<Reader> = Vec::new();
@@ -323,7 +323,8 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Returns whether a net of a pipeline is short wiring that needs no name: it has no comment, or the register behind it has that.
+    /// Returns whether a net of a pipeline is short wiring that needs no name: it has no comment, or the register behind it has
+    /// that.
     fn is_plain(&self, id: NetId, bits: &Bits) -> bool {
         const MOST_PIECES: usize = 3;
         let is_held = || {

@@ -19,7 +19,7 @@ pub fn connections(design: &Design) -> Vec<String> {
     separated(std::iter::once("clk").chain(ports).map(|name| format!(".{name}({name})")).collect())
 }
 
-/// Declarations of a variable for each input of a design and of a wire for each output, with their signs or as bit patterns.
+/// Declares a variable for each input of a design and a wire for each output, with their signs or as bit patterns.
 pub fn variables(design: &Design, with_signs: bool) -> Vec<String> {
     let row = |port: &Port| {
         let net = design.net(port.net);
@@ -38,7 +38,7 @@ pub struct Row {
 }
 
 impl Row {
-    /// A declaration of a net; the direction is empty for one that is no port.
+    /// Makes a declaration of a net; the direction is empty for one that is no port.
     pub fn net(plan: &Plan, direction: &str, kind: &str, id: NetId) -> Self {
         let net = plan.design.net(id);
         let format = net.format;
@@ -46,7 +46,7 @@ impl Row {
         Self::port(direction, kind, format.width(), format.signed, &net.name, &note)
     }
 
-    /// A declaration.
+    /// Makes a declaration.
     pub fn port(
         direction: &str,
         kind: &str,
@@ -68,7 +68,7 @@ impl Row {
         }
     }
 
-    /// Without the comment.
+    /// Removes the comment.
     #[must_use]
     pub fn without_note(mut self) -> Self {
         self.note.clear();
@@ -97,12 +97,12 @@ impl Row {
         all
     }
 
-    /// As ports, with commas.
+    /// Writes the rows as ports, with commas.
     pub fn ports(rows: &[Self]) -> Vec<String> {
         Self::set(rows, |at| if at + 1 < rows.len() { "," } else { "" })
     }
 
-    /// As declarations.
+    /// Writes the rows as declarations.
     pub fn declarations(rows: &[Self]) -> Vec<String> {
         Self::set(rows, |_| ";")
     }

@@ -7,7 +7,7 @@ use crate::netlist::Design;
 /// The longest line that Glint writes into Verilog.
 pub const COLUMNS: usize = 100;
 
-/// `text` in ASCII: the signs of the formulas spelled out, anything else unknown as `?`.
+/// Returns `text` in ASCII: the signs of the formulas spelled out, anything else unknown as `?`.
 pub fn ascii(text: &str) -> String {
     let mut plain = String::with_capacity(text.len());
     for sign in text.chars() {
@@ -69,7 +69,7 @@ pub fn ascii(text: &str) -> String {
     plain
 }
 
-/// `text` as the upper-case part of an identifier: runs of anything else become one underscore.
+/// Returns `text` as the upper-case part of an identifier: runs of anything else become one underscore.
 pub fn constant_name(text: &str) -> String {
     let mut name = String::new();
     for sign in ascii(text).chars() {
@@ -91,7 +91,7 @@ pub fn literal(value: u64, width: u32) -> String {
     }
 }
 
-/// `[7:0]`, or nothing for one bit.
+/// Returns `[7:0]`, or nothing for one bit.
 pub fn range(width: u32) -> String {
     match width {
         1 => String::new(),
@@ -131,7 +131,7 @@ pub fn annotated(code: &str, indent: usize, note: &str) -> Vec<String> {
     lines
 }
 
-/// `text` in lines of at most [`COLUMNS`], broken at spaces alone.
+/// Breaks `text` into lines of at most [`COLUMNS`], at spaces alone.
 fn broken(first: &str, further: &str, text: &str) -> Vec<String> {
     let mut lines = Vec::new();
     let mut line = first.to_owned();
@@ -156,18 +156,18 @@ fn broken(first: &str, further: &str, text: &str) -> Vec<String> {
 pub struct Names(HashSet<String>);
 
 impl Names {
-    /// The names that are taken already.
+    /// Makes the set of the names that are taken already.
     pub fn new<'a>(taken: impl IntoIterator<Item = &'a str>) -> Self {
         Self(taken.into_iter().map(str::to_owned).collect())
     }
 
-    /// The names of the ports of a design and of its clock.
+    /// Makes the set of the names of the ports of a design and of its clock.
     pub fn of_ports(design: &Design) -> Self {
         let ports = design.ports.iter().map(|port| design.net(port.net).name.as_str());
         Self::new(ports.chain(["clk"]))
     }
 
-    /// `wish`, or `wish_2`, `wish_3` … when that is taken.
+    /// Returns `wish`, or `wish_2`, `wish_3` … when that is taken.
     pub fn fresh(&mut self, wish: &str) -> String {
         let mut name = wish.to_owned();
         let mut number = 1;

@@ -9,7 +9,7 @@ use super::rows::{Row, separated};
 use super::writer;
 use crate::netlist::Partition;
 
-/// The top module.
+/// Writes the top module.
 pub fn module(
     plan: &Plan,
     naming: &Naming,

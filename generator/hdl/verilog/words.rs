@@ -26,7 +26,7 @@ pub fn in_fields(design: &Design, word: u64) -> String {
     digits.collect::<Vec<_>>().join("_")
 }
 
-/// As many digits as the width needs.
+/// Returns a word in hexadecimal, with as many digits as the width needs.
 pub fn in_hex(word: u64, width: u32) -> String {
     format!("{word:0digits$x}", digits = width.div_ceil(4) as usize)
 }

@@ -7,7 +7,7 @@ use glint_base::codes;
 use glint_base::cone::reached;
 use glint_base::diagnostic::Diagnostic;
 
-/// Operands from which no way leads to an output.
+/// Finds operands from which no way leads to an output.
 pub(super) fn check(design: &Design) -> Vec<Diagnostic> {
     let used = used(design);
     let mut found = Vec::new();
@@ -26,7 +26,7 @@ pub(super) fn used(design: &Design) -> HashSet<NetId> {
     reached(design.outputs().map(|port| port.net), |id| read_by(design, id))
 }
 
-/// The nets on which a net depends, within a clock or through a register or a memory.
+/// Returns the nets on which a net depends, within a clock or through a register or a memory.
 pub(in crate::dsl) fn read_by(design: &Design, id: NetId) -> Vec<NetId> {
     match design.net(id).driver {
         Driver::Register(register) => {

@@ -7,8 +7,8 @@ use crate::netlist::{Design, Driver, FieldKind, NetId, Op, setting_of};
 use glint_base::codes;
 use glint_base::diagnostic::Diagnostic;
 
-/// Registers of `design` that are loaded with a product under a selection that means another one; `views` are the
-/// products that a selection gives their meaning.
+/// Finds registers of `design` that are loaded with a product under a selection that means another one; `views` are the products
+/// that a selection gives their meaning.
 pub(super) fn check(design: &Design, views: &HashMap<NetId, SelectedProduct>) -> Vec<Diagnostic> {
     let mut checker = Checker { design, views, found: Vec::new() };
     for at in 0..design.control.microprogram.len() {
@@ -24,8 +24,8 @@ struct Checker<'a> {
 }
 
 impl Checker<'_> {
-    /// Every register that microinstruction `at` loads takes a product that the selection of the microinstruction gives; behind
-    /// pipeline registers, that the selections of the microinstructions before it give.
+    /// Checks that every register that microinstruction `at` loads takes a product that the selection of the microinstruction
+    /// gives; behind pipeline registers, that the selections of the microinstructions before it give.
     fn selections(&mut self, at: usize) {
         let design = self.design;
         let microprogram = &design.control.microprogram;
@@ -78,7 +78,7 @@ impl Checker<'_> {
         }
     }
 
-    /// Microinstruction `at` loads `register`, but the selection of microinstruction `under` is wrong for that.
+    /// Returns the diagnostic: microinstruction `at` loads `register` under a selection, that of `under`, which is wrong for it.
     fn wrong_product(
         &self,
         at: usize,

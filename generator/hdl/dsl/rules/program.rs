@@ -11,8 +11,8 @@ use glint_base::codes;
 use glint_base::cone::reached;
 use glint_base::diagnostic::Diagnostic;
 
-/// Microinstructions that raise `valid` too early, or none that does, select lines without a choice, and loops that
-/// nothing in them ends.
+/// Finds microinstructions that raise `valid` too early, or none that does, select lines without a choice, and loops that nothing
+/// in them ends.
 pub(super) fn check(design: &Design, picked: &HashSet<FieldId>) -> Vec<Diagnostic> {
     let mut found = early(design);
     found.extend(silent(design));
@@ -21,7 +21,7 @@ pub(super) fn check(design: &Design, picked: &HashSet<FieldId>) -> Vec<Diagnosti
     found
 }
 
-/// Returns a microprogram that never says when its results are there.
+/// Finds a microprogram that never says when its results are there.
 fn silent(design: &Design) -> Option<Diagnostic> {
     let control = &design.control;
     let result = design.port(|role| role == Role::Result)?;
@@ -37,7 +37,7 @@ fn silent(design: &Design) -> Option<Diagnostic> {
     })
 }
 
-/// Select lines of which no microinstruction makes a choice.
+/// Finds select lines of which no microinstruction makes a choice.
 fn unpicked(design: &Design, picked: &HashSet<FieldId>) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     for (at, field) in design.control.fields.iter().enumerate() {
@@ -60,8 +60,8 @@ fn unpicked(design: &Design, picked: &HashSet<FieldId>) -> Vec<Diagnostic> {
     found
 }
 
-/// Microinstructions that raise `valid` and load a register that a result shows, where control can come to them
-/// without having loaded it before: what is on the output is not yet the result.
+/// Finds microinstructions that raise `valid` and load a register that a result shows, where control can come to them without
+/// having loaded it before: what is on the output is not yet the result.
 fn early(design: &Design) -> Vec<Diagnostic> {
     let control = &design.control;
     let valid = design.port(|role| role == Role::Valid).map(|port| port.net);
@@ -144,7 +144,7 @@ fn cone(design: &Design, at: usize, net: NetId) -> HashSet<NetId> {
     })
 }
 
-/// Loops whose condition depends only on what no microinstruction of the loop changes, and that have no other way out.
+/// Finds loops whose condition depends only on what no microinstruction of the loop changes, and that have no other way out.
 fn endless(design: &Design) -> Vec<Diagnostic> {
     let control = &design.control;
     let mut found = Vec::new();

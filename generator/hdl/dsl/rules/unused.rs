@@ -8,7 +8,7 @@ use glint_base::codes;
 use glint_base::cone::reached;
 use glint_base::diagnostic::Diagnostic;
 
-/// Logic that no output depends on, muxes that always pass on the same, and choices that no microinstruction makes.
+/// Finds logic that no output depends on, muxes that always pass on the same, and choices that no microinstruction makes.
 /// `partly_used` are select lines of which that is intended.
 pub(in crate::dsl) fn warnings(design: &Design, partly_used: &HashSet<FieldId>) -> Vec<Diagnostic> {
     let mut found = dead(design);
@@ -17,7 +17,7 @@ pub(in crate::dsl) fn warnings(design: &Design, partly_used: &HashSet<FieldId>) 
     found
 }
 
-/// Registers, memories and named cells that no output depends on. Of cells that only such logic reads there is no word.
+/// Finds registers, memories and named cells that no output depends on. Cells that only such logic reads are left out.
 fn dead(design: &Design) -> Vec<Diagnostic> {
     let used = used(design);
     let is_logic =
@@ -35,7 +35,7 @@ fn dead(design: &Design) -> Vec<Diagnostic> {
     ends.map(|(_, net)| Diagnostic::new(codes::UNUSED, message(net), net.location)).collect()
 }
 
-/// Muxes that are selected by a constant, or whose inputs are all the same.
+/// Finds muxes that are selected by a constant, or whose inputs are all the same.
 fn constant(design: &Design) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     for (_, net) in design.iter().filter(|(_, net)| net.named) {
@@ -54,7 +54,7 @@ fn constant(design: &Design) -> Vec<Diagnostic> {
     found
 }
 
-/// Choices of select lines that no microinstruction makes.
+/// Finds choices of select lines that no microinstruction makes.
 fn unmade(design: &Design, partly_used: &HashSet<FieldId>) -> Vec<Diagnostic> {
     let control = &design.control;
     let mut found = Vec::new();

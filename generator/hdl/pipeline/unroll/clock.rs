@@ -136,7 +136,7 @@ impl<'e, 'a> Clock<'e, 'a> {
         self.graph().read(rom, address, words, net.format, &label(net))
     }
 
-    /// Returns the rising edge: what registers and synchronous ROMs hold after it.
+    /// Performs the rising edge: returns what registers and synchronous ROMs hold after it.
     pub(super) fn edge(&mut self) -> State {
         let design = self.executor.design;
         let mut after = self.state.clone();

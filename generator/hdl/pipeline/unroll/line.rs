@@ -109,7 +109,7 @@ impl Points<'_> {
         Ok(Line { unrolled: self.executor.unrolled, walk })
     }
 
-    /// After how many clocks `valid` follows from the microinstruction alone, and the microinstructions that set it.
+    /// Finds after how many clocks `valid` follows from the microinstruction alone, and the microinstructions that set it.
     fn delay(&mut self, any: &State) -> Result<(usize, Vec<usize>), Diagnostic> {
         let design = self.executor.design;
         let Some(valid) = design.port(|role| role == Role::Valid).map(|port| port.net) else {
@@ -178,7 +178,7 @@ impl Points<'_> {
         Ok(walk)
     }
 
-    /// The first point comes before all others, and once.
+    /// Checks that the first point comes before all others, and once.
     fn in_order(&self, first: usize, writes: &[usize]) -> Result<(), Diagnostic> {
         let design = self.executor.design;
         let is_write = |at: usize| writes.contains(&at);
