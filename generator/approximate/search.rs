@@ -48,7 +48,11 @@ const OCTAVE: f64 = 12.0;
 const NEAREST: [f64; 14] =
     [0.51, 0.55, 0.6, 0.7, 0.8, 0.9, 1.0, 1.5, 2.0, 4.0, 8.0, 16.0, 64.0, 256.0];
 
-/// Gives the approximation of least cost, proved.
+/// Finds the cheapest approximation of `function` that `wish` allows, and proves its error bound.
+///
+/// # Errors
+/// The domain has too many operands, or no approximation that keeps the error is found and proved. The refusal names a
+/// key and a remedy.
 pub(super) fn search(function: &Function, wish: Wish) -> Result<Piecewise, Refusal> {
     let span = function.domain.1.abs_diff(function.domain.0);
     if span >> WIDEST != 0 {

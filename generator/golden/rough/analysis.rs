@@ -40,7 +40,8 @@ impl Errors {
         Self { errors, sines }
     }
 
-    /// Returns the largest error of register 12 from the table, for γ in bin `i` and dγ in bin `j`.
+    /// Returns the largest error that the table of sines causes in register 12, the product of both sines, for γ in bin
+    /// `i` and dγ in bin `j`.
     fn product(&self, i: usize, j: usize) -> f64 {
         self.part(i, j, |error, _| error)
     }

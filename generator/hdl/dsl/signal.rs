@@ -48,7 +48,7 @@ impl<'d> Signal<'d> {
         self
     }
 
-    /// States a comment of one line for the reader of the Verilog.
+    /// Sets the one-line comment that the Verilog shows at the signal.
     #[must_use]
     pub fn doc(self, line: &str) -> Self {
         self.designer.set_doc(self.id, line);

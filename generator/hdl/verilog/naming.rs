@@ -44,7 +44,7 @@ pub struct Style {
 }
 
 impl Naming {
-    /// Chooses names that collide with none of the description.
+    /// Chooses names for what the Verilog adds, such as instances, memories and parameters; none is the name of a net.
     pub fn new(design: &Design) -> Self {
         let mut names = Names::new(design.nets.iter().map(|net| net.name.as_str()));
         names.fresh("clk");

@@ -14,7 +14,7 @@ use crate::netlist::{Design, Driver, NetId, Partition, Pipeline, Role, Unit};
 /// The module of delay lines, under the name `delay`.
 const DELAY: &str = include_str!("delay.v");
 
-/// Returns the text of the module, and of that of its delay lines.
+/// Returns the Verilog of a pipelined core: its module, and the module of its delay lines.
 pub fn module(plan: &Plan, naming: &Naming, pipeline: &Pipeline, origin: &Origin) -> String {
     let design = plan.design;
     let interface = Interface::new(plan, Partition::Datapath);
