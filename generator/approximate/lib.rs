@@ -1,4 +1,4 @@
-//! Piecewise polynomials in fixed point for a function of one operand, with a proved error.
+//! Finds piecewise polynomials in fixed point that approximate a function of one operand, and proves their error.
 //!
 //! The domain is cut into [`Segments`]; a table has the coefficients of each, and Horner's rule carries the polynomial out
 //! in integers. [`find`] chooses degree, segments, coefficients and widths; [`Piecewise::prove`] then computes every

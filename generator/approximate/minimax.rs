@@ -1,4 +1,4 @@
-//! The polynomial of least largest error on some points, by exchange of points (Remez).
+//! Finds the polynomial of least largest error on some points, by exchange of points (Remez).
 
 /// The most coefficients.
 const MOST: usize = 4;

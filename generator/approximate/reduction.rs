@@ -1,4 +1,5 @@
-//! Range reduction: the operand of a whole format becomes one of a short domain, and the polynomial's result there that of the operand.
+//! Reduces ranges: the operand of a whole format becomes one of a short domain, and the polynomial's result there
+//! becomes that of the operand.
 //!
 //! An identity of the formula is taken for granted here and shown nowhere: every operand of the whole format is computed and set
 //! against the formula, as without a reduction.
@@ -34,10 +35,10 @@ impl Identity {
     }
 }
 
-/// A reduced operand is a number of some bits.
+/// The reduction of operands to numbers of some bits, which are the operands of the polynomial.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reduction {
-    /// How it is found.
+    /// How the number of an operand is found.
     pub rule: Rule,
     /// Bits of the number.
     pub bits: u32,
@@ -48,26 +49,28 @@ pub struct Reduction {
 /// How operands are reduced.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Rule {
-    /// To their size, or the largest number. What the result of a negative one is taken off, of odd functions.
+    /// To their size (absolute value), or the largest number. Of odd functions it states the value from which the
+    /// result of a negative operand is subtracted.
     Size(Option<i64>),
-    /// To the way from the nearer zero, in the first quadrant after a turn by some quadrants.
+    /// To the distance from the nearer zero of the sine, after a turn by this number of quadrants.
     Quadrants(u32),
-    /// To what is behind the leading bit, of two octaves where they come in pairs.
+    /// To the bits behind the leading bit; where octaves come in pairs, with a bit that tells the two apart.
     Octaves {
         /// Bits of the operand.
         width: u32,
         /// Whether the number has a bit that says which of a pair it is.
         pairs: bool,
-        /// By the leading zeros of the operand: places to the right, and what is added before, in places of the polynomial.
+        /// By the leading zeros of the operand: the shift to the right, and what is added before it, in units of the
+        /// polynomial.
         restores: Vec<(u32, i64)>,
     },
-    /// To the fraction of the exponent, of which the integer is a shift.
+    /// To the fraction of the exponent; the integer of the exponent becomes a shift.
     Exponent {
         /// A factor that makes the operand an exponent of two, and the bits that are cut off the product.
         scale: Option<(i64, u32)>,
         /// The integer at which the results are largest.
         whole: i64,
-        /// Whether it is the least.
+        /// Whether that is the smallest integer.
         falls: bool,
     },
 }
@@ -77,9 +80,9 @@ pub enum Rule {
 pub struct Restore {
     /// Added to the polynomial.
     addend: i64,
-    /// Then places to the right, rounded to the nearest.
+    /// The places by which the sum is then shifted to the right, rounded to the nearest.
     shift: u32,
-    /// Then taken off this.
+    /// The value from which that is subtracted, if any.
     centre: Option<i64>,
     /// The operand is 0, and the result too.
     zero: bool,

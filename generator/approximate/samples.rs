@@ -1,4 +1,4 @@
-//! Measured points in place of a formula, and the curve through them.
+//! Reads measured points that stand in place of a formula, and computes the curve through them.
 //!
 //! Between points the curve is Steffen's cubic (Astronomy and Astrophysics 239, 443, 1990): with one derivative, and as monotone as
 //! the points are. Its slopes at the points are the numbers of f64 that his formula gives.

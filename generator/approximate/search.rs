@@ -1,4 +1,4 @@
-//! The search for degree, segments, coefficients and widths.
+//! Searches for the degree, the segments, the coefficients and the widths of the cheapest approximation of a function.
 
 use super::reduction::KEY;
 use super::seen::Seen;

@@ -1,4 +1,4 @@
-//! The results that are right at the operands that a search looks at.
+//! Computes which results are within the allowed error, from lowest to highest, at each operand that a search looks at.
 
 use rayon::prelude::*;
 

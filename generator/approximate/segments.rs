@@ -1,4 +1,4 @@
-//! How a domain is cut into segments, and which word of the table an operand reads.
+//! Cuts a domain into segments, and finds the word of the table that an operand reads.
 
 /// How segments are laid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -28,7 +28,7 @@ impl Layout {
 pub struct Segments {
     /// Bits of the number of an operand.
     pub bits: u32,
-    /// How they are laid.
+    /// How the segments are laid.
     pub layout: Layout,
     /// How many octaves there are; none of uniform ones.
     pub octaves: u32,

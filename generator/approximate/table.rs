@@ -1,4 +1,4 @@
-//! The words of a table for given segments: coefficients that are right at every operand, as narrow as may be.
+//! Finds the words of a table for given segments: coefficients that are right at every operand, as narrow as may be.
 //!
 //! Coefficients are rounded one after the other, the highest first: what the hardware makes of those that are chosen is
 //! taken off the function, and the rest is fitted again. The constant closes the search: every operand of a segment allows

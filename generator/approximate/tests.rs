@@ -1,4 +1,4 @@
-//! Approximations are proved, and a wrong coefficient is not.
+//! Tests that approximations are proved, and that a wrong coefficient is refused.
 
 use super::{Curve, Function, Identity, Layout, Outside, Samples, Wish, find};
 use glint_base::fixed::{Format, exp2};

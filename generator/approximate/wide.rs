@@ -1,4 +1,4 @@
-//! The proof of a bound where operands are too many to compute each: by intervals within segments.
+//! Proves a bound of the error where operands are too many to compute each: by intervals within segments.
 //!
 //! With the real number t in place of the offset, a word is a polynomial P, and the result lags behind P(t) by what its
 //! roundings drop, which is known of a whole segment. The distance from the function to P is that in the middle of an interval, and at

@@ -1,4 +1,4 @@
-//! The codes of mistakes in a description, and what a page says of each: `diagnostics.md`, written by hand.
+//! Defines the codes of mistakes in a description, and reads the page of each in `diagnostics.md`, written by hand.
 
 use std::fmt;
 

@@ -1,4 +1,4 @@
-//! Reachability in a graph.
+//! Finds the nodes of a graph that can be reached from given nodes.
 
 use std::collections::HashSet;
 use std::hash::Hash;

@@ -1,4 +1,4 @@
-//! Mistakes in a description, each with the line of the Rust source.
+//! Defines diagnostics: mistakes in a description, each with its message and the line of the Rust source.
 
 use std::fmt;
 use std::panic::Location;

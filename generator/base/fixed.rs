@@ -1,4 +1,4 @@
-//! Run-time fixed-point formats, rounding and overflow.
+//! Defines fixed-point formats that are chosen at run time, and computes their rounding and overflow.
 //!
 //! A format is written `uI.F` or `sI.F`: I integer bits, F fraction bits and, for a signed format,
 //! one sign bit more. The width is therefore I + F, or 1 + I + F. A *raw* value is the integer that

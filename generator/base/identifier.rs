@@ -1,4 +1,4 @@
-//! Names that Verilog takes.
+//! Checks that a name is an identifier that Verilog takes.
 
 use crate::keywords::is_keyword;
 

@@ -1,4 +1,4 @@
-//! Intervals of raw values.
+//! Computes with intervals of raw values: hulls, intersections, products, and whether a format holds one.
 
 use super::fixed::Format;
 

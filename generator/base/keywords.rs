@@ -1,4 +1,4 @@
-//! The reserved words of SystemVerilog.
+//! Tells whether a word is reserved in SystemVerilog.
 
 /// Returns whether a word is reserved in IEEE 1800-2017 (annex B), which contains those of Verilog-2005.
 pub fn is_keyword(word: &str) -> bool {

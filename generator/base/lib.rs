@@ -1,4 +1,4 @@
-//! Fixed-point formats, intervals, diagnostics, names, text and input: what all other modules use.
+//! Provides what all other modules use: fixed-point formats, intervals, diagnostics, targets, names, text and input.
 
 pub mod codes;
 pub mod cone;

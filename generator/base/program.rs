@@ -1,4 +1,4 @@
-//! The name of the running program: `glint`, or that of a program with devices of its own.
+//! Holds the name of the running program for messages: `glint`, or that of a program with devices of its own.
 
 use std::fmt;
 use std::sync::OnceLock;

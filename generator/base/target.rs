@@ -1,4 +1,4 @@
-//! Families of FPGAs: delays, multipliers, commands of Yosys, chips, and weights of the estimates.
+//! Holds the data of families of FPGAs: delays, multipliers, commands of Yosys, chips, and weights of the estimates.
 //!
 //! Delays are nanoseconds, each with the way to the next cell. Those of ECP5 are of this table, which
 //! `benches/pipeline/delays.py` measures: the time from register to register through an operation, one seed,
@@ -25,9 +25,9 @@
 /// A memory in look-up tables, as a target has it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DelayMemory {
-    /// Its words.
+    /// The number of its words.
     pub words: u32,
-    /// Their bits.
+    /// The bits of a word.
     pub width: u32,
     /// The look-up tables that it takes, those of its addresses too.
     pub tables: u32,
@@ -55,7 +55,7 @@ pub struct Registered {
 /// The delays and the multipliers of a target.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Timing {
-    /// As the key `pipeline.target` names it.
+    /// The name of the target, as the key `pipeline.target` has it.
     pub name: &'static str,
     /// The widest operands of a multiplier, unsigned, the wider one first.
     pub multiplier: (u32, u32),
@@ -90,7 +90,7 @@ pub struct Timing {
 /// A chip and its resources.
 #[derive(Debug)]
 pub struct Chip {
-    /// For people.
+    /// The name of the chip, for people.
     pub name: &'static str,
     /// How nextpnr names it, with its package.
     pub options: &'static str,
@@ -132,7 +132,7 @@ pub type Kinds = &'static [(&'static str, u64)];
 /// A family of FPGAs.
 #[derive(Debug)]
 pub struct Family {
-    /// For people.
+    /// The name of the family, for people.
     pub title: &'static str,
     /// The delays for schedules and estimates of the clock.
     pub timing: Timing,

@@ -1,4 +1,4 @@
-//! Texts by templates of the crate `glint-templates`: macro [`fill!`](crate::fill).
+//! Fills in templates of the crate `glint-templates`, by the macro [`fill!`](crate::fill), and returns the text.
 
 use anyhow::Result;
 pub use askama;

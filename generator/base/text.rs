@@ -1,4 +1,4 @@
-//! Numbers in sentences.
+//! Writes numbers for sentences: `1 234`, `12 nets`, or a limit rounded up.
 
 /// Returns an integer with spaces between the thousands.
 pub fn grouped(number: u64) -> String {

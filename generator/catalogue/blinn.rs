@@ -1,4 +1,5 @@
-//! `blinn` — cⁿ itself for run-time n (seeds 000–002: the function that all the others approximate).
+//! The hardware description of `blinn`: cⁿ itself for run-time n (seeds 000–002: the function that all the others
+//! approximate).
 //!
 //! The seeds give no circuit. This is the one that a logarithm, a product and an exponential make: cⁿ = 2^(−n·decay) with the
 //! decay −log₂ c, an octave number before that of a mantissa.

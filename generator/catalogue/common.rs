@@ -1,4 +1,4 @@
-//! Operands, outputs and notes that several devices share.
+//! Builds the operands, the colour outputs and the notes that the hardware descriptions of several devices share.
 
 use glint_base::fixed::{Format, Rounding};
 use glint_keys::common as keys;

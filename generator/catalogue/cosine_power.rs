@@ -1,4 +1,5 @@
-//! `cosine-power` — seed 002: the paper's W(n,γ) = `(n/m·(cos γ − 1) + 1)^m`, m ∈ {2, 4, 8, 16}.
+//! The hardware description of `cosine-power` (seed 002): the paper's W(n,γ) = `(n/m·(cos γ − 1) + 1)^m`,
+//! m ∈ {2, 4, 8, 16}.
 //!
 //! The paper gives no circuit; this is the least that its formula asks for: one multiplier, one
 //! accumulator. n/m is a shift by wiring. The sum is formed as a complement, `1 − n/m·(1 − cos γ)`, so that

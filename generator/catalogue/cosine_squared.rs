@@ -1,4 +1,5 @@
-//! `cosine-squared` — seed 000's prototype (Abbas, Szirmay-Kalos, Horváth 2000): `cos²(a·δ)` along a scan line.
+//! The hardware description of `cosine-squared`, seed 000's prototype (Abbas, Szirmay-Kalos, Horváth 2000): `cos²(a·δ)`
+//! along a scan line.
 //!
 //! The accumulator of `quad-cosine`; the host multiplies its angles by `a = √(n/2)`, so that nothing stands
 //! between register 8 and a single table.

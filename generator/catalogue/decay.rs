@@ -1,4 +1,5 @@
-//! The shared description of `blinn` and `gauss`: `f = 2^(−n·decay)`, where the decay is a function of cos γ alone.
+//! The hardware description that `blinn` and `gauss` share: `f = 2^(−n·decay)`, where the decay is a function of cos γ
+//! alone.
 //!
 //! The decay is the distance 1 − cos γ times a ratio that is smooth, and so keeps its relative accuracy toward cos γ = 1,
 //! which is what n multiplies. Ratio and 2^−x are piecewise polynomials on one multiplier; another multiplies distance and ratio,

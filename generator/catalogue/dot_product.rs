@@ -1,4 +1,5 @@
-//! The description: both sums of products, the inverse root of one, and the product of what is left of both.
+//! The hardware description of `dot-product`, the cosine between a vector of any length and a unit vector: the sums of
+//! products and of squares, the inverse root of the latter, and its product with the former.
 
 use super::normaliser::{by_pairs, inverse_root};
 use glint_base::fixed::{Format, Overflow, Rounding};

@@ -1,4 +1,5 @@
-//! `function` — a formula of one operand: a table of coefficients, and Horner's rule on one multiplier.
+//! The hardware description of `function`, a formula of one operand: a table of coefficients, and Horner's rule on one
+//! multiplier.
 
 mod reduction;
 

@@ -1,4 +1,4 @@
-//! `gauss` — exp(−n·γ²/2), γ = arccos c: the fourth function that seed 002 weighs.
+//! The hardware description of `gauss`: exp(−n·γ²/2), γ = arccos c, the fourth function that seed 002 weighs.
 //!
 //! The seed gives no circuit, and prints the angle as ∠(H,L); its own formulas use ∠(N,H), which is taken
 //! here. exp(−n·γ²/2) = 2^(−n·decay) with the decay γ²/(2 ln 2), 1 − c times a smooth function of it.

@@ -1,4 +1,4 @@
-//! The devices: one file each, with its description and nothing else.
+//! The catalogue of devices: a file for each, with its hardware description and nothing else.
 
 pub mod blinn;
 mod common;

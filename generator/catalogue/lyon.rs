@@ -1,5 +1,5 @@
-//! `lyon` — US 5 739 820, Fig. 7C and 7D (the first analogue in seed 000): `max(0, 1 − β·D²)^(2^s)` from
-//! the difference vector D = N − H.
+//! The hardware description of `lyon` (US 5 739 820, Fig. 7C and 7D; the first analogue in seed 000):
+//! `max(0, 1 − β·D²)^(2^s)` from the difference vector D = N − H.
 //!
 //! The seed lists the parts only: two adders, four multipliers, shift register, counter, comparator and
 //! mux. The wiring is our reading. Numbers count each kind of block.

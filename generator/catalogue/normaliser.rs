@@ -1,4 +1,5 @@
-//! The description: a squarer, a shifter, a table, and a multiplier.
+//! The hardware description of `normaliser`, which gives the unit vector of a vector of any length: a squarer, a
+//! shifter, a table, and a multiplier.
 
 use glint_base::fixed::{Format, Overflow, Rounding};
 use glint_config::Config;

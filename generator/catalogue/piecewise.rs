@@ -1,5 +1,5 @@
-//! A function of one operand by a piecewise polynomial, as a part of a description: a table of coefficients, and Horner's
-//! rule, of which each step is one product and one sum.
+//! Builds the hardware of a piecewise polynomial, which computes a function of one operand: a table of coefficients,
+//! and Horner's rule, of which each step is one product and one sum.
 //!
 //! The number of the operand within the domain addresses the table. One multiplier serves all polynomials of a description.
 

@@ -1,4 +1,5 @@
-//! `quad-cosine` — seed 000, the claimed device: `cosᵏ(√(n/k)·δ)` along a scan line, k ∈ {1, 2, 4, 16} by n.
+//! The hardware description of `quad-cosine` (seed 000, the claimed device): `cosᵏ(√(n/k)·δ)` along a scan line,
+//! k ∈ {1, 2, 4, 16} by n.
 //!
 //! Block numbers are the patent's. Block 14's triggers become words of a microprogram with the same order
 //! of events; ROMs 9 and 12 are synchronous, and output 29 follows output 37 by two clocks.

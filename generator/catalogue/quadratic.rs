@@ -1,4 +1,5 @@
-//! `quadratic` — UA 20998 (the analogue in seed 001): `c + a(n)·(c² − c)`, with a(n) from ROM.
+//! The hardware description of `quadratic` (UA 20998, the analogue in seed 001): `c + a(n)·(c² − c)`, with a(n) from
+//! ROM.
 //!
 //! The patent's blocks follow one another without a control block; two registers of ours cut the chain
 //! so that no clock holds more than one multiplier before the outputs. Numbers count each kind of block, as the

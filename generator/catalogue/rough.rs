@@ -1,4 +1,5 @@
-//! `rough` — UA 60139 (seed 001): the highlight of a rough surface, `(n/2·(cos(γ±dγ) − 1) + 1)²`.
+//! The hardware description of `rough` (UA 60139, seed 001): the highlight of a rough surface,
+//! `(n/2·(cos(γ±dγ) − 1) + 1)²`.
 //!
 //! Block numbers are the patent's. One multiplier (10) serves four products under the select lines
 //! V1 V2; the microprogram is the patent's table 1, word by word.

@@ -1,4 +1,4 @@
-//! `schlick` — seed 002: the rival of the paper's function, `c / (n − n·c + c)`, c = cos γ.
+//! The hardware description of `schlick` (seed 002), the rival of the paper's function: `c / (n − n·c + c)`, c = cos γ.
 //!
 //! The paper names the division as what makes the function hard to build, and gives no circuit. This
 //! is the least: one multiplier for the divisor and an iterative divider, one bit of the quotient a

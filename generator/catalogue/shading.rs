@@ -1,4 +1,6 @@
-//! `shading`: normals in, colours out. Its parts are other devices of Glint.
+//! The hardware description of `shading`, which computes colours from normals, lights, half vectors and a material.
+//!
+//! Its parts are other devices of Glint.
 
 use super::{blinn, cosine_power, dot_product, function, gauss, quadratic, schlick, threshold};
 use glint_base::fixed::{Overflow, Rounding};

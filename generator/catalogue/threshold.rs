@@ -1,5 +1,5 @@
-//! `threshold` — UA 30041 (the prototype in seed 001): `(n/2·(cos γ − 1) + 1)²`, or 0 where a comparator finds the
-//! square below ROM(n).
+//! The hardware description of `threshold` (UA 30041, the prototype in seed 001): `(n/2·(cos γ − 1) + 1)²`, or 0 where
+//! a comparator finds the square below ROM(n).
 //!
 //! The patent's blocks follow one another without a control block. Two registers that the patent does not have cut the
 //! chain, so that no clock holds more than one multiplier before the outputs. Each kind of block is numbered on its

@@ -1,4 +1,4 @@
-//! Intervals of real numbers that certainly hold the value: every rounding is outward.
+//! Interval arithmetic: computes limits that certainly hold the value of a real number. Every rounding is outward.
 
 /// Far more than any function of `libm` is off: musl's, from which they come, state errors below 1.5 units in the last
 /// place, and this is at least four of them.

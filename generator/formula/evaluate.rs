@@ -1,4 +1,4 @@
-//! A formula's value, with limits that certainly hold it.
+//! Evaluates a formula: computes limits that certainly hold its value.
 
 use super::{Comparison, Enclosure, Fault, Formula, Function, Kind, Operator};
 

@@ -1,4 +1,4 @@
-//! Formulas: text to a tree, and the tree to enclosures and to Python.
+//! Parses formulas from text to a tree, evaluates the tree to enclosures of its value, and prints it as Python and C.
 //!
 //! The text is what a configuration or a contract states, `1 / sqrt(x)` or `max(x, 0) if x > 1 else 2 ** -x`. Every part
 //! of the tree knows the bytes of the text that it came from, so that a mistake is shown under its place.
@@ -46,11 +46,11 @@ pub enum Kind {
 /// Whether one number exceeds another.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
-    /// The number.
+    /// The number that may exceed the other.
     pub left: Box<Formula>,
-    /// The other.
+    /// The number that it is compared with.
     pub right: Box<Formula>,
-    /// Whether equal ones count.
+    /// Whether the comparison also holds of equal numbers.
     pub or_equal: bool,
 }
 

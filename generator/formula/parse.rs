@@ -1,4 +1,4 @@
-//! Text to a tree.
+//! Parses the text of a formula to a tree.
 
 use std::ops::Range;
 

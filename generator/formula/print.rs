@@ -1,4 +1,4 @@
-//! A formula as text of other languages.
+//! Prints a formula as an expression of Python or of C.
 
 use super::{Comparison, Formula, Function, Kind, Operator};
 

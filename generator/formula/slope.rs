@@ -1,4 +1,4 @@
-//! The derivative of a formula, with limits that certainly hold it.
+//! Differentiates a formula: computes limits that certainly hold its derivative.
 
 use super::evaluate::{binary, unary};
 use super::{Comparison, Enclosure, Fault, Formula, Function, Kind, Operator};

@@ -1,4 +1,4 @@
-//! Formulas are read, evaluated and printed.
+//! Tests that formulas are parsed, evaluated and printed.
 
 use super::{Enclosure, parse};
 

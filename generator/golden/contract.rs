@@ -1,4 +1,5 @@
-//! Colour operands and the sum of a bound, for the contracts of all devices.
+//! Makes what the accuracy contracts of several devices share: control operands, the error bound from its terms, and
+//! expressions of Python.
 
 use super::{Bound, Operand, Term};
 use glint_base::fixed::{Format, Rounding, exp2};

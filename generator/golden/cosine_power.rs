@@ -1,4 +1,5 @@
-//! `cosine-power`: the paper's W(n, γ) = (n/m·(cos γ − 1) + 1)^m (seed 002), by formula.
+//! The golden model and the accuracy contract of `cosine-power`: the paper's
+//! W(n, γ) = (n/m·(cos γ − 1) + 1)^m (seed 002).
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! An increasing, concave function by straight segments, computed afresh.
+//! Makes the table of an increasing, concave function by straight segments, independently of the hardware's table.
 //!
 //! The operand u is an integer of C bits. Ranges, each a quarter of the one before, are cut uniformly,
 //! and so is the tail below them; a value is a raw u0.S.

@@ -1,4 +1,5 @@
-//! The shared model of `blinn` and `gauss`: f = 2^(−n·decay), where the decay is a function of cos γ.
+//! The golden model and the accuracy contract that `blinn` and `gauss` share: f = 2^(−n·decay), where the decay is a
+//! function of cos γ.
 
 #[cfg(test)]
 mod tests;

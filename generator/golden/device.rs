@@ -1,7 +1,7 @@
-//! A device by what each of its microinstructions does: its model, and a contract whose results are the model's.
+//! Makes the golden model and the accuracy contract of a device from what each of its microinstructions does.
 //!
-//! Names, formats and the arithmetic stand once, in the [`Frame`] and the microinstructions. What is left to say is
-//! the formula, and how far off the device may be.
+//! The results of the contract are those of the model. Names, formats and the arithmetic stand once, in the [`Frame`]
+//! and the microinstructions. What is left to say is the formula, and how far off the device may be.
 //!
 //! ```
 //! use glint_base::fixed::Format;

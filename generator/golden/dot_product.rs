@@ -1,4 +1,5 @@
-//! The golden model and the contract, from the formula.
+//! The golden model and the accuracy contract of `dot-product`: the cosine, in 0 … 1, between a vector of any length
+//! and a unit vector.
 
 use std::sync::Arc;
 

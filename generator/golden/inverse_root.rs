@@ -1,4 +1,5 @@
-//! The direction of a vector of any length: the inverse root of a sum of squares by a table, and the exact unit vector.
+//! Computes the inverse root of a sum of squares by a table, as the golden models of `normaliser` and `dot-product` do,
+//! bounds its error, and computes the exact unit vector of a direction.
 
 use super::Sweep;
 use glint_base::fixed::{exp2, mask};

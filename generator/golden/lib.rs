@@ -1,4 +1,5 @@
-//! Golden models: each device a second time, by its formula and the source's narrative.
+//! The golden models and the accuracy contracts of the devices. A golden model is a second implementation of a device,
+//! from its formula and the source's narrative.
 //!
 //! A golden model uses [`glint_base::fixed`] and [`glint_config`] alone. It never sees the description,
 //! the netlist or the microcode, and it computes its own tables; that is what makes the comparison
@@ -258,9 +259,9 @@ pub struct Axis {
 /// The values of an [`Axis`].
 #[derive(Clone, Debug, PartialEq)]
 pub enum Values {
-    /// From the first to the last.
+    /// All integers from the first to the last.
     Range(i64, i64),
-    /// These.
+    /// The values of this list.
     List(Vec<i64>),
 }
 

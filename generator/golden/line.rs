@@ -1,4 +1,4 @@
-//! The shared parts of the devices of seed 000: a walk along a scan line, and tables of powers of a cosine.
+//! Models what the devices of seed 000 share: the walk along a scan line, and tables of powers of a cosine.
 //!
 //! Angles are in right angles: a raw value of `2^F` is 90°.
 

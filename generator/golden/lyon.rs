@@ -1,4 +1,4 @@
-//! `lyon`: `max(0, 1 − β·D²)^m` from a difference vector (US 5 739 820), by formula.
+//! The golden model and the accuracy contract of `lyon`: `max(0, 1 − β·D²)^m` from a difference vector (US 5 739 820).
 
 mod contract;
 #[cfg(test)]

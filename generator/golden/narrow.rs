@@ -1,4 +1,6 @@
-//! Narrowing with the constants worked out beforehand: the models' inner loop.
+//! Rounds raw values to a format and saturates them, with constants that are computed beforehand.
+//!
+//! It is the inner loop of the golden models.
 
 use glint_base::fixed::{Format, Rounding};
 

@@ -1,4 +1,4 @@
-//! The golden model and the contract, from the formula.
+//! The golden model and the accuracy contract of `normaliser`: the unit vector of a vector of any length.
 
 use std::sync::Arc;
 

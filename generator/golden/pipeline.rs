@@ -1,4 +1,4 @@
-//! The handshake of a pipeline: which stage has which point.
+//! Models the handshake of a pipeline clock by clock: which stage has which point, and when points move.
 
 use std::collections::VecDeque;
 

@@ -1,6 +1,7 @@
-//! Horner's rule in integers, on the coefficients of a piecewise polynomial.
+//! Computes a piecewise polynomial in a golden model: by Horner's rule in integers, with a register for each sum.
 //!
-//! The table is data: what vouches for it is that every operand was computed and set against the formula.
+//! The table of coefficients is data: what vouches for it is that every operand was computed and set against the
+//! formula.
 
 use std::sync::Arc;
 

@@ -1,4 +1,5 @@
-//! `quad-cosine`: cosᵏ(√(n/k)·δ) along a scan line (seed 000, the claimed device), by formula.
+//! The golden model and the accuracy contract of `quad-cosine` (seed 000, the claimed device): cosᵏ(√(n/k)·δ) along a
+//! scan line.
 
 mod contract;
 #[cfg(test)]

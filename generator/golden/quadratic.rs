@@ -1,4 +1,4 @@
-//! `quadratic`: `c + a(n)·(c² − c)`, not below 0 (UA 20998), by formula.
+//! The golden model and the accuracy contract of `quadratic`: `c + a(n)·(c² − c)`, not below 0 (UA 20998).
 
 pub mod coefficient;
 #[cfg(test)]

@@ -1,4 +1,6 @@
-//! `rough`: (n/2·(cos(γ ± dγ) − 1) + 1)² (UA 60139, seed 001), by the patent's narrative.
+//! The golden model and the accuracy contract of `rough`: (n/2·(cos(γ ± dγ) − 1) + 1)² (UA 60139, seed 001).
+//!
+//! The model follows the patent's narrative.
 
 mod analysis;
 mod bound;

@@ -1,4 +1,4 @@
-//! `schlick`: c / (n − n·c + c), c = cos γ (seed 002), by formula.
+//! The golden model and the accuracy contract of `schlick`: c / (n − n·c + c), c = cos γ (seed 002).
 
 use super::contract::{self, ErrorShare};
 use super::frame::{Clocked, Frame, idle, step};

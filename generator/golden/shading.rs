@@ -1,4 +1,5 @@
-//! `shading`: ambient, diffuse and specular light of a normal of any length, from the models of its parts.
+//! The golden model and the accuracy contract of `shading`: ambient, diffuse and specular light of a normal of any
+//! length. Both build on those of its parts.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! The sine `x ↦ √(1 − x²)` of ROM 18, direct or in octave segments, computed afresh.
+//! Makes the sine table `x ↦ √(1 − x²)` of ROM 18, direct or in octave segments, independently of the hardware's table.
 //!
 //! Operands are raw values with C fraction bits, 0 … 2^C; a sine is a raw u0.S.
 

@@ -1,4 +1,5 @@
-//! `threshold`: `(n/2·(cos γ − 1) + 1)²` where it reaches ROM(n), otherwise 0 (UA 30041), by formula.
+//! The golden model and the accuracy contract of `threshold`: `(n/2·(cos γ − 1) + 1)²` where it reaches ROM(n),
+//! otherwise 0 (UA 30041).
 
 #[cfg(test)]
 mod tests;

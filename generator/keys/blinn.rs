@@ -1,4 +1,4 @@
-//! The keys of `blinn`, which are those of [`super::decay`].
+//! Declares the configuration keys of `blinn`: those of [`super::decay`], checked for its decay −log₂ c.
 
 pub use super::decay::Keys;
 

@@ -1,4 +1,4 @@
-//! Keys that several devices share, so that one name means one thing everywhere.
+//! Declares and checks configuration keys that several devices share, so that one name means one thing everywhere.
 
 use glint_base::fixed::{Format, Rounding, exp2};
 use glint_config::{Key, Problems};

@@ -1,4 +1,4 @@
-//! The keys of `cosine-power`.
+//! Declares the configuration keys of `cosine-power`, and checks that their values make a device.
 
 use super::common::{self, Domain, Intensity, Operands};
 use glint_config::{Config, Problems, Schema};

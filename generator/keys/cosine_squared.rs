@@ -1,4 +1,4 @@
-//! The keys of `cosine-squared`.
+//! Declares the configuration keys of `cosine-squared`, and checks that their values make a device.
 
 use super::common;
 use glint_base::fixed::{Format, Rounding};

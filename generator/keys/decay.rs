@@ -1,4 +1,4 @@
-//! The keys of `blinn` and `gauss`, and the tables that they state.
+//! Declares the configuration keys of `blinn` and `gauss`, and finds the tables of polynomials that they state.
 
 use std::sync::Arc;
 

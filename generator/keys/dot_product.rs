@@ -1,4 +1,4 @@
-//! The keys of `dot-product`.
+//! Declares the configuration keys of `dot-product`, and checks that their values make a device.
 
 use super::normaliser;
 use glint_base::fixed::{Format, Rounding};

@@ -1,4 +1,4 @@
-//! The keys of `function`, and the function that they state.
+//! Declares the configuration keys of `function`, and finds the function that they state and its approximation.
 
 use std::sync::Arc;
 

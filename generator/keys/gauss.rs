@@ -1,4 +1,4 @@
-//! The keys of `gauss`, which are those of [`super::decay`].
+//! Declares the configuration keys of `gauss`: those of [`super::decay`], checked for its decay γ²/(2 ln 2).
 
 pub use super::decay::Keys;
 

@@ -1,5 +1,5 @@
-//! The keys of the devices of the seeds, a file each: what a configuration can say of a device, and which combinations
-//! make one. Description and golden model both read them; they are the specification of both.
+//! Declares the configuration keys of the devices of the seeds, a file each: what a configuration can say of a device,
+//! and which combinations make one. Description and golden model both read them; they are the specification of both.
 
 pub mod blinn;
 pub mod common;

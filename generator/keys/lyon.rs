@@ -1,11 +1,11 @@
-//! The keys of `lyon`.
+//! Declares the configuration keys of `lyon`, and checks that their values make a device.
 
 use super::common::{self, Colours, Domain, Intensity};
 use glint_base::fixed::Rounding;
 use glint_config::{Config, Key, Problems, Schema};
 
 glint_config::choices! {
-    /// How β is had.
+    /// How β is obtained.
     pub enum Scale {
         /// `2^shift/(2·m)`; the operand is `shift`.
         Shift = "shift",

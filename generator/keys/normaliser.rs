@@ -1,4 +1,4 @@
-//! The keys of `normaliser`.
+//! Declares the configuration keys of `normaliser`, and checks that their values make a device.
 
 use glint_base::fixed::Rounding;
 use glint_config::{Config, Key, Problems, Schema};

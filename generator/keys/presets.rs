@@ -1,4 +1,4 @@
-//! Functions by their names: configurations to start from.
+//! Holds configurations of `function` to start from, by the name of the function: `exp2`, `sqrt`, `sigmoid`, ….
 
 use glint_config::Value;
 

@@ -1,4 +1,4 @@
-//! The keys of `quad-cosine`.
+//! Declares the configuration keys of `quad-cosine`, and checks that their values make a device.
 
 use super::common::{self, Domain};
 use glint_base::fixed::{Format, Rounding};

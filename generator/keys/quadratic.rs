@@ -1,4 +1,4 @@
-//! The keys of `quadratic`.
+//! Declares the configuration keys of `quadratic`, and checks that their values make a device.
 
 use super::common::{self, Domain, Intensity, Operands};
 use glint_base::fixed::Rounding;

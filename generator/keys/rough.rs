@@ -1,4 +1,4 @@
-//! The keys of `rough`, and which of their combinations make a device.
+//! Declares the configuration keys of `rough`, and checks which of their combinations make a device.
 
 use super::common::{self, Domain, Intensity, Operands};
 use glint_base::fixed::Rounding;

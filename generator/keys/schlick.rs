@@ -1,4 +1,4 @@
-//! The keys of `schlick`.
+//! Declares the configuration keys of `schlick`, and checks that their values make a device.
 
 use super::common::{self, Domain, Operands};
 use glint_base::fixed::{Format, Rounding};

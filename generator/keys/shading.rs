@@ -1,4 +1,4 @@
-//! The keys of `shading`, and the configurations of its parts.
+//! Declares the configuration keys of `shading`, and derives the configurations of its parts from them.
 
 use super::common;
 use super::{blinn, cosine_power, dot_product, function, gauss, quadratic, schlick, threshold};
@@ -77,11 +77,11 @@ const SUFFIXES: [&str; 4] = ["", "2", "3", "4"];
 
 /// The configurations of the parts.
 pub struct Parts {
-    /// That of the cosine between normal and light.
+    /// The part that computes the cosine between normal and light.
     pub facing: Config,
-    /// That of the cosine between normal and half vector.
+    /// The part that computes the cosine between normal and half vector.
     pub cosine: Config,
-    /// That of the highlight.
+    /// The part that computes the highlight.
     pub highlight: Config,
 }
 

@@ -1,4 +1,4 @@
-//! The keys of `threshold`.
+//! Declares the configuration keys of `threshold`, and checks that their values make a device.
 
 use super::common::{self, Domain, Intensity, Operands};
 use glint_config::{Config, Key, Problems, Schema};

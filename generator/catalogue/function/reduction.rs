@@ -1,4 +1,4 @@
-//! Operands of a whole format reduced to the polynomial's, and results of it.
+//! Builds the range reduction of `function`: from operands of a whole format to the polynomial's, and back to results.
 
 use super::whole;
 use glint_approximate::{Piecewise, Reduction, Rule};
@@ -7,16 +7,16 @@ use glint_rtl::blocks::quadrant::{mirrored, quadrant};
 use glint_rtl::blocks::shift::{normalise, right_by};
 use glint_rtl::dsl::{Designer, Signal};
 
-/// How a result comes of the polynomial, in this order.
+/// The steps from the polynomial to the result, in this order.
 #[derive(Default)]
 pub(super) struct Restoring<'d> {
     /// Added to it, in places of its own.
     addend: Option<Signal<'d>>,
-    /// Places to the right.
+    /// The places by which the sum is shifted to the right.
     places: Option<Signal<'d>>,
-    /// The bit without which the result is 0.
+    /// The bit that is 0 where the result is 0.
     nonzero: Option<Signal<'d>>,
-    /// The bit with which the result is taken off a raw value.
+    /// The bit that is 1 where the result is subtracted from a raw value, and that value.
     negative: Option<(Signal<'d>, i64)>,
 }
 

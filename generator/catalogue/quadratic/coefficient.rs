@@ -1,4 +1,4 @@
-//! a(n) of `quadratic`: what multiplies `c² − c`, so that `max(0, c + a·(c² − c))` is near `cⁿ`.
+//! Computes the coefficient a(n) of `quadratic`, with which `max(0, c + a·(c² − c))` is near `cⁿ`.
 //!
 //! With x = 1 − c the parabola is `(1 − x)·(1 − a·x)`, zero at x = 1/a. For 1 < a < n − 1 it is above cⁿ
 //! near the peak, by the most where the slopes agree, and below it beyond, by the most at its own zero.

@@ -1,4 +1,4 @@
-//! ROM 18 of `rough`: the sine of a cosine, in one of two schemes.
+//! Builds ROM 18 of `rough`, the table that gives the sine of a cosine, in one of two schemes.
 
 use super::Formats;
 use glint_base::fixed::{Format, exp2};

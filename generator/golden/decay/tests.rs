@@ -1,4 +1,4 @@
-//! `blinn` and `gauss` worked by hand in words of a few bits.
+//! Compares the golden models of `blinn` and `gauss` with values worked out by hand, in words of a few bits.
 
 use super::*;
 use glint_keys::common::{Domain, Intensity, Operands};

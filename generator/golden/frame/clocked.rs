@@ -1,4 +1,4 @@
-//! A device that the frame runs, clock by clock.
+//! Runs the golden model that a [`Frame`] makes, clock by clock: its handshake, microinstructions and registers.
 
 use std::mem;
 use std::sync::Arc;

@@ -1,5 +1,5 @@
-//! The clock model that every device has: reset, `start`, strobes, the sequence of microinstructions, `busy`,
-//! `valid`, `done`.
+//! Builds golden models that run clock by clock. It supplies what every device has: reset, `start`, strobes, the
+//! sequence of microinstructions, `busy`, `valid`, `done`.
 //!
 //! A device names its operands, registers and outputs once, in a [`Frame`], and gets a [`Slot`] for each. It
 //! says what each microinstruction does to them ([`step`]) and what its outputs show; the

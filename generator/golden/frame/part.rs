@@ -1,4 +1,4 @@
-//! Models of which a device is made: each a part of one state, of one program.
+//! Makes a golden model of the models of its parts, which share one state and one microprogram.
 //!
 //! A part executes its own microinstructions on its own registers, one part after the other. Its operand registers are
 //! loaded in the microinstruction before its first, and its results are in registers from its last on.

@@ -1,4 +1,4 @@
-//! The contract of highlights: colours that are multiplied by a reflectance `f`.
+//! The accuracy contract of highlights, which are devices that multiply colours by a reflectance `f`.
 
 mod keys;
 mod multiplied;

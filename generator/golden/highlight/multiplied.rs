@@ -1,4 +1,4 @@
-//! The products with a reflectance.
+//! Makes the products of a reflectance f with the colour operands, for golden models and accuracy contracts.
 
 use crate::frame::{Clocked, Frame, Microinstruction, Slot, State, idle, step};
 use crate::narrow::Narrow;

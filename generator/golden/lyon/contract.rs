@@ -1,4 +1,4 @@
-//! The accuracy contract of `lyon`.
+//! The accuracy contract of `lyon`: its formula, the terms of its error bound, and the exhaustive check.
 
 use super::{Arithmetic, Derived as _, Keys, Scale};
 use crate::contract::{self as shared, ErrorShare};

@@ -1,4 +1,4 @@
-//! Values worked out by hand.
+//! Compares the golden model and the contract of `lyon` with values worked out by hand.
 
 use super::contract::of_keys;
 use super::*;

@@ -1,4 +1,4 @@
-//! The accuracy contract of `quad-cosine`.
+//! The accuracy contract of `quad-cosine`: its formula, the terms of its error bound, and the exhaustive check.
 
 use std::f64::consts::FRAC_PI_2;
 

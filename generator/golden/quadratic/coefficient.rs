@@ -1,4 +1,4 @@
-//! ROM(n) of `quadratic`, a second time.
+//! Computes the coefficients a(n) in ROM(n) of `quadratic`, independently of the hardware description.
 //!
 //! With x = 1 − c, the parabola exceeds cⁿ by `h(x) = (1 − x)·(1 − a·x) − (1 − x)ⁿ` up to its zero at
 //! 1/a, beyond which cⁿ exceeds 0. The minimax a makes the maximum of h equal to (1 − 1/a)ⁿ.

@@ -1,4 +1,4 @@
-//! Values worked out by hand.
+//! Compares the table a(n) of `quadratic` with values worked out by hand, and tests that it is minimax.
 
 use super::*;
 use glint_base::fixed::Rounding;

@@ -1,4 +1,4 @@
-//! The bounds of pairs of bins of angles, from which [`super::bound`] takes the largest.
+//! Bounds the error of f of `rough` for each pair of bins of the angles γ and dγ. [`super::bound`] takes the largest.
 
 use std::f64::consts::FRAC_PI_2;
 

@@ -1,4 +1,4 @@
-//! The proof of the error bound of `rough`.
+//! Computes the terms of the error bound of `rough`. This is the proof of the bound:
 //!
 //! **Notation.** b = n/2·(cos(γ ± dγ) − 1) + 1 is the formula's base, b′ the hardware's (adder 16 in
 //! word 6), and E ≥ |b′ − b|. Operands are exact, for the formula is taken at the quantised ones.

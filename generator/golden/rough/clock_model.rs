@@ -1,4 +1,4 @@
-//! `rough` clock by clock.
+//! Builds the golden model of `rough`, which runs clock by clock: its registers and its microinstructions.
 
 use std::sync::Arc;
 

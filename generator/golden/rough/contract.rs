@@ -1,4 +1,4 @@
-//! The accuracy contract of `rough`.
+//! The accuracy contract of `rough`: its formula, its peak, the terms of its error bound, and the exhaustive check.
 
 use super::{Arithmetic, Derived as _, Kind, bound, keys_of};
 use crate::contract::{self as shared, ErrorShare};

@@ -1,4 +1,4 @@
-//! The largest error of f of `rough`, by branch and bound over pairs of angles.
+//! Finds a bound on the error of f of `rough`, by branch and bound over pairs of angles.
 //!
 //! **Bounds.** A pair of bins has the bound of the analysis in [`super::bound`]. A pair of operands in them has that with the
 //! errors that the table has at these very operands. Where adder 15 is computed too, its distance D from

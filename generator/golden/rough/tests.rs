@@ -1,4 +1,4 @@
-//! The bound of `rough`, in words of a few bits.
+//! Compares the error bound of `rough` with the largest error of all operands, in words of a few bits.
 
 use super::*;
 use crate::highlight::Reflectance;

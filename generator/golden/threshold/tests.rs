@@ -1,4 +1,4 @@
-//! Values worked out by hand.
+//! Compares the golden model and the contract of `threshold` with values worked out by hand.
 
 use super::*;
 use glint_keys::common::{Domain, Intensity, Operands};

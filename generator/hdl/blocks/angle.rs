@@ -1,4 +1,4 @@
-//! Angles in right angles, and tables of powers of their cosine.
+//! Folds signed angles to magnitudes, and makes tables of powers of their cosine. The unit is the right angle.
 //!
 //! The unit makes the binary point do the work: a signed angle has left −90° … 90° when its integer bits
 //! differ from its sign, and the fraction bits of its magnitude are an address as they stand.

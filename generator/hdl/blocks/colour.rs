@@ -1,4 +1,6 @@
-//! Colour operands and output multipliers: one for each colour, or one for all.
+//! Builds the colour operands of a device and the products of f with them, which are its outputs.
+//!
+//! There is a multiplier for each colour, or one for all.
 
 use crate::dsl::{Designer, Operand, Signal, Step, step};
 use glint_base::fixed::{Format, Overflow, Rounding};

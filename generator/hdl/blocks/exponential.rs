@@ -1,4 +1,4 @@
-//! 2^−y for y ≥ 0 from 2^−x of the fraction x of y: the integer of y is a shift.
+//! Builds 2^−y for y ≥ 0 from 2^−x, where x is the fraction of y: the integer of y becomes a shift to the right.
 
 use super::shift;
 use crate::dsl::{Designer, Signal};

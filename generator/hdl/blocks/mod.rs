@@ -1,4 +1,4 @@
-//! Blocks that several devices share, and that a device of your own can take too.
+//! Hardware blocks for descriptions: several devices share them, and a device of your own can take them too.
 
 pub mod angle;
 pub mod colour;

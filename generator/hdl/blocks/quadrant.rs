@@ -1,12 +1,12 @@
-//! Turns brought into their first quadrant.
+//! Reduces a turn to the first quadrant: to the distance from the nearer zero of its sine, and the sign of the sine.
 
 use crate::dsl::{Designer, Signal};
 use glint_base::fixed::Format;
 
-/// A turn as a way from the nearer zero of its sine.
+/// A turn in the first quadrant: its distance from the nearer zero of its sine, and the sign of the sine.
 #[derive(Clone, Copy)]
 pub struct Quadrant<'d> {
-    /// The way, a number of a quadrant's steps.
+    /// The distance, a number of a quadrant's steps.
     pub way: Signal<'d>,
     /// One bit: the sine is negative.
     pub negative: Signal<'d>,

@@ -1,4 +1,5 @@
-//! A function of one operand by linear interpolation in segments that shrink toward zero.
+//! Builds a table that approximates a function of one operand by linear interpolation, in segments that shrink toward
+//! zero.
 //!
 //! The operand u (an integer of C bits, or exactly 2^C) is cut into ranges by factors of four:
 //! range j holds u in [2^(C−2j−2), 2^(C−2j)) and is cut uniformly, by the k_j top bits of the

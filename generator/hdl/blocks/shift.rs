@@ -1,4 +1,6 @@
-//! Shifts by a number that is known at run time only, as rows of muxes.
+//! Builds shifters from rows of muxes, for numbers of places that are known at run time only.
+//!
+//! One shifts to the right by an operand; one shifts a word to the left until its top bit is 1.
 
 use crate::dsl::{Designer, Signal};
 use glint_base::fixed::Format;

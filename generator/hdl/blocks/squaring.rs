@@ -1,4 +1,4 @@
-//! Repeated squaring: a register raised to a power of two under a counter.
+//! Writes the microinstructions of repeated squaring, which raise a register to a power of two under a counter.
 //!
 //! The first squaring takes its operand from elsewhere and is a microinstruction of its own; all others are one
 //! microinstruction, executed again and again. The multiplier and the muxes before it are the device's.

@@ -1,4 +1,4 @@
-//! Designs for unit tests.
+//! Builds designs from a few microinstructions, for unit tests.
 
 use super::{Designer, Step, end, step, valid};
 use crate::netlist::Design;

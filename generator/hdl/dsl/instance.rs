@@ -1,4 +1,5 @@
-//! Descriptions that use others: parts whose operands are signals, and a control unit that is made for them.
+//! Places a description in another one as a part, whose operands are signals, and makes the control unit of a design
+//! that consists of parts.
 //!
 //! A part is a whole design. What it is made of stands in the design that uses it, under the name of the instance. Its
 //! microinstructions are executed one part after the other, in the order of the instances; the microinstruction before its first

@@ -1,4 +1,4 @@
-//! Narrowing: where bits are given up, with stated rounding and overflow.
+//! Brings a signal to a given format: bits are given up here, with stated rounding and overflow.
 
 use std::panic::Location;
 

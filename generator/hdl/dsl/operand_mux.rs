@@ -1,10 +1,10 @@
-//! A multiplier shared by operands of different formats.
+//! Builds a multiplier that several products share, and the muxes that select its operands.
 //!
-//! The formats of what a shared multiplier multiplies differ from word to word, so its operand muxes
-//! carry bits, not values: a [`OperandMux`] is as wide as its widest input. The product means something only
-//! together with the selection, and [`SharedProduct::of`] gives it back its format: exact, with its
-//! range, for one selection or for several that agree in their point. [`Designer::finish`] then proves for
-//! every word that a register which takes such a view is loaded under a selection that it is for.
+//! The formats of the operands differ from one microinstruction to another, so the muxes carry bits, not values: an
+//! [`OperandMux`] is as wide as its widest input. The product means something only together with the selection, and
+//! [`SharedProduct::of`] gives it back its format: exact, with its range, for one selection or for several that agree
+//! in their point. [`Designer::finish`] then proves for every word that a register which takes such a view is loaded
+//! under a selection that it is for.
 
 use std::cmp::Ordering;
 

@@ -1,4 +1,4 @@
-//! Registers behind results that are logic, as the key `output.registered` asks for.
+//! Inserts registers behind results that are combinational logic, as the key `output.registered` asks for.
 //!
 //! The microinstruction that set `valid` loads them, and one after it sets `valid`: a result comes a clock later.
 //! Where `valid` follows a signal, they take what is in front of them in every clock.

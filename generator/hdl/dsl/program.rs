@@ -1,4 +1,4 @@
-//! The microprogram: microinstructions as lists of settings, lowered to the values of fields.
+//! Defines microinstructions as lists of settings, and lowers a microprogram of them to the values of fields.
 
 use std::collections::HashSet;
 use std::panic::Location;
@@ -182,7 +182,7 @@ pub fn step(name: &str, settings: impl IntoIterator<Item = Setting>) -> Step {
 /// A microprogram as it was written.
 pub struct Program {
     pub(crate) steps: Vec<Step>,
-    /// It is that of the parts.
+    /// Whether it executes the parts of the description.
     pub(crate) of_parts: bool,
     pub(crate) location: SourceLocation,
 }

@@ -1,4 +1,4 @@
-//! Registers, operands, flags and counters, and the settings that they make for a microinstruction.
+//! Builds registers, operands, flags, counters and select lines, and makes their settings for microinstructions.
 
 use super::{Designer, Setting, Signal};
 use crate::netlist::{Driver, FieldId, FieldKind, NetId, Op, RegisterKind, Role};

@@ -1,4 +1,4 @@
-//! A memory of the description.
+//! The handle of a read-only memory in a description: it gives the word read, and takes comments.
 
 use super::{Designer, Signal};
 use crate::netlist::RomId;

@@ -1,4 +1,4 @@
-//! The sequencer, which executes a microprogram: address counter, run flag, control ROM, handshake.
+//! Builds the sequencer, which executes a microprogram: address counter, run flag, control ROM, handshake.
 
 use super::Designer;
 use crate::netlist::microcode;

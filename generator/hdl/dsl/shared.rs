@@ -1,4 +1,4 @@
-//! The shared state of the parts of the DSL: nets, registers, fields and mistakes of a designer.
+//! Gives the parts of the DSL access to the state that they share: nets, registers, fields and mistakes of a designer.
 
 use std::panic::Location;
 

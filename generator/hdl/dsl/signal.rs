@@ -1,4 +1,4 @@
-//! Signals: what can be done to bits by wiring, and the arithmetic blocks.
+//! Defines signals, what can be done to their bits by wiring, and the arithmetic blocks and muxes that combine them.
 
 use super::{Designer, Setting};
 use crate::netlist::{Driver, FieldId, NetId, Op, Topic};

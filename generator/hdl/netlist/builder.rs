@@ -1,4 +1,4 @@
-//! Designs made net by net.
+//! Builds a design net by net: adds nets, registers and ROMs.
 
 use super::{
     About, Control, Design, Driver, Net, NetId, Partition, RegId, Register, RegisterKind, Rom,

@@ -1,4 +1,4 @@
-//! Combinational cells.
+//! Defines the combinational cells of a netlist: their operations, operands and widths.
 
 use super::NetId;
 

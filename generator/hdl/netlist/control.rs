@@ -1,4 +1,4 @@
-//! The control unit: fields, microinstructions, and where control goes.
+//! Holds the control unit of a design: the fields of the control word, the microinstructions and their successors.
 
 use super::{Design, NetId, RegId, RomId};
 use glint_base::diagnostic::SourceLocation;
@@ -73,10 +73,10 @@ pub enum Sequence {
     LoopWhile {
         /// One bit of the datapath.
         condition: NetId,
-        /// Its address.
+        /// The address of that microinstruction.
         to: usize,
     },
-    /// To idle.
+    /// To idle: the computation ends.
     End,
 }
 

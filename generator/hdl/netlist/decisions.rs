@@ -1,4 +1,4 @@
-//! Finds the clocks in which the data can move: where operands decide the course of a microprogram.
+//! Finds the microinstructions whose successor an operand decides, and the delay from the control word to `valid`.
 //!
 //! Up to the first microinstruction whose successor an operand decides, every computation executes the same
 //! ones in the same clocks, whatever the operands: by induction over the clocks, since until then the control

@@ -1,4 +1,5 @@
-//! Delay lines: values of a pipeline that nothing reads on their way through several stages.
+//! Finds the delay lines of a pipeline: registers that pass on values which nothing else reads, so that a memory can
+//! replace them.
 
 use std::collections::BTreeMap;
 

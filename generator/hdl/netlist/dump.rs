@@ -1,4 +1,4 @@
-//! The netlist as text.
+//! Prints a netlist as text, a line for each net.
 
 use std::fmt::{self, Write as _};
 

@@ -1,4 +1,4 @@
-//! The ports that every device with a microprogram has.
+//! Finds the ports that every device with a microprogram has: `rst_n`, `start`, `valid`, `busy` and `done`.
 
 use anyhow::{Context, Result};
 

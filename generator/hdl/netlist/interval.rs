@@ -1,4 +1,4 @@
-//! The raw values that a cell can give, from those of its operands.
+//! Computes the interval of raw values that a cell can give from the intervals of its operands.
 
 use super::Op;
 use glint_base::fixed::{Format, mask};

@@ -1,4 +1,4 @@
-//! Packing of microprogram words.
+//! Packs the values of fields into a control word of the microprogram, and unpacks them.
 
 /// Returns a control word from the values of its fields, the first field in the top bits.
 pub fn pack(widths: &[u32], values: &[u64]) -> u64 {

@@ -1,4 +1,4 @@
-//! The netlist: what a description becomes, and what everything else is derived from.
+//! Defines the netlist of a device. A description becomes a netlist, and everything else is derived from it.
 //!
 //! A [`Design`] is a set of *nets* in an arena. Every net has a name, a [`Format`], the interval of
 //! raw values that it can take, and exactly one driver: an input port, a constant, a register, a ROM,
@@ -138,7 +138,7 @@ pub struct Register {
     pub q: NetId,
     /// The data input; `None` is an error that [`Design::verify`] reports.
     pub data: Option<NetId>,
-    /// One bit.
+    /// The load enable, one bit; without it the register loads on every rising edge.
     pub enable: Option<NetId>,
     /// The bit pattern after a clock with `rst_n` low; without it reset leaves the register alone.
     pub reset: Option<u64>,
@@ -315,7 +315,7 @@ impl<T: Into<String>> From<T> for Note {
 pub struct Design {
     /// The name of the top module: a legal Verilog identifier.
     pub name: String,
-    /// For people.
+    /// The title, formula, source and notes of the device, for people.
     pub about: About,
     /// All wires.
     pub nets: Vec<Net>,

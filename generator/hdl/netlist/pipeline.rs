@@ -1,4 +1,4 @@
-//! The facts of a design that is a pipeline.
+//! Holds what is known of a pipelined design beside its netlist: stages, handshake, shared multipliers and checkpoints.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! How long a computation can take, by its microprogram alone.
+//! Computes how many clocks a computation can take at most, from its microprogram alone.
 //!
 //! A loop of one microinstruction ends because a counter counts down: its condition depends on nothing else. That the
 //! counter does count in every iteration is not assumed anywhere; the formal proof has to show it.

@@ -1,4 +1,4 @@
-//! The clocks between the events of the handshake.
+//! Holds the latency of a device in clocks: from `start` to `valid`, to `done` and to the next `start`.
 
 use serde::Serialize;
 

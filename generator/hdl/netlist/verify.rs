@@ -1,6 +1,6 @@
-//! The rules that every [`Design`] keeps, whoever made it.
+//! Checks the rules of every [`Design`], whoever made it: on names, drivers, widths, loops and the microprogram.
 //!
-//! rust_hdl's own `check_all` finds open pins and writes to inputs. These find the rest.
+//! rust_hdl's own `check_all` finds open pins and writes to inputs. These rules find the rest.
 
 use std::collections::HashMap;
 

@@ -1,4 +1,4 @@
-//! Delays of the operations of a graph on a target.
+//! Computes the delays of the operations of a graph on a target, in nanoseconds.
 
 use super::graph::{Cell, Graph, NodeId};
 use crate::netlist::Op;

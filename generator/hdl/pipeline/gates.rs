@@ -1,4 +1,4 @@
-//! Gates in place of muxes whose one input is a constant.
+//! Puts gates in the place of two-input muxes of which an input has constant bits, to shorten the critical path.
 //!
 //! Synthesis makes such a mux the set or the reset of the register behind it, and joins its select with the clock
 //! enable in a look-up table. The way through that to the set or reset is longer than any through a gate: too long for

@@ -1,4 +1,4 @@
-//! The clocks from a point to the next, as given or as what they are to reach.
+//! Finds the clocks from a point to the next: as given, or as a wanted rate or number of multipliers asks for.
 
 use super::schedule::Problems;
 use super::{Goal, Options};

@@ -1,4 +1,4 @@
-//! The pipelined architecture: one microprogram, a point every clock or every few.
+//! Makes a pipeline of a design with a microprogram: it takes a point every clock or every few.
 //!
 //! A design with a microprogram is unrolled (`unroll`) into a graph of values, whose products are
 //! split to the multipliers of a [`Timing`] by the first of the `passes`; a schedule (`schedule`, as a `request` wants it) gives

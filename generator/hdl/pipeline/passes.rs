@@ -1,4 +1,4 @@
-//! The passes between an unrolled computation and its schedule: each makes the same values in other cells.
+//! Runs the passes that rewrite an unrolled computation before its schedule: each makes the same values in other cells.
 //!
 //! A pass has its tests as files, `passes/<name>/*.txt`: a computation as text, and what the pass is to make of it.
 

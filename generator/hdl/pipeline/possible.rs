@@ -1,4 +1,4 @@
-//! Whether a condition can hold at all.
+//! Decides whether a condition can hold at all, by trying every combination of the bits that it depends on.
 
 use std::collections::{HashMap, HashSet};
 
@@ -44,7 +44,7 @@ struct Cone {
     leaves: Vec<NodeId>,
     /// The bits of all leaves.
     bits: u32,
-    /// In order.
+    /// The nodes from the leaves to the conditions, each after its operands.
     inside: Vec<NodeId>,
 }
 

@@ -1,4 +1,5 @@
-//! A limit of a limit: what a step that limits its result gives when it is taken several times.
+//! Merges a limit of a limit into one limit. A step that limits its result makes such values when it is taken several
+//! times.
 //!
 //! `over₂ ? most : f(over₁ ? most : x)`, of which `over₂` asks for a bit of the inner choice, is one choice: `most` if
 //! either is over, and else `f(x)`.

@@ -1,4 +1,4 @@
-//! Multipliers that serve several products, each in a slot of its own.
+//! Assigns products to multipliers that serve several of them, each in a slot of its own.
 //!
 //! A pipeline that takes a point every k clocks has a point in stage s while the slot is s modulo k. A product whose stage is
 //! known therefore takes a multiplier in one slot of k, and products of different slots can share it: their factors come
@@ -25,7 +25,7 @@ pub struct Kind {
 pub struct Unit {
     /// The bits of its factors.
     pub widths: [u32; 2],
-    /// They have signs.
+    /// Whether the factors have signs.
     pub signed: bool,
     /// For each slot, the product that is computed in it, and its factors in the order of those of the multiplier.
     pub serves: Vec<Option<(NodeId, [NodeId; 2])>>,

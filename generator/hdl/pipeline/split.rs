@@ -1,4 +1,4 @@
-//! Products no wider than the multipliers of the target.
+//! Splits products that are too wide for the multipliers of the target into sums of narrower ones.
 //!
 //! An operand that is too wide is cut in two: its upper bits, as many as a multiplier takes, and the rest.
 //! A rest of a few bits becomes rows of the product in look-up tables, as on paper: a synthesiser would

@@ -1,4 +1,4 @@
-//! From a schedule to a design: the logic of every stage, and registers between the stages.
+//! Builds the pipelined design of a schedule: the logic of every stage, and registers between the stages.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 

@@ -1,7 +1,8 @@
-//! Sums and differences in fewer look-up tables: a synthesiser takes them as they are written, and a schedule counts them.
+//! Rewrites sums and differences so that they take fewer look-up tables.
 //!
-//! Of a sum of which an operand has zeros in its lowest bits those of the other one pass it by. `a + ~b + 1` is `a - b`. A
-//! choice between a value and a constant is made behind a sum with a constant, where the register makes it by its reset.
+//! A synthesiser takes sums as they are written, and a schedule counts them. Where an operand of a sum has zeros in its
+//! lowest bits, the lowest bits of the other operand pass by the adder. `a + ~b + 1` is `a - b`. A choice between a
+//! value and a constant is made behind a sum with a constant, where the register makes it by its reset.
 
 use super::graph::{Cell, Graph, Label, NodeId, Op};
 use crate::netlist::interval::of_cell;

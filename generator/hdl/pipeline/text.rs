@@ -1,8 +1,9 @@
-//! Computations as text, for the tests of passes: a value a line, `name format [low, high] = operation operands`.
+//! Prints and reads unrolled computations as text, for the tests of passes.
 //!
-//! A line without an operation is an operand; `constant` is followed by a bit pattern, `slice` by its value and the lowest bit,
-//! `mux` by the select and its inputs, `add` by a third operand where a carry comes in. The range stands there where it is not that
-//! of the format. The last lines are `result name`.
+//! A value is a line, `name format [low, high] = operation operands`. A line without an operation is an operand;
+//! `constant` is followed by a bit pattern, `slice` by its value and the lowest bit, `mux` by the select and its
+//! inputs, `add` by a third operand where a carry comes in. The range stands there where it is not that of the format.
+//! The last lines are `result name`.
 
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write;

@@ -1,4 +1,4 @@
-//! The microprogram executed on values that are not known yet.
+//! Unrolls a microprogram into a graph of values, by executing it symbolically: on operands that are not known yet.
 //!
 //! Every clock of one computation is gone through, from the one that takes `start` to the one in which
 //! the results are on the outputs. Fields of the control word are constants then, muxes under them

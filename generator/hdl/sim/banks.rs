@@ -1,4 +1,4 @@
-//! From the compiler's one bank of slots to the two of a [`Program`].
+//! Divides the compiler's one bank of slots into the two banks of a [`Program`], and inserts conversions between them.
 
 use crate::sim::compiler::{Compiler, Ordered};
 use crate::sim::program::{

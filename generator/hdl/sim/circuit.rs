@@ -1,4 +1,4 @@
-//! A design as one block of a rust_hdl circuit.
+//! Makes a design one block of a rust_hdl circuit, which rust_hdl clocks, checks and traces.
 
 use std::sync::Arc;
 

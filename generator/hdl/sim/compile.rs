@@ -1,4 +1,4 @@
-//! From [`Design`] to [`Program`].
+//! Compiles a [`Design`] to a simulation [`Program`].
 
 use std::collections::{HashMap, HashSet};
 

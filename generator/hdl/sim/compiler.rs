@@ -1,4 +1,4 @@
-//! The shared state of the compiler: slots, instructions, and facts about them.
+//! Holds the state of the compiler of simulation programs: slots, instructions, and facts about them.
 
 use std::collections::{BTreeMap, HashMap};
 use std::mem;

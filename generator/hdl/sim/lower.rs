@@ -1,4 +1,4 @@
-//! From cells to instructions.
+//! Lowers the cells of a netlist to instructions of a simulation program.
 
 use crate::netlist::{NetId, Op};
 use crate::sim::compiler::Compiler;

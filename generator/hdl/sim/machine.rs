@@ -1,4 +1,4 @@
-//! The interpreter of simulation programs.
+//! Interprets simulation programs: one pass over a program advances many independent instances of a design, its lanes.
 
 use std::hint::select_unpredictable;
 use std::mem;

@@ -1,4 +1,4 @@
-//! The built-in simulator.
+//! The built-in simulator: runs many instances of a design clock by clock, and writes waveforms.
 //!
 //! A [`Design`] is compiled to a [`Program`] of levelised instructions, which a [`Machine`] runs for a
 //! number of independent instances at once, its lanes; a [`Circuit`] is the machine as one rust_hdl

@@ -1,4 +1,4 @@
-//! The simulation program: what a design is compiled to.
+//! Defines the simulation program to which a design is compiled: its slots, instructions and edges.
 //!
 //! All values live in *slots*, bit patterns masked to their width. A clock has two phases. *Settling*
 //! runs the steps in order; each computes one slot from earlier ones. The *edge* writes the

@@ -1,4 +1,4 @@
-//! The slots of a bank, laid where the processor's vectors begin.
+//! Stores the slots of a bank, aligned in memory so that the processor's vectors load fast.
 
 use std::ops::{Deref, DerefMut};
 

@@ -1,4 +1,4 @@
-//! Waveforms: rust_hdl's VCD output, streamed.
+//! Writes the waveform of a circuit to a file while it is simulated: rust_hdl's VCD output, streamed.
 
 use std::io::{self, Write};
 use std::mem;

@@ -1,4 +1,5 @@
-//! Views of a waveform for its viewers: every net in its scope, numbers by their values.
+//! Writes files that tell the viewers GTKWave and Surfer how to show a waveform: every net in its scope, numbers by
+//! their values.
 
 use std::fmt::Write;
 

@@ -1,4 +1,4 @@
-//! A circuit's wires for rust_hdl's probes: atoms with run-time widths.
+//! Shows a circuit's wires to rust_hdl's probes, as atoms with run-time widths.
 //!
 //! They are made when a probe comes by and hold nothing of their own but the id, which is the same
 //! every time; rust_hdl needs no more. Simulation without a trace never makes one.

@@ -1,4 +1,4 @@
-//! The words of the two banks of slots, of 32 and of 64 bits.
+//! Defines the arithmetic on the words of the two banks of slots, of 32 and of 64 bits.
 
 use std::ops::{BitAnd, BitOr, BitXor, Shl, Shr};
 

@@ -1,4 +1,4 @@
-//! Wiring, bit by bit.
+//! Reduces wiring to a normal form: which bits of which nets, or which constants, a word is made of.
 //!
 //! Slices, extensions, concatenations, relabelled nets and constants are no hardware. [`Bits`] is
 //! what any mixture of them amounts to: pieces of the nets that the Verilog declares, constants, and

@@ -1,4 +1,5 @@
-//! Delay lines: what nothing reads on its way through several stages goes through memories, in a module of its own.
+//! Writes the delay lines of a pipeline: values that nothing reads for several stages go through memories, in a module
+//! of its own.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! Cells as Verilog expressions.
+//! Writes cells as Verilog expressions.
 //!
 //! The operands of every cell have one width, which is also that of the result, so that no context
 //! can extend or cut a carry. The exceptions are handled by name: a product is written only as the

@@ -1,4 +1,4 @@
-//! The assertions of a partition, for formal tools alone: the proof of the handshake stands on them.
+//! Writes the assertions of a partition, for formal tools alone: the proof of the handshake rests on them.
 
 use super::naming::Naming;
 use super::text::literal;

@@ -1,4 +1,4 @@
-//! ROM contents as `$readmem` files.
+//! Writes the contents of ROMs as `$readmem` files.
 
 use anyhow::{Result, ensure};
 

@@ -1,5 +1,5 @@
-//! The text of Verilog modules. Names and expressions become strings first (`plan`, `expression`), and `writer` makes
-//! modules of their lines.
+//! Writes a design as Verilog modules, and the contents of its ROMs as memory files. Names and expressions become
+//! strings first (`plan`, `expression`), and `writer` makes modules of their lines.
 
 pub mod bits;
 pub mod delays;

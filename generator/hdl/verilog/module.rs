@@ -1,4 +1,4 @@
-//! The modules of the two units, and the parts of which a pipeline is made.
+//! Writes the modules of the control unit and of the datapath, and the parts of which the module of a pipeline is made.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,13 +1,13 @@
-//! The names and comments that emission adds to those of the description.
+//! Chooses the names and comments that the Verilog adds to those of the description: of instances, memories, files.
 
 use super::text::{Names, constant_name};
 use crate::netlist::{Control, Design, Driver, FieldKind, Net, NetId, Op, Partition, Rom, RomId};
 
 /// Names of modules, instances, memories, files and parameters.
 pub struct Naming {
-    /// The instance of the control unit, and of the datapath, in the top module.
+    /// The instance of the control unit in the top module.
     pub control_instance: String,
-    /// See above.
+    /// The instance of the datapath in the top module.
     pub datapath_instance: String,
     /// The memory of each ROM.
     pub memories: Vec<String>,
@@ -35,7 +35,7 @@ pub struct Naming {
 pub struct Style {
     /// ROM contents stand in the Verilog: there are neither files nor parameters with their names.
     pub inline: bool,
-    /// They stand there as the choices of a case, in a function.
+    /// ROM contents stand there as the choices of a case, in a function.
     pub case: bool,
     /// The attributes of ROMs that are read on the clock.
     pub rom_style: Option<&'static str>,

@@ -1,4 +1,4 @@
-//! The module of a pipeline: the handshake, then a section for every stage.
+//! Writes the module of a pipeline: the handshake, then a section for every stage.
 
 use super::delays;
 use super::header::{self, Origin};

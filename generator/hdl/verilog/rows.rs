@@ -1,4 +1,4 @@
-//! Declarations and port lists, set in columns.
+//! Writes declarations and port lists of Verilog in columns.
 
 use super::plan::Plan;
 use super::text::{COLUMNS, annotated, range};

@@ -1,4 +1,4 @@
-//! Words and lines: ASCII, identifiers, literals, columns.
+//! Formats words and lines of Verilog: ASCII, identifiers, literals, comments, and lines of limited length.
 
 use std::collections::HashSet;
 

@@ -1,4 +1,4 @@
-//! The top module: the two units and the wires between them.
+//! Writes the top module: instances of the control unit and of the datapath, and the wires between them.
 
 use super::header::{self, Origin};
 use super::interface::Interface;

@@ -1,4 +1,4 @@
-//! The words of ROMs as text.
+//! Writes the words of ROMs as text, in binary or hexadecimal, and the comments on them.
 
 use super::naming::is_control_rom;
 use super::text::ascii;

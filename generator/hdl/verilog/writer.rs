@@ -1,4 +1,4 @@
-//! Modules, instances and blocks as lines of text.
+//! Writes Verilog modules, instances and blocks as lines of text.
 
 /// Returns the text of a file with one module, between its parts and an empty line the text of another one, if any.
 pub fn module(

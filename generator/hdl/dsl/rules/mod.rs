@@ -1,4 +1,4 @@
-//! The rules of a description beyond a sound netlist.
+//! Checks the rules of a description beyond those of a netlist: on operands, products and the microprogram.
 
 mod operands;
 mod products;

@@ -1,4 +1,4 @@
-//! Every operand has a say in some output.
+//! Checks that some output depends on every operand.
 
 use std::collections::HashSet;
 

@@ -1,4 +1,5 @@
-//! The rule of shared multipliers: a register takes a product only under a selection that gives it.
+//! Checks that a register takes a product of a shared multiplier only while the multiplier's operands are selected for
+//! that product.
 
 use std::collections::{HashMap, HashSet};
 

@@ -1,5 +1,4 @@
-//! The rules of microprograms: one raises `valid`, and not before the result is there, selects every mux, and ends every
-//! loop.
+//! Checks that a microprogram raises `valid` (not before the result is there), selects every mux, and ends every loop.
 
 use std::collections::HashSet;
 

@@ -1,4 +1,4 @@
-//! The nets of one clock, and the rising edge behind it.
+//! Executes one clock symbolically: gives the nodes of its nets, and of the registers after its rising edge.
 
 use std::collections::HashMap;
 

@@ -1,4 +1,6 @@
-//! One clock of a computation, whatever the registers hold before it: what a computation with any number of results repeats.
+//! Unrolls one clock of a computation, whatever the registers hold before it.
+//!
+//! A computation with any number of results repeats such a clock.
 
 use super::clock::Clock;
 use super::{Executor, Iterations, Unrolled};

@@ -1,4 +1,4 @@
-//! A computation of several results: what each point of a line is made of.
+//! Unrolls a computation of several results: finds how each point of a line follows from operands and the point before.
 //!
 //! A microinstruction that writes a point sets `valid` a fixed number of clocks later, D. Nothing is assumed of what the registers hold
 //! before it but that operands are in theirs: every way through the microprogram is gone for D clocks from any

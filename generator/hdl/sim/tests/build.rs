@@ -1,4 +1,4 @@
-//! Designs written net by net, and random numbers.
+//! Builds designs net by net, and draws random numbers, for the tests of the simulator.
 
 use std::panic::Location;
 

@@ -1,4 +1,4 @@
-//! Designs that no checker has seen are refused, not simulated wrongly.
+//! Tests that wrong designs, which no checker has seen, are refused and not simulated wrongly.
 
 use super::build::Build;
 use crate::netlist::{Driver, NetId, Op, RegId, Role, RomId};

@@ -1,4 +1,4 @@
-//! Each cell against arithmetic on i128, operands coming from ports, registers and constants.
+//! Compares each simulated cell with arithmetic on i128. Operands come from ports, registers and constants.
 
 use super::build::{Build, Random};
 use crate::netlist::{Driver, NetId, Op};

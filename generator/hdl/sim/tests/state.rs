@@ -1,4 +1,4 @@
-//! Registers and memories at the clock edge.
+//! Tests what registers and memories do at the clock edge.
 
 use rust_hdl::core::simulate::simulate;
 

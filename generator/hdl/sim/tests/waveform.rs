@@ -1,4 +1,4 @@
-//! Waveforms, read back with the parser of the `vcd` crate.
+//! Tests waveforms by reading them back with the parser of the `vcd` crate.
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
