@@ -1,4 +1,4 @@
-//! Points through a pipeline in the built-in simulator, as a recording.
+//! Sends points through a pipeline in the built-in simulator, and records what its nets carry.
 
 use anyhow::{Result, bail};
 
