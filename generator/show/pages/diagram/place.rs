@@ -1,4 +1,4 @@
-//! Where boxes stand: columns from left to right, by the layered layout of the `dagre` library.
+//! Places the boxes of a block diagram in columns from left to right, by the layered layout of the `dagre` library.
 
 use dagre::graph::{Graph as Layered, GraphOptions};
 use dagre::{EdgeLabel, LayoutOptions, NodeLabel, RankDir, Ranker, layout};
@@ -48,14 +48,14 @@ impl Placement {
         narrowest.expect("there are four")
     }
 
-    /// From the top of the highest box to the bottom of the lowest.
+    /// Returns the height from the top of the highest box to the bottom of the lowest.
     fn height(&self, heights: &[f64]) -> f64 {
         let boxes = || self.middle.iter().zip(heights);
         let top = boxes().map(|(middle, height)| middle - height / 2.0).fold(f64::MAX, f64::min);
         boxes().map(|(middle, height)| middle + height / 2.0).fold(0.0, f64::max) - top
     }
 
-    /// A layout by one way to rank boxes, with the outputs of the handshake at the end or where there is room.
+    /// Makes a layout by one way to rank boxes, with the outputs of the handshake at the end or where there is room.
     fn variant(
         graph: &Graph,
         heights: &[f64],
