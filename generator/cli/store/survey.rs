@@ -1,4 +1,4 @@
-//! The files in the directories of a configuration, and their owners.
+//! Finds the files in the directories of a configuration, and whose each is: Glint's, edited, stale or foreign.
 
 use std::collections::BTreeMap;
 use std::fs;
