@@ -98,7 +98,7 @@ pub enum Simulator {
     Verilator,
 }
 
-/// Runs `glint cosim`, and returns whether nothing differs and every bound is kept.
+/// Runs `glint cosim`, and returns whether everything that it checks holds.
 pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
     if arguments.exhaustive {
         return exhaustive::run(registry, output, arguments);

@@ -1,4 +1,5 @@
-//! Finds the files in the directories of a configuration, and whose each is: Glint's, edited, stale or foreign.
+//! Finds the files in the directories of a configuration, and the owner of each: as Glint wrote it, edited since, or
+//! foreign.
 
 use std::collections::BTreeMap;
 use std::fs;

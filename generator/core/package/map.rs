@@ -121,7 +121,7 @@ pub struct Map {
 }
 
 impl Map {
-    /// Places the registers of a core.
+    /// Gives the operands, results and status bits of a core their registers.
     ///
     /// # Errors
     /// A core that is no single computation of operands to results, or names that collide in the map.

@@ -1,4 +1,4 @@
-//! `glint cosim --exhaustive`: proves the accuracy contract over all operands, in parts if it is asked for.
+//! `glint cosim --exhaustive`: proves the accuracy contract over all operands, as a whole or as one shard of several.
 
 pub mod show;
 

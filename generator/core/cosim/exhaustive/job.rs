@@ -1,4 +1,4 @@
-//! A proof as a job that can be interrupted, resumed, and divided among machines.
+//! Runs a proof as a job that can be interrupted, resumed, and divided among machines.
 //!
 //! Blocks of places are dealt out: shard i of N has every N-th block, from block i − 1 on. What a shard has
 //! done is a [`State`], a few numbers that stand in a file; joining the states of all shards gives exactly
