@@ -306,8 +306,8 @@ fn hinted(contract: &dyn Contract) -> Option<Vec<i64>> {
     (0..TRIES).map_while(|_| points.hint(&mut random)).find(inside)
 }
 
-/// Records what nets carry in each clock of the computation of [`example`], from clock 0, in which `start` is high, to the
-/// first in which the device is idle again: the bit patterns just before the clock's rising edge, in the order of
+/// Returns what nets carry in each clock of the computation of [`example`], from clock 0, in which `start` is high, to
+/// the first in which the device is idle again: the bit patterns just before the clock's rising edge, in the order of
 /// `nets`, all of which are named.
 ///
 /// # Errors
@@ -322,8 +322,8 @@ pub fn record(design: &Design, contract: &dyn Contract, nets: &[NetId]) -> Resul
     Ok(clocks)
 }
 
-/// Records nets in each clock while three points go through a pipeline, the first of them that of [`example`]: one clock
-/// has no point, and the first result waits, where it can, for two.
+/// Returns what nets carry in each clock while three points go through a pipeline, the first of them that of
+/// [`example`]: one clock has no point, and the first result waits, where it can, for two.
 ///
 /// # Errors
 /// As of [`timing`].

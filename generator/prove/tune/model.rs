@@ -69,7 +69,7 @@ impl Cost {
         }
     }
 
-    /// Returns the area with everything in look-up tables: a block counts as many as a chip of the family has to each
+    /// Returns the area in look-up tables: a block counts as many of them as a chip of the family has to each such
     /// block.
     pub fn area(&self, target: Target) -> f64 {
         let [luts, dsps, blocks] = family(target).chips[0].has.map(|has| has as f64);

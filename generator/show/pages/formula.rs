@@ -114,7 +114,7 @@ impl<'a> Reader<'a> {
         Some(found)
     }
 
-    /// Relations with words between them.
+    /// Reads relations with words between them.
     fn clause(&mut self) -> Option<String> {
         let mut clause = String::new();
         let mut after_relation = false;

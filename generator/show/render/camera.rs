@@ -33,7 +33,7 @@ const DIRECTION: Vector = Vector::new(0.0, 0.28, 1.0);
 const FILLED: f64 = 0.92;
 
 impl Camera {
-    /// Places a camera for a picture of the given aspect, width through height, that shows all of `things`, balls with
+    /// Sets up a camera for a picture of the given aspect, width through height, that shows all of `things`, balls with
     /// their middle and radius, unless `view` says otherwise; `middle` is the middle of them all.
     ///
     /// # Errors

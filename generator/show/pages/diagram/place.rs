@@ -37,8 +37,8 @@ pub struct Placement {
 }
 
 impl Placement {
-    /// Places boxes that take so much height, with wires that lead back as [`back`] says; of a few layouts the one that
-    /// takes the least height, which is the width of the page.
+    /// Puts boxes that take so much height into columns, with wires that lead back as [`back`] says; of a few layouts
+    /// the one that takes the least height, which is the width of the page.
     pub fn new(graph: &Graph, heights: &[f64], back: &[bool]) -> Self {
         let rankers = [Ranker::NetworkSimplex, Ranker::LongestPath];
         let variants = rankers.into_iter().flat_map(|it| [(it, false), (it, true)]);
