@@ -1,4 +1,4 @@
-//! A single file that is written whole or not at all, and that is known to be writable before the work for it.
+//! Writes a single file whole or not at all, and makes sure before the work for it that it can be written.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, ErrorKind, Write};

@@ -1,4 +1,4 @@
-//! How errors are told.
+//! Tells errors: to people on standard error, to scripts as JSON, and to the shell by the exit code.
 
 use std::fmt;
 use std::io::Write;

@@ -18,7 +18,7 @@ pub struct Interrupted {
 }
 
 impl Interrupted {
-    /// As a shell has it.
+    /// Returns the exit code, as a shell has it.
     pub fn exit_code(&self) -> u8 {
         128 + self.signal as u8
     }
@@ -36,7 +36,7 @@ impl std::error::Error for Interrupted {}
 pub struct Deferred(());
 
 impl Deferred {
-    /// From now on.
+    /// Defers the end of the process from now on.
     pub fn begin() -> Self {
         DEFERRED.store(true, Ordering::SeqCst);
         Self(())
@@ -62,8 +62,8 @@ impl Drop for Deferred {
     }
 }
 
-/// From now on a signal ends this process with all that it has started, and deletes its temporary files. A signal
-/// that is ignored, as `nohup` has it, stays ignored.
+/// Sees to it that from now on a signal ends this process with all that it has started, and deletes its temporary
+/// files. A signal that is ignored, as `nohup` has it, stays ignored.
 ///
 /// # Errors
 /// The system refuses.
@@ -93,7 +93,7 @@ pub fn listen() -> std::io::Result<()> {
     Ok(())
 }
 
-/// Elsewhere the system ends the process.
+/// Does nothing: elsewhere the system ends the process.
 ///
 /// # Errors
 /// None.

@@ -1,4 +1,4 @@
-//! The command line: the only code that prints and exits.
+//! Parses and runs the command line: the only code that prints and exits.
 
 mod commands;
 mod destination;

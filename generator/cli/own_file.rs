@@ -1,4 +1,4 @@
-//! Single files that Glint writes again and again: what is not one of them is not overwritten.
+//! Writes single files that Glint writes again and again: what is not one of them is not overwritten.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -19,8 +19,8 @@ impl OwnFile {
     /// The first characters of a JSON file that Glint wrote.
     pub const JSON: &str = "{\n  \"glint\":";
 
-    /// A file `name` in `directory`, which is made, if what is there under this name contains `marker`, or nothing is
-    /// there. Made before the work for it, so that a place that cannot be written is known then.
+    /// Prepares a file `name` in `directory`, which is made, if what is there under this name contains `marker`, or
+    /// nothing is there. This is done before the work for it, so that a place that cannot be written is known then.
     ///
     /// # Errors
     /// Something else is there; it cannot be written.
@@ -61,7 +61,7 @@ impl OwnFile {
         Ok(name)
     }
 
-    /// As [`OwnFile::write`], JSON, indented, with a newline at its end.
+    /// Writes what [`OwnFile::write`] writes, as JSON, indented, with a newline at its end.
     ///
     /// # Errors
     /// It cannot be written.

@@ -1,4 +1,4 @@
-//! Progress bars on long work.
+//! Shows progress bars on long work.
 
 use std::fmt::Write;
 use std::time::Duration;
@@ -81,7 +81,7 @@ fn template(width: usize) -> String {
     }
 }
 
-/// Three digits, with k, M or G: as much as a rate is worth.
+/// Writes a number with three digits, with k, M or G: as much as a rate is worth.
 fn rounded(number: f64) -> String {
     let units = [(1e9, "G"), (1e6, "M"), (1e3, "k")];
     let found = units.into_iter().find(|(size, _)| number >= *size);

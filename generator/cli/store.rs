@@ -1,4 +1,4 @@
-//! Writing what was generated, without ever costing the user a file.
+//! Writes what was generated, without ever costing the user a file.
 //!
 //! Everything is written beside the directories of a configuration first, and moved into place, file by file, when it is
 //! complete. What stands there already is replaced only when the manifest's digests say that Glint wrote it and nobody

@@ -1,4 +1,4 @@
-//! Tables for people, JSON for scripts.
+//! Prints tables for people, JSON and CSV for scripts.
 
 use std::io::{self, ErrorKind, Write};
 use std::sync::OnceLock;
@@ -208,7 +208,7 @@ macro_rules! say {
 }
 pub(crate) use say;
 
-/// Whether everything that was printed was written.
+/// Checks that everything that was printed was written.
 ///
 /// # Errors
 /// Standard output cannot be written, as on a full disk.

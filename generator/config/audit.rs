@@ -1,4 +1,4 @@
-//! Mistakes in a schema itself.
+//! Finds mistakes in a schema itself, for the tests of devices.
 
 use super::problems::Problems;
 use super::schema::{Key, Kind, Schema};
@@ -6,9 +6,9 @@ use super::shared::shared_keys;
 use super::values::Config;
 
 impl Schema {
-    /// Mistakes in the schema itself, for a device's own tests: names that repeat, that are not
-    /// plain TOML or that stand for a table and a value at once; defaults outside their range or
-    /// refused by `check`; conditions on keys or values that do not exist.
+    /// Returns mistakes in the schema itself, for a device's own tests: names that repeat, that are not plain TOML or
+    /// that stand for a table and a value at once; defaults outside their range or refused by `check`; conditions on
+    /// keys or values that do not exist.
     ///
     /// A schema without mistakes gives an empty list; the reader relies on that.
     pub fn mistakes(&self) -> Vec<String> {

@@ -1,4 +1,4 @@
-//! Keys that a file does not name follow from those that it does.
+//! Makes keys that a file does not name follow from those that it does.
 //!
 //! Such a key has its default. Where the device refuses that beside the keys that the file names, it has the nearest value with
 //! which the device accepts the configuration: `exponent.bits = 8` alone brings `domain.exponent_max` down to 255.
@@ -79,8 +79,8 @@ fn neighbours(key: &Key) -> Vec<Value> {
     }
 }
 
-/// Lists made of one: its first entries with the large ones cut down, or all of them with the last repeated. The nearest
-/// first, by the sum of the differences; an entry that is not there counts as 0.
+/// Makes lists of one: its first entries with the large ones cut down, or all of them with the last repeated. The
+/// nearest first, by the sum of the differences; an entry that is not there counts as 0.
 fn lists(
     default: &[i64],
     (min, max): (i64, i64),

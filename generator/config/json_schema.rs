@@ -1,4 +1,4 @@
-//! The keys as JSON Schema, for editors and validators.
+//! Writes the keys as JSON Schema, for editors and validators.
 
 use serde_json::{Map, Value as Json, json};
 

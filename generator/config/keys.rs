@@ -1,4 +1,4 @@
-//! Keys as the fields of a struct, which description and golden model read.
+//! Declares keys as the fields of a struct, which description and golden model read.
 
 use super::schema::Key;
 use super::values::Config;
@@ -6,7 +6,7 @@ use glint_base::fixed::Rounding;
 
 /// A type of field in a table of [`keys!`](macro@crate::keys).
 pub trait Setting: Sized {
-    /// The value that a configuration has for the keys of the field.
+    /// Reads the value that a configuration has for the keys of the field.
     fn read(config: &Config, keys: &[Key]) -> Self;
 }
 
@@ -96,7 +96,7 @@ impl From<Key> for Vec<Key> {
 }
 
 impl Key {
-    /// A choice between `"truncate"` and `"nearest"`.
+    /// Makes a choice between `"truncate"` and `"nearest"`.
     pub fn rounding(name: &'static str, default: &'static str, doc: &'static str) -> Self {
         Self::choice(name, default, &["truncate", "nearest"], doc)
     }

@@ -1,4 +1,4 @@
-//! Configuration: TOML to validated values, with all problems of a file reported at once.
+//! Reads configurations: TOML to validated values, with all problems of a file reported at once.
 //!
 //! A device states its keys as a [`Schema`]; nothing here knows a device. [`read()`] and [`parse()`]
 //! turn a file into a [`Config`], whose values need no further checks, or into [`Problems`], each

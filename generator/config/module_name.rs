@@ -1,4 +1,4 @@
-//! Names of Verilog modules: which are legal, and what is wrong with the others.
+//! Checks names of Verilog modules: which are legal, and what is wrong with the others.
 
 use super::problems::{Violation, quoted};
 use glint_base::keywords::is_keyword;

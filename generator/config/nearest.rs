@@ -1,4 +1,4 @@
-//! The valid word that somebody meant.
+//! Finds the valid word that somebody meant, and lists words in a sentence.
 
 /// Returns the candidate closest to `word`, if it is close enough to be a slip of the pen; else the first that begins with `word`.
 ///

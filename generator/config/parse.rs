@@ -1,4 +1,4 @@
-//! From the text of a TOML file to a [`Config`].
+//! Parses the text of a TOML file to a [`Config`].
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -29,7 +29,7 @@ pub fn parse(file_name: &str, text: &str, schemas: &[Schema]) -> Result<Config, 
     located(file_name, text, schemas).map(|(config, _)| config)
 }
 
-/// As [`parse`]; and where the text gives which key, for problems that show later.
+/// Parses what [`parse`] parses, and also returns where the text gives which key, for problems that show later.
 ///
 /// # Errors
 /// As of [`parse`].
@@ -105,7 +105,7 @@ impl Reader<'_> {
         self.newlines.partition_point(|newline| *newline < offset)
     }
 
-    /// Below a heading that could not be read it is not known to which table the keys belong.
+    /// Notes the lines below a heading that could not be read: it is not known to which table their keys belong.
     fn spoil_below_broken_headings(&mut self) {
         let mut spoilt = false;
         for (number, line) in self.text.lines().enumerate() {
@@ -409,7 +409,7 @@ fn written(value: &Spanned<DeValue>) -> String {
     }
 }
 
-/// Type and value for a message: `the integer 7`.
+/// Describes type and value for a message: `the integer 7`.
 fn described(value: &Spanned<DeValue>) -> String {
     match value.get_ref() {
         DeValue::String(text) => format!("the string {}", quoted(text)),

@@ -1,4 +1,4 @@
-//! Measured points from a CSV file.
+//! Reads measured points from a CSV file.
 
 use std::path::Path;
 use std::{fs, io};

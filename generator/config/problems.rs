@@ -1,4 +1,4 @@
-//! Everything that is wrong with a configuration, with the location and a remedy for each.
+//! Collects everything that is wrong with a configuration, with the location and a remedy for each.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -43,7 +43,7 @@ pub struct Problem {
 }
 
 impl Problems {
-    /// No problems yet, of a file with this text.
+    /// Starts a list without problems, of a file with this text.
     pub(super) fn of_file(file: &str, text: &str) -> Self {
         Problems { file: file.to_owned(), text: text.to_owned(), ..Problems::default() }
     }
@@ -149,12 +149,12 @@ impl Problems {
         &self.file
     }
 
-    /// Line and column of a problem of this list, both counted from 1, columns in characters.
+    /// Returns line and column of a problem of this list, both counted from 1, columns in characters.
     pub fn position(&self, problem: &Problem) -> Option<(usize, usize)> {
         self.line_and_column(problem.start()?)
     }
 
-    /// Line and column where the file gives a key, as of [`Problems::position`].
+    /// Returns line and column where the file gives a key, counted as by [`Problems::position`].
     pub fn place(&self, key: &str) -> Option<(usize, usize)> {
         self.line_and_column(self.locations.get(key)?.start)
     }

@@ -1,4 +1,4 @@
-//! Reading a configuration file from disk.
+//! Reads a configuration file from disk.
 
 use std::io::{self, Read};
 use std::path::Path;
@@ -23,7 +23,8 @@ pub fn read(path: &Path, schemas: &[Schema]) -> Result<Config, Problems> {
     read_located(path, schemas).map(|(config, _)| config)
 }
 
-/// As [`read`]; and where the file gives which key: what shows later to be wrong is added there.
+/// Reads what [`read`] reads, and also returns where the file gives which key: what shows later to be wrong is added
+/// there.
 ///
 /// # Errors
 /// As of [`read`].

@@ -1,4 +1,4 @@
-//! Random valid configurations, for tests of everything that accepts one.
+//! Draws random valid configurations, for tests of everything that accepts one.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};

@@ -1,4 +1,4 @@
-//! The configuration keys of a device.
+//! The schema of a device: its configuration keys, with kinds, ranges, defaults, conditions and descriptions.
 
 use std::ops::RangeInclusive;
 
@@ -72,7 +72,7 @@ impl Key {
         Key { name, kind, default, doc, only_when: None, joined_later: false, drawn: None }
     }
 
-    /// An integer in a range.
+    /// Makes a key of an integer in a range.
     pub fn integer(
         name: &'static str,
         default: i64,
@@ -83,7 +83,7 @@ impl Key {
         Self::new(name, Kind::Integer { min, max }, Value::Integer(default), doc)
     }
 
-    /// A number in a range.
+    /// Makes a key of a number in a range.
     pub fn number(
         name: &'static str,
         default: f64,
@@ -94,7 +94,7 @@ impl Key {
         Self::new(name, Kind::Number { min, max, or_zero: false }, Value::Number(default), doc)
     }
 
-    /// A number in a range above 0, or 0, its default, which says that none is given.
+    /// Makes a key of a number in a range above 0, or 0, its default, which says that none is given.
     pub fn number_or_zero(
         name: &'static str,
         range: RangeInclusive<f64>,
@@ -104,8 +104,8 @@ impl Key {
         Self::new(name, Kind::Number { min, max, or_zero: true }, Value::Number(0.0), doc)
     }
 
-    /// A key whose value is one of some texts. With options that are all decimal integers, as `["2", "4"]`, a file
-    /// writes an integer, and [`Config::integer`] reads it as one.
+    /// Makes a key whose value is one of some texts. With options that are all decimal integers, as `["2", "4"]`, a
+    /// file writes an integer, and [`Config::integer`] reads it as one.
     pub fn choice(
         name: &'static str,
         default: &'static str,
@@ -116,12 +116,12 @@ impl Key {
         Self::new(name, Kind::Choice(options), default, doc)
     }
 
-    /// `true` or `false`.
+    /// Makes a key that is `true` or `false`.
     pub fn flag(name: &'static str, default: bool, doc: &'static str) -> Self {
         Self::new(name, Kind::Flag, Value::Flag(default), doc)
     }
 
-    /// Text of a pattern.
+    /// Makes a key of text of a pattern.
     pub fn text(
         name: &'static str,
         default: &'static str,
@@ -131,7 +131,7 @@ impl Key {
         Self::new(name, Kind::Text(pattern), Value::Text(default.to_owned()), doc)
     }
 
-    /// A list of `len` integers, each in a range.
+    /// Makes a key of a list of `len` integers, each in a range.
     pub fn integers(
         name: &'static str,
         default: &[i64],
@@ -153,7 +153,7 @@ impl Key {
         self
     }
 
-    /// The key came to a device of which there were configurations.
+    /// Marks a key that came to a device of which there were configurations.
     pub fn joined_later(self) -> Self {
         Self { joined_later: true, ..self }
     }

@@ -1,4 +1,4 @@
-//! Patterns of texts in a configuration. Each can stand in Tcl, XML, YAML and TOML as it is.
+//! Checks texts in a configuration by patterns. Each that fits can stand in Tcl, XML, YAML and TOML as it is.
 
 /// The pattern of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

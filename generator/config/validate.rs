@@ -1,4 +1,4 @@
-//! From values to a [`Config`]: ranges, conditions on keys, and the device's own check.
+//! Checks values and makes a [`Config`] of them: ranges, conditions on keys, and the device's own check.
 
 use std::collections::BTreeSet;
 
@@ -157,7 +157,7 @@ impl Key {
 }
 
 impl Value {
-    /// Type and value, for a message: `the integer 7`.
+    /// Describes type and value, for a message: `the integer 7`.
     fn described(&self) -> String {
         let kind = match self {
             Value::Integer(_) => "integer",
@@ -180,7 +180,7 @@ pub(super) struct Draft<'a> {
     pub doubtful: BTreeSet<&'a str>,
 }
 
-/// The conditions that hold between keys: those of `only_when`, and the device's own.
+/// Checks the conditions that hold between keys: those of `only_when`, and the device's own.
 ///
 /// A condition is reported only if it fails whatever the doubtful values may turn out to be (as
 /// far as the ends of their ranges tell), so that one mistake raises no messages about others.
@@ -308,7 +308,7 @@ fn trials(schema: &Schema, draft: &Draft) -> Vec<Config> {
 }
 
 impl Config {
-    /// The defaults of a device.
+    /// Returns the defaults of a device.
     pub fn defaults(schema: &Schema, name: &str) -> Self {
         Config {
             name: name.to_owned(),
@@ -359,7 +359,7 @@ impl Config {
 }
 
 impl<'a> Draft<'a> {
-    /// The defaults; nothing given.
+    /// Starts a draft with the defaults, in which nothing is given.
     pub(super) fn new(schema: &Schema, name: &str) -> Self {
         Draft {
             config: Config::defaults(schema, name),

@@ -1,4 +1,4 @@
-//! Values, and a configuration of them.
+//! Holds the values of keys, and a configuration of them.
 
 /// The value of a key.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,4 +1,4 @@
-//! Configurations as TOML text.
+//! Writes configurations as TOML text.
 
 use super::schema::{Key, Schema};
 use super::shared::shared_keys;
@@ -13,7 +13,7 @@ pub fn commented(schema: &Schema, name: &str) -> String {
     commented_values(schema, &Config::defaults(schema, name))
 }
 
-/// As [`commented`], with the values of a configuration in place of defaults.
+/// Writes what [`commented`] writes, with the values of a configuration in place of defaults.
 pub fn commented_values(schema: &Schema, config: &Config) -> String {
     let shown = if *config == Config::defaults(schema, &config.name) {
         " with their defaults; those that you do not change"

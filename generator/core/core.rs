@@ -1,4 +1,5 @@
-//! From a configuration to everything that is made of it.
+//! [`Core`]: a configuration of a device with its design and its contract, and everything that is made of them: Verilog
+//! and other files, digests, timing, bench vectors, and the jobs of co-simulation and proof.
 
 use std::path::Path;
 
@@ -128,7 +129,7 @@ impl Core {
         package::digest(text.as_bytes())
     }
 
-    /// Golden model and built-in simulator, side by side.
+    /// Pairs the golden model with the built-in simulator, for runs whose stimuli are drawn from `seed`.
     ///
     /// # Errors
     /// Model and design do not name the same signals.
@@ -163,7 +164,7 @@ impl Core {
         Clocks::new(&self.design, model, self.contract.as_ref())
     }
 
-    /// Clocks between the events of the handshake.
+    /// Returns the clocks between the events of the handshake, as [`trial::timing`] measures them.
     ///
     /// # Errors
     /// A device that does not end.
@@ -187,8 +188,7 @@ impl Core {
         trial::line(&self.design, self.contract.as_ref())
     }
 
-    /// Stimulus and expected outputs for a bench; the golden model and the built-in simulator agree on
-    /// them.
+    /// Returns stimulus and expected outputs for a bench; the golden model and the built-in simulator agree on them.
     ///
     /// # Errors
     /// They do not agree.
@@ -196,8 +196,8 @@ impl Core {
         self.lockstep(seed)?.record(points, &[])
     }
 
-    /// Stimulus and expected outputs of the shipped bench: some computations at random, which show the handshake,
-    /// and directed ones, which show the datapath and its tables.
+    /// Returns stimulus and expected outputs of the shipped bench: some computations at random, which show the
+    /// handshake, and directed ones, which show the datapath and its tables.
     ///
     /// # Errors
     /// As of [`Core::vectors`].
@@ -205,7 +205,8 @@ impl Core {
         self.shipped_vectors_of(&directed::Known::default())
     }
 
-    /// As [`Core::shipped_vectors`], with computations that were chosen for other cores.
+    /// Returns what [`Core::shipped_vectors`] returns, but takes directed computations that are in `known` already from
+    /// there, and adds new ones to it.
     ///
     /// # Errors
     /// As of [`Core::vectors`].
@@ -269,7 +270,7 @@ impl Core {
         package::emit(&self.design, &inputs)
     }
 
-    /// Verilog and ROM contents alone, pairs of a plain name and contents: what synthesis needs.
+    /// Returns Verilog and ROM contents alone, pairs of a plain name and contents: what synthesis needs.
     ///
     /// # Errors
     /// The design cannot be written as Verilog.

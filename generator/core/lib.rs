@@ -1,4 +1,4 @@
-//! From a configuration to everything that is made of it: its files, and whether they do what they should.
+//! Makes everything that follows from a configuration: its files, and the checks whether they do what they should.
 //!
 //! No process, thread of its own or signal is in this crate or below it (`tests/quick/rooms.rs`).
 

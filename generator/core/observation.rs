@@ -1,4 +1,5 @@
-//! Observations of a design beyond its netlist: worked examples, computations with their results.
+//! What simulation and contract add to the netlist of a design: worked examples, computations with their results, the
+//! clocks of a line, the vectors of a bench.
 
 use std::iter::repeat;
 
@@ -69,7 +70,7 @@ pub struct ContractFacts {
 }
 
 impl ContractFacts {
-    /// The promise of a contract.
+    /// Extracts what a program can use of a contract: domain, outputs, formulas and bound.
     pub fn new(contract: &dyn Contract) -> Self {
         let operands = contract.operands();
         let colours = operands.iter().filter(|operand| operand.colour);

@@ -96,7 +96,7 @@ impl Device {
         model
     }
 
-    /// Whether the golden model can do what the configuration asks for.
+    /// Checks whether the golden model can do what the configuration asks for.
     ///
     /// # Errors
     /// It cannot.
@@ -169,12 +169,12 @@ macro_rules! of_catalogue {
 pub struct Registry(Vec<Device>);
 
 impl Registry {
-    /// No device at all: for a command line of your own devices.
+    /// Returns a registry without a device: for a command line of your own devices.
     pub fn empty() -> Self {
         Self(Vec::new())
     }
 
-    /// The devices of the seeds, and the one that computes any formula.
+    /// Returns the devices of the seeds, and the one that computes any formula.
     pub fn catalogue() -> Self {
         Self(of_catalogue![
             quad_cosine: "quad-cosine", "cos^k(sqrt(n/k)*delta) along a scan line, k = 1, 2, 4, 16 by n (seed 000)";
@@ -191,7 +191,7 @@ impl Registry {
         ])
     }
 
-    /// The catalogue, and the devices that make colours of normals, which have no records beside the code.
+    /// Returns the catalogue, and the devices that make colours of normals, which have no records beside the code.
     pub fn shipped() -> Self {
         let mut all = Self::catalogue();
         all.0.extend(of_catalogue![
@@ -202,7 +202,7 @@ impl Registry {
         all
     }
 
-    /// The registry with one device more.
+    /// Adds a device to the registry.
     #[must_use]
     pub fn with(mut self, device: Device) -> Self {
         self.0.push(device);

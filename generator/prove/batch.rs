@@ -1,4 +1,4 @@
-//! Many computations at once through the emitted Verilog.
+//! Computes many points at once with the emitted Verilog, under an outside simulator.
 
 use std::fmt::Write as _;
 use std::fs;

@@ -1,4 +1,4 @@
-//! The figures of a measurement: area and frequency.
+//! The figures of a measurement of a core on a target: area, frequency and critical path.
 
 mod record;
 
@@ -30,7 +30,7 @@ pub enum Target {
 pub const TARGETS: [Target; 4] = [Target::Ice40, Target::Ecp5, Target::Xilinx7, Target::Osu018];
 
 impl Target {
-    /// For scripts: `ice40`.
+    /// Returns the name for scripts: `ice40`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Ice40 => "ice40",
@@ -40,7 +40,7 @@ impl Target {
         }
     }
 
-    /// For people.
+    /// Returns the name for people.
     pub fn title(self) -> &'static str {
         self.family().map_or("0.18 µm cells", |family| family.title)
     }
@@ -135,7 +135,7 @@ pub struct Step {
 }
 
 impl Figures {
-    /// Figures with an area alone.
+    /// Makes figures with an area alone.
     pub fn new(target: Target, device: &str, area: Area) -> Self {
         Self {
             target,
@@ -191,7 +191,7 @@ impl From<Usage> for Area {
     }
 }
 
-/// To two decimals: more than a tool's figures are worth.
+/// Rounds to two decimals: more than a tool's figures are worth.
 pub fn rounded(number: f64) -> f64 {
     (number * 100.0).round() / 100.0
 }

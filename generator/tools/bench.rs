@@ -1,4 +1,4 @@
-//! Self-checking Verilog benches under external simulators.
+//! Runs self-checking Verilog test benches under external simulators.
 
 use std::env;
 use std::ffi::OsStr;
@@ -70,7 +70,7 @@ pub fn run_bench<N: AsRef<str>, C: AsRef<[u8]>>(
     run_bench_in(&search, simulator, files, top, limit)
 }
 
-/// [`run_bench`] with another search path than `PATH` for the simulator.
+/// Does what [`run_bench`] does, with another search path than `PATH` for the simulator.
 pub(super) fn run_bench_in<N: AsRef<str>, C: AsRef<[u8]>>(
     search: &OsStr,
     simulator: Simulator,

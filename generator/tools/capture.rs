@@ -1,4 +1,4 @@
-//! The output of a child process, kept within bounds.
+//! Reads the output of a child process, and keeps a bounded part of it: the beginning and the end.
 
 use std::collections::VecDeque;
 use std::io::Read;

@@ -1,4 +1,4 @@
-//! The first difference that a failing bench reports, and the waveform of the clocks before it.
+//! Reads the first difference that a failing test bench reports, and writes the waveform of the clocks before it.
 
 use std::fs;
 use std::time::Duration;
@@ -30,8 +30,8 @@ impl BenchDifference {
         transcript.lines().find_map(Self::of_line)
     }
 
-    /// `clock 9, microinstruction 3 (result): red_out is 1f, expected 20`, or of a pipeline
-    /// `clock 9: red_out is 1f, expected 20`.
+    /// Parses `clock 9, microinstruction 3 (result): red_out is 1f, expected 20`, or of a pipeline `clock 9: red_out is
+    /// 1f, expected 20`.
     fn of_line(line: &str) -> Option<Self> {
         let rest = line.strip_prefix("clock ")?;
         let (clock, rest) = rest.split_at(rest.find([',', ':'])?);

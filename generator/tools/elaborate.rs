@@ -1,4 +1,4 @@
-//! Verilog as Yosys understands it: a flat netlist in its JSON format.
+//! Elaborates Verilog with Yosys: returns a flat netlist in its JSON format.
 
 use std::time::Duration;
 

@@ -1,4 +1,4 @@
-//! Outside tools as child processes: simulators, synthesis, provers.
+//! Runs outside tools as child processes: simulators, synthesis, provers.
 //!
 //! A [`Tool`] is a program found on a search path; every run has a time limit, after which it is killed with all that it has started.
 //! Output is drained to the end but kept only in part, and errors quote its last lines. [`run_bench`] builds and runs a self-checking
@@ -87,7 +87,7 @@ impl fmt::Display for LimitReached {
 impl std::error::Error for LimitReached {}
 
 impl Tool {
-    /// The tool `name` on `PATH`.
+    /// Finds the tool `name` on `PATH`.
     ///
     /// # Errors
     /// It is not there; the message says how to install it.
@@ -95,7 +95,7 @@ impl Tool {
         Self::find_in(name, &env::var_os("PATH").unwrap_or_default())
     }
 
-    /// The tool `name` on the search path `search`, which is written as `PATH` is.
+    /// Finds the tool `name` on the search path `search`, which is written as `PATH` is.
     ///
     /// # Errors
     /// It is not there; the message says how to install it.
@@ -194,7 +194,7 @@ impl Tool {
         )));
     }
 
-    /// Like [`Tool::run`], for a tool that is expected to succeed; returns its output.
+    /// Runs a tool as [`Tool::run`] does, but expects it to succeed; returns its output.
     ///
     /// # Errors
     /// As of [`Tool::run`], and any exit status but 0.
@@ -241,7 +241,7 @@ fn limit_memory(process: u32, bytes: u64) {
     let _ = prlimit(Pid::from_raw(process as i32), Resource::As, limit);
 }
 
-/// Elsewhere a process cannot be limited from outside.
+/// Does nothing: elsewhere a process cannot be limited from outside.
 #[cfg(not(target_os = "linux"))]
 fn limit_memory(_process: u32, _bytes: u64) {}
 

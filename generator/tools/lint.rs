@@ -1,4 +1,4 @@
-//! Linters on Verilog.
+//! Runs linters on Verilog, and returns their complaints.
 
 use std::path::Path;
 use std::time::Duration;

@@ -1,4 +1,4 @@
-//! Formal proofs.
+//! Runs the formal proof of a wrapper, by the commands that the wrapper's file gives.
 
 use std::fs;
 use std::path::Path;

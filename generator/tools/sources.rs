@@ -1,4 +1,4 @@
-//! Verilog and memory files in a directory of their own, where Yosys reads them.
+//! Writes Verilog and memory files into a directory of their own, and runs Yosys on them there.
 
 use std::fs;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! Synthesis by Yosys: what a design takes of an FPGA.
+//! Synthesises a design with Yosys, and counts what it takes of an FPGA.
 
 use std::time::Duration;
 

@@ -1,4 +1,4 @@
-//! A module around a bench that writes the waveform of some of its clocks.
+//! Writes a module around a test bench that writes the waveform of some of its clocks.
 
 use anyhow::Result;
 use glint_base::fill;

@@ -66,7 +66,7 @@ fn tell_terms(bound: &Bound) {
     }
 }
 
-/// `glint certify`.
+/// Runs `glint certify`, and returns whether every bound is proved.
 pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
     let loaded = load_sequential(registry, &arguments.configs.paths, "certify")?;
     let limit = Duration::from_secs(arguments.time_limit);
@@ -234,9 +234,9 @@ fn found(
     Ok(bound.map(|bound| (asked.iter().map(|one| one.within(bound)).collect(), bound)))
 }
 
-/// The scripts, each in a file: the accepted one, or of what is open the first. Those of an earlier run with more
-/// statements go, under the names that they have in their first line: a copy under another name, or an edited one, is
-/// the user's.
+/// Writes the scripts, each in a file: the accepted one, or of what is open the first. Those of an earlier run with
+/// more statements go, under the names that they have in their first line: a copy under another name, or an edited one,
+/// is the user's.
 fn write(
     directory: &Path,
     config: &str,

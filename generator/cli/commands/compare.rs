@@ -1,4 +1,4 @@
-//! `compare`.
+//! `glint compare`: compares all devices with cosⁿγ at one exponent: errors, cells, frequencies and points a second.
 
 mod show;
 
@@ -85,7 +85,7 @@ struct Figures {
     multipliers: Vec<Multiplier>,
 }
 
-/// `glint compare`.
+/// Runs `glint compare`.
 pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
     if arguments.csv && output.json {
         wrong_usage!("--csv and --json are two ways to print the same: give one");
@@ -242,7 +242,7 @@ fn synthesise(
     Ok(runs.chunks(FAMILIES.len()).map(<[_]>::to_vec).collect())
 }
 
-/// Why a configuration has no errors to show.
+/// Returns why a configuration has no errors to show.
 fn outside(entry: &Entry, n: u32) -> String {
     let label = &entry.label;
     match domain(&entry.core) {

@@ -1,4 +1,4 @@
-//! `cosim`.
+//! `glint cosim`: compares the golden model with the simulated hardware, every register on every clock.
 
 mod benches;
 pub mod exhaustive;
@@ -98,7 +98,7 @@ pub enum Simulator {
     Verilator,
 }
 
-/// `glint cosim`.
+/// Runs `glint cosim`, and returns whether everything that it checks holds.
 pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
     if arguments.exhaustive {
         return exhaustive::run(registry, output, arguments);

@@ -1,4 +1,4 @@
-//! `datasheet`.
+//! `glint datasheet`: writes the datasheet of a configuration, one HTML page that needs no network.
 
 use std::path::PathBuf;
 
@@ -57,7 +57,7 @@ pub struct Arguments {
     time_limit: TimeLimit,
 }
 
-/// `glint datasheet`.
+/// Runs `glint datasheet`.
 pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     let single = arguments.out.extension().is_some_and(|it| it.eq_ignore_ascii_case("html"));

@@ -1,4 +1,4 @@
-//! `describe`.
+//! `glint describe`: prints or writes a page of documentation about a configuration, in Markdown.
 
 use std::path::{Path, PathBuf};
 
@@ -35,7 +35,7 @@ pub struct Arguments {
     force: bool,
 }
 
-/// `glint describe`.
+/// Runs `glint describe`.
 pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     let mut report = Vec::new();

@@ -1,4 +1,4 @@
-//! `eval`.
+//! `glint eval`: computes one point, or those of a CSV file: golden registers, outputs and the formula in f64.
 
 mod batch;
 mod operands;
@@ -44,7 +44,7 @@ pub struct Arguments {
 /// More clocks than any device takes.
 const LIMIT: u64 = 1 << 16;
 
-/// `glint eval`: one point, or as many as a CSV file has.
+/// Runs `glint eval`: one point, or as many as a CSV file has.
 pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
     let one = load_one(registry, &registry.schemas(), &arguments.config)?;
     let given =

@@ -1,4 +1,4 @@
-//! `explain`.
+//! `glint explain`: explains the code of a mistake in a description, or lists all codes.
 
 use anyhow::Result;
 use clap::Args;
@@ -20,7 +20,7 @@ pub struct Arguments {
     code: Option<String>,
 }
 
-/// `glint explain`.
+/// Runs `glint explain`.
 pub fn run(_: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
     let wanted =
         |code: &str| arguments.code.as_ref().is_none_or(|it| it.eq_ignore_ascii_case(code));

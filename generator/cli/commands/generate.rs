@@ -1,4 +1,4 @@
-//! `generate`.
+//! `glint generate`: writes Verilog, ROM contents, manifest, FuseSoC core and test bench of each configuration.
 
 use std::path::{Path, PathBuf};
 
@@ -39,7 +39,7 @@ pub struct Arguments {
     force: bool,
 }
 
-/// `glint generate`.
+/// Runs `glint generate`.
 pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     for one in &loaded {
@@ -111,7 +111,7 @@ pub fn write(out: &Path, one: &Loaded, files: &[OutputFile], force: bool) -> Res
     Ok(written)
 }
 
-/// `--check`: what is there is what would be written.
+/// Runs `--check`: returns whether what is there is what would be written.
 fn compare(
     output: Output,
     out: &Path,

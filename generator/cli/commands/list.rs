@@ -1,4 +1,4 @@
-//! `list`.
+//! `glint list`: lists the devices, and the configurations in `configs/`.
 
 use std::path::Path;
 
@@ -18,7 +18,7 @@ Example:
   glint list --json")]
 pub struct Arguments;
 
-/// `glint list`.
+/// Runs `glint list`.
 pub fn run(registry: &Registry, output: Output, _: &Arguments) -> Result<bool> {
     let configs: Vec<String> = if Path::new(CONFIGS).is_dir() {
         paths(&[]).unwrap_or_default().iter().map(|path| path.display().to_string()).collect()

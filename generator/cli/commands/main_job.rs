@@ -1,4 +1,4 @@
-//! The main job: generate everything, co-simulate everything, say what was found.
+//! Does the main job: generates everything, co-simulates everything, and says what was found.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! `merge`.
+//! `glint merge`: joins the parts of a `cosim --exhaustive` that was divided by `--shard`.
 
 use std::path::PathBuf;
 
@@ -30,7 +30,7 @@ pub struct Arguments {
     sweep: SweepValues,
 }
 
-/// `glint merge`: what the shards of one job give together.
+/// Runs `glint merge`, and returns whether the proof that the shards of one job give together holds.
 pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
     let Arguments { config, files, .. } = arguments;
     let loaded = load(registry, std::slice::from_ref(config))?;

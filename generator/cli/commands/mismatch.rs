@@ -1,4 +1,4 @@
-//! A first difference, for people and for scripts, with the means to see it again.
+//! Reports a first difference, for people and for scripts, with the means to see it again: a waveform and a command.
 
 use std::fs::{self, File};
 use std::io::BufWriter;
@@ -49,7 +49,7 @@ impl Reproducer {
         })
     }
 
-    /// The report of a combination of operands.
+    /// Writes the waveform of the clocks before a difference of a combination of operands.
     ///
     /// # Errors
     /// It cannot be written.
@@ -63,7 +63,7 @@ impl Reproducer {
         Ok(Self { vcd, from, command: format!("{Program} cosim {} --exhaustive", one.path) })
     }
 
-    /// For people.
+    /// Tells people where a difference is and how to have it again.
     pub fn text(&self, mismatch: &Mismatch) -> String {
         format!(
             "`{}` shows clocks {} to {}; all of them: {}",
@@ -74,7 +74,7 @@ impl Reproducer {
         )
     }
 
-    /// For scripts: where a difference is and how to have it again.
+    /// Tells scripts where a difference is and how to have it again.
     pub fn json(&self, mismatch: &Mismatch) -> Value {
         let mut value = as_json(mismatch);
         value["vcd"] = json!(self.vcd.display().to_string());

@@ -109,7 +109,7 @@ fn load(registry: &Registry, named: &[PathBuf]) -> Result<Vec<Loaded>> {
     if failed.is_empty() { Ok(loaded) } else { Err(Several(failed).into()) }
 }
 
-/// As [`load`], for a command that speaks of microprograms: pipelines are left out unless they are named.
+/// Loads what [`load`] loads, for a command that speaks of microprograms: pipelines are left out unless they are named.
 fn load_sequential(registry: &Registry, named: &[PathBuf], command: &str) -> Result<Vec<Loaded>> {
     let (pipelines, loaded): (Vec<Loaded>, Vec<Loaded>) =
         load(registry, named)?.into_iter().partition(|one| one.core.design.pipeline.is_some());
@@ -167,7 +167,7 @@ fn load_one(registry: &Registry, schemas: &[config::Schema], path: &Path) -> Res
     Ok(Loaded { path: name, core, locations })
 }
 
-/// Yosys; where it is missing a note says so, and what there is without it.
+/// Finds Yosys; where it is missing a note says so, and what there is without it.
 fn yosys(without: &str, notes: &mut Vec<String>) -> Option<Tool> {
     Tool::find("yosys").map_err(|missing| notes.push(format!("{missing}: {without}"))).ok()
 }
@@ -207,8 +207,8 @@ impl Loaded {
         })
     }
 
-    /// As [`Loaded::bound`], and warns of what the formula is no good for, unless the device's own keys are as the catalogue
-    /// has them, whose page says it.
+    /// Does what [`Loaded::bound`] does, and warns of what the formula is no good for, unless the device's own keys are
+    /// as the catalogue has them, whose page says it.
     fn contract(&self) -> Result<()> {
         self.bound()?;
         let config = &self.core.config;

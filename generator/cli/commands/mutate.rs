@@ -1,4 +1,4 @@
-//! `mutate`.
+//! `glint mutate`: plants faults one at a time, and shows which of them the tests notice.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -83,7 +83,7 @@ impl Scored {
     }
 }
 
-/// `glint mutate`.
+/// Runs `glint mutate`.
 pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     if let Some(id) = &arguments.only {
@@ -150,7 +150,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     Ok(holds)
 }
 
-/// The names of all faults.
+/// Prints the names of all faults.
 fn list(output: Output, loaded: &[Loaded], faults: &[Faults]) {
     let mut list = Vec::new();
     for (one, faults) in loaded.iter().zip(faults) {
@@ -214,7 +214,7 @@ fn only(output: Output, one: &Loaded, id: &str) -> Result<bool> {
     Ok(*verdict != Verdict::Undecided)
 }
 
-/// Where a mutant differs, and in what.
+/// Tells where a mutant differs, and in what.
 fn shown_by(Difference { held, mismatch }: &Difference) -> String {
     let operands: Vec<String> = held.iter().map(|(name, raw)| format!(" {name}=#{raw}")).collect();
     let holding = if operands.is_empty() { "" } else { ", with" };

@@ -1,4 +1,4 @@
-//! `new`.
+//! `glint new`: prints a commented configuration of a device, or of a function by its name.
 
 use anyhow::{Result, bail};
 use clap::Args;
@@ -29,7 +29,7 @@ pub struct Arguments {
 const SCHEMA: &str =
     "#:schema glint.schema.json\n# Editors check keys by it: glint schema > glint.schema.json\n\n";
 
-/// `glint new`.
+/// Runs `glint new`.
 pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
     let Arguments { device, name } = arguments;
     let preset = presets::values(device);

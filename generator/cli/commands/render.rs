@@ -1,4 +1,4 @@
-//! `render`.
+//! `glint render`: draws a picture whose highlights are bit-accurate results of the device.
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -132,7 +132,7 @@ enum Through {
     Verilator,
 }
 
-/// `glint render`.
+/// Runs `glint render`.
 pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
     let (name, core) = core(registry, arguments.config.as_deref())?;
     let settings = settings(&core, arguments)?;
@@ -346,14 +346,14 @@ fn tell(
     }
 }
 
-/// `640x480`.
+/// Parses a size in pixels, as `640x480`.
 fn size(text: &str) -> Result<(u32, u32), String> {
     let sides = text.split_once(['x', 'X']);
     let sides = sides.and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?)));
     sides.ok_or_else(|| "a size is WxH in pixels, as in 640x480".to_owned())
 }
 
-/// Finite numbers with commas between.
+/// Parses finite numbers with commas between.
 fn numbers(text: &str) -> Result<Vec<f64>, String> {
     text.split(',')
         .map(|word| match word.trim().parse::<f64>() {

@@ -1,4 +1,4 @@
-//! Rows of a CSV file, each with its line.
+//! Reads the rows of a CSV file, and tells the line of one that is wrong.
 
 use std::io;
 use std::path::Path;

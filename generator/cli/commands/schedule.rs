@@ -1,4 +1,4 @@
-//! `schedule`.
+//! `glint schedule`: shows the stages of a pipeline.
 
 use std::path::PathBuf;
 
@@ -36,7 +36,7 @@ pub struct Arguments {
     force: bool,
 }
 
-/// `glint schedule`.
+/// Runs `glint schedule`.
 pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
     let named = paths(&arguments.configs.paths)?;
     let mut list = Vec::new();

@@ -1,4 +1,4 @@
-//! `schema`.
+//! `glint schema`: prints a JSON Schema of the configuration keys, for editors and validators.
 
 use anyhow::Result;
 use clap::Args;
@@ -18,7 +18,7 @@ Example:
   and in the first line of my_core.toml: #:schema ./glint.schema.json")]
 pub struct Arguments;
 
-/// `glint schema`.
+/// Runs `glint schema`.
 pub fn run(registry: &Registry, _: Output, _: &Arguments) -> Result<bool> {
     tables::print_json(&config::json_schema(&registry.schemas()));
     Ok(true)

@@ -1,4 +1,4 @@
-//! `setup`.
+//! `glint setup`: computes a device's operands from vectors or angles, as a host does before it starts the device.
 
 use std::path::PathBuf;
 
@@ -113,7 +113,7 @@ struct SetUp {
     real: Vec<f64>,
 }
 
-/// `glint setup`: one line or point, or as many as a CSV file has.
+/// Runs `glint setup`: one line or point, or as many as a CSV file has.
 pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
     let one = load_one(registry, &registry.schemas(), &arguments.config)?;
     let host = Host::new(&one)?;
@@ -284,7 +284,8 @@ impl<'a> Host<'a> {
         }
     }
 
-    /// Normal and half vector, of any length; the names are theirs and those of the directions toward light and viewer.
+    /// Returns normal and half vector, of any length; the names are theirs and those of the directions toward light and
+    /// viewer.
     fn pair(
         &self,
         given: &Given,

@@ -1,4 +1,4 @@
-//! `synth`.
+//! `glint synth`: measures area and frequency by synthesis, placement and routing.
 
 mod cache;
 mod show;
@@ -79,7 +79,7 @@ struct Recorded<'a> {
     estimated_mhz: f64,
 }
 
-/// `glint synth`.
+/// Runs `glint synth`.
 pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     let (flows, notes) = flows(arguments)?;

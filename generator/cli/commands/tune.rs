@@ -1,4 +1,4 @@
-//! `tune`.
+//! `glint tune`: finds the smallest configuration of a device for an error.
 
 mod plot;
 
@@ -78,7 +78,7 @@ pub struct Arguments {
     csv: bool,
 }
 
-/// `glint tune`.
+/// Runs `glint tune`.
 pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
     if output.json && arguments.csv {
         wrong_usage!("--json and --csv are two forms of the same: give one");

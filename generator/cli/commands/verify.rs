@@ -1,4 +1,4 @@
-//! `verify`.
+//! `glint verify`: verifies configurations by every means that Glint has, and writes a record and a page about each.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -80,7 +80,7 @@ impl Files {
     }
 }
 
-/// `glint verify`.
+/// Runs `glint verify`.
 pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     let files = loaded.iter().map(|one| Files::new(&arguments.out, &one.core.config.name));
@@ -153,7 +153,7 @@ fn print_conclusion(one: &Loaded, record: &Record) {
     }
 }
 
-/// A check in a few lines, as soon as it has ended.
+/// Prints a check in a few lines, as soon as it has ended.
 fn print(one: &Loaded, answer: &Answer) {
     let finding = &answer.finding;
     let domain =

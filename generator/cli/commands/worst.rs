@@ -1,4 +1,4 @@
-//! `worst`.
+//! `glint worst`: searches for the largest error of an output.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -75,7 +75,7 @@ struct Report {
     recorded: Option<Known>,
 }
 
-/// `glint worst`.
+/// Runs `glint worst`, and returns whether every bound holds.
 pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     let records = loaded.iter().map(|one| record(one, arguments)).collect::<Result<Vec<_>>>()?;

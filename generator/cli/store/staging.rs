@@ -1,4 +1,4 @@
-//! The directory in which new files are made whole before each is moved into its place.
+//! Makes new files whole in a directory of its own, and then moves each into its place.
 //!
 //! The next run after one that was killed begins anew: what is generated can be generated again. Files that were moved
 //! already are as they are to be, and the manifest, which comes last, vouches for the others.

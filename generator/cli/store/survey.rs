@@ -1,4 +1,5 @@
-//! The files in the directories of a configuration, and their owners.
+//! Finds the files in the directories of a configuration, and the owner of each: as Glint wrote it, edited since, or
+//! foreign.
 
 use std::collections::BTreeMap;
 use std::fs;

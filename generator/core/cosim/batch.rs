@@ -1,4 +1,4 @@
-//! Many computations at once, through the golden model, the built-in simulator or the emitted Verilog.
+//! Computes many points at once, with the golden model, the built-in simulator or the emitted Verilog.
 //!
 //! The three engines take the same [`Points`] and give the same results: that they do is what the rest of
 //! Glint proves, and what makes it no matter which of them computes a picture.
@@ -28,7 +28,7 @@ pub struct Points {
 }
 
 impl Points {
-    /// An empty list of points, each of `operands` operands, those of a [`Contract`] in its order.
+    /// Makes an empty list of points, each of `operands` operands, those of a [`Contract`] in its order.
     pub fn new(operands: usize) -> Self {
         Self { operands, values: Vec::new(), results: vec![0] }
     }

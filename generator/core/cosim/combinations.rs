@@ -1,4 +1,4 @@
-//! Every combination of the bit patterns of all operands, one computation after another.
+//! Drives a device with every combination of the bit patterns of all operands, one computation after another.
 //!
 //! A combination is the bits of all operands side by side. They come in an order in which one has little in
 //! common with the one before it, so that a register that should have been loaded and was not seldom holds
@@ -24,12 +24,13 @@ pub(super) struct Space {
 }
 
 impl Space {
-    /// All combinations.
+    /// Makes the space of all combinations.
     pub(super) fn new(ports: &Arc<Ports>) -> Self {
         Self { held: vec![None; ports.operands.len()], listed: Vec::new(), ports: ports.clone() }
     }
 
-    /// Combinations that begin with these raw operands, each in the order of the contract.
+    /// Makes the space of all combinations, with these raw operands, each in the order of the contract, at its first
+    /// places.
     pub(super) fn listed(ports: &Arc<Ports>, list: &[Vec<i64>]) -> Self {
         Self { listed: list.to_vec(), ..Self::new(ports) }
     }
@@ -91,7 +92,7 @@ pub(super) struct Combinations {
 }
 
 impl Combinations {
-    /// The combinations at `count` places, from the first on.
+    /// Makes the stimulus of the combinations at `count` places, from place `first` on.
     pub(super) fn new(space: Arc<Space>, first: u64, count: u64) -> Self {
         let mut inputs = vec![0; space.ports.inputs];
         space.ports.out_ready.into_iter().for_each(|at| inputs[at] = 1);
@@ -108,7 +109,7 @@ impl Combinations {
         self.first + self.started.saturating_sub(1)
     }
 
-    /// Clocks since `start`: 0 for the one that takes it.
+    /// Returns the clocks since `start`: 0 for the one that takes it.
     pub(super) fn since_start(&self) -> u64 {
         self.since_start
     }

@@ -18,7 +18,7 @@ pub struct Driven {
 }
 
 impl Driven {
-    /// A model at power-up, with the operands that it is given by name.
+    /// Takes a model at power-up, and finds its inputs of the handshake and of the operands that are named.
     ///
     /// # Errors
     /// A name that the model does not have.
@@ -39,7 +39,7 @@ impl Driven {
         })
     }
 
-    /// The first clock of a computation with these bit patterns.
+    /// Starts a computation with these bit patterns, in one clock.
     pub fn start(&mut self, patterns: impl Iterator<Item = u64>) {
         for (bits, &(data, strobe)) in patterns.zip(&self.operands) {
             self.inputs[data] = bits;
@@ -52,7 +52,7 @@ impl Driven {
         self.inputs[self.reset] = 1;
     }
 
-    /// One clock.
+    /// Advances the model by one clock.
     pub fn clock(&mut self) {
         self.model.clock(&self.inputs);
     }

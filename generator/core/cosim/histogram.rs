@@ -1,4 +1,4 @@
-//! How the points of a run are spread over the values of `f`.
+//! Counts the results of a run by the value of `f` that they are made of, in classes.
 
 use glint_base::fixed::Format;
 

@@ -1,4 +1,4 @@
-//! Instances of a design in one simulator, each of which is given computations.
+//! Runs instances of a design in the lanes of one simulator, and gives each its computations.
 
 use anyhow::Result;
 
@@ -14,6 +14,8 @@ pub(super) struct Instances<const LANES: usize> {
 }
 
 impl<const LANES: usize> Instances<LANES> {
+    /// Makes a simulator of a design after its reset.
+    ///
     /// # Errors
     /// As of [`Ports::new`] and [`Simulator::new`].
     pub(super) fn new(design: &Design, contract: &dyn Contract) -> Result<Self> {

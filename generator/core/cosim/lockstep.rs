@@ -1,4 +1,5 @@
-//! Golden model and simulated hardware side by side, whatever the architecture: every signal compared on every clock.
+//! Runs golden model and simulated hardware side by side, whatever the architecture, and compares every signal on every
+//! clock.
 //!
 //! A run is divided into *streams*: each starts at power-up, with a stimulus of its own. How many there
 //! are, their seeds and their points depend on the seed and the points of the run alone. Up to [`LANES`] of
@@ -55,7 +56,7 @@ pub struct Lockstep<'a> {
 }
 
 impl<'a> Lockstep<'a> {
-    /// Model and simulator of a design, paired by the names of ports and registers.
+    /// Pairs the model and the simulator of a design by the names of ports and registers.
     ///
     /// # Errors
     /// A name of one side that the other does not have.
@@ -108,7 +109,7 @@ impl<'a> Lockstep<'a> {
         Ok(self.outcome(groups.into_iter().flatten()))
     }
 
-    /// Streams from this number on, in one simulator; cut short when one before them differs.
+    /// Runs streams from number `first` on in one simulator; they are cut short when one before them differs.
     fn group<const L: usize>(
         &self,
         courses: impl IntoIterator<Item = Course>,
@@ -134,7 +135,7 @@ impl<'a> Lockstep<'a> {
         group.into_seen()
     }
 
-    /// As [`Lockstep::run`], in one stream.
+    /// Runs what [`Lockstep::run`] runs, in one stream.
     ///
     /// # Errors
     /// As of [`Lockstep::run`].
@@ -173,9 +174,9 @@ impl<'a> Lockstep<'a> {
             .collect()
     }
 
-    /// Stimulus and expected outputs for a bench: the inputs of every clock of one stream of `points`
-    /// results, and the outputs before its edge; then those of computations with these raw operands, in the order of
-    /// the contract, one after another.
+    /// Makes stimulus and expected outputs for a bench: the inputs of every clock of one stream of `points` results,
+    /// and the outputs before its edge; then those of computations with these raw operands, in the order of the
+    /// contract, one after another.
     ///
     /// # Errors
     /// Golden model and simulation differ; a design that cannot be simulated, or does not settle.
@@ -191,7 +192,7 @@ impl<'a> Lockstep<'a> {
         Ok(vectors)
     }
 
-    /// The clocks of a stream to its end.
+    /// Adds the clocks of a stream up to its end to the vectors.
     fn add(&self, vectors: &mut Vectors, alone: &mut Runner<'_, 1>) -> Result<()> {
         let shows = |alone: &Runner<'_, 1>| alone.simulator.value(self.binding.ports.valid) == 1;
         while !alone.ended() {
@@ -218,9 +219,9 @@ impl<'a> Lockstep<'a> {
         Ok(())
     }
 
-    /// Golden model and simulation from power-up on under recorded inputs, those of [`Lockstep::record`] say: by stream,
-    /// then by clock, then by input. Each stream is gone through for `clocks` clocks, again from its beginning after its
-    /// end. Results are compared with the golden model, and not with the formula.
+    /// Runs golden model and simulation from power-up on under recorded inputs, say those of [`Lockstep::record`]: by
+    /// stream, then by clock, then by input. Each stream is gone through for `clocks` clocks, again from its beginning
+    /// after its end. Results are compared with the golden model, and not with the formula.
     ///
     /// # Errors
     /// As of [`Lockstep::run`]; a stream without a clock, or a clock with more or fewer inputs than the design.
@@ -248,7 +249,7 @@ impl<'a> Lockstep<'a> {
         Ok(self.outcome(groups.into_iter().flatten()))
     }
 
-    /// As [`Lockstep::run`], in one stream, of which `file` takes the waveform from clock `from` on.
+    /// Runs what [`Lockstep::run`] runs, in one stream, of which `file` takes the waveform from clock `from` on.
     ///
     /// # Errors
     /// As of [`Lockstep::run`]; the file cannot be written.
@@ -268,7 +269,7 @@ impl<'a> Lockstep<'a> {
         Runner::new(&self.binding, [self.course(points, 1, 0)])
     }
 
-    /// One of the streams of a run.
+    /// Returns the course of stream `number` of a run: its seed, and its share of the points.
     fn course(&self, points: u64, streams: u64, number: u64) -> Course {
         Course::Random {
             seed: stream_seed(self.seed, number),
@@ -280,7 +281,7 @@ impl<'a> Lockstep<'a> {
         Outcome::of(self.binding.registers, self.binding.outputs.len(), streams)
     }
 
-    /// Into how many streams a run is divided.
+    /// Returns the number of streams into which a run is divided.
     fn streams(&self, points: u64) -> u64 {
         if self.binding.is_pipeline() {
             let streams = points.div_ceil(PIPELINE_POINTS);

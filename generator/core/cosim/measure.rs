@@ -36,7 +36,7 @@ impl Quantity {
 }
 
 impl<'a> Measure<'a> {
-    /// Values are those of these nets.
+    /// Finds the outputs of the contract among these nets, whose values are measured.
     ///
     /// # Errors
     /// An output that is not there, or has another format in the design.

@@ -1,4 +1,5 @@
-//! Co-simulation: stimulus, and golden model against built-in simulator, clock by clock and exhaustively.
+//! Co-simulates designs: draws stimulus, and compares the golden model with the built-in simulator, clock by clock and
+//! exhaustively.
 
 pub mod batch;
 mod binding;

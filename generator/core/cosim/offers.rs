@@ -1,4 +1,4 @@
-//! Points that are offered to a pipeline at random, clock by clock.
+//! Offers points to a pipeline at random, clock by clock.
 //!
 //! Points come with bubbles between them, now and then one is withdrawn, results are held back, and resets drop what is on
 //! its way. How eager each side is changes from time to time. All of it is a function of the seed.
@@ -36,7 +36,7 @@ pub(super) struct Offers {
 }
 
 impl Offers {
-    /// From power-up on.
+    /// Makes the offers of a seed, from power-up on.
     pub(super) fn new(ports: &Arc<Ports>, seed: u64) -> Self {
         Self {
             random: Random::new(seed),

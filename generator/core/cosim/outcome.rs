@@ -1,4 +1,4 @@
-//! The outcome of runs: results, errors, and the first difference.
+//! The outcome of co-simulation runs: how many results were seen, the largest error, and the first difference.
 
 use std::fmt;
 use std::sync::Arc;

@@ -62,7 +62,7 @@ pub struct Points<'a> {
 }
 
 impl<'a> Points<'a> {
-    /// Points for a contract.
+    /// Prepares to draw points for a contract, and finds the peak of its highlight if it has one.
     pub fn new(contract: &'a dyn Contract) -> Self {
         let highlight = contract.highlight();
         let operands = contract.operands().to_vec();
@@ -90,7 +90,7 @@ impl<'a> Points<'a> {
         }
     }
 
-    /// Values, or what is nearest to them of what is drawn.
+    /// Clamps values to what is drawn of each operand.
     pub fn clamped(&self, mut values: Vec<i64>) -> Vec<i64> {
         values.truncate(self.operands.len());
         for (raw, operand) in values.iter_mut().zip(&self.operands) {
@@ -111,7 +111,7 @@ impl<'a> Points<'a> {
         self.draw_kind(random, values, free, kind);
     }
 
-    /// New raw values for all operands, of the domain.
+    /// Draws new raw values for all operands, of the domain.
     pub fn of_domain(&self, random: &mut Random) -> Vec<i64> {
         let mut values = vec![0; self.operands.len()];
         let kind = random.within(1, KINDS - 1);
@@ -119,12 +119,12 @@ impl<'a> Points<'a> {
         values
     }
 
-    /// Raw values for all operands, each drawn evenly from its domain.
+    /// Draws raw values for all operands, each evenly from its domain.
     pub fn evenly(&self, random: &mut Random) -> Vec<i64> {
         self.operands.iter().map(|it| random.within(it.domain.0, it.domain.1)).collect()
     }
 
-    /// Operands at which the contract says that results say much.
+    /// Draws operands at which the contract says that results say much.
     pub fn hint(&self, random: &mut Random) -> Option<Vec<i64>> {
         self.contract.hint(&mut || random.unit()).map(|hint| self.clamped(hint))
     }
@@ -405,7 +405,7 @@ impl Way {
     }
 }
 
-/// 2 to the power of so many parts of an octave, downwards: exactly what [`libm::exp2`] says of it.
+/// Returns 2 to the power of minus so many parts of an octave: exactly what [`libm::exp2`] says of it.
 #[inline]
 fn power(parts: usize) -> f64 {
     POWERS[parts % PARTS] * exp2(-((parts / PARTS) as i32))
@@ -417,7 +417,7 @@ fn value(highlight: &Highlight, control: &[i64]) -> f64 {
     highlight.reference(&highlight.point(control, 0))
 }
 
-/// So far on the way from `peak` to `far`.
+/// Returns the value that is the part `scale` of the way from `peak` to `far`.
 fn between(peak: i64, far: i64, scale: f64) -> i64 {
     peak.saturating_add(((far as f64 - peak as f64) * scale) as i64)
 }
@@ -439,7 +439,7 @@ pub(super) mod tests {
     impl Pulse {
         const HALF: f64 = 4.0;
 
-        /// With operands of these bits and largest values.
+        /// Makes a contract with operands of these bits and largest values.
         fn contract(self, operands: &[(&str, i32, i64)]) -> Highlight {
             let operand = |&(name, bits, high): &(&str, i32, i64)| {
                 control(name, Format::unsigned(bits, 0), (0, high), "")
@@ -452,7 +452,7 @@ pub(super) mod tests {
             Self { says, length: None }.contract(&[("x", 20, 1 << 20), ("at", 20, 1000)])
         }
 
-        /// With one operand, `x` of 12 bits; it is a length if it is said to be.
+        /// Makes a contract with one operand, `x` of 12 bits; it is a length if it is said to be.
         pub fn single(length: bool) -> Highlight {
             Self { says: false, length: length.then_some("x") }.contract(&[("x", 12, 4095)])
         }

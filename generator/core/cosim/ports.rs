@@ -1,4 +1,4 @@
-//! The ports of a design, as everything that drives it and reads it takes them: looked up once.
+//! Finds the ports of a design once, for everything that drives it and reads it.
 
 use anyhow::{Context, Result, ensure};
 
@@ -57,7 +57,7 @@ impl OperandPort {
 }
 
 impl Ports {
-    /// The ports of a design.
+    /// Finds the ports of a design.
     ///
     /// # Errors
     /// The design lacks a port of the handshake, or has a strobe that is no input; design and contract do not have the

@@ -1,4 +1,4 @@
-//! Numbers at random, the same on every machine.
+//! Draws pseudo-random numbers, the same on every machine.
 
 use glint_base::fixed::{exp2, mask};
 use glint_golden::Operand;
@@ -29,7 +29,7 @@ fn within(bits: u64, low: i64, high: i64) -> i64 {
     if span == 0 { bits as i64 } else { low.wrapping_add(scaled(bits, span) as i64) }
 }
 
-/// An integer from 0 to `most` of random bits, of each magnitude as often as of any other.
+/// Makes an integer from 0 to `most` of random bits, of each magnitude as often as of any other.
 #[inline]
 fn magnitude([first, second]: [u64; 2], most: u64) -> u64 {
     let bits = scaled(first, u64::from(64 - most.max(1).leading_zeros()) + 1);
@@ -37,7 +37,7 @@ fn magnitude([first, second]: [u64; 2], most: u64) -> u64 {
 }
 
 impl Random {
-    /// The sequence of a seed.
+    /// Starts the sequence of a seed.
     pub fn new(seed: u64) -> Self {
         Self(seed)
     }
@@ -68,7 +68,7 @@ impl Random {
         scaled(self.bits(), below)
     }
 
-    /// True once in `times`.
+    /// Returns true once in `times`, on average.
     pub fn once_in(&mut self, times: u64) -> bool {
         self.below(times) == 0
     }

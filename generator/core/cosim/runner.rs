@@ -1,4 +1,4 @@
-//! Streams side by side in the lanes of one simulator, every signal compared on every clock.
+//! Runs streams side by side in the lanes of one simulator, and compares every signal on every clock.
 
 use std::io::Write;
 use std::mem;
@@ -43,7 +43,7 @@ struct Clock<const LANES: usize> {
 }
 
 impl<'a, const LANES: usize> Runner<'a, LANES> {
-    /// Streams at power-up.
+    /// Starts a stream for each course, at power-up.
     ///
     /// # Errors
     /// A design that cannot be simulated.
@@ -94,7 +94,7 @@ impl<'a, const LANES: usize> Runner<'a, LANES> {
         &mut self.streams[0]
     }
 
-    /// Some clocks of all streams that have not ended. The results seen in them.
+    /// Runs some clocks of all streams that have not ended, and returns the number of results seen in them.
     ///
     /// # Errors
     /// A simulation that does not settle, or a VCD that cannot be written; a model that does not end.
@@ -138,7 +138,7 @@ impl<'a, const LANES: usize> Runner<'a, LANES> {
         Ok(())
     }
 
-    /// These clocks, and everything that can be compared after each.
+    /// Simulates the clocks that are prepared, and compares everything that can be compared after each.
     ///
     /// # Errors
     /// A simulation that does not settle, or a VCD that cannot be written.

@@ -1,4 +1,4 @@
-//! The largest error of an output that can be found: climbed to, and not drawn.
+//! Climbs to the largest error of an output that can be found, in place of drawing points.
 //!
 //! Random points seldom meet what rounds unluckily in every step. From points that the stimulus draws each operand, and each
 //! pair of those with a fraction, is moved by powers of two as long as the error grows: of a highlight first that of `f`,

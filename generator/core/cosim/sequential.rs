@@ -1,4 +1,4 @@
-//! The golden model's prediction of a core, clock by clock.
+//! Predicts a core with a microprogram clock by clock, from its golden model.
 
 use std::mem;
 
@@ -75,7 +75,7 @@ impl Core {
         Ok((core, compared))
     }
 
-    /// Clocks the model.
+    /// Advances the model by one clock.
     #[inline]
     pub(super) fn clock(&mut self, inputs: &[u64]) {
         match &self.order {

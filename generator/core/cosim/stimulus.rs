@@ -1,4 +1,4 @@
-//! Drives the inputs, clock by clock.
+//! Draws the inputs of a core with a microprogram, clock by clock.
 //!
 //! A stimulus is a mix of everything that a device meets: points with idle gaps and back to back,
 //! operands written one after another, all at once or together with `start`, some left from the point
@@ -50,7 +50,7 @@ pub(super) struct Stimulus {
 }
 
 impl Stimulus {
-    /// From power-up on.
+    /// Makes the stimulus of a seed, from power-up on.
     pub(super) fn new(ports: &Arc<Ports>, seed: u64) -> Self {
         let nothing = vec![0; ports.operands.len()];
         Self {
@@ -125,8 +125,8 @@ impl Stimulus {
         self.phase = Phase::Running(reset);
     }
 
-    /// A clock after `start`: until the device has ended, now and then something that it must ignore,
-    /// or a reset.
+    /// Drives a clock after `start`: until the device has ended, now and then something that it must ignore, or a
+    /// reset.
     fn run(&mut self, busy: bool, reset: Option<u64>, points: &Points) {
         if busy {
             if self.random.once_in(6) {
@@ -204,7 +204,7 @@ impl Stimulus {
         }
     }
 
-    /// Strobes, data and `start` at random: ignored while busy.
+    /// Drives strobes and data at random, and while busy `start` too: the device ignores them then.
     fn noise(&mut self, busy: bool, points: &Points) {
         self.idle = false;
         let random = &mut self.random;

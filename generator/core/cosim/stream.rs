@@ -1,4 +1,4 @@
-//! A stream: inputs from power-up on, and the golden model under them.
+//! Runs one stream: makes its inputs from power-up on, and predicts with the golden model what the hardware does.
 
 use anyhow::Result;
 
@@ -62,7 +62,7 @@ pub(super) struct Stream {
 }
 
 impl Stream {
-    /// At power-up, when the device shows `busy`.
+    /// Starts a stream at power-up, when the device shows `busy`.
     pub(super) fn new(binding: &Binding, course: Course, busy: bool) -> Self {
         let mut host = binding.host.clone();
         if let Host::Core(core) = &mut host {
@@ -113,7 +113,7 @@ impl Stream {
         }
     }
 
-    /// Clocks the model.
+    /// Advances the model by one clock, with the next inputs of the stream.
     #[inline]
     pub(super) fn clock(&mut self, binding: &Binding) -> Result<()> {
         let (deaf, taken) = match &self.host {

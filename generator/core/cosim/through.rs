@@ -1,4 +1,4 @@
-//! Points through a pipeline in the built-in simulator, as a recording.
+//! Sends points through a pipeline in the built-in simulator, and records what its nets carry.
 
 use anyhow::{Result, bail};
 
@@ -6,8 +6,9 @@ use super::instances::Instances;
 use glint_golden::Contract;
 use glint_rtl::netlist::{Design, NetId, Role};
 
-/// Records what `nets` carry in each clock, just before its rising edge: the points are offered one a clock, but for a bubble
-/// before the last; the first result waits for `pause` clocks, where it can. The recording ends with the last result.
+/// Simulates points in a pipeline, and returns what `nets` carry in each clock, just before its rising edge: the points
+/// are offered one a clock, but for a bubble before the last; the first result waits for `pause` clocks, where it can.
+/// The recording ends with the last result.
 ///
 /// # Errors
 /// A design that cannot be simulated, or shows no result within `limit` clocks.

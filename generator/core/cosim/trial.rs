@@ -1,4 +1,4 @@
-//! One computation of a design in the built-in simulator: its timing, a worked example, a recording, and a
+//! Runs one computation of a design in the built-in simulator: for its timing, a worked example, a recording, and a
 //! list of computations for whoever checks the device without a model.
 
 use anyhow::{Context, Result, ensure};
@@ -96,8 +96,8 @@ fn corners(contract: &dyn Contract, ends: fn(&Operand) -> (i128, i128)) -> [Vec<
     [corner(|low, _| low), corner(|_, high| high), corner(i128::midpoint)]
 }
 
-/// Computations with all that they show, over the domain: its corners, and points at random. The golden
-/// model computes the same results.
+/// Returns computations with all that they show, over the domain: its corners, and points at random. The golden model
+/// computes the same results.
 ///
 /// # Errors
 /// As of [`timing`]; golden model and simulation do not agree.
@@ -138,7 +138,7 @@ fn computation(
     })
 }
 
-/// `red=#255 green=#0`: raw values with their names.
+/// Lists raw values with their names, as `red=#255 green=#0`.
 fn listed<'a>(names: impl Iterator<Item = &'a str>, raw: &[i64]) -> String {
     let each: Vec<String> = names.zip(raw).map(|(name, raw)| format!("{name}=#{raw}")).collect();
     each.join(" ")
@@ -218,8 +218,8 @@ pub fn example(design: &Design, contract: &dyn Contract) -> Result<WorkedExample
     })
 }
 
-/// Typical operands around those that are given: of the fractions among those of control the first that can (a cosine, an
-/// angle) is lowered until f is well inside 0 … 1.
+/// Returns typical operands around those that are given: of the fractions among those of control the first that can (a
+/// cosine, an angle) is lowered until f is well inside 0 … 1.
 pub fn typical(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<i64> {
     let given = |at: usize| given.get(at).copied().flatten();
     let mut colour = 0;
@@ -306,8 +306,8 @@ fn hinted(contract: &dyn Contract) -> Option<Vec<i64>> {
     (0..TRIES).map_while(|_| points.hint(&mut random)).find(inside)
 }
 
-/// Records what nets carry in each clock of the computation of [`example`], from clock 0, in which `start` is high, to the
-/// first in which the device is idle again: the bit patterns just before the clock's rising edge, in the order of
+/// Returns what nets carry in each clock of the computation of [`example`], from clock 0, in which `start` is high, to
+/// the first in which the device is idle again: the bit patterns just before the clock's rising edge, in the order of
 /// `nets`, all of which are named.
 ///
 /// # Errors
@@ -322,8 +322,8 @@ pub fn record(design: &Design, contract: &dyn Contract, nets: &[NetId]) -> Resul
     Ok(clocks)
 }
 
-/// Records nets in each clock while three points go through a pipeline, the first of them that of [`example`]: one clock
-/// has no point, and the first result waits, where it can, for two.
+/// Returns what nets carry in each clock while three points go through a pipeline, the first of them that of
+/// [`example`]: one clock has no point, and the first result waits, where it can, for two.
 ///
 /// # Errors
 /// As of [`timing`].
@@ -341,7 +341,7 @@ pub fn record_points(
 /// Sees the simulator in each clock, before its rising edge.
 type Watch<'a> = &'a mut dyn FnMut(&mut Simulator) -> Result<()>;
 
-/// Resets, writes the operands, starts, and waits for the end: of a pipeline, for the results.
+/// Runs one computation: resets, writes the operands, starts, and waits for the end; of a pipeline, for the results.
 fn run(
     design: &Design,
     contract: &dyn Contract,

@@ -1,4 +1,5 @@
-//! The files of a configuration while they are made. The kind of a file says where it goes, and in which order it is listed.
+//! Collects the files of a configuration while they are made. The kind of a file says where it goes, and in which order
+//! it is listed.
 
 use super::bus::Bus;
 use super::map::Map;

@@ -1,4 +1,4 @@
-//! The self-checking test bench and its vectors.
+//! Generates the self-checking test bench of a core and its vectors: stimulus, and the outputs that are expected.
 
 use anyhow::{Result, ensure};
 use glint_base::fill;

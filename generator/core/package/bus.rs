@@ -1,4 +1,4 @@
-//! The buses on which registers can be, as data.
+//! Describes the buses on which registers can be, as data: keys, ports, and the Verilog of each.
 
 use anyhow::Result;
 use glint_base::fill;

@@ -1,4 +1,4 @@
-//! The bench in Python, for cocotb, and the driver that those of all configurations share.
+//! Generates the test bench in Python, for cocotb, and the driver that the benches of all configurations share.
 
 use anyhow::Result;
 use glint_base::fill;

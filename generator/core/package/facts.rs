@@ -1,4 +1,4 @@
-//! The facts of a device: ports, fields, microprogram, ROMs.
+//! Lists the facts of a device: ports, fields of the control word, microprogram, ROMs.
 //!
 //! The manifest writes them as JSON, the page as tables.
 

@@ -1,4 +1,4 @@
-//! Properties of the emitted Verilog itself, proved by k-induction.
+//! Generates the properties of the emitted Verilog of a core with a microprogram, which are proved by k-induction.
 //!
 //! Both units carry the invariants that a proof stands on, in a section for formal tools alone. A wrapper
 //! states what the manifest promises of the handshake, and a Yosys script makes the problem for

@@ -1,4 +1,4 @@
-//! Properties of the emitted Verilog of a pipeline, proved by k-induction.
+//! Generates the properties of the emitted Verilog of a pipeline, which are proved by k-induction.
 //!
 //! A wrapper holds a queue beside the pipeline, and states that its stages have points exactly where the
 //! queue has them. With a side channel it follows any one point, and states that its side value stays

@@ -1,5 +1,5 @@
-//! FuseSoC cores (CAPI2): the device, and the bench in a core of its own, because a core may only
-//! list files beside it.
+//! Generates FuseSoC cores (CAPI2): the device, and the bench in a core of its own, because a core may only list files
+//! beside it.
 
 use anyhow::Result;
 use glint_base::fill;

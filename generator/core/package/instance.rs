@@ -1,10 +1,10 @@
-//! How a device is used from Verilog: wires for its ports, and an instance.
+//! Writes how a device is used from Verilog: wires for its ports, and an instance.
 
 use glint_rtl::netlist::Design;
 use glint_rtl::verilog::naming::remark;
 use glint_rtl::verilog::rows::{Row, separated};
 
-/// Declarations of what the ports are connected to, and an instance; the clock is there already.
+/// Writes declarations of what the ports are connected to, and an instance; the clock is there already.
 pub fn instance(design: &Design) -> String {
     let wires: Vec<Row> = design
         .ports

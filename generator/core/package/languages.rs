@@ -1,4 +1,4 @@
-//! The files for designs in VHDL and SystemVerilog: `<name>.vhd`, and `<name>_pkg.sv`.
+//! Generates the files for designs in VHDL and SystemVerilog: `<name>.vhd`, and `<name>_pkg.sv`.
 
 use anyhow::Result;
 use glint_base::fill;
@@ -105,7 +105,7 @@ fn vhdl(job: &Job, tops: &[Top]) -> Result<String> {
     })
 }
 
-/// Declarations with semicolons between them.
+/// Puts semicolons between declarations.
 fn listed(mut declarations: Vec<String>) -> Vec<String> {
     let last = declarations.len().saturating_sub(1);
     declarations.iter_mut().take(last).for_each(|line| line.push(';'));

@@ -1,4 +1,4 @@
-//! `<name>.json`: the device for programs.
+//! Generates the manifest, `<name>.json`, which describes the device for programs.
 
 use anyhow::{Context, Result};
 use serde::Serialize;
@@ -65,7 +65,7 @@ struct Computations<'a> {
 pub struct Names(serde_json::Map<String, Value>);
 
 impl Names {
-    /// All files but the manifest itself.
+    /// Lists the names of all files but the manifest itself, by purpose.
     pub fn new(files: &Artifacts) -> Self {
         use Kind::{Bench, BenchCore, Core, Primitive, Proof, Python, Wrapper, WrapperProof};
         let lists: [(&str, &[Kind]); 10] = [
@@ -211,7 +211,7 @@ fn computations<'a>(
     }))
 }
 
-/// Names of ports in the order of the ports, each with its place among `names`.
+/// Returns names of ports in the order of the ports, each with its place among `names`.
 fn in_port_order<'a>(
     design: &Design,
     names: impl Iterator<Item = &'a String>,
@@ -264,7 +264,8 @@ fn control(design: &Design) -> Value {
     entry
 }
 
-/// Latency and interval are in clocks; a register bit counts in each stage that it ends, and a bit of a delay line in each that it passes.
+/// Returns the entry of a pipeline. Latency and interval are in clocks; a register bit counts in each stage that it
+/// ends, and a bit of a delay line in each that it passes.
 fn pipeline(pipeline: &Pipeline) -> Value {
     let stages = pipeline.stages.iter().map(|stage| {
         json!({

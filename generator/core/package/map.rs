@@ -1,4 +1,5 @@
-//! The registers of a core on a bus: what stands where, for the Verilog and for software.
+//! Gives the operands, results and status bits of a core their registers on a bus: what stands where, for the Verilog
+//! and for software.
 
 use std::collections::BTreeSet;
 
@@ -120,7 +121,7 @@ pub struct Map {
 }
 
 impl Map {
-    /// The map of a core.
+    /// Gives the operands, results and status bits of a core their registers.
     ///
     /// # Errors
     /// A core that is no single computation of operands to results, or names that collide in the map.
@@ -182,7 +183,7 @@ impl Map {
         (4 * self.last()).ilog2() + 1
     }
 
-    /// Software knows registers and their bits by name.
+    /// Checks that no two registers have the same name: software knows registers and their bits by name.
     fn check(&self, core: &str) -> Result<()> {
         let mut names = BTreeSet::new();
         for register in &self.registers {

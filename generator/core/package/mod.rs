@@ -1,5 +1,5 @@
-//! From a checked [`Design`] to files: Verilog, ROM contents, manifest, FuseSoC cores, benches,
-//! formal wrappers, bus wrappers and the model in C.
+//! Generates the files of a checked [`Design`]: Verilog, ROM contents, manifest, FuseSoC cores, benches, formal
+//! wrappers, bus wrappers and the model in C.
 //!
 //! Names and expressions become strings first (`hdl::verilog`), views collect them, and the templates in
 //! `templates/` print views and decide nothing. Emission is pure: it returns files

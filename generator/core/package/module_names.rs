@@ -1,4 +1,4 @@
-//! The modules that files define, and whether their names mean anything else in the text.
+//! Finds the modules that files define, and checks whether their names mean anything else in the text.
 //!
 //! Verilog keeps modules apart from what is inside them, but tools do not always: a bench that looks into
 //! instance `control` of a module `control` is not elaborated, and linters warn of a port named like its module.
@@ -84,7 +84,7 @@ fn is_identifier(text: &str) -> bool {
     text.starts_with(|first: char| first.is_ascii_alphabetic() || first == '_')
 }
 
-/// Identifiers and other characters, without comments, strings, directives and system tasks.
+/// Splits Verilog into identifiers and other characters, without comments, strings, directives and system tasks.
 fn tokens(text: &str) -> Vec<Token<'_>> {
     let mut found = Vec::new();
     for (line, text) in (1..).zip(text.lines()) {

@@ -1,4 +1,4 @@
-//! `<name>_multiplier.v`: a product with a register at its output, for all tools and for those of a target.
+//! Generates `<name>_multiplier.v`: a product with a register at its output, for all tools and for those of a target.
 //!
 //! The portable form stands among the Verilog of the core. A target's own stands in a directory of the target,
 //! under the same name, and takes the place of the portable one in its flow alone.

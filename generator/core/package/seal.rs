@@ -1,4 +1,5 @@
-//! Digests of files that are in no manifest, in their last line: that a file is as Glint wrote it.
+//! Writes and checks a digest in files that are in no manifest, in their last line or as a member of JSON: it shows
+//! that a file is as Glint wrote it.
 
 use anyhow::{Context, Result};
 use serde_json::Value;
@@ -34,7 +35,7 @@ fn last_line(above: &[u8], seal: Seal) -> String {
     }
 }
 
-/// JSON, an object, with a member that vouches for the others; it ends with a newline.
+/// Returns the text of a JSON object with a member that vouches for the others; it ends with a newline.
 ///
 /// # Errors
 /// The value is no object.

@@ -1,4 +1,4 @@
-//! The surroundings of a core that a configuration asks for.
+//! Reads from the keys of a configuration what stands around a core, and checks whether the core allows it.
 
 use super::Unfit;
 use super::bus::{BUSES, Bus};
@@ -15,7 +15,7 @@ const CLOCK: &str = "package.clock_mhz";
 /// The key that says where ROMs are to be.
 const ROM_STYLE: &str = "package.rom_style";
 
-/// That constraints do not ask more of a pipeline than it is made for.
+/// Checks that constraints do not ask more of a pipeline than it is made for.
 ///
 /// # Errors
 /// A clock of constraints above that of the stages.
@@ -40,7 +40,7 @@ pub fn check_clock(config: &Config, pipeline: &Pipeline) -> Result<(), Unfit> {
     ))
 }
 
-/// That a style is asked for of ROMs that there are.
+/// Checks that a style is asked for only where there are ROMs that can have it.
 ///
 /// # Errors
 /// A style, and no ROM that is read on the clock.

@@ -1,4 +1,4 @@
-//! The modules that a system can instantiate: the core, and what stands around it.
+//! Lists the modules that a system can instantiate, with their ports: the core, and the wrappers around it.
 
 use anyhow::Result;
 
@@ -167,7 +167,7 @@ fn stream_ports(job: &Job) -> Result<Vec<TopPort>> {
     )))
 }
 
-/// Ports as text: directions and names, the widths of vectors, and signals of LiteX.
+/// Parses ports from text: directions and names, the widths of vectors, and signals of LiteX.
 fn listed(ports: &str) -> Vec<TopPort> {
     let port = |port: &str| {
         let mut words = port.split(' ');

@@ -1,4 +1,4 @@
-//! Keys that ask for what a core cannot have.
+//! The error of a key that asks for what a core cannot have.
 
 use std::fmt;
 
@@ -14,7 +14,7 @@ pub struct Unfit {
 }
 
 impl Unfit {
-    /// A key, what is wrong with it, and what to do about it.
+    /// Takes a key, what is wrong with it, and what to do about it.
     pub fn new(key: &'static str, message: impl Into<String>, remedy: impl Into<String>) -> Self {
         Self { key, message: message.into(), remedy: remedy.into() }
     }

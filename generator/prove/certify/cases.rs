@@ -1,4 +1,5 @@
-//! The ways that a computation can go, and the raw values that everything has on each.
+//! Splits a computation into the ways that it can go, and finds the intervals of raw values that its nodes have on
+//! each.
 
 use std::collections::BTreeMap;
 

@@ -89,7 +89,8 @@ pub fn word_variable(rom: &str, variable: &str) -> String {
     format!("{rom}_at_{variable}")
 }
 
-/// How often each operand is divided by a power of two where it occurs: that power, if it is so everywhere.
+/// Notes by which power of two each operand is divided where it occurs: the exponent, if it is the same everywhere, or
+/// 0.
 pub fn divisors(formula: &Formula, found: &mut HashMap<String, Option<i32>>) {
     let mut note = |name: &str, power: i32| {
         let all = found.entry(name.to_owned()).or_insert(Some(power));
@@ -294,7 +295,7 @@ fn decided(comparison: &Comparison, setting: &Setting) -> Option<bool> {
     None
 }
 
-/// By squaring, as the hardware has it.
+/// Writes a power as products, by squaring, as the hardware has it.
 fn power(terms: &mut Terms, base: Id, exponent: u32) -> Id {
     let mut result = None;
     let (mut square, mut rest) = (base, exponent);

@@ -1,4 +1,4 @@
-//! A bound where a contract states none: the least that Gappa finds for each statement, and of these the largest.
+//! Finds a bound where a contract states none: the least that Gappa finds for each statement, and of these the largest.
 
 use std::fs;
 use std::time::Duration;
@@ -29,7 +29,7 @@ pub fn goal(difference: &str, bound: Option<f64>) -> String {
 }
 
 impl Statement {
-    /// The statement with a bound in place of the question for one.
+    /// Puts a bound into the statement's scripts in place of the question for one.
     #[must_use]
     pub fn within(&self, bound: f64) -> Self {
         let stated = format!("| <= {} }}", super::terms::number(bound));

@@ -44,7 +44,7 @@ pub struct Hardware<'a> {
 }
 
 impl<'a> Hardware<'a> {
-    /// Nothing translated yet. `variables` are the operands.
+    /// Prepares the translation of one way. `variables` are the operands.
     pub fn new(view: View<'a>, case: &'a Case, variables: Variables, tables: &'a [String]) -> Self {
         let View { graph, quotients, .. } = view;
         let (facts, known) = (BTreeMap::new(), HashMap::new());
@@ -119,7 +119,7 @@ impl<'a> Hardware<'a> {
         (scale == other).then_some((id, range))
     }
 
-    /// Dividend and divisor, with the points at one place.
+    /// Returns dividend and divisor as terms, with the points at one place.
     pub fn fraction(&mut self, terms: &mut Terms, of: Quotient) -> Result<(Id, Id), String> {
         let (dividend, divisor) = (self.value(terms, of.dividend)?, self.value(terms, of.divisor)?);
         let scale = [dividend, divisor].into_iter().filter_map(|value| match value {

@@ -204,7 +204,7 @@ impl Task<'_> {
         &self.unrolled.graph
     }
 
-    /// As [`cases::learn`], of what is known before any way is followed.
+    /// Notes what [`cases::learn`] notes, with what is known before any way is followed.
     fn learn(&self, known: &mut Known, node: NodeId, range: (i128, i128)) -> bool {
         let ranges: Vec<_> = self.graph().nodes.iter().map(|node| node.range).collect();
         cases::learn(self.graph(), known, &ranges, node, range)
@@ -300,8 +300,8 @@ impl Task<'_> {
         tables
     }
 
-    /// Variable and divisor of each operand: where the formula divides it by a power of two throughout, the variable
-    /// is the quotient.
+    /// Returns variable and divisor of each operand: where the formula divides it by a power of two throughout, the
+    /// variable is the quotient.
     fn variables(&self) -> HashMap<String, (String, i32)> {
         let mut divisors = HashMap::new();
         self.formulas.iter().for_each(|formula| exact::divisors(formula, &mut divisors));
@@ -316,7 +316,7 @@ impl Task<'_> {
         operands.collect()
     }
 
-    /// The statements of one case.
+    /// Adds the statements of one case.
     fn state(&self, case: &Case, statements: &mut Statements) -> Result<(), String> {
         let variables = self.variables();
         let mut ranges = HashMap::new();

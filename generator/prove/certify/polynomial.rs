@@ -1,4 +1,4 @@
-//! Polynomials of the second degree in one operand: the values that they take, which intervals overestimate.
+//! Finds the values that polynomials of the second degree in one operand take, which intervals overestimate.
 
 use glint_base::interval::Interval;
 use glint_rtl::pipeline::NodeId;
@@ -16,17 +16,17 @@ pub struct Polynomial {
 const MOST: i128 = 1 << 80;
 
 impl Polynomial {
-    /// A constant.
+    /// Makes a constant polynomial.
     pub fn constant(value: i128) -> Self {
         Self { of: None, factors: [value, 0, 0] }
     }
 
-    /// x.
+    /// Makes the polynomial x, where x is the value of a node.
     pub fn operand(id: NodeId) -> Self {
         Self { of: Some(id), factors: [0, 1, 0] }
     }
 
-    /// Both together, if they are of one operand.
+    /// Makes the polynomial with these factors, if both are of one operand and no factor is too large.
     fn with(self, other: Self, factors: [i128; 3]) -> Option<Self> {
         let of = match (self.of, other.of) {
             (Some(a), Some(b)) if a != b => return None,

@@ -56,7 +56,8 @@ struct Task<'a> {
 }
 
 impl Task<'_> {
-    /// That a node has these values alone, by completing the square. Nothing where it is no square.
+    /// Writes the statement that a node has these values alone, by completing the square. Returns nothing where it is
+    /// no square.
     fn parabola(
         &mut self,
         node: NodeId,
@@ -82,7 +83,7 @@ impl Task<'_> {
         Ok(Some(self.script(id, &goal, &[hint])))
     }
 
-    /// That the divisor is positive, and the dividend neither negative nor above it.
+    /// Writes the statement that the divisor is positive, and the dividend neither negative nor above it.
     fn dividend(&mut self, quotient: Quotient) -> Result<String, String> {
         let (dividend, divisor) = self.hardware.fraction(&mut self.terms, quotient)?;
         let rest = self.terms.insert(Term::Sub(divisor, dividend), "rest");
@@ -119,8 +120,8 @@ impl Task<'_> {
     }
 }
 
-/// That a step of a divider leaves a remainder between 0 and the divisor, whether the divisor fits into twice the remainder or
-/// not. The numbers are the shares of the divisor, which is 1.
+/// Writes the statement that a step of a divider leaves a remainder between 0 and the divisor, whether the divisor fits
+/// into twice the remainder or not. The numbers are the shares of the divisor, which is 1.
 fn step(fits: bool) -> String {
     let (condition, left) =
         if fits { ("doubled - 1 >= 0", "doubled - 1") } else { ("doubled - 1 <= 0", "doubled") };

@@ -1,4 +1,4 @@
-//! Gappa proves a statement, and Coq's kernel checks its proof.
+//! Has Gappa prove a statement, and Coq's kernel check its proof.
 
 use std::fs;
 use std::time::Duration;

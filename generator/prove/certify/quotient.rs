@@ -1,4 +1,4 @@
-//! Dividers that take a bit of the quotient a clock, found in the unrolled computation.
+//! Finds dividers that take a bit of the quotient a clock in the unrolled computation.
 //!
 //! A step doubles the remainder r and takes the divisor d away where it fits: r' = 2·r − b·d with b = (2·r ≥ d). If
 //! 0 ≤ r ≤ d and d > 0, the same holds of r'. After k steps from r₀ the bits are the number q = Σ bᵢ·2^(k−i), and the last
@@ -54,7 +54,7 @@ fn quotient(graph: &Graph, id: NodeId) -> Option<Quotient> {
     follows.then_some(Quotient { dividend, divisor, bits: steps.len() as u32 })
 }
 
-/// The nodes of which a node is joined, the top one first.
+/// Collects the nodes of which a node is joined, the top one first.
 fn joined(graph: &Graph, id: NodeId, parts: &mut Vec<NodeId>) {
     match &graph.node(id).cell {
         Cell::Op(Op::Concat(inner)) => inner.iter().for_each(|&part| joined(graph, part, parts)),

@@ -1,4 +1,4 @@
-//! The text of a statement: definitions, what is presupposed, the goal, and hints.
+//! Writes the text of a statement for Gappa: definitions, what is presupposed, the goal, and hints.
 
 use std::collections::{BTreeMap, HashMap};
 use std::fmt::Write as _;
@@ -31,7 +31,8 @@ pub struct Script<'a> {
 }
 
 impl Script<'_> {
-    /// That the output `out` is within the bound of the formula `f` times a factor, or how far from it.
+    /// Writes the statement that the output `out` is within the bound of the formula `f` times a factor, or asks how
+    /// far from it.
     pub fn text(&self, out: Id, factor: Id, f: Id, bound: Option<f64>) -> String {
         let mut terms = self.terms.clone();
         let exact = exact::folded(&mut terms, Term::Mul(f, factor));
@@ -204,7 +205,7 @@ fn blend(terms: &Terms, id: Id) -> Option<String> {
     is_rest(rest).then(|| format!("{name} -> 1 - {rest_name} * (1 - {x});"))
 }
 
-/// That one term is factor times another and an offset.
+/// Writes the hint that one term is factor times another and an offset.
 fn rewriting(terms: &Terms, left: Id, right: Id, (factor, offset): (f64, f64)) -> String {
     let right = terms.name(right);
     // Gappa sees through a plain difference, and not through a product by -1.
@@ -224,7 +225,7 @@ fn is_same(x: &[f64], y: &[f64]) -> bool {
     x.iter().zip(y).all(|(x, y)| (x - y).abs() <= largest * exp2(-44))
 }
 
-/// Factor and offset, both short numbers, with which the second is the first's line.
+/// Finds factor and offset, both short numbers, of the line on which the values of `y` follow those of `x`.
 fn line_through(x: &[f64], y: &[f64]) -> Option<(f64, f64)> {
     let other = x.iter().position(|value| *value != x[0])?;
     let factor = (y[other] - y[0]) / (x[other] - x[0]);

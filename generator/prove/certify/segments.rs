@@ -1,4 +1,5 @@
-//! A table of powers of a cosine, word by word: devices that show its words times a colour, point by point along a line.
+//! Writes the statements of devices that show the words of a table of powers of a cosine times a colour, point by point
+//! along a line.
 //!
 //! A word stands for all angles of a segment. Two kinds of statements are the contract:
 //!
@@ -228,7 +229,7 @@ fn enclosed(angle: &Formula, (low, high): (f64, f64)) -> Option<Enclosure> {
     angle.enclose(&[(POINT, Enclosure::between(low, high))]).ok()
 }
 
-/// That words are within `bound` of the formula at both ends of their segments.
+/// Writes the statement that words are within `bound` of the formula at both ends of their segments.
 fn about_words(words: &[Word], first: usize, power: u32, bound: f64) -> String {
     let degree = 2 * TERMS + 2;
     let mut text = format!(
@@ -264,7 +265,7 @@ fn about_words(words: &[Word], first: usize, power: u32, bound: f64) -> String {
     text
 }
 
-/// Definitions of a power of the cosine of an angle, in right angles.
+/// Writes the definitions of a power of the cosine of an angle, in right angles.
 fn cosine(name: &str, angle: f64, power: u32) -> String {
     let angle = number(angle);
     let mut text = format!("y_{name} = right * {angle};\nsquare_{name} = y_{name} * y_{name};\n");
@@ -279,7 +280,7 @@ fn cosine(name: &str, angle: f64, power: u32) -> String {
     text
 }
 
-/// That an output is within the bound of a colour times whatever the word is near to.
+/// Writes the statement that an output is within the bound of a colour times whatever the word is near to.
 fn about_output(
     task: &Task,
     (out, table): (NodeId, NodeId),

@@ -1,4 +1,4 @@
-//! Real expressions, of a formula and of what the hardware computes, as Gappa takes them.
+//! Keeps the real expressions of a formula and of what the hardware computes, and writes them as Gappa takes them.
 
 use std::collections::HashMap;
 use std::fmt::Write as _;
@@ -200,7 +200,7 @@ impl Terms {
         self.insert(make(a, b), "unrounded")
     }
 
-    /// Definitions of the terms that are needed, in order.
+    /// Writes the definitions of the terms that are needed, in order.
     pub fn definitions(&self, needed: &[bool]) -> String {
         let mut text = String::new();
         for (id, (term, name)) in self.terms.iter().enumerate() {

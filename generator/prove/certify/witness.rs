@@ -1,4 +1,4 @@
-//! A point that satisfies the hypotheses of a script, which shows that its statement speaks of something.
+//! Finds a point that satisfies the hypotheses of a script, which shows that its statement speaks of something.
 //!
 //! The script's own text is read: definitions, places of the point (`@FIX`), intervals and signs. A point is found by descent on how far
 //! the hypotheses are from holding, and counts when all of them hold in f64.

@@ -1,4 +1,4 @@
-//! A design clock by clock on terms.
+//! Executes a design clock by clock on terms: operands are unknowns, and every net is an expression of them.
 
 use super::term::{ADDRESS, Id, Term, Terms};
 use glint_base::fixed::MAX_WIDTH;
@@ -20,7 +20,7 @@ pub struct State {
 }
 
 impl State {
-    /// With a condition, one bit, at a value.
+    /// Puts a condition, one bit, at a value in what is held.
     pub fn assume(&mut self, terms: &mut Terms, condition: Id, value: bool) {
         let mut all: Vec<Id> = self.registers.iter().chain(&self.words).copied().collect();
         terms.assuming(condition, value, &mut all);
@@ -48,7 +48,7 @@ impl<'a> Execution<'a> {
         }
     }
 
-    /// Nothing is known.
+    /// Makes the state at power-up, of which nothing is known.
     pub fn power_up(&self, terms: &mut Terms) -> State {
         let design = self.design;
         let registers = design.registers.iter().map(|it| terms.unknown(design.width(it.q)));

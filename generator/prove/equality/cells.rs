@@ -1,4 +1,4 @@
-//! The cells of a module that Yosys has read from Verilog, on terms.
+//! Evaluates the cells of a module that Yosys has read from Verilog, on terms.
 //!
 //! They mean what Yosys documents of them.
 
@@ -21,12 +21,12 @@ pub type Bits = Vec<Bit>;
 pub struct Values(Vec<Option<(Id, u32)>>);
 
 impl Values {
-    /// The values of so many wires, none of which has a value yet.
+    /// Makes the values of so many wires, none of which has a value yet.
     pub fn new(wires: usize) -> Self {
         Self(vec![None; wires])
     }
 
-    /// Some wires carry the bits of terms, the lowest first.
+    /// Has some wires carry the bits of terms, the lowest first.
     pub fn set(&mut self, bits: &Bits, columns: &[Id]) {
         for (at, bit) in bits.iter().enumerate() {
             if let Bit::Wire(wire) = *bit {
@@ -99,7 +99,7 @@ impl Values {
         terms.choice(inside, word, beyond)
     }
 
-    /// The result of a cell with the inputs A, B and S, of so many bits.
+    /// Returns the result of a cell with the inputs A, B and S, of so many bits.
     ///
     /// # Errors
     /// It is not known here, or wider than terms are.

@@ -1,4 +1,4 @@
-//! Instances of laws about products and words of memories, which the solver takes for unknown functions.
+//! Makes instances of laws about products and words of memories, both of which the solver takes for unknown functions.
 //!
 //! The laws are those of integers, of products modulo 2^64: bits of a factor can be multiplied on their own; a product by 0, 1
 //! and -1 is known; of factors within bounds the product is within bounds. No instance depends on where it is taken from:
@@ -17,8 +17,8 @@ const ROWS: u32 = 8;
 /// A memory of so few words is written out.
 const WORDS: usize = 16;
 
-/// Facts about the terms of a cone, one bit each, which is 1. With `parts`, they say of products what they are in parts, and
-/// add products.
+/// Returns facts about the terms of a cone, one bit each, which is 1. With `parts`, they say of products what they are
+/// in parts, and add products.
 pub fn about(terms: &mut Terms, roots: &[Id], products: &[Product], parts: bool) -> Vec<Id> {
     let mut facts = Vec::new();
     let mut seen = HashSet::new();
@@ -68,7 +68,7 @@ fn by_one_or_none(terms: &mut Terms, product: Id, factor: Id, other: Id) -> [Id;
     })
 }
 
-/// Products that a cone has in parts, each with the sum that it is.
+/// Finds the products that a cone has in parts, each with the sum that it is.
 pub fn divided(terms: &mut Terms, roots: impl IntoIterator<Item = Id>) -> HashMap<Id, Id> {
     let is_product = |terms: &Terms, id: Id| matches!(terms.term(id), Term::Product(..));
     let mut pending = terms.cone(roots);
@@ -104,8 +104,8 @@ struct Parts {
     there: bool,
 }
 
-/// When a factor is the upper bits of something: the whole times the other is this product, shifted, and that of the
-/// lower bits.
+/// Divides a product where a factor is the upper bits of something: the whole times the other is this product, shifted,
+/// and that of the lower bits.
 fn in_parts(terms: &mut Terms, factor: Id, other: Id) -> Option<Parts> {
     let (bits, signed) = extended(terms, factor)?;
     let (whole, low) = whole(terms, bits)?;
@@ -203,7 +203,7 @@ fn rows(terms: &mut Terms, bits: Id, other: Id) -> Id {
     })
 }
 
-/// With zeros below, of 64 bits.
+/// Shifts a term up by so many bits, with zeros below; the result has 64 bits.
 pub fn shifted(terms: &mut Terms, id: Id, by: u32) -> Id {
     if by == 0 {
         return id;
@@ -212,7 +212,7 @@ pub fn shifted(terms: &mut Terms, id: Id, by: u32) -> Id {
     terms.make(Term::Join(kept, zeros), MAX_WIDTH)
 }
 
-/// If the factors are within their ranges, the product is between those of the ends.
+/// Returns the fact that the product is between those of the ends, if the factors are within their ranges.
 fn within(terms: &mut Terms, product: &Product) -> Option<Id> {
     let [a, b] = product.factors;
     let [x, y] = product.ranges;

@@ -1,4 +1,4 @@
-//! Products of the core that the pipeline has of the lowest bits of their factors alone.
+//! Finds products of the core that the pipeline has of the lowest bits of their factors alone.
 //!
 //! A pipeline leaves the highest bit of a factor to itself: where it is a sign, or set where all other bits are 0. The lowest bits
 //! may be a value that the core has in other terms, which the solver is asked about.

@@ -1,4 +1,4 @@
-//! A pipeline computes what its sequential core computes, for every point: by an SMT solver.
+//! Proves with an SMT solver that a pipeline computes what its sequential core computes, for every point.
 //!
 //! Both netlists are carried out clock by clock on terms of bit-vectors, by the same few rules and without
 //! what made the pipeline of the core (`hdl/pipeline`): the core from the clock that takes `start`, its microprogram running
@@ -299,7 +299,7 @@ impl<'p> Comparison<'p> {
         execution.settle(&mut self.terms, state, input, &mut self.products)
     }
 
-    /// After the clock that takes `start`, with all operands.
+    /// Returns the core's branch after the clock that takes `start`, with all operands.
     fn start(&mut self, core: &Execution<'_>) -> Branch {
         let mut state = core.power_up(&mut self.terms);
         for point in [false, true] {
@@ -361,7 +361,7 @@ impl<'p> Comparison<'p> {
         bail!("the sequential core shows no result")
     }
 
-    /// Both ways from where a register of the sequencer depends on operands, as far as they can be gone.
+    /// Adds both ways from where a register of the sequencer depends on operands, as far as they can be gone.
     fn fork(&mut self, way: Branch, undecided: Id, ways: &mut Vec<Branch>) -> Result<Answer> {
         let condition = match *self.terms.term(undecided) {
             Term::Choice(condition, ..) => condition,
@@ -383,7 +383,7 @@ impl<'p> Comparison<'p> {
         Ok(Answer::Equal)
     }
 
-    /// Terms that are 1 where the conditions hold.
+    /// Returns terms that are 1 where the conditions hold.
     fn holding(&mut self, conditions: &[(Id, bool)]) -> Vec<Id> {
         let terms = &mut self.terms;
         conditions.iter().map(|&(it, value)| if value { it } else { terms.not(it) }).collect()

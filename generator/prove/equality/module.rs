@@ -1,4 +1,4 @@
-//! A flat module, as Yosys reads it from Verilog, clock by clock on terms.
+//! Executes a flat module, as Yosys reads it from Verilog, clock by clock on terms.
 //!
 //! A bit that is not determined is any bit, a new one wherever it is read; a word beyond the contents of a memory is any word.
 
@@ -254,7 +254,7 @@ impl Module {
         Ok(())
     }
 
-    /// Nothing is known.
+    /// Makes what registers hold at power-up, of which nothing is known.
     pub fn power_up(&self, terms: &mut Terms) -> Held {
         self.registers.iter().map(|it| unknown(terms, it.output.len())).collect()
     }
@@ -308,7 +308,7 @@ impl Module {
 }
 
 impl Memory {
-    /// Any word.
+    /// Returns any word: a new unknown.
     pub fn any(&self, terms: &mut Terms) -> Vec<Id> {
         unknown(terms, self.width)
     }
@@ -318,7 +318,7 @@ impl Memory {
         values.columns(terms, &self.write.data)
     }
 
-    /// Address and enable of the write port, and the address of each read port.
+    /// Returns the addresses of the write port and of each read port, and the enable of the write port.
     pub fn control(&self, terms: &mut Terms, values: &Values) -> Vec<Id> {
         let write = values.columns(terms, &self.write.enable);
         let addresses = [&self.write.address].into_iter().chain(&self.addresses);

@@ -1,4 +1,4 @@
-//! Questions about terms for an SMT solver.
+//! Asks an SMT solver whether terms can be 1 together, and reads its answer.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -33,6 +33,8 @@ pub struct Solver<'a> {
 }
 
 impl<'a> Solver<'a> {
+    /// Gives the solver a directory of its own, and `limit` for all its answers together.
+    ///
     /// # Errors
     /// No temporary directory can be made.
     pub fn new(tool: &'a Tool, limit: Duration) -> Result<Self> {

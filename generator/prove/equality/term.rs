@@ -1,4 +1,4 @@
-//! Bit-vectors as terms: what nets carry when operands are not known.
+//! Makes and simplifies terms of bit-vectors: what nets carry when operands are not known.
 //!
 //! A term is made once: equal ones are the same. Constants fold, which is what makes a microprogram run, and wiring is
 //! brought into one form, so that many values that are equal are the same term.
@@ -179,7 +179,7 @@ impl Terms {
         word
     }
 
-    /// With zeros above it, or cut: of this width.
+    /// Extends a term with zeros above it, or cuts it: to this width.
     pub fn resized(&mut self, id: Id, width: u32) -> Id {
         let own = self.width(id);
         if width <= own {
@@ -189,7 +189,7 @@ impl Terms {
         self.make(Term::Join(zeros, id), width)
     }
 
-    /// With copies of its sign bit above it.
+    /// Extends a term with copies of its sign bit above it.
     pub fn sign_extended(&mut self, id: Id, width: u32) -> Id {
         if self.width(id) == width { id } else { self.make(Term::SignExtend(id), width) }
     }
@@ -198,7 +198,7 @@ impl Terms {
         self.make(Term::Slice { of, low }, width)
     }
 
-    /// With other low bits.
+    /// Replaces the low bits of a term.
     pub fn with_low(&mut self, id: Id, low: Id) -> Id {
         let (width, at) = (self.width(id), self.width(low));
         if at == width {
@@ -225,13 +225,13 @@ impl Terms {
         self.known.contains_key(&(ordered(term.clone()), width))
     }
 
-    /// The terms with one of them, one bit, at a value.
+    /// Replaces a condition, one bit, by a value in all of the terms.
     pub fn assuming(&mut self, condition: Id, value: bool, terms: &mut [Id]) {
         let constant = self.constant(value.into(), 1);
         self.replace(&HashMap::from([(condition, constant)]), terms);
     }
 
-    /// The terms with others in the place of some that they contain. What comes in their place is not looked through.
+    /// Replaces some terms by others where these terms contain them. What comes in their place is not looked through.
     pub fn replace(&mut self, by: &HashMap<Id, Id>, terms: &mut [Id]) {
         let mut new: HashMap<Id, Id> = HashMap::new();
         for id in self.cone(terms.iter().copied()) {
@@ -500,7 +500,7 @@ impl Terms {
     }
 }
 
-/// Operands of what does not depend on their order in one order.
+/// Brings the operands of a term that does not depend on their order into one order.
 fn ordered(mut term: Term) -> Term {
     if let Term::And(a, b)
     | Term::Or(a, b)

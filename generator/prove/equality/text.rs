@@ -1,4 +1,4 @@
-//! The emitted Verilog of a pipeline shows what its netlist shows, for every point and from any state.
+//! Proves that the emitted Verilog of a pipeline shows what its netlist shows, for every point and from any state.
 //!
 //! Both are carried out on terms, the text as Yosys reads it, from registers and memories that hold anything. Nothing is asked
 //! of the text but its ports. A memory that is written is a delay: by going through all values of the counter that addresses
@@ -121,7 +121,7 @@ type Roles = HashMap<String, Role>;
 /// Registers with what they hold, and what the ports of each memory are given.
 type Constants = (HashMap<usize, u64>, Vec<Option<Vec<u64>>>);
 
-/// For each memory the clocks from write to read, of each of its read ports, while all points move on.
+/// Finds for each memory the clocks from write to read, of each of its read ports, while all points move on.
 fn delays(module: &Module, roles: &Roles) -> Result<Vec<Vec<usize>>> {
     let reset = constants(module, roles, 0, &HashMap::new())?.0;
     let mut delays = vec![None; module.memories.len()];
@@ -238,7 +238,8 @@ fn input(
 }
 
 impl Comparison<'_> {
-    /// A clock in which `in_ready` is low changes nothing, and one in which it is high is one in which `out_ready` is.
+    /// Shows that a clock in which `in_ready` is low changes nothing, and one in which it is high is one in which
+    /// `out_ready` is.
     fn stays(&mut self) -> Result<()> {
         let has = |role| self.roles.values().any(|it| *it == role);
         if !has(Role::OutReady) {
@@ -307,7 +308,7 @@ impl Comparison<'_> {
         Ok(())
     }
 
-    /// The outputs of netlist and text are the same when the results of a point are shown.
+    /// Shows that the outputs of netlist and text are the same when the results of a point are shown.
     fn follows_a_point(&mut self) -> Result<()> {
         let nets = self.netlist();
         let module = self.module;
@@ -457,7 +458,8 @@ impl Comparison<'_> {
         }
     }
 
-    /// Values of the unknowns for which terms are 1, in words: those that were found, or some at random.
+    /// Finds values of the unknowns for which terms are 1, and tells them in words: those that were found, or some at
+    /// random.
     fn difference(
         &self,
         wanted: &[Id],

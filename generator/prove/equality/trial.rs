@@ -1,4 +1,4 @@
-//! One point through both cores, as their netlists are evaluated.
+//! Evaluates the netlists of a pipeline and of its sequential core for one point.
 
 use anyhow::{Context, Result, bail};
 
@@ -20,6 +20,8 @@ pub struct Pair<'a> {
 }
 
 impl<'a> Pair<'a> {
+    /// Pairs the cores, by the operands and the outputs that they have in common.
+    ///
     /// # Errors
     /// The second is no pipeline, or one has a port that the other lacks.
     pub fn new(sequential: &'a Design, pipeline: &'a Design) -> Result<Self> {

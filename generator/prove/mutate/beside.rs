@@ -1,4 +1,4 @@
-//! A search for a point that shows a fault of a pipeline.
+//! Searches for a point that shows a fault of a pipeline.
 //!
 //! What a pipeline has and its core has not, such as the parts of a product, may show in a result only when a carry runs
 //! through all bits that are then dropped, and only with some values of the other operands: too seldom for points at random.
@@ -57,6 +57,8 @@ struct Stage {
 type Point = Vec<i64>;
 
 impl PointSearch {
+    /// Prepares the search: finds the ports of the operands, and the registers and checkpoints of each stage.
+    ///
     /// # Errors
     /// A pipeline that is not of this contract, or cannot be simulated.
     pub(super) fn new(
@@ -148,7 +150,7 @@ impl PointSearch {
         Ok(None)
     }
 
-    /// A new point, or one that is kept with another value of one operand.
+    /// Draws a new point, or one that is kept with another value of one operand.
     fn draw(&self, random: &mut Random, kept: &Kept, point: &mut Point) {
         let parent = kept.any(random).filter(|_| !random.once_in(4));
         point.clear();
@@ -182,7 +184,7 @@ fn value(random: &mut Random, operand: &Operand) -> i64 {
     }
 }
 
-/// A raw value with one bit inverted.
+/// Returns a raw value with one bit inverted.
 fn flipped(random: &mut Random, Operand { format, .. }: &Operand, raw: i64) -> i64 {
     format.raw(raw as u64 ^ 1 << random.below(format.width().into())) as i64
 }

@@ -74,7 +74,7 @@ impl<'a> Watch<'a> {
 }
 
 impl Coverage {
-    /// Records a run of `points` results.
+    /// Runs a test of `points` results, and records where it reads each word.
     ///
     /// # Errors
     /// A design that cannot be simulated.

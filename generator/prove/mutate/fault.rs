@@ -1,4 +1,4 @@
-//! The faults of a design, each with a name that stays the same.
+//! Lists the faults of a design, each with a name that stays the same.
 
 use std::collections::BTreeSet;
 
@@ -34,7 +34,7 @@ impl Bit {
     /// All that can be done to a bit.
     pub const ALL: [Self; 3] = [Self::Stuck0, Self::Stuck1, Self::Inverted];
 
-    /// `bits` with bit number `bit` at fault.
+    /// Returns `bits` with bit number `bit` at fault.
     pub fn applied(self, bits: u64, bit: u32) -> u64 {
         match self {
             Self::Stuck0 => bits & !(1 << bit),
@@ -75,7 +75,7 @@ pub struct Fault {
 pub struct Faults(Vec<Fault>);
 
 impl Faults {
-    /// All faults, but of large ROMs a sample that is always the same.
+    /// Lists all faults, but of large ROMs a sample that is always the same.
     pub fn of(design: &Design) -> Self {
         let mut faults = Self::default();
         // The environment's part, and what the fields of the control word name bit by bit.
@@ -111,7 +111,7 @@ impl Faults {
         });
     }
 
-    /// In an order that stays the same.
+    /// Returns the faults in an order that stays the same.
     pub fn iter(&self) -> impl Iterator<Item = &Fault> {
         self.0.iter()
     }
@@ -135,7 +135,8 @@ impl Faults {
         self.0.push(Fault { id, kind, site });
     }
 
-    /// Bits of everything but a constant, which is at fault as a whole, and another name of a net.
+    /// Adds the faults of the bits of a net; none of a constant, which is at fault as a whole, or of another name of a
+    /// net.
     fn bits(&mut self, id: NetId, net: &Net) {
         if matches!(net.driver, Driver::Constant(_) | Driver::Undriven | Driver::Op(Op::Relabel(_)))
         {

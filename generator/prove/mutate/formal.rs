@@ -1,4 +1,4 @@
-//! The text of a module and one with a fault, proved to behave alike by Yosys.
+//! Proves with Yosys that the text of a module and one with a fault behave alike.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -32,12 +32,12 @@ fn pattern(text: &str) -> Regex {
     Regex::new(text).expect("a pattern of ours")
 }
 
-/// Whether every port and register of the module `name` carries the same in both for all inputs: temporal induction
-/// from a state in which they agree, cells with the same inputs, multipliers and ROMs among them, taken together
-/// first. At first all other nets of the same name are shown to be equal too, which makes the proof short; those
-/// that are not are then left free. The files of either are in `directory`, the fault-free ones and those in which [`MUTANT`] is
-/// one; instances of a module in another file are taken as they are. A proof that fails or takes more than `limit` proves
-/// nothing.
+/// Returns whether Yosys proves that every port and register of the module `name` carries the same in both for all
+/// inputs: temporal induction from a state in which they agree, cells with the same inputs, multipliers and ROMs among
+/// them, taken together first. At first all other nets of the same name are shown to be equal too, which makes the
+/// proof short; those that are not are then left free. The files of either are in `directory`, the fault-free ones and
+/// those in which [`MUTANT`] is one; instances of a module in another file are taken as they are. A proof that fails or
+/// takes more than `limit` proves nothing.
 ///
 /// # Errors
 /// Yosys is missing; a file cannot be read or written.

@@ -1,4 +1,4 @@
-//! Operands that lead to a word of a table.
+//! Tests a mutant with operands held at values that lead to a word of a table.
 //!
 //! What one value in a million shows is not left to chance. Operands are held where the word at fault is read,
 //! and the others drawn; where an operand is the address, all values of the others that determine `f` are

@@ -1,4 +1,4 @@
-//! Kinds of faults.
+//! The kinds of faults, and what they are called in tables.
 
 use std::fmt;
 

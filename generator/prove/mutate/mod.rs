@@ -1,4 +1,4 @@
-//! Mutation: do the tests notice faults?
+//! Tests the tests by mutation: plants faults, and finds which of them the tests notice.
 //!
 //! Faults are planted one at a time, in the netlist ([`Faults`]) and in the emitted Verilog, and what a
 //! configuration is tested with is run on each mutant. A mutant is *caught*, or *equivalent*, which is

@@ -1,4 +1,4 @@
-//! Faults of a cell as a whole.
+//! Lists the faults of a cell as a whole: another operator, operands or inputs that change places, one input always.
 
 use super::kind::FaultKind;
 use glint_rtl::netlist::{Design, Driver, NetId, Op};
@@ -36,7 +36,7 @@ fn swapped(op: Op) -> (String, FaultKind, Op) {
     ("operands-swapped".to_owned(), FaultKind::Operands, op)
 }
 
-/// Inputs that are different nets change places; one input is taken always.
+/// Lists the faults of a mux: inputs that are different nets change places; one input is taken always.
 fn mux(design: &Design, select: NetId, inputs: &[NetId]) -> Vec<(String, FaultKind, Op)> {
     let mut faults = Vec::new();
     for b in 0..inputs.len() {

@@ -1,4 +1,4 @@
-//! Faults put into a design.
+//! Plants a fault in a design: makes the mutant.
 
 use std::borrow::Cow;
 
@@ -95,7 +95,7 @@ fn plant_bit(design: &mut Design, net: NetId, bit: u32, how: Bit) {
     }
 }
 
-/// All that reads `from` reads `to`, but the nets in `except`.
+/// Makes all that reads `from` read `to`, but the nets in `except`.
 fn redirect(design: &mut Design, from: NetId, to: NetId, except: &[NetId]) {
     let redirect = |net: &mut NetId| {
         if *net == from {
@@ -118,7 +118,7 @@ fn redirect(design: &mut Design, from: NetId, to: NetId, except: &[NetId]) {
     }
 }
 
-/// The register keeps what it has.
+/// Makes a register keep what it has.
 fn never(design: &mut Design, id: RegId) {
     let register = &mut design.registers[id.index()];
     register.data = Some(register.q);

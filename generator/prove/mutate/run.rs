@@ -1,4 +1,4 @@
-//! Every fault of a configuration through the checks that may notice it.
+//! Takes every fault of a configuration through the checks that may notice it, and gives the verdicts.
 
 use std::sync::OnceLock;
 
@@ -109,7 +109,7 @@ impl Bench<'_> {
         }
     }
 
-    /// Searches, for a pipeline, for a point that differs beside the pipeline without a fault.
+    /// Searches for a point of a pipeline that differs beside the pipeline without a fault.
     fn searched(&self, mutant: &Design) -> Result<Verdict> {
         let Some(beside) = &self.beside else {
             return Ok(Verdict::Undecided);
@@ -133,7 +133,7 @@ impl Bench<'_> {
         Ok(None)
     }
 
-    /// With operands held at the words at fault.
+    /// Runs a mutant with operands held at the words at fault.
     fn directed(&self, mutant: &Design, rom: RomId, words: &[(usize, u64)]) -> Result<Verdict> {
         let directed = |difference| Verdict::Caught(Detector::Directed, difference);
         let mut all_tried = true;
@@ -163,7 +163,7 @@ impl Bench<'_> {
         Ok(if all_tried { Verdict::Equivalent(How::Operands) } else { Verdict::Undecided })
     }
 
-    /// Control operands of computations that read a word: of the default test, or else of a longer one.
+    /// Returns the control operands of computations that read a word: of the default test, or else of a longer one.
     fn readings(&self, rom: RomId, word: usize) -> Result<Vec<Operands>> {
         let design = &self.sound;
         let mut readings: Vec<Operands> = self.tested.operands(design, rom, word).collect();
@@ -178,8 +178,8 @@ impl Bench<'_> {
         Ok(readings)
     }
 
-    /// Runs, for a pipeline, which has no registers that keep the operands of a reading, the streams of a longer test that
-    /// read a word, where the default test does not.
+    /// Runs the streams of a longer test that read a word, where the default test does not: for a pipeline alone, which
+    /// has no registers that keep the operands of a reading.
     fn beyond_shows(&self, mutant: &Design, rom: RomId, word: usize) -> Result<Option<Mismatch>> {
         if self.latency == 0 || !self.tested.places(rom, word).is_empty() {
             return Ok(None);
@@ -230,7 +230,7 @@ impl Bench<'_> {
     }
 }
 
-/// Noticed by the default test.
+/// Returns the verdict on a fault that the default test notices.
 fn caught(mismatch: Mismatch) -> Verdict {
     let held = Vec::new();
     Verdict::Caught(Detector::Cosim, Difference { held, mismatch })

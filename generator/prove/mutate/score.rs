@@ -1,4 +1,4 @@
-//! The score of a run, in numbers and names.
+//! Counts the verdicts of a run: its score, in numbers and names.
 
 use std::collections::BTreeMap;
 
@@ -29,7 +29,7 @@ pub struct Share {
 }
 
 impl Share {
-    /// As a number, 1 of nothing.
+    /// Returns the share as a number, 1 of nothing.
     pub fn value(self) -> f64 {
         if self.of == 0 { 1.0 } else { self.noticed as f64 / self.of as f64 }
     }

@@ -1,4 +1,4 @@
-//! The shipped bench as a check of its own: its vectors, and nothing but the outputs.
+//! Runs the shipped bench as a check of its own: its vectors, and nothing but the outputs.
 
 use anyhow::Result;
 
@@ -11,7 +11,7 @@ use glint_rtl::sim::Simulator;
 pub(super) struct Shipped(Vectors);
 
 impl Shipped {
-    /// That of a configuration.
+    /// Makes the vectors of a configuration's shipped bench.
     ///
     /// # Errors
     /// Golden model and simulation do not agree.

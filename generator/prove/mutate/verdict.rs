@@ -1,4 +1,4 @@
-//! Verdicts on faults.
+//! The verdicts on faults: caught, proved equivalent or undecided, and by which check.
 
 use std::fmt;
 

@@ -1,4 +1,4 @@
-//! Faults of the emitted Verilog: what an emitter could write wrongly.
+//! Plants faults in the emitted Verilog, which an emitter could make, and finds whether lint or a bench notices them.
 //!
 //! They are planted in the text of the modules, one at a time. Lint must notice, or a bench: the one that is shipped
 //! with the fault-free text, or a longer one, on whose vectors golden model and built-in simulator agree. What the
@@ -169,7 +169,7 @@ static OPERATORS: LazyLock<Vec<Operator>> = LazyLock::new(|| {
 });
 
 impl Text {
-    /// The fault-free text of a configuration, with its shipped bench.
+    /// Collects the fault-free text of a configuration, with its shipped bench.
     ///
     /// # Errors
     /// A tool is missing; golden model and simulation differ; the design cannot be written.
@@ -204,7 +204,7 @@ impl Text {
         Ok(text)
     }
 
-    /// The fault-free text of what stands around a core, with the shipped benches and proofs of it.
+    /// Collects the fault-free text of what stands around a core, with the shipped benches and proofs of it.
     ///
     /// # Errors
     /// Golden model and simulation differ; the design cannot be written.
@@ -379,7 +379,7 @@ impl Text {
     }
 }
 
-/// The faults of one line.
+/// Adds the faults of one line.
 fn in_line(
     name: &str,
     file: usize,

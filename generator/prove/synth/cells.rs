@@ -1,4 +1,4 @@
-//! Standard cells of 0.18 µm, before layout: Yosys with a liberty file, and OpenSTA for the delay.
+//! Measures a core in standard cells of 0.18 µm, before layout: Yosys with a liberty file, and OpenSTA for the delay.
 //!
 //! Nets of a large fan-out are buffered, and cells sized: without, the clock enable of a pipeline takes longer than everything that
 //! it enables. The library is that of Oklahoma State University, in the typical corner, as Debian's `qflow-tech-osu018` has it; a gate is

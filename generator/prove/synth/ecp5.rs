@@ -1,4 +1,4 @@
-//! ECP5: Yosys and nextpnr-ecp5, which times multipliers without registers and block RAMs.
+//! Measures a core on ECP5 with Yosys and nextpnr-ecp5, which times multipliers without registers and block RAMs.
 
 use anyhow::{Context, Result};
 use serde_json::Value;

@@ -1,4 +1,5 @@
-//! Registers around a core.
+//! Generates a module with registers around a core, so that the paths of its ports are measured too, and pins do not
+//! count.
 
 use anyhow::Result;
 use glint_base::fill;

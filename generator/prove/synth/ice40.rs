@@ -1,4 +1,4 @@
-//! iCE40 UltraPlus 5K: Yosys, nextpnr-ice40 and icetime.
+//! Measures a core on iCE40 UltraPlus 5K with Yosys, nextpnr-ice40 and icetime.
 //!
 //! nextpnr-ice40 takes every DSP block for a register and leaves its delay out. `icetime` knows the delay of a
 //! block that is a multiplier and nothing else, so that is what [`glint_tools::synthesis`] makes of products.

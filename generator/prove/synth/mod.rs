@@ -53,7 +53,8 @@ pub struct Subject<'a> {
 }
 
 impl Flow {
-    /// The tools for a target on the search path `search`, which is written as `PATH` is. `liberty` describes the cells.
+    /// Finds the tools for a target on the search path `search`, which is written as `PATH` is. `liberty` describes the
+    /// cells.
     ///
     /// # Errors
     /// One of them is missing; the message says how to get it.

@@ -1,4 +1,4 @@
-//! A mapped netlist in the names of the description.
+//! Reads a mapped netlist, and tells its nets and cells by their names in the description.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! Runs of place and route with several seeds.
+//! Runs place and route with several seeds.
 
 use anyhow::{Context, Result};
 use rayon::prelude::*;

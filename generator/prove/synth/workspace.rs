@@ -1,4 +1,4 @@
-//! The directory in which a core is synthesised.
+//! Prepares the directory in which a core is synthesised, and runs Yosys and nextpnr in it.
 
 use anyhow::{Context, Result};
 

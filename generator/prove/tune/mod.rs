@@ -161,7 +161,7 @@ fn pipelines(base: &Config, fixed: &[&str], goal: &Goal) -> Vec<Config> {
     (1..=longest).rev().map(of).collect()
 }
 
-/// As [`tune`], of one architecture.
+/// Does what [`tune`] does, for one architecture.
 fn of_architecture(
     device: &Device,
     base: &Config,

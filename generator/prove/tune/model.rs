@@ -48,7 +48,7 @@ fn family(target: Target) -> &'static Family {
 }
 
 impl Cost {
-    /// The estimate for a design.
+    /// Estimates the cost of a design.
     pub fn new(design: &Design, target: Target) -> Self {
         let family = family(target);
         let features = Features::new(design, target);
@@ -69,7 +69,8 @@ impl Cost {
         }
     }
 
-    /// Everything in look-up tables.
+    /// Returns the area in look-up tables: a block counts as many of them as a chip of the family has to each such
+    /// block.
     pub fn area(&self, target: Target) -> f64 {
         let [luts, dsps, blocks] = family(target).chips[0].has.map(|has| has as f64);
         let (dsp, block) = ((luts / dsps).round(), (luts / blocks).round());
@@ -131,8 +132,8 @@ fn products(design: &Design) -> impl Iterator<Item = (NetId, NetId)> {
     })
 }
 
-/// DSP blocks for a product, the better way round. As Yosys cuts operands: whole slices, and a rest, of which a single bit is a
-/// row of gates.
+/// Returns the DSP blocks for a product, the better way round. As Yosys cuts operands: whole slices, and a rest, of
+/// which a single bit is a row of gates.
 fn dsps(design: &Design, family: &Family, a: NetId, b: NetId) -> u64 {
     let [a, b] = [a, b].map(|net| {
         let sign = if design.net(net).format.signed { family.estimate.sign } else { 0 };
@@ -152,7 +153,7 @@ fn dsps(design: &Design, family: &Family, a: NetId, b: NetId) -> u64 {
     either(a, b).min(either(b, a))
 }
 
-/// Partial products of a product, the better way round.
+/// Returns the number of partial products of a product, the better way round.
 fn blocks(family: &Family, a: u32, b: u32) -> u64 {
     let (wide, narrow) = family.timing.multiplier;
     let slices = |operand: u32, block: u32| {

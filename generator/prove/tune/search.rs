@@ -1,4 +1,4 @@
-//! The search: up until the bound is kept, then down as far as it is.
+//! Searches for the smallest configuration: up until the bound is kept, then down as far as it is.
 
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
@@ -32,7 +32,7 @@ pub struct Candidate {
 }
 
 impl Candidate {
-    /// Million points a second at the estimated clock.
+    /// Returns million points a second at the estimated clock.
     pub fn rate(&self) -> Option<f64> {
         self.clocks.map(|clocks| self.cost.mhz / clocks)
     }
@@ -70,7 +70,7 @@ impl<'a> Search<'a> {
         Self { device, space, goal, progress, seen: Mutex::default() }
     }
 
-    /// From `base` up to the goal, then down.
+    /// Searches from `base` up to the goal, then down.
     pub fn run(&self, base: &Config) -> Result<Answer> {
         let base = self.look(base).context("the configuration to start from makes no design")?;
         let mut best = self.reach(base)?;

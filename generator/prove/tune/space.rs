@@ -1,4 +1,4 @@
-//! The free keys, and the neighbours of a configuration.
+//! Finds the free keys of a configuration, and its neighbours: the configurations with other values of some keys.
 
 use anyhow::{Context, Result};
 
@@ -27,8 +27,8 @@ pub struct Space {
 }
 
 impl Space {
-    /// The keys of `base` that change neither ports nor formula, and add no microinstructions unless `slower`, without those in
-    /// `fixed`.
+    /// Finds the keys of `base` that change neither ports nor formula, and add no microinstructions unless `slower`,
+    /// without those in `fixed`.
     ///
     /// # Errors
     /// `base` makes no design.

@@ -1,4 +1,4 @@
-//! Checks that need nothing but Glint.
+//! The checks of a verification that need nothing but Glint: design rules, co-simulation, the error bound, faults.
 
 use std::ops::ControlFlow;
 
@@ -312,7 +312,7 @@ fn faults(subject: &Subject<'_>) -> (Faults, usize) {
 /// The most faults that are named.
 const NAMED: usize = 20;
 
-/// Some of the faults, and how many more there are.
+/// Lists some of the faults, and says how many more there are.
 fn named(ids: &[String]) -> String {
     let named = ids[..ids.len().min(NAMED)].join(", ");
     match ids.len() - ids.len().min(NAMED) {

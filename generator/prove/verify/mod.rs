@@ -107,7 +107,7 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    /// For people.
+    /// Returns the verdict for people.
     pub fn words(self) -> &'static str {
         match self {
             Self::Proved => "proved",
@@ -158,17 +158,17 @@ pub struct Finding {
 }
 
 impl Finding {
-    /// A verdict on a domain.
+    /// Makes the finding of a verdict on a domain.
     fn new(verdict: Verdict, domain: impl Into<String>, words: impl Into<String>) -> Self {
         Self { domain: domain.into(), ..Self::without(verdict, words) }
     }
 
-    /// The finding of a check that has nothing to say here.
+    /// Makes the finding of a check that has nothing to say here.
     fn without(verdict: Verdict, why: impl Into<String>) -> Self {
         Self { verdict, words: why.into(), ..Self::default() }
     }
 
-    /// A verdict of failure if there are any.
+    /// Adds failures; the verdict is one of failure if there are any.
     fn failures(self, failures: Vec<String>) -> Self {
         let verdict = if failures.is_empty() { self.verdict } else { Verdict::Failed };
         Self { verdict, failures, ..self }
@@ -334,7 +334,7 @@ impl Conclusion {
         verdicts.max().unwrap_or(Self::Incomplete)
     }
 
-    /// For people.
+    /// Returns the conclusion for people.
     pub fn words(self) -> &'static str {
         match self {
             Self::Verified => "verified",

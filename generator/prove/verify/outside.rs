@@ -1,4 +1,4 @@
-//! Checks that run tools outside Glint, on the emitted files.
+//! The checks of a verification that run tools outside Glint, on the emitted files.
 
 use std::fs;
 use std::path::Path;
@@ -471,7 +471,7 @@ pub const COCOTB: Check = Check {
     },
 };
 
-/// Everything that is emitted, in a directory of its own.
+/// Writes everything that is emitted into a directory of its own.
 fn written(subject: &Subject<'_>) -> Result<Directory> {
     directory_of(subject.files()?.iter().chain([&package::driver()]))
 }

@@ -1,4 +1,4 @@
-//! A verification as one HTML page that needs nothing but itself.
+//! Writes a verification as one HTML page that needs nothing but itself.
 
 use anyhow::Result;
 use glint_base::template::Template;

@@ -1,4 +1,4 @@
-//! A chart as data: what is plotted and tabulated.
+//! A chart as data: axes, series and marks, which pages plot and tabulate.
 
 use serde::Serialize;
 
@@ -24,12 +24,12 @@ pub struct ChartAxis {
 }
 
 impl ChartAxis {
-    /// An evenly divided axis.
+    /// Makes an evenly divided axis.
     pub fn linear(label: &str, low: f64, high: f64) -> Self {
         Self { label: label.to_owned(), scale: Scale::Linear, range: (low, high) }
     }
 
-    /// An axis of powers of ten.
+    /// Makes an axis of powers of ten.
     pub fn logarithmic(label: &str, low: f64, high: f64) -> Self {
         Self { scale: Scale::Logarithmic, ..Self::linear(label, low, high) }
     }
@@ -85,7 +85,7 @@ pub struct Chart {
 }
 
 impl Chart {
-    /// About `rows` evenly spread indices into [`Chart::places`], the first and the last among them.
+    /// Returns about `rows` evenly spread indices into [`Chart::places`], the first and the last among them.
     pub fn rows(&self, rows: usize) -> Vec<usize> {
         let last = self.places.len().saturating_sub(1);
         let mut chosen: Vec<usize> =
@@ -95,12 +95,12 @@ impl Chart {
     }
 }
 
-/// `steps + 1` evenly spread values, both ends among them.
+/// Returns `steps + 1` evenly spread values, both ends among them.
 pub fn even(low: f64, high: f64, steps: u32) -> Vec<f64> {
     (0..=steps).map(|step| low + (high - low) * f64::from(step) / f64::from(steps)).collect()
 }
 
-/// Integers from `low` to `high` that a logarithmic axis shows evenly, about `per_decade` to a power of ten;
+/// Returns integers from `low` to `high` that a logarithmic axis shows evenly, about `per_decade` to a power of ten;
 /// both ends are among them.
 pub fn exponents(low: u32, high: u32, per_decade: u32) -> Vec<u32> {
     let mut found = Vec::new();

@@ -1,4 +1,4 @@
-//! Devices side by side at one exponent: how near they come to `cosⁿγ`, and what they take.
+//! Compares devices at one exponent: how near they come to `cosⁿγ`, and what they take.
 
 use std::fmt;
 
@@ -83,8 +83,8 @@ pub fn accuracy(contract: &dyn Contract, n: f64) -> Option<Accuracy> {
     Some(accuracy)
 }
 
-/// Clocks per point of the exponent `n`, from one `start` to the next; where a `start` shows a line of points,
-/// on the longest.
+/// Returns the clocks per point of the exponent `n`, from one `start` to the next; where a `start` shows a line of
+/// points, on the longest.
 ///
 /// # Errors
 /// A device that does not end, or shows no point.
@@ -174,7 +174,7 @@ mod tests {
         }
     }
 
-    /// `intervals + 1` results, one a clock.
+    /// Makes a device that shows `intervals + 1` results, one a clock.
     fn design() -> Design {
         let d = Designer::new("line");
         let cosine = d.operand("cos_gamma", Format::unsigned(1, 1));

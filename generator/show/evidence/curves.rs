@@ -1,5 +1,5 @@
-//! Error curves of a configuration: its formula against `cosⁿγ`, and its fixed point
-//! against its formula, over the exponent and over the angle.
+//! Measures the error curves of a configuration: its formula against `cosⁿγ`, and its fixed point against its formula,
+//! over the exponent and over the angle.
 
 use serde::Serialize;
 
@@ -124,7 +124,7 @@ pub fn configuration(
     }
 }
 
-/// `√n·γ` at the places of a curve over the angle.
+/// Returns `√n·γ` at the places of a curve over the angle.
 fn places() -> Vec<f64> {
     even(0.0, REACH, PLACES)
 }

@@ -1,4 +1,5 @@
-//! Charts of a device that computes one result of one operand and is no highlight: the function, and the error, over the domain.
+//! Makes the charts of a device that computes one result of one operand and is no highlight: the function, and the
+//! error, over the domain.
 
 use super::chart::{Chart, ChartAxis, Mark, Series};
 use glint_golden::Contract;

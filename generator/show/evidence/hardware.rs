@@ -1,4 +1,4 @@
-//! The cells that a core takes of each family of FPGAs, by a synthesis tool.
+//! Asks a synthesis tool for the cells that a core takes of each family of FPGAs.
 
 use anyhow::{Context, Result};
 use rayon::prelude::*;

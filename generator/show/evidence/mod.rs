@@ -1,4 +1,4 @@
-//! What is measured about devices and configurations.
+//! Measures devices and configurations: errors against their formulas, and the hardware that they take.
 
 pub mod advice;
 pub mod chart;

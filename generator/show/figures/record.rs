@@ -74,7 +74,7 @@ pub struct Rate {
 }
 
 impl Rate {
-    /// That of a core that takes so many clocks a point; none where no frequency was measured.
+    /// Returns the rate of a core that takes so many clocks a point; none where no frequency was measured.
     pub fn new(figures: &Figures, clocks_per_point: f64) -> Option<Self> {
         let points = figures.frequency?.median / clocks_per_point;
         let per = |units: Option<u64>| Some(points / units.filter(|units| *units > 0)? as f64);

@@ -1,4 +1,4 @@
-//! Drawings as data: lines, boxes and text, in colours that the page's style sheet decides.
+//! A drawing as data (lines, boxes and text, in colours that the page's style sheet decides), and its SVG.
 
 use anyhow::Result;
 use glint_base::fill;
@@ -55,19 +55,19 @@ pub enum Item {
 }
 
 impl Item {
-    /// Text.
+    /// Makes a line of text.
     pub fn text(class: &'static str, x: i32, y: i32, text: impl Into<String>) -> Self {
         Self::Text { class, x, y, text: text.into() }
     }
 
-    /// Lines.
+    /// Makes lines, by SVG's path syntax.
     pub fn path(class: &'static str, d: impl Into<String>) -> Self {
         Self::Path { class, d: d.into() }
     }
 }
 
 impl Drawing {
-    /// As an `svg` element.
+    /// Returns the drawing as an `svg` element.
     ///
     /// # Errors
     /// A template that fails to print.
@@ -75,7 +75,7 @@ impl Drawing {
         Ok(self.render()?)
     }
 
-    /// As a file of its own, ending with a newline.
+    /// Returns the drawing as a file of its own, ending with a newline.
     ///
     /// # Errors
     /// A template that fails to print.
@@ -88,7 +88,7 @@ impl Drawing {
     }
 }
 
-/// About how wide a text is in the type of a drawing, which is `size` high.
+/// Estimates how wide a text is in the type of a drawing, which is `size` high.
 pub fn text_width(text: &str, size: f64) -> i32 {
     (text.chars().count() as f64 * size * 0.6).ceil() as i32
 }

@@ -1,4 +1,4 @@
-//! Charts as figures of a page: the plot, its legend, and a table of its values.
+//! Makes figures of a page from charts: the plot, its legend, and a table of its values.
 
 use anyhow::Result;
 use rayon::prelude::*;
@@ -23,7 +23,7 @@ pub struct Figure<'a> {
     pub rows: Vec<(String, Vec<String>)>,
 }
 
-/// Charts, each with where its source has it, as figures.
+/// Makes figures of charts, each with where its source has it.
 ///
 /// # Errors
 /// A chart cannot be plotted.
@@ -69,7 +69,7 @@ pub fn scientific(value: f64) -> String {
     }
 }
 
-/// At most three digits after the point.
+/// Writes a number with at most three digits after the point.
 fn number(value: f64) -> String {
     let text = format!("{value:.3}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()

@@ -1,4 +1,4 @@
-//! A formula as plain text, set as MathML.
+//! Sets a formula in plain text as MathML.
 //!
 //! Descriptions write formulas as programs do, `out = colour * (n/2 * (c - 1) + 1)^2`. What this reader does not
 //! understand stays plain text.
@@ -28,7 +28,8 @@ const GREEK: [(&str, &str); 12] = [
     ("psi", "ψ"),
 ];
 
-/// `math` elements with the signs between them, between which a line may end; `None` for a text that is not understood.
+/// Returns `math` elements with the signs between them, between which a line may end; `None` for a text that is not
+/// understood.
 pub fn mathml(text: &str) -> Option<String> {
     let mut reader = Reader { tokens: tokens(text)?, at: 0 };
     let mut clauses = String::new();
@@ -51,7 +52,7 @@ pub fn typeset(text: &str) -> String {
     }
 }
 
-/// Names, numbers and signs.
+/// Splits a formula into names, numbers and signs.
 fn tokens(text: &str) -> Option<Vec<&str>> {
     let mut tokens = Vec::new();
     let mut rest = text.trim_start();
@@ -84,7 +85,7 @@ impl Part {
         Self { mathml, inside: None }
     }
 
-    /// As a numerator, a denominator, an exponent or under a root, which need no parentheses.
+    /// Returns the part as a numerator, a denominator, an exponent or under a root, which need no parentheses.
     fn bare(self) -> String {
         format!("<mrow>{}</mrow>", self.inside.unwrap_or(self.mathml))
     }
@@ -113,7 +114,7 @@ impl<'a> Reader<'a> {
         Some(found)
     }
 
-    /// Relations with words between them.
+    /// Reads relations with words between them.
     fn clause(&mut self) -> Option<String> {
         let mut clause = String::new();
         let mut after_relation = false;
@@ -167,7 +168,7 @@ impl<'a> Reader<'a> {
         Some(sum)
     }
 
-    /// Products and quotients from the left; all that stands before a `/` is the numerator.
+    /// Reads products and quotients from the left; all that stands before a `/` is the numerator.
     fn product(&mut self) -> Option<String> {
         let mut product = self.power()?;
         while let Some(sign) = self.sign(&["*", "/"]) {

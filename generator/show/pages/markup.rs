@@ -1,6 +1,6 @@
-//! Plain text as HTML.
+//! Writes plain text as HTML.
 
-/// Plain text with names in backquotes as HTML.
+/// Writes plain text with names in backquotes as HTML.
 pub fn html(text: &str) -> String {
     let mut html = String::with_capacity(text.len());
     // An odd backquote is one.

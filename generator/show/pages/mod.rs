@@ -1,4 +1,4 @@
-//! Pages for people: the page of a device, its datasheet.
+//! Makes pages for people: the page of a device, its datasheet.
 
 pub mod account;
 pub mod datasheet;

@@ -1,4 +1,4 @@
-//! Charts as inline SVG, in colours that the page's style sheet decides.
+//! Plots charts as inline SVG, in colours that the page's style sheet decides.
 
 use anyhow::{Result, anyhow};
 use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged};
@@ -131,8 +131,8 @@ fn draw(chart: &Chart, text: &mut String) -> Result<(), Box<dyn std::error::Erro
     Ok(())
 }
 
-/// Series of one value: number, place, and whether the name stands left of it. Names stand on the side
-/// where there is more room, unless the name of a neighbour above is there.
+/// Finds the series of one value: number, place, and whether the name stands left of it. Names stand on the side where
+/// there is more room, unless the name of a neighbour above is there.
 fn points(chart: &Chart) -> Vec<(usize, (f64, f64), bool)> {
     let only = |values: &[f64]| {
         let mut known = chart.places.iter().zip(values).filter(|(_, value)| value.is_finite());
@@ -201,7 +201,7 @@ fn runs(chart: &Chart, values: &[f64]) -> Vec<Vec<(f64, f64)>> {
     runs
 }
 
-/// Round values within the range of an axis, in order.
+/// Returns round values within the range of an axis, in order.
 fn ticks(axis: &ChartAxis) -> Vec<f64> {
     let (low, high) = axis.range;
     match axis.scale {
@@ -242,7 +242,7 @@ fn number(value: f64) -> String {
     if text == "-0" { "0" } else { text }.replace('-', "\u{2212}")
 }
 
-/// Classes in place of the stand-ins, and what makes the element an image to a screen reader.
+/// Puts classes in place of the stand-ins, and adds what makes the element an image to a screen reader.
 fn themed(text: &str, chart: &Chart) -> String {
     let hex = |RGBColor(r, g, b): RGBColor| format!("#{r:02X}{g:02X}{b:02X}");
     let mut roles = vec![

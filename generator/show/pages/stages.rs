@@ -1,4 +1,4 @@
-//! The stages of a pipeline, and what shares its multipliers, as tables.
+//! Tabulates the stages of a pipeline, and what its shared multipliers compute in each slot.
 
 use super::account::{Table, code};
 use glint_rtl::netlist::{Design, Pipeline};

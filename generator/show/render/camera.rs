@@ -1,4 +1,4 @@
-//! A perspective camera.
+//! A perspective camera: its place and directions, and where it sees a point.
 
 use anyhow::{Context, Result, ensure};
 
@@ -33,8 +33,8 @@ const DIRECTION: Vector = Vector::new(0.0, 0.28, 1.0);
 const FILLED: f64 = 0.92;
 
 impl Camera {
-    /// A camera for a picture of the given aspect, width through height, that shows all of `things`, balls
-    /// with their middle and radius, unless `view` says otherwise; `middle` is the middle of them all.
+    /// Sets up a camera for a picture of the given aspect, width through height, that shows all of `things`, balls with
+    /// their middle and radius, unless `view` says otherwise; `middle` is the middle of them all.
     ///
     /// # Errors
     /// An eye at its target.
@@ -104,7 +104,7 @@ impl Camera {
         self.right * x + self.up * y + self.back * z
     }
 
-    /// Half the width and half the height of what is seen at distance 1.
+    /// Returns half the width and half the height of what is seen at distance 1.
     pub fn half(&self) -> (f64, f64) {
         self.half
     }

@@ -1,4 +1,4 @@
-//! Height maps, which turn the normals of a surface.
+//! Reads height maps, the slopes of which turn the normals of a surface.
 
 use anyhow::{Context, Result, bail, ensure};
 use png::{BitDepth, ColorType, Decoder, Limits, Transformations};
@@ -23,7 +23,7 @@ pub struct Relief {
 }
 
 impl Relief {
-    /// The map that a PNG file holds.
+    /// Reads the map that a PNG file holds.
     ///
     /// # Errors
     /// No PNG, one with colours or transparency, or too large a one.

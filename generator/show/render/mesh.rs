@@ -1,4 +1,4 @@
-//! Triangle meshes.
+//! Triangle meshes, with normals and texture coordinates; normals that are missing are computed.
 
 use std::collections::HashMap;
 
@@ -56,9 +56,9 @@ pub struct RawCorner {
 }
 
 impl Mesh {
-    /// A mesh of what is given. Triangles without area are left out and counted. Corners without a normal, or with one
-    /// of length 0, get the mean normal, weighted by area, of the triangles that meet in their position and hang
-    /// together there by edges of at most `crease` degrees, so that sharper edges stay sharp.
+    /// Makes a mesh of what is given. Triangles without area are left out and counted. Corners without a normal, or
+    /// with one of length 0, get the mean normal, weighted by area, of the triangles that meet in their position and
+    /// hang together there by edges of at most `crease` degrees, so that sharper edges stay sharp.
     ///
     /// # Errors
     /// No triangle with an area, or too many; numbers that are not finite, or coordinates beyond 10³⁰.

@@ -1,4 +1,4 @@
-//! Pictures whose highlights a device computes, bit by bit.
+//! Renders pictures whose highlights a device computes, bit by bit.
 //!
 //! The host computes visibility, normals, half vectors, and the ambient and diffuse light in f64; an [`Engine`] computes the specular
 //! term of every sample and light, along lines for devices that walk lines. The same picture has the same bytes on every machine: it
@@ -249,7 +249,7 @@ struct Portions<'a> {
 }
 
 impl Portions<'_> {
-    /// Some rows of pixels, given by rows of samples.
+    /// Adds some rows of pixels, given by rows of samples.
     fn add(&mut self, rows: &[Shaded], compare: bool) -> Result<()> {
         let mut points = Points::new(self.feed.operand_count());
         for row in rows {

@@ -1,4 +1,4 @@
-//! Wavefront OBJ: the geometry of a mesh.
+//! Reads Wavefront OBJ: the geometry of a mesh.
 //!
 //! Everything but vertices, normals, texture coordinates and faces is passed over: groups, materials,
 //! lines, curves. A reader of its own, because a mistake is reported with its line, and because faces whose
@@ -53,7 +53,7 @@ impl Reader {
         Ok(())
     }
 
-    /// A face of n corners is a fan of n − 2 triangles.
+    /// Adds a face of n corners as a fan of n − 2 triangles.
     fn face<'a>(&mut self, words: impl Iterator<Item = &'a str>) -> Result<()> {
         let corners: Vec<RawCorner> = words
             .map(|word| {
@@ -66,7 +66,7 @@ impl Reader {
         Ok(())
     }
 
-    /// `v`, `v/vt`, `v//vn` or `v/vt/vn`.
+    /// Reads a corner: `v`, `v/vt`, `v//vn` or `v/vt/vn`.
     fn corner(&self, word: &str) -> Result<RawCorner> {
         let mut parts = word.split('/');
         let position = parts.next().unwrap_or_default();

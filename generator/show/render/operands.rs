@@ -1,4 +1,4 @@
-//! How a device is fed: which of its operands mean what.
+//! Feeds a device: finds out which of its operands mean what, and makes the raw operands of a point or a line.
 //!
 //! Nothing here knows a device; its contract names its operands, and those names are what it is known by.
 
@@ -150,7 +150,7 @@ pub fn walks_lines(contract: &dyn Contract) -> bool {
 }
 
 impl Feed {
-    /// For a device of that name.
+    /// Finds out what the operands of a device of that name mean.
     ///
     /// # Errors
     /// It has operands that are not understood, or not the colours.
@@ -158,7 +158,8 @@ impl Feed {
         Self::with(device, contract, &[])
     }
 
-    /// For a device of that name, some of whose operands are `given` and the same at every point.
+    /// Finds out what the operands of a device of that name mean, some of which are `given` and the same at every
+    /// point.
     ///
     /// # Errors
     /// As of [`Feed::new`]; an operand that the device does not have, or a value beyond its domain.

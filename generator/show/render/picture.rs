@@ -1,4 +1,4 @@
-//! Pictures of 8 bits a channel, and PNG.
+//! Pictures of 8 bits a channel: joins, captions and compares them, and writes them as PNG.
 
 use anyhow::{Context, Result};
 use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster, get_raster_width};
@@ -28,7 +28,7 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// A picture without rows.
+    /// Makes a picture without rows.
     pub fn new(width: u32) -> Self {
         Self { width, pixels: Vec::new() }
     }
@@ -38,7 +38,8 @@ impl Picture {
         (self.pixels.len() / self.width as usize) as u32
     }
 
-    /// The picture over a strip with a caption, in the middle; of one that is too long as much as there is room for.
+    /// Puts the picture over a strip with a caption, in the middle; of one that is too long as much as there is room
+    /// for.
     pub fn captioned(&self, caption: &str) -> Self {
         let letter = get_raster_width(FontWeight::Regular, LETTERS);
         let width = self.width as usize;
@@ -59,7 +60,7 @@ impl Picture {
         captioned
     }
 
-    /// Pictures of one size side by side.
+    /// Puts pictures of one size side by side.
     pub fn beside(pictures: &[&Self]) -> Self {
         let mut all = Self::new(pictures.iter().map(|picture| picture.width).sum());
         for row in 0..pictures.first().map_or(0, |picture| picture.height()) as usize {
@@ -71,7 +72,7 @@ impl Picture {
         all
     }
 
-    /// As a PNG file. The same pixels give the same bytes.
+    /// Returns the picture as a PNG file. The same pixels give the same bytes.
     ///
     /// # Errors
     /// None that a user could cause.
@@ -109,7 +110,7 @@ pub struct Difference {
 }
 
 impl Difference {
-    /// Between two pictures of one size; `shown` says of each pixel whether it shows a thing.
+    /// Compares two pictures of one size; `shown` says of each pixel whether it shows a thing.
     pub fn new(a: &Picture, b: &Picture, shown: &[bool]) -> Self {
         let pairs = a.pixels.iter().zip(&b.pixels);
         let differences: Vec<[u8; 3]> =
@@ -136,7 +137,7 @@ impl Difference {
     }
 }
 
-/// One colour over another; the coverage is in 255ths.
+/// Mixes one colour over another; the coverage is in 255ths.
 fn mix(ground: [u8; 3], over: [u8; 3], share: u8) -> [u8; 3] {
     let share = u32::from(share);
     let channel = |at: usize| {

@@ -1,4 +1,4 @@
-//! The scene of a picture.
+//! The scene of a picture: things with their shapes and colours, lights, and a relief.
 
 use anyhow::Result;
 use clap::ValueEnum;
@@ -139,7 +139,7 @@ impl Scene {
         ((low * 0.5 + high * 0.5), (high * 0.5 - low * 0.5).length())
     }
 
-    /// Balls, with middle and radius, that are all that can be seen; the corners of meshes have no radius.
+    /// Returns the balls, with middle and radius, that are all that can be seen; the corners of meshes have no radius.
     pub fn balls(&self) -> impl Iterator<Item = (Vector, f64)> {
         self.objects.iter().flat_map(|object| {
             let (ball, mesh) = match &object.shape {

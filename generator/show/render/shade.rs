@@ -1,4 +1,4 @@
-//! The host's part of shading: what a point is, its ambient and diffuse light, and what the device is to
+//! Computes the host's part of shading: what a point is, its ambient and diffuse light, and what the device is to
 //! compute for it.
 //!
 //! All of it is f64. Most devices compute the specular term alone; one that takes normals computes the rest too.
@@ -29,7 +29,7 @@ pub struct Material {
 }
 
 impl Material {
-    /// How things reflect by default.
+    /// Returns how things reflect by default.
     pub const fn usual(exponent: u32) -> Self {
         Self { ambient: 0.12, diffuse: 0.75, specular: 0.7, exponent }
     }
@@ -84,7 +84,7 @@ impl Surface {
         self.smooth.dot(light.direction) > 0.0
     }
 
-    /// H.
+    /// Returns the half vector H.
     fn half(&self, light: &Light) -> Vector {
         let sum = light.direction + self.toward_eye;
         sum.unit().unwrap_or(self.smooth)
@@ -127,7 +127,7 @@ impl Shader<'_> {
         Ok(shaded)
     }
 
-    /// Samples beside each other on one triangle or ball.
+    /// Shades samples beside each other on one triangle or ball.
     fn surfaces(&self, surfaces: &[Surface], shaded: &mut Shaded) -> Result<()> {
         let lines = match self.feed.longest() {
             None => Vec::new(),
@@ -290,7 +290,7 @@ pub fn point(smooth: Vector, perturbed: Vector, half: Vector, colour: Vector) ->
     }
 }
 
-/// Texture coordinates, and how each grows on the surface.
+/// Returns texture coordinates, and how each grows on the surface.
 fn texture(object: &Object, hit: &Hit, normal: Vector) -> ([f64; 2], [Vector; 2]) {
     match &object.shape {
         Shape::Ball { radius, .. } => {

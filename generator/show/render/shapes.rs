@@ -1,4 +1,4 @@
-//! Meshes that are computed.
+//! Computes meshes of simple shapes: torus, ball and vase.
 
 use std::f64::consts::{PI, TAU};
 
@@ -7,8 +7,8 @@ use anyhow::Result;
 use super::mesh::{Mesh, RawCorner, SMOOTH};
 use super::vector::Vector;
 
-/// A torus around the y axis: `major` from the middle to the tube's, `minor` the tube's radius, each way in
-/// so many steps.
+/// Makes a torus around the y axis: `major` from the middle to the tube's, `minor` the tube's radius, each way in so
+/// many steps.
 ///
 /// # Errors
 /// As of [`Mesh::new`].
@@ -24,7 +24,7 @@ pub fn torus(major: f64, minor: f64, steps: [u32; 2]) -> Result<Mesh> {
     })
 }
 
-/// A ball, with this number of steps around and from pole to pole.
+/// Makes a ball, with this number of steps around and from pole to pole.
 ///
 /// # Errors
 /// As of [`Mesh::new`].
@@ -42,7 +42,7 @@ pub fn ball(middle: Vector, radius: f64, steps: [u32; 2]) -> Result<Mesh> {
     })
 }
 
-/// A vase of height 2 around the y axis, open at the top: belly, neck and lip.
+/// Makes a vase of height 2 around the y axis, open at the top: belly, neck and lip.
 ///
 /// # Errors
 /// As of [`Mesh::new`].
@@ -71,7 +71,7 @@ fn vase_radius(height: f64) -> f64 {
     (foot * belly + lip).max(0.0)
 }
 
-/// The surface `at` over the unit square, in steps; closed in a direction where its ends meet.
+/// Makes the surface `at` over the unit square, in steps; closed in a direction where its ends meet.
 fn grid(steps: [u32; 2], closed: [bool; 2], at: impl Fn(f64, f64) -> Vector) -> Result<Mesh> {
     let [columns, rows] = steps;
     let mut positions = Vec::new();

@@ -1,5 +1,5 @@
-//! Vectors of three components. Only the four operations and square roots, so that every machine computes
-//! the same.
+//! Vectors of three components, and their arithmetic. Only the four operations and square roots, so that every machine
+//! computes the same.
 
 use std::ops::{Add, Mul, Neg, Sub};
 
@@ -8,7 +8,7 @@ use std::ops::{Add, Mul, Neg, Sub};
 pub struct Vector(pub [f64; 3]);
 
 impl Vector {
-    /// From its components.
+    /// Makes a vector from its components.
     #[inline]
     pub const fn new(x: f64, y: f64, z: f64) -> Self {
         Self([x, y, z])
@@ -45,7 +45,7 @@ impl Vector {
         (self.finite() && length.is_finite() && length > 0.0).then(|| scaled * (1.0 / length))
     }
 
-    /// Component by component.
+    /// Multiplies component by component.
     #[inline]
     pub fn times(self, other: Self) -> Self {
         let ([ax, ay, az], [bx, by, bz]) = (self.0, other.0);

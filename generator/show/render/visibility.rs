@@ -47,7 +47,7 @@ pub struct Raster {
 }
 
 impl Raster {
-    /// The number of samples.
+    /// Makes a raster with this number of samples.
     pub fn new(columns: usize, rows: usize, camera: &Camera) -> Self {
         Self { columns, rows, half: camera.half() }
     }
@@ -198,7 +198,7 @@ impl<'a> Visibility<'a> {
         hits
     }
 
-    /// Rows of one band, the first of which is number `first`.
+    /// Finds what is seen in the rows of one band, the first of which is number `first`.
     fn band(&self, first: usize, hits: &mut [Hit]) {
         let width = self.raster.columns;
         let end = first + hits.len() / width;
@@ -249,7 +249,7 @@ struct Planes {
 }
 
 impl Planes {
-    /// `None` for a triangle that is seen from its edge.
+    /// Makes the planes of a triangle. Returns `None` for one that is seen from its edge.
     fn new([a, b, c]: [Vector; 3]) -> Option<Self> {
         let normals = [b.cross(c), c.cross(a), a.cross(b)];
         let volume = a.dot(normals[0]);

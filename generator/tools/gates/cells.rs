@@ -1,4 +1,4 @@
-//! Netlists of standard cells: how Yosys maps to them, and their models.
+//! Makes netlists of standard cells with Yosys, and the Verilog models of the cells.
 
 use std::fs;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! Netlists from synthesis in a simulator: the bench of the source, around gates.
+//! Makes netlists by synthesis, and puts the test bench of the source around their gates, for a simulator.
 
 pub mod cells;
 
@@ -102,7 +102,7 @@ fn shipped(yosys: &Tool, family: &Family) -> Result<String> {
     })
 }
 
-/// Verilog without a module, which is there without behaviour.
+/// Returns Verilog without a module, which is there without behaviour.
 fn without(verilog: &str, module: &str) -> Result<String> {
     let start = format!("(* blackbox *)\nmodule {module}(");
     let parts = verilog.split_once(&start);

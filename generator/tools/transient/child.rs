@@ -1,4 +1,4 @@
-//! Child processes, which can be killed with all that they have started.
+//! Starts child processes, and kills them with all that they have started.
 
 use std::io;
 use std::process::{self, Command, ExitStatus};
@@ -80,7 +80,7 @@ pub fn kill_tree(child: u32) {
     }
 }
 
-/// Without process groups there is only the child, which [`Child::kill`] kills.
+/// Does nothing: without process groups there is only the child, which [`Child::kill`] kills.
 #[cfg(not(unix))]
 pub fn kill_tree(_child: u32) {}
 
@@ -98,7 +98,7 @@ pub fn kill_own_descendants(deadline: Instant) {
     }
 }
 
-/// See above.
+/// Does nothing, as [`kill_tree`].
 #[cfg(not(unix))]
 pub fn kill_own_descendants(_deadline: Instant) {}
 

@@ -41,7 +41,7 @@ for child in $children; do kill -KILL "-$child"; done
 pub struct Guard(Option<ChildStdin>);
 
 impl Guard {
-    /// Before the first child.
+    /// Makes the guard before the first child.
     pub const fn new() -> Self {
         Self(None)
     }

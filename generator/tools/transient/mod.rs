@@ -1,4 +1,4 @@
-//! Child processes and temporary directories: things that exist only while Glint runs.
+//! Keeps a list of child processes and temporary directories: things that exist only while Glint runs.
 //!
 //! Each stands on a list until it is gone. [`clear`] ends and deletes all of them, for a process that is
 //! interrupted. A child is started, and a temporary path made, under the list's lock: nothing can appear

@@ -1,4 +1,5 @@
-//! Temporary directories, each with a file in it that says whose it is and is locked while the directory is in use.
+//! Makes temporary directories, each with a file in it that says whose it is and is locked while the directory is in
+//! use.
 
 use std::fs;
 use std::io::{self, Write};
@@ -112,7 +113,7 @@ fn title(directory: &Path) -> String {
     format!("Glint works in {name}. The next run deletes what a killed one has left.\n")
 }
 
-/// Everything below a directory that is none, sorted; links are not followed.
+/// Lists everything below a directory that is none, sorted; links are not followed.
 ///
 /// # Errors
 /// A directory that cannot be read.

@@ -1,4 +1,4 @@
-//! A comparison as tables, as CSV and as JSON.
+//! Prints a comparison as tables, as CSV and as JSON.
 
 use anyhow::Result;
 use serde::Serialize;
@@ -45,7 +45,7 @@ pub fn show(
     Ok(())
 }
 
-/// Over what the errors of a device are, that has more operands than the angle and n; none of others.
+/// Tells over what the errors of a device are, that has more operands than the angle and n; none of others.
 fn at_rest(entry: &Entry) -> Option<String> {
     let contract = entry.core.contract.as_ref();
     let control = contract.operands().iter().filter(|operand| !operand.colour);
@@ -187,12 +187,12 @@ fn print_speed(entries: &[Entry]) {
     );
 }
 
-/// Whole clocks as an integer.
+/// Writes a number of clocks, a whole one as an integer.
 fn clocks(clocks: f64) -> String {
     if clocks.fract() == 0.0 { format!("{clocks}") } else { format!("{clocks:.3}") }
 }
 
-/// `21x10, 3 of 10x8`.
+/// Writes the sizes of multipliers, as `21x10, 3 of 10x8`.
 fn sizes(multipliers: &[Multiplier]) -> String {
     let alike = multipliers.chunk_by(|a, b| a == b);
     let texts: Vec<String> = alike

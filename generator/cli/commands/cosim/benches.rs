@@ -1,4 +1,4 @@
-//! `cosim --simulator`: the emitted bench in an external simulator.
+//! `glint cosim --simulator`: runs the emitted test bench in an external simulator.
 
 use anyhow::{Context, Result};
 use rayon::prelude::*;

@@ -1,4 +1,4 @@
-//! `cosim --exhaustive`.
+//! `glint cosim --exhaustive`: proves the accuracy contract over all operands, as a whole or as one shard of several.
 
 pub mod show;
 
@@ -25,8 +25,8 @@ const SAVE: Duration = Duration::from_secs(5);
 /// Numbers of cores for which the duration of a proof is estimated.
 const CORES: [u32; 3] = [1, 16, 1000];
 
-/// `glint cosim --exhaustive`: the factored proof of the accuracy contract and, where they are not too many,
-/// every combination of operands clock by clock.
+/// Runs `glint cosim --exhaustive`: the factored proof of the accuracy contract and, where they are not too many, every
+/// combination of operands clock by clock.
 pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     if arguments.resume.is_some() && loaded.len() != 1 {
@@ -123,7 +123,7 @@ fn prove(output: Output, job: &Job<'_>, state: &mut State, file: Option<&Path>) 
     }
 }
 
-/// How long it will take, by a sample.
+/// Tells how long a proof will take, by a sample.
 fn announce_duration(job: &Job<'_>, state: &State) -> Result<()> {
     if job.remaining(state) == 0 {
         return Ok(());

@@ -1,4 +1,4 @@
-//! How the points of a run are spread over the values of `f`.
+//! Prints how the points of a run are spread over the values of `f`.
 
 use serde_json::{Value, json};
 

@@ -1,4 +1,4 @@
-//! Many points: operands from CSV, results as CSV.
+//! Computes many points: operands come from CSV, results go to CSV or JSON.
 
 use std::fmt::Write;
 use std::path::Path;

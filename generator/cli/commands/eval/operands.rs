@@ -1,4 +1,4 @@
-//! Operands as the user writes them: `0.99` is a value, `#1038090` a raw integer.
+//! Reads operands as the user writes them: `0.99` is a value, `#1038090` a raw integer.
 
 use glint_config as config;
 use glint_core::cosim::trial;

@@ -1,4 +1,4 @@
-//! Measurements of earlier runs, beside the configuration.
+//! Keeps the measurements of earlier runs in `.glint/`, beside the configuration.
 
 use std::fs;
 use std::path::{Path, PathBuf};

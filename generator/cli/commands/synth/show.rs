@@ -1,4 +1,4 @@
-//! Figures of synthesis for people and for scripts.
+//! Prints the figures of synthesis for people and for scripts.
 
 use serde::Serialize;
 use serde_json::{Value, json};

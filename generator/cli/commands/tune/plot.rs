@@ -1,4 +1,4 @@
-//! The front as a picture: area over error.
+//! Plots the front of a search as SVG: area over error.
 
 use anyhow::{Result, bail};
 

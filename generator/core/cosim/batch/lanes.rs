@@ -1,4 +1,5 @@
-//! Points through the built-in simulator, many instances at a time.
+//! Computes points with the built-in simulator: a simulator for each thread, with an instance of the design in each
+//! lane.
 
 use std::array;
 use std::collections::VecDeque;
@@ -22,7 +23,7 @@ pub struct RustHdl {
 }
 
 impl RustHdl {
-    /// Simulators of a design, at power-up and reset.
+    /// Makes a simulator of a design for each thread, after power-up and reset.
     ///
     /// # Errors
     /// As of [`glint_rtl::sim::Simulator::new`], and a contract that speaks of ports that the design does not have.

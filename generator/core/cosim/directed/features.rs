@@ -1,5 +1,5 @@
-//! The features of a computation within a design, in bits: the inputs of muxes that it takes, the sides of comparisons,
-//! the bits that it sets and clears, the words that it reads.
+//! Records what a computation does within a design, its features, as bits: the inputs of muxes that it takes, the sides
+//! of comparisons, the bits that it sets and clears, the words that it reads.
 
 use super::side_by_side::{LANES, Lanes};
 use glint_base::fixed::mask;
@@ -34,7 +34,7 @@ pub struct Watch {
 }
 
 impl Watch {
-    /// Everything that is watched in a design.
+    /// Makes a watch of everything in a design that can be watched.
     pub fn new(design: &Design) -> Self {
         let mut watched = Vec::new();
         let zeros = |net| Watched::Zeros(net, mask(design.width(net)));
@@ -82,7 +82,7 @@ impl Watch {
         64 * CLASSES * self.watched.len()
     }
 
-    /// A clock, in which these lanes are busy.
+    /// Notes the features of one clock, in the lanes that are busy.
     pub fn note(&mut self, machine: &Machine<LANES>, busy: Lanes) {
         for (watched, done) in self.watched.iter().zip(&mut self.done) {
             let mut add = |of: &dyn Fn(usize) -> u64| {

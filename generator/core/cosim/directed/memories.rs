@@ -1,4 +1,4 @@
-//! A design whose tables are there once for each lane of a machine, so that every lane can have a fault of its own.
+//! Copies the tables of a design once for each lane of a machine, so that every lane can have a fault of its own.
 
 use glint_base::fixed::Format;
 use glint_rtl::netlist::{Design, Driver, Net, NetId, Op, Port, Role};

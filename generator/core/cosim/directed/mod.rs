@@ -1,4 +1,4 @@
-//! The computations of a bench that notices what is wrong with a core.
+//! Chooses the computations of a test bench that notices what is wrong with a core.
 //!
 //! Whoever ports a core, edits a memory or takes another tool relies on the bench that goes with it, and points at
 //! random reach neither every word of a table nor both sides of every comparison. Out of a pool of
@@ -128,7 +128,7 @@ pub fn computations(design: &Design, contract: &dyn Contract) -> Result<Vec<Vec<
     Ok(chosen.chain(of_words.found).collect())
 }
 
-/// Returns, of lines that read table after table, the first, which is the longest, and those of which most words are new.
+/// Chooses lines that read table after table: the first, which is the longest, and those of which most words are new.
 fn sweeps(lines: &[Candidate]) -> Vec<usize> {
     let mut read = HashSet::new();
     let mut chosen = Vec::new();

@@ -1,4 +1,4 @@
-//! Computations to choose from.
+//! Draws the pool of computations from which those of a test bench are chosen.
 
 use crate::cosim::{Points, Random};
 use glint_golden::{Contract, Highlight};
@@ -174,9 +174,9 @@ fn corners(points: &Points<'_>, bright: &dyn Fn(&mut [i64])) -> Vec<Vec<i64>> {
     corners
 }
 
-/// Lines from the peak to the edge of the highlight, which read the words of a table one after another: for the first
-/// values of each other operand, and for each power of two of intervals, or the end of the domain if that is less. The
-/// longest are first.
+/// Draws lines from the peak to the edge of the highlight, which read the words of a table one after another: for the
+/// first values of each other operand, and for each power of two of intervals, or the end of the domain if that is
+/// less. The longest are first.
 fn lines(
     highlight: &Highlight,
     points: &Points,

@@ -1,4 +1,4 @@
-//! Computations side by side in the lanes of a machine.
+//! Runs computations side by side, one in each lane of a simulated machine, and records their outputs and their clocks.
 
 use anyhow::{Context, Result, bail};
 
@@ -53,7 +53,7 @@ pub struct SideBySide {
 }
 
 impl SideBySide {
-    /// After reset.
+    /// Resets the machine of a design, and drives no computation yet.
     ///
     /// # Errors
     /// A contract and a design that do not belong together.
@@ -71,7 +71,7 @@ impl SideBySide {
         Ok(Self { machine, ports, busy, inputs, copies: None })
     }
 
-    /// With tables for each lane, which are in the design.
+    /// Has each lane read tables of its own, the copies that are in the design.
     ///
     /// # Errors
     /// They are those of another design.
@@ -82,7 +82,8 @@ impl SideBySide {
         Ok(self)
     }
 
-    /// As [`SideBySide::run`], of each lane with these bits of a word inverted. Words are numbered through all ROMs.
+    /// Runs computations as [`SideBySide::run`] does, each lane with these bits of a word inverted. Words are numbered
+    /// through all ROMs.
     ///
     /// # Errors
     /// As of [`SideBySide::run`].
@@ -161,7 +162,7 @@ impl SideBySide {
     }
 }
 
-/// The lanes in which a net of one bit is 1.
+/// Returns the lanes in which a net of one bit is 1.
 fn lanes(bits: [u64; LANES]) -> Lanes {
     bits.iter().enumerate().fold(0, |set, (lane, &bit)| set | (bit as Lanes & 1) << lane)
 }

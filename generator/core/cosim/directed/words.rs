@@ -1,4 +1,4 @@
-//! Computations that notice a fault in a word of a ROM.
+//! Finds computations that notice a fault in a word of a ROM: their results change when a bit of the word is inverted.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
@@ -34,8 +34,8 @@ pub struct Chosen {
     pub found: Vec<Vec<i64>>,
 }
 
-/// Computations that notice every bit of the upper half of a word, inverted, that any of the candidates notices or one
-/// near them that is searched for; of all words but those in `known`.
+/// Finds computations that notice every bit of the upper half of a word, inverted, that any of the candidates notices
+/// or one near them that is searched for; of all words but those in `known`.
 ///
 /// # Errors
 /// A design that cannot be simulated.
@@ -67,7 +67,7 @@ pub fn chosen(
     Ok(search.result)
 }
 
-/// For each word the brightest of its readers, as many as there are lanes.
+/// Returns for each word the brightest of its readers, as many as there are lanes.
 fn readers(candidates: &[Candidate]) -> BTreeMap<u32, Vec<usize>> {
     let mut order: Vec<usize> = (0..candidates.len()).collect();
     order.retain(|&at| candidates[at].shown.clocks <= LONGEST);
@@ -182,9 +182,9 @@ impl Search<'_> {
         Ok(noticed)
     }
 
-    /// Computations near these: each control operand as it is, or moved by a random magnitude within its domain (within
-    /// its format, if it may be beyond), or, without a fraction, drawn anew; some of them are then moved to where the
-    /// formula has some value. The colours are bright.
+    /// Draws computations near these: each control operand as it is, or moved by a random magnitude within its domain
+    /// (within its format, if it may be beyond), or, without a fraction, drawn anew; some of them are then moved to
+    /// where the formula has some value. The colours are bright.
     fn near(&mut self, kept: &[(u64, Vec<i64>)], beyond: bool) -> Vec<Vec<i64>> {
         let Self { points, random, .. } = self;
         let operands = points.operands();

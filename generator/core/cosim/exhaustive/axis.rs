@@ -1,4 +1,4 @@
-//! Values of an operand that an exhaustive check visits in place of those of the contract.
+//! Parses the values of an operand that an exhaustive check visits in place of those of the contract.
 
 use std::str::FromStr;
 
@@ -47,7 +47,7 @@ impl FromStr for AxisValues {
     }
 }
 
-/// First, last and step of `5`, `0..1000` or `0..1000/10`.
+/// Parses first, last and step from `5`, `0..1000` or `0..1000/10`.
 fn range(item: &str) -> Option<(i64, i64, usize)> {
     let Some((first, rest)) = item.split_once("..") else {
         let value = item.parse().ok()?;

@@ -1,4 +1,4 @@
-//! Every register and every output at every clock, for every combination of operands.
+//! Compares every register and every output with the golden model at every clock, for every combination of operands.
 //!
 //! What cannot be done for the operands of a device of full width is done for those of a narrow one.
 //! Combinations are numbered by *place*; a block of places goes through the lanes of one simulator, each

@@ -1,4 +1,4 @@
-//! A proof as a job that can be interrupted, resumed, and divided among machines.
+//! Runs a proof as a job that can be interrupted, resumed, and divided among machines.
 //!
 //! Blocks of places are dealt out: shard i of N has every N-th block, from block i − 1 on. What a shard has
 //! done is a [`State`], a few numbers that stand in a file; joining the states of all shards gives exactly
@@ -50,7 +50,7 @@ impl Shard {
         (blocks + self.of - self.number) / self.of
     }
 
-    /// Block number `at` of the shard.
+    /// Returns the number of the shard's block `at`, from 0, among all blocks.
     fn block(self, at: u64) -> u64 {
         self.number - 1 + at * self.of
     }
@@ -110,7 +110,7 @@ pub struct State {
 }
 
 impl State {
-    /// Nothing done.
+    /// Makes the state in which nothing is done.
     pub fn new(digest: &str, shard: Shard) -> Self {
         let nothing = Progress { done: 0, peak: Peak::NONE };
         Self {
@@ -134,12 +134,12 @@ pub struct Job<'a> {
 }
 
 impl<'a> Job<'a> {
-    /// The proof of a contract.
+    /// Makes the job that proves a contract.
     pub fn new(contract: &'a dyn Contract) -> Self {
         Self::of_sweep(contract, contract.sweep())
     }
 
-    /// The job by a sweep with other values than those of the contract.
+    /// Makes the job for a sweep with other values than those of the contract.
     pub fn of_sweep(contract: &'a dyn Contract, sweep: Sweep) -> Self {
         let (f, colours) = (Places::of_sweep(contract, sweep), Places::of_colours(contract));
         Self { f, colours, clocks: None }
@@ -163,12 +163,12 @@ impl<'a> Job<'a> {
         self
     }
 
-    /// Blocks of the combinations of operands.
+    /// Returns the number of blocks of the combinations of operands.
     fn blocks_of_clocks(&self) -> u64 {
         self.clocks.as_ref().map_or(0, Clocks::blocks)
     }
 
-    /// Places of the shard that are still to be visited.
+    /// Returns how many places of the shard are still to be visited.
     pub fn remaining(&self, state: &State) -> u64 {
         self.parts_remaining(state).iter().sum()
     }

@@ -1,4 +1,5 @@
-//! A state in a file: with a checksum, so that what was cut or changed is noticed.
+//! Writes and reads the state of a job as the text of a file, with a checksum, so that what was cut or changed is
+//! noticed.
 
 use anyhow::{Context, Result, ensure};
 use serde::{Deserialize, Serialize};

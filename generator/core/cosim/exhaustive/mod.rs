@@ -1,6 +1,5 @@
-//! The factored proof of an accuracy contract: every place of its sweep for `f`, every word `f` with every
-//! colour, and what both give together. And, of a device with few bits of operands, every combination of
-//! them clock by clock.
+//! Proves an accuracy contract in factors: every place of its sweep for `f`, every word `f` with every colour, and what
+//! both give together. And, of a device with few bits of operands, checks every combination of them clock by clock.
 //!
 //! Places are numbered, the last axis fastest, and cut into blocks; any set of blocks can be checked
 //! anywhere, in any order, and the outcomes joined: the result does not depend on how the work was divided.

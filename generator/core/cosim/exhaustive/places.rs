@@ -1,4 +1,4 @@
-//! Places by number: what an exhaustive check goes through, in blocks.
+//! Numbers the places that an exhaustive check goes through, and finds the largest error among them, block by block.
 
 use std::ops::Range;
 use std::time::{Duration, Instant};
@@ -58,17 +58,17 @@ pub struct Places<'a> {
 }
 
 impl<'a> Places<'a> {
-    /// The contract's sweep of `f`.
+    /// Makes the places of the contract's sweep of `f`.
     pub fn of_f(contract: &'a dyn Contract) -> Self {
         Self::of_sweep(contract, contract.sweep())
     }
 
-    /// A sweep of `f` with other values than those of the contract.
+    /// Makes the places of a sweep of `f` with other values than those of the contract.
     pub fn of_sweep(contract: &'a dyn Contract, sweep: Sweep) -> Self {
         Self { contract, measure: Measure::F, sweep }
     }
 
-    /// Every word `f` with every value of a colour operand (they are all alike).
+    /// Makes the places of every word `f` with every value of a colour operand (they are all alike).
     pub fn of_colours(contract: &'a dyn Contract) -> Self {
         let axis = |name: &str, values| Axis { name: name.to_owned(), values };
         let colour = contract.operands().iter().find(|operand| operand.colour);
@@ -86,7 +86,7 @@ impl<'a> Places<'a> {
         Self { contract, measure: Measure::Colour, sweep: Sweep { axes, omits: String::new() } }
     }
 
-    /// Axes, and what they leave out.
+    /// Returns the axes, and what they leave out.
     pub fn sweep(&self) -> &Sweep {
         &self.sweep
     }

@@ -1,5 +1,5 @@
-//! The record of an exhaustive check, as `{Program} cosim --exhaustive --json` writes it: found by what it was
-//! made of, and checked again in part.
+//! Reads the record of an exhaustive check, as `{Program} cosim --exhaustive --json` writes it: finds it by what it was
+//! made of, and checks it again in part.
 
 use std::path::{Path, PathBuf};
 
@@ -187,7 +187,7 @@ impl Record {
     }
 }
 
-/// Blocks that have about `count` places, spread evenly.
+/// Returns the numbers of blocks that together have about `count` places, spread evenly.
 fn part(places: &Places<'_>, count: u64) -> Vec<u64> {
     let stride = (places.count() / count).max(1);
     (0..places.blocks()).step_by(stride as usize).collect()

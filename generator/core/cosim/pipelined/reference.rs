@@ -34,6 +34,8 @@ pub(super) struct Expected {
 }
 
 impl Reference {
+    /// Finds the signals of the model that the checkpoints and the results are compared with.
+    ///
     /// # Errors
     /// A name of one side that the other does not have.
     pub(super) fn new(

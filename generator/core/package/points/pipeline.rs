@@ -1,4 +1,5 @@
-//! The bench that sends a list of points through a pipeline: operands from a file, results to a file.
+//! Generates the test bench that sends a list of points through a pipeline: operands come from one file, results go to
+//! another.
 
 use anyhow::{Context, Result};
 use glint_base::fill;

@@ -1,4 +1,4 @@
-//! `<name>_litex.py`: the core for LiteX, with CSRs, between streams, or with its own registers on a bus.
+//! Generates `<name>_litex.py`: the core for LiteX, with CSRs, between streams, or with its own registers on a bus.
 
 use anyhow::{Result, bail};
 use glint_base::fill;
@@ -112,7 +112,7 @@ fn streamed(top: &Top) -> Stream<'_> {
     }
 }
 
-/// `CosinePower` of `cosine_power`; a class of Python, whatever the name.
+/// Returns the name of a class of Python, whatever the name: `CosinePower` for `cosine_power`.
 fn camel(name: &str) -> String {
     let part = |part: &str| {
         let mut letters = part.chars();

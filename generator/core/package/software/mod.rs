@@ -1,4 +1,4 @@
-//! `software/<name>/`: what a driver's author starts from before there is hardware.
+//! Generates `software/<name>/`: what a driver's author starts from before there is hardware.
 //!
 //! The model in C computes what the core computes, bit for bit. It is made of the netlist, by its microprogram, and
 //! knows nothing of the golden model, with which tests compare it.

@@ -1,4 +1,4 @@
-//! The model in C: header, functions, and an example in Python.
+//! Generates the model of a core in C: header, functions, and an example in Python.
 
 use glint_base::fill;
 use std::collections::BTreeMap;
@@ -31,7 +31,7 @@ pub struct Field {
 }
 
 impl Field {
-    /// The field of a port.
+    /// Makes the field of a structure for a port.
     pub fn new(design: &Design, port: &Port) -> Self {
         let net = design.net(port.net);
         Self {
@@ -316,7 +316,7 @@ fn clocked(
     lines
 }
 
-/// `red_out = …;` from a bit pattern.
+/// Returns the statement `red_out = …;`, which takes the value from a bit pattern.
 fn assigned(design: &Design, port: &Port, pattern: &str) -> String {
     let net = design.net(port.net);
     let kind = Field::new(design, port).kind;

@@ -1,4 +1,4 @@
-//! Values as expressions and statements of C99.
+//! Prints values of a computation as expressions and statements of C99.
 //!
 //! Every value is a bit pattern in an unsigned type of 32 or 64 bits, with zeros above its width: the only
 //! arithmetic that C defines on every machine. Signs are made by `(x ^ s) - s`, with s the sign bit's weight.
@@ -77,7 +77,7 @@ pub struct Line {
 }
 
 impl<'a> Printer<'a> {
-    /// A printer of the values of a computation; `states` names those that registers and memories hold.
+    /// Makes a printer of the values of a computation; `states` names those that registers and memories hold.
     pub fn new(
         design: &'a Design,
         of: &'a Unrolled,
@@ -138,7 +138,7 @@ impl<'a> Printer<'a> {
         }
     }
 
-    /// In the type of `width` bits.
+    /// Prints a value in the type of `width` bits.
     fn in_type(&self, id: NodeId, width: u32) -> Text {
         let (from, to) = (pattern_type(self.graph.width(id)), pattern_type(width));
         let text = self.value(id);
@@ -155,7 +155,7 @@ impl<'a> Printer<'a> {
         }
     }
 
-    /// With copies of the sign bit above it, in the type of `width` bits.
+    /// Prints a value with copies of the sign bit above it, in the type of `width` bits.
     fn with_sign(&self, id: NodeId, width: u32) -> String {
         let own = self.graph.width(id);
         let text = self.in_type(id, width).inner();
@@ -167,7 +167,7 @@ impl<'a> Printer<'a> {
         }
     }
 
-    /// As a condition.
+    /// Prints a value as a condition.
     fn condition(&self, id: NodeId) -> String {
         match (&self.graph.node(id).cell, self.locals.get(&id)) {
             (Cell::Op(op @ (Op::Equal(..) | Op::Less(..) | Op::Any(_) | Op::All(_))), None) => {

@@ -1,4 +1,4 @@
-//! The registers for software: a C header, a Rust module without `std`, and SystemRDL.
+//! Generates the description of the registers for software: a C header, a Rust module without `std`, and SystemRDL.
 
 use anyhow::Result;
 use glint_base::fill;

@@ -1,5 +1,5 @@
-//! The host's part of a device that walks lines, in C and Python: its operands from vectors or angles at the ends of a
-//! line. The formulas are those of `render::setup`, against which tests hold these.
+//! Generates the host's part of a device that walks lines, in C and Python, which computes the operands from vectors or
+//! angles at the ends of a line. The formulas are those of `render::setup`, against which tests hold these.
 
 use anyhow::Result;
 use glint_base::fill;
@@ -33,7 +33,7 @@ struct Line<'a> {
 }
 
 impl Line<'_> {
-    /// Raw angles of a turn.
+    /// Returns the number of raw angles in a turn.
     fn turn(&self, angle: &Field) -> String {
         exp2(angle.format.width() as i32).to_string()
     }

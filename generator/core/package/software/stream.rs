@@ -1,4 +1,4 @@
-//! `<name>_stream.h` and `<name>_stream.py`: transfers of the streams in memory.
+//! Generates `<name>_stream.h` and `<name>_stream.py`, which fill and read the transfers of the streams in memory.
 
 use anyhow::Result;
 use glint_base::fill;

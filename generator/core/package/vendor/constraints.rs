@@ -1,4 +1,5 @@
-//! `<top>.sdc` and `<top>.xdc`: the clock, and nothing that is not known of the system around.
+//! Generates `<top>.sdc` and `<top>.xdc`: constraints of the clock, and of nothing that is not known of the system
+//! around.
 
 use anyhow::Result;
 use glint_base::fill;
@@ -29,7 +30,7 @@ pub fn files(job: &Job, tops: &[Top], clock_mhz: f64, files: &mut Artifacts) -> 
     Ok(())
 }
 
-/// In nanoseconds, with picoseconds. What is rounded off makes the clock faster, never slower.
+/// Returns the period in nanoseconds, with picoseconds. What is rounded off makes the clock faster, never slower.
 fn period(clock_mhz: f64) -> String {
     let picoseconds = libm::floor(1e6 / clock_mhz);
     format!("{:.3}", picoseconds / 1e3)

@@ -1,4 +1,4 @@
-//! `<top>.xml`: each module as a component of IP-XACT, IEEE 1685-2014.
+//! Generates `<top>.xml`: each module as a component of IP-XACT, IEEE 1685-2014.
 
 use anyhow::Result;
 
@@ -52,7 +52,7 @@ impl Component<'_> {
         format!("{number:x}")
     }
 
-    /// Text of XML.
+    /// Escapes a text for XML.
     fn escaped(&self, text: &str) -> String {
         escaped(text)
     }
@@ -135,7 +135,7 @@ fn buses(top: &Top) -> Vec<BusInterface> {
     buses
 }
 
-/// Text of XML.
+/// Escapes a text for XML.
 fn escaped(text: &str) -> String {
     ascii(text).replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }

@@ -1,4 +1,4 @@
-//! Files for vendors' tools beside the Verilog: constraints, Tcl, IP-XACT.
+//! Generates files for vendors' tools beside the Verilog: constraints, Tcl, IP-XACT.
 
 mod constraints;
 mod ip_xact;

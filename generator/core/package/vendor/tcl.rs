@@ -1,4 +1,4 @@
-//! Tcl for Vivado and Quartus: builds of a module alone, and descriptions of it as IP.
+//! Generates Tcl for Vivado and Quartus: builds of a module alone, and descriptions of it as IP.
 
 use anyhow::Result;
 use glint_base::fill;
@@ -105,7 +105,7 @@ fn interfaces(top: &Top) -> Vec<Interface<'_>> {
     top.protocols.iter().map(interface).collect()
 }
 
-/// As it stands between the quotation marks of a Tcl word.
+/// Escapes a text to stand between the quotation marks of a Tcl word.
 fn quoted(text: &str) -> String {
     let mut quoted = String::new();
     for c in ascii(text).chars() {

@@ -1,4 +1,5 @@
-//! `<name>_axis_tb.v`, and `<name>_axil_tb.v` or `<name>_wb_tb.v`: benches of the wrappers, with the points of the core's.
+//! Generates the test benches of the wrappers, `<name>_axis_tb.v`, and `<name>_axil_tb.v` or `<name>_wb_tb.v`, with the
+//! points of the core's bench.
 
 use anyhow::Result;
 use glint_base::fill;

@@ -1,4 +1,4 @@
-//! Operands and results side by side in whole bytes.
+//! Lays operands and results side by side in whole bytes, as the transfers of a stream carry them.
 
 use anyhow::{Context, Result};
 
@@ -36,7 +36,7 @@ impl Field {
         }
     }
 
-    /// In whole bytes, from a net of the given name.
+    /// Extends a value to whole bytes: lists the parts, the upper first, from a net of the given name.
     fn packed(&self, net: &str) -> Vec<String> {
         match (self.padded() - self.width, self.signed) {
             (0, _) => vec![net.to_owned()],

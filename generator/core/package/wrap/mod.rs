@@ -1,4 +1,4 @@
-//! Wrappers in Verilog between a core and a system, and the properties that are proved of them.
+//! Generates wrappers in Verilog between a core and a system, and the properties that are proved of them.
 
 mod bench;
 pub(super) mod fields;
@@ -72,7 +72,7 @@ fn core_wire(design: &Design, port: &Port) -> String {
     format!("wire {} core_{};", range(net.format.width()), net.name).replace("  ", " ")
 }
 
-/// Results of the module that stands in for the core: anything.
+/// Lets the results of the module that stands in for the core be anything.
 fn stub_free(design: &Design) -> Vec<String> {
     let is_free = |port: &&Port| matches!(port.role, Role::Result | Role::Status);
     let free = design.ports.iter().filter(is_free).flat_map(|port| {

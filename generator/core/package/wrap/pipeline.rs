@@ -1,4 +1,5 @@
-//! `<name>_axis.v` of a pipeline: the core between two AXI4-Streams, and what is proved of it.
+//! Generates `<name>_axis.v` of a pipeline, a wrapper that puts the core between two AXI4-Streams, and the properties
+//! proved of it.
 
 use anyhow::{Result, ensure};
 use glint_base::fill;

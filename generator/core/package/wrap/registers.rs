@@ -1,5 +1,5 @@
-//! `<name>_registers.v` and its bus, `<name>_axil.v` or `<name>_wb.v`: the core behind registers, and what is
-//! proved of them.
+//! Generates `<name>_registers.v` and its bus, `<name>_axil.v` or `<name>_wb.v`, which put the core behind registers,
+//! and the properties proved of them.
 
 use anyhow::Result;
 use glint_base::fill;
@@ -114,7 +114,7 @@ fn described(map: &Map) -> Vec<String> {
     lines
 }
 
-/// As lines of a comment, below the name of a register.
+/// Formats a text as lines of a comment, below the name of a register.
 fn indented(text: &str) -> Vec<String> {
     let line = |line: String| line.replacen("//", "//          ", 1);
     comment(12, text).into_iter().map(|text| line(text.trim_start().to_owned())).collect()

@@ -25,7 +25,7 @@ impl Line {
         self.width - 1
     }
 
-    /// 0 as a count, which has a bit more than an address of the buffer.
+    /// Returns 0 as a count, which has a bit more than an address of the buffer.
     fn zero(&self) -> String {
         literal(0, self.width + 1)
     }
@@ -34,7 +34,7 @@ impl Line {
         literal(1, self.width + 1)
     }
 
-    /// As many points as a line can have, and as the buffer has places.
+    /// Returns how many points a line can have at most, as many as the buffer has places.
     fn places(&self) -> String {
         literal(1 << self.width, self.width + 1)
     }
@@ -132,7 +132,7 @@ pub fn modules(job: &Job, files: &mut Artifacts) -> Result<()> {
     add_proof(job, &format!("{name}_axis"), text, files)
 }
 
-/// Yosys finds nets below the top by their path, if a declaration says how wide they are.
+/// Declares nets below the top, with their widths: with these Yosys finds them by their path.
 fn inside(
     operands: &Transfer,
     results: &Transfer,

@@ -1,4 +1,4 @@
-//! Registers in Verilog: whether an address is one of some, and what is read of each.
+//! Writes the Verilog of registers: whether an address is one of some, and what is read of each.
 
 use super::fields::{Transfer, results};
 use crate::package::map::{self, Map, Part, Placed, Register};

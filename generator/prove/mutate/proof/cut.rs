@@ -1,4 +1,4 @@
-//! The fewest bits that determine some nets.
+//! Finds the fewest bits that determine some nets: a minimum cut.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,4 +1,4 @@
-//! A pipeline as a point sees it.
+//! Makes of a pipeline what one point sees of it: its registers hand on what they take.
 
 use std::collections::BTreeMap;
 

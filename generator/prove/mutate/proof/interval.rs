@@ -1,4 +1,4 @@
-//! The interval of values of each net, from what it is made of.
+//! Finds the interval of values of each net, from what it is made of.
 //!
 //! The intervals that the description states are not used but for registers: that of a view of a shared
 //! multiplier holds under some selections only.

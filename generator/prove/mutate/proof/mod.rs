@@ -1,4 +1,4 @@
-//! Faults that change nothing that is compared, and the proof of it.
+//! Proves that a fault changes nothing that is compared.
 //!
 //! One proof is an induction over clocks. In every microinstruction, fault-free design and mutant are
 //! evaluated side by side over the pairs of bits that a net can have in both ([`pairs`]). Where neither an
@@ -35,7 +35,7 @@ pub(super) struct Prover<'a> {
 }
 
 impl<'a> Prover<'a> {
-    /// `None` for a design with a combinational loop.
+    /// Prepares the proofs of a design. Returns `None` for a design with a combinational loop.
     pub(super) fn new(design: &'a Design) -> Option<Self> {
         let length = count(design);
         let mut compared = vec![vec![0; design.nets.len()]; length];

@@ -1,4 +1,4 @@
-//! The bits that a net has in the fault-free design and in the mutant, together.
+//! Finds the pairs of bits that a net can have, in the fault-free design and in the mutant, through each kind of cell.
 
 use std::array::from_fn;
 
@@ -14,17 +14,17 @@ use glint_rtl::netlist::{Design, Driver, NetId, Op};
 pub(super) struct Pairs([u64; 4]);
 
 impl Pairs {
-    /// A pattern, in both.
+    /// Makes the pairs of one pattern, in both.
     pub(super) fn constant(bits: u64, width: u32) -> Self {
         Self([!bits & mask(width), 0, 0, bits & mask(width)])
     }
 
-    /// Any pattern, in both.
+    /// Makes the pairs of any pattern, the same in both.
     pub(super) fn same(width: u32) -> Self {
         Self([mask(width), 0, 0, mask(width)])
     }
 
-    /// The bits that every value from `low` to `high` has, and any others, in both.
+    /// Makes the pairs of an interval: the bits that every value from `low` to `high` has, and any others, in both.
     pub(super) fn of_interval((low, high): Interval, width: u32) -> Self {
         let (low, high) = (low as u64 & mask(width), high as u64 & mask(width));
         let differ = low ^ high;
@@ -33,22 +33,22 @@ impl Pairs {
         Self::constant(low, width).or(Self::same(width).cut(0, open))
     }
 
-    /// The pairs of either.
+    /// Returns the pairs of either.
     pub(super) fn or(self, other: Self) -> Self {
         Self(from_fn(|pair| self.0[pair] | other.0[pair]))
     }
 
-    /// The pairs of both.
+    /// Returns the pairs that both have.
     pub(super) fn and(self, other: Self) -> Self {
         Self(from_fn(|pair| self.0[pair] & other.0[pair]))
     }
 
-    /// These with any pair for some bits.
+    /// Adds any pair for some bits.
     pub(super) fn or_any(self, bits: u64) -> Self {
         Self(self.0.map(|pair| pair | bits))
     }
 
-    /// The fault-free bits of this with the mutant's of another, each with each.
+    /// Pairs the fault-free bits of this with the mutant's of another, each with each.
     pub(super) fn across(self, mutant: Self) -> Self {
         let (sound, mutant) = (self.fault_free(), mutant.mutant());
         Self(from_fn(|pair| sound[pair & 1] & mutant[pair >> 1]))
@@ -60,7 +60,7 @@ impl Pairs {
         Self(from_fn(|pair| self.0[pair] & sound[pair & 1]))
     }
 
-    /// These with a bit of the mutant at fault.
+    /// Puts a bit of the mutant at fault.
     pub(super) fn at_fault(self, bit: u32, how: Bit) -> Self {
         let of_bit = self.cut(0, 1 << bit).0;
         let mut pairs = self.cut(0, !(1 << bit)).0;
@@ -96,12 +96,12 @@ impl Pairs {
         (self.differ() == 0 && self.0[0] ^ self.0[3] == mask(width)).then_some(self.0[3])
     }
 
-    /// The bits of `all` from `low` up.
+    /// Returns the bits from `low` up, of which `all` is the mask.
     fn cut(self, low: u32, all: u64) -> Self {
         Self(self.0.map(|pair| pair >> low & all))
     }
 
-    /// With some bits inverted, in both.
+    /// Inverts some bits, in both.
     fn inverted(self, bits: u64) -> Self {
         Self(from_fn(|pair| self.0[pair] & !bits | self.0[pair ^ 3] & bits))
     }
@@ -122,8 +122,8 @@ impl Pairs {
         Self(all)
     }
 
-    /// From the lowest bit up, what a bit of each and what comes from below give: a bit of the result, and what goes on
-    /// to the next. Both results.
+    /// Goes from the lowest bit up: a bit of each and what comes from below give a bit of the result, and what goes on
+    /// to the next. Returns both results.
     fn rippled(
         self,
         other: Self,
@@ -148,7 +148,7 @@ impl Pairs {
         (result, carry)
     }
 
-    /// The sum.
+    /// Returns the sum of both and a carry.
     fn plus(self, other: Self, carry: Self, width: u32) -> Self {
         self.rippled(other, width, carry, |a, b, c| (a ^ b ^ c, a & b | a & c | b & c)).0
     }
@@ -247,8 +247,8 @@ pub(super) fn choices(select: Pairs, lines: u32, inputs: &[NetId]) -> impl Itera
     possible.map(|number: u64| inputs[(number as usize).min(inputs.len() - 1)])
 }
 
-/// Leading and trailing zeros of an unsigned product, and of a square; from the lowest bit on that may differ in a factor any
-/// may.
+/// Returns what is known of a product: leading and trailing zeros of an unsigned product, and of a square; from the
+/// lowest bit on that may differ in a factor any may.
 fn product(
     design: &Design,
     a: NetId,

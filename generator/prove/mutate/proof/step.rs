@@ -1,5 +1,5 @@
-//! One microinstruction, of the fault-free design or of a mutant beside it. A pipeline has none: each of its slots is taken as
-//! one.
+//! Evaluates one microinstruction, of the fault-free design or of a mutant beside it. A pipeline has none: each of its
+//! slots is taken as one.
 
 use super::interval;
 use super::pairs::{self, Pairs};
@@ -27,7 +27,7 @@ pub(super) struct Order<'a> {
 pub(super) type Injected<'s> = (&'s Site, &'s [Pairs]);
 
 impl<'a> Order<'a> {
-    /// `None` for a design with a combinational loop.
+    /// Finds an order of evaluation. Returns `None` for a design with a combinational loop.
     pub(super) fn of(design: &'a Design) -> Option<Self> {
         let mut order = design.levelise().ok()?;
         let mut in_all_slots = Vec::new();
@@ -248,7 +248,7 @@ pub(super) fn following(design: &Design, at: usize) -> Vec<usize> {
     following
 }
 
-/// For each net the first with the same driver.
+/// Finds for each net the first with the same driver.
 pub(super) fn same(design: &Design, order: &[NetId]) -> Vec<NetId> {
     let mut same: Vec<NetId> = design.iter().map(|(id, _)| id).collect();
     let mut drivers: Vec<(Driver, u32, bool, NetId)> = Vec::new();

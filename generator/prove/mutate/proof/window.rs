@@ -1,4 +1,4 @@
-//! Faults whose neighbourhood is small: every combination of values around it is tried.
+//! Proves faults equivalent whose neighbourhood is small: every combination of values around the fault is tried.
 //!
 //! A window reaches from the fault forward over some cells, at most to multipliers, registers, ROMs and
 //! outputs, and backward to the fewest bits that determine it: a minimum cut. Each net of the cut takes
@@ -51,7 +51,7 @@ pub(super) struct Windows<'a> {
 }
 
 impl<'a> Windows<'a> {
-    /// `None` for a design with a combinational loop.
+    /// Prepares the windows of a design. Returns `None` for a design with a combinational loop.
     pub(super) fn of(design: &'a Design) -> Option<Self> {
         let (design, copies) = match &design.pipeline {
             Some(pipeline) => {

@@ -1,4 +1,4 @@
-//! Tables and sentences about a configuration, for pages of any format.
+//! Writes tables and sentences about a configuration, for pages of any format.
 //!
 //! A cell and a sentence are plain text in which names stand in backquotes.
 
@@ -249,7 +249,7 @@ pub fn microprogram(design: &Design) -> Table {
     table
 }
 
-/// When what happens after `start`.
+/// Tabulates in which clock after `start` each event of the handshake is.
 pub fn clocks(timing: &Timing, line: Option<&LineClocks>) -> Table {
     let mut table = Table::of("event | clock:");
     let mut row = |event: &str, clock: Option<u32>, of_line: Option<Linear>| {
@@ -279,7 +279,7 @@ pub fn handshake(pipeline: &Pipeline) -> &'static str {
     }
 }
 
-/// When what happens after a pipeline takes a point.
+/// Tabulates how many clocks after a pipeline takes a point each event is.
 pub fn pipeline_clocks(pipeline: &Pipeline) -> Table {
     let mut table = Table::of("event | clock:");
     table.row(["the next point is taken".to_owned(), "1".to_owned()]);

@@ -1,4 +1,4 @@
-//! A table of text.
+//! A table of text, with headings and alignment, for pages of any format.
 
 /// Where a column's cells stand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,7 +28,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// A table of these columns, yet without rows.
+    /// Makes a table of these columns, yet without rows.
     pub fn new(columns: &[(&str, Align)]) -> Self {
         Self {
             columns: columns
@@ -39,7 +39,8 @@ impl Table {
         }
     }
 
-    /// A table with these headings, which bars part; the cells below a heading with a colon behind it are numbers.
+    /// Makes a table with these headings, which bars part; the cells below a heading with a colon behind it are
+    /// numbers.
     pub fn of(headings: &str) -> Self {
         let column = |heading: &'_ str| match heading.strip_suffix(':') {
             Some(heading) => Column { heading: heading.to_owned(), align: Align::Right },
@@ -48,7 +49,7 @@ impl Table {
         Self { columns: headings.split(" | ").map(column).collect(), rows: Vec::new() }
     }
 
-    /// One row more, with a cell for each column.
+    /// Adds one row, with a cell for each column.
     pub fn row(&mut self, cells: impl IntoIterator<Item = String>) {
         self.rows.push(cells.into_iter().collect());
     }

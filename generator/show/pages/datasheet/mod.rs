@@ -1,4 +1,5 @@
-//! A configuration as a vendor's product guide would present it: one HTML page that needs nothing but itself.
+//! Makes the datasheet of a configuration, as a vendor's product guide would present it: one HTML page that needs
+//! nothing but itself.
 //!
 //! Everything on it comes from the design, the golden model and simulation; nothing knows a device by name.
 

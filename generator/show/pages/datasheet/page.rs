@@ -1,4 +1,5 @@
-//! The page: everything that is known of a configuration, as views that the template prints.
+//! Gathers everything that is known of a configuration into views, which the template of the datasheet prints as the
+//! page.
 
 use anyhow::Result;
 use base64::Engine;
@@ -312,7 +313,7 @@ fn throughput(subject: &Subject, timing: &Timing) -> String {
     }
 }
 
-/// With a narrow space between thousands, which no line ends at.
+/// Writes a number with a narrow space between thousands, which no line ends at.
 fn grouped(number: u64) -> String {
     text::grouped(number).replace(' ', "\u{202f}")
 }

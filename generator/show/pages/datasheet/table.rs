@@ -1,4 +1,4 @@
-//! Tables as HTML.
+//! Prepares tables for HTML.
 
 use crate::pages::account::{Align, Table};
 use crate::pages::markup::html;
@@ -29,7 +29,7 @@ pub struct CellView {
 }
 
 impl TableView {
-    /// A table of plain text with names in backquotes.
+    /// Prepares a table of plain text with names in backquotes.
     pub fn new(label: &'static str, table: &Table) -> Self {
         let class = |align| match align {
             Align::Left => "",

@@ -1,4 +1,4 @@
-//! The timing diagram: a waveform as a drawing.
+//! Draws the timing diagram of a waveform.
 
 use std::ops::Range;
 

@@ -1,4 +1,5 @@
-//! The waveform of one computation, or of points through a pipeline, from the built-in simulator: lanes of values, and WaveDrom's JSON of them.
+//! Takes the waveform of one computation, or of points through a pipeline, from the built-in simulator: lanes of
+//! values, and WaveDrom's JSON of them.
 
 use anyhow::Result;
 use serde_json::{Value, json};
@@ -87,7 +88,7 @@ impl Waves {
         }
     }
 
-    /// The handshake of a pipeline, operands while they are offered, results while they are shown.
+    /// Takes the waveform of a pipeline: the handshake, operands while they are offered, results while they are shown.
     fn points(core: &Core) -> Result<Self> {
         let design = &core.design;
         let of = |wanted: &[Role]| {
@@ -148,7 +149,7 @@ impl Waves {
         Ok(Self::cut(design, "one computation", clocks.len(), lanes))
     }
 
-    /// The clocks that are shown of so many.
+    /// Cuts lanes of so many clocks to those that are shown.
     fn cut(design: &Design, what: &'static str, clocks: usize, mut lanes: Vec<Lane>) -> Self {
         let shown = shown(clocks);
         for lane in &mut lanes {
@@ -184,7 +185,7 @@ impl Waves {
         )
     }
 
-    /// As WaveDrom's JSON, ending with a newline.
+    /// Returns the waveform as WaveDrom's JSON, ending with a newline.
     ///
     /// # Errors
     /// None that a user could cause.
@@ -225,7 +226,7 @@ impl Waves {
     }
 }
 
-/// The handshake, the registers of the source's datapath, and the results.
+/// Lists what is recorded: the handshake, the registers of the source's datapath, and the results.
 fn probes(design: &Design, handshake: [NetId; 4]) -> Vec<Probe> {
     let control = handshake.into_iter().map(|net| (net, Meaning::Control));
     let registers = design.registers.iter();

@@ -1,4 +1,5 @@
-//! The nodes and wires of a block diagram: ports, blocks and the control unit.
+//! Makes the graph of a block diagram from the netlist: nodes (ports, blocks and the control unit) and the wires
+//! between them.
 
 use std::collections::HashMap;
 
@@ -61,7 +62,7 @@ pub struct Wire {
 }
 
 impl Graph {
-    /// The graph of a design.
+    /// Makes the graph of a design.
     pub fn new(design: &Design) -> Self {
         let stages = design.pipeline.as_ref().map_or(0, |pipeline| pipeline.stages.len());
         let mut builder = Builder {
@@ -111,7 +112,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// A wire to an input of a block; a constant stands beside what takes it.
+    /// Adds a wire to an input of a block; a constant stands beside what takes it.
     fn takes(&mut self, net: NetId, to: usize) {
         if self.driver.contains_key(&net)
             || !matches!(self.design.net(net).driver, Driver::Constant(_))
@@ -132,7 +133,7 @@ impl<'a> Builder<'a> {
         self.graph.wires.push(Wire { from, to });
     }
 
-    /// Stages without a block have a place too.
+    /// Adds an empty box to each stage without a block: it has a place too.
     fn fill(&mut self) {
         for stage in 0..self.graph.stages {
             if self.graph.boxes.iter().all(|it| it.stage != Some(stage)) {
@@ -177,7 +178,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Operands, `start`, and what goes with a point; strobes stand at the registers that they write.
+    /// Adds operands, `start`, and what goes with a point; strobes stand at the registers that they write.
     fn inputs(&mut self) {
         for port in self.design.inputs() {
             if matches!(
@@ -190,7 +191,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Results, and the handshake; that all points wait together is no flow of data.
+    /// Adds results, and the handshake; that all points wait together is no flow of data.
     fn outputs(&mut self, control: Option<usize>) {
         for port in self.design.outputs().filter(|port| port.role != Role::InReady) {
             let at = self.port(port.net, BoxForm::Output);

@@ -1,5 +1,5 @@
-//! The block diagram: the blocks of the netlist, laid out in ranks from the inputs to the outputs; of a pipeline with a
-//! band for each stage, and a mark where a wire goes through a register from one to the next.
+//! Draws the block diagram: the blocks of the netlist, laid out in ranks from the inputs to the outputs; of a pipeline
+//! with a band for each stage, and a mark where a wire goes through a register from one to the next.
 //!
 //! `place` and `route` lay it out from left to right. The page shows it turned, from top to bottom: a datapath has more
 //! ranks than blocks in one, so that this is the form that fits a page, on a screen and on paper.
@@ -177,7 +177,7 @@ fn bottom(bodies: &[Body], routes: &Routes) -> f64 {
     bodies.iter().map(|body| body.lower).fold(routes.bottom(), f64::max)
 }
 
-/// On whole units, with the border.
+/// Rounds a coordinate to whole units, and adds the border.
 fn coordinate(value: f64) -> i32 {
     value.round() as i32 + BORDER
 }
@@ -194,7 +194,7 @@ impl Page<'_> {
         format!("{} {}", self.left + coordinate(y), coordinate(x))
     }
 
-    /// The stages, with the registers that end each.
+    /// Draws the stages, with the registers that end each.
     fn stages(&mut self, pipeline: &Pipeline, graph: &Graph, place: &Placement, routes: &Routes) {
         let columns = |stage: usize| {
             let boxes = graph.boxes.iter().zip(&place.column);
@@ -313,7 +313,8 @@ fn class(form: BoxForm) -> &'static str {
     }
 }
 
-/// Ports point in the direction of the signal, down the page; muxes narrow toward their output.
+/// Returns the outline of a box. Ports point in the direction of the signal, down the page; muxes narrow toward their
+/// output.
 fn outline(form: BoxForm, x: i32, y: i32, width: i32, height: i32) -> String {
     let (right, bottom, middle) = (x + width, y + height, x + width / 2);
     match form {

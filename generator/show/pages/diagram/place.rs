@@ -1,4 +1,4 @@
-//! Where boxes stand: columns from left to right, by the layered layout of the `dagre` library.
+//! Places the boxes of a block diagram in columns from left to right, by the layered layout of the `dagre` library.
 
 use dagre::graph::{Graph as Layered, GraphOptions};
 use dagre::{EdgeLabel, LayoutOptions, NodeLabel, RankDir, Ranker, layout};
@@ -37,8 +37,8 @@ pub struct Placement {
 }
 
 impl Placement {
-    /// Places boxes that take so much height, with wires that lead back as [`back`] says; of a few layouts the one that
-    /// takes the least height, which is the width of the page.
+    /// Puts boxes that take so much height into columns, with wires that lead back as [`back`] says; of a few layouts
+    /// the one that takes the least height, which is the width of the page.
     pub fn new(graph: &Graph, heights: &[f64], back: &[bool]) -> Self {
         let rankers = [Ranker::NetworkSimplex, Ranker::LongestPath];
         let variants = rankers.into_iter().flat_map(|it| [(it, false), (it, true)]);
@@ -48,14 +48,14 @@ impl Placement {
         narrowest.expect("there are four")
     }
 
-    /// From the top of the highest box to the bottom of the lowest.
+    /// Returns the height from the top of the highest box to the bottom of the lowest.
     fn height(&self, heights: &[f64]) -> f64 {
         let boxes = || self.middle.iter().zip(heights);
         let top = boxes().map(|(middle, height)| middle - height / 2.0).fold(f64::MAX, f64::min);
         boxes().map(|(middle, height)| middle + height / 2.0).fold(0.0, f64::max) - top
     }
 
-    /// A layout by one way to rank boxes, with the outputs of the handshake at the end or where there is room.
+    /// Makes a layout by one way to rank boxes, with the outputs of the handshake at the end or where there is room.
     fn variant(
         graph: &Graph,
         heights: &[f64],

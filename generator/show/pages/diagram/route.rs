@@ -1,4 +1,5 @@
-//! How wires run: horizontally through columns, vertically between them, around a box where they lead back.
+//! Routes the wires of a block diagram: horizontally through columns, vertically between them, around a box where they
+//! lead back.
 
 use std::collections::HashMap;
 
@@ -233,7 +234,7 @@ impl Router<'_> {
         self.hop(net, to, (y, Side::Right), (pin, Side::Right));
     }
 
-    /// A net that enters a gap goes to all its exits along one trunk.
+    /// Adds an exit to a trunk: a net that enters a gap goes to all its exits along one trunk.
     fn hop(&mut self, net: usize, gap: usize, entry: (f64, Side), exit: (f64, Side)) {
         let trunks = &mut self.gaps[gap];
         let found = trunks.iter_mut().find(|it| it.net == net && it.entry == entry);
@@ -300,7 +301,7 @@ impl Net {
         }
     }
 
-    /// The vertical line and its taps.
+    /// Adds the vertical line of a trunk, and its taps.
     fn trunk(&mut self, trunk: &Trunk, (left, right): (f64, f64)) {
         if trunk.is_straight() {
             self.piece((left, trunk.entry.0), (right, trunk.entry.0));

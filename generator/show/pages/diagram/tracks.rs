@@ -1,4 +1,5 @@
-//! Wires between two columns: vertical trunks, each on a track of its own where it would touch another.
+//! Gives the wires between two columns their tracks: vertical trunks, each on a track of its own where it would touch
+//! another.
 
 /// Nearer than this, lines seem to touch.
 const NEAR: f64 = 5.0;
@@ -45,7 +46,7 @@ impl Trunk {
         high - low < 0.5
     }
 
-    /// Crossings and overlaps when it is left of another.
+    /// Counts crossings and overlaps when it is left of another.
     fn left_of(&self, other: &Self) -> usize {
         let within = |trunk: &Self, y: f64| {
             let (low, high) = trunk.reach();

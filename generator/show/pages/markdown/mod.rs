@@ -1,4 +1,4 @@
-//! The page of a configuration: what the device is, for people, in Markdown.
+//! Writes the page of a configuration in Markdown: what the device is, for people.
 
 mod prose;
 

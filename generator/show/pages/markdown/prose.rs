@@ -1,4 +1,4 @@
-//! Markdown: tables, and text that Markdown would take for something else.
+//! Writes tables in Markdown, and escapes text that Markdown would take for something else.
 
 use crate::pages::account::{Align, Table};
 
@@ -39,7 +39,7 @@ pub fn table(table: &Table) -> String {
     lines.join("\n")
 }
 
-/// Prose in which no sign is Markdown's, but for names in backquotes.
+/// Escapes prose so that no sign is Markdown's, but for names in backquotes.
 pub fn prose(text: &str) -> String {
     let mut plain = String::with_capacity(text.len());
     let mut name = false;

@@ -1,4 +1,4 @@
-//! The host's set-up of a line, in f64, for devices that walk lines (seed 000).
+//! Computes the host's set-up of a line, in f64, for devices that walk lines (seed 000).
 //!
 //! Along a line the half vector goes from H₁ to H₂ on a great circle while the normal goes from N₁ to N₂. The
 //! seed turns the second end so that the normals coincide: H₂′ is H₂ turned as N₂ is turned into N₁. What is
@@ -88,7 +88,7 @@ pub struct Arc {
 }
 
 impl Arc {
-    /// From the normals and half vectors at the ends of the line, of any length.
+    /// Sets up an arc from the normals and half vectors at the ends of the line, of any length.
     ///
     /// # Errors
     /// [`Error::NoDirection`] and [`Error::OppositeHalves`].
@@ -114,7 +114,7 @@ impl Arc {
         )
     }
 
-    /// From θ₁, θ₂ and γ, each from 0 to π.
+    /// Sets up an arc from θ₁, θ₂ and γ, each from 0 to π.
     ///
     /// # Errors
     /// [`Error::OppositeHalves`] and [`Error::NoSuchAngles`].
@@ -126,7 +126,7 @@ impl Arc {
         if arc.peak > 1.0 + ROUNDING || still { Err(Error::NoSuchAngles) } else { Ok(arc) }
     }
 
-    /// From θ₁ and θ₂, γ, cos θ₁ and the rise, which counts only if the half vector moves.
+    /// Sets up an arc from θ₁ and θ₂, γ, cos θ₁ and the rise, which counts only if the half vector moves.
     fn new_of(
         [theta_1, theta_2]: [f64; 2],
         gamma: f64,
@@ -144,19 +144,19 @@ impl Arc {
         Ok(Self { theta_1, theta_2, gamma, rise, lambda, peak })
     }
 
-    /// cos δ at the part `t` of the way, 0 … 1: A·cos ζ. Negative where the surface faces away, but for γ = 0, where
-    /// it is 0 then.
+    /// Returns cos δ at the part `t` of the way, 0 … 1: A·cos ζ. Negative where the surface faces away, but for γ = 0,
+    /// where it is 0 then.
     pub fn cosine(&self, t: f64) -> f64 {
         self.peak * libm::cos(t * self.gamma - self.lambda)
     }
 
-    /// P = (cos θ₂ − cos θ₁·cos γ)/(cos θ₁·sin γ), infinite or not a number for cos θ₁ = 0.
+    /// Returns P = (cos θ₂ − cos θ₁·cos γ)/(cos θ₁·sin γ), infinite or not a number for cos θ₁ = 0.
     pub fn p(&self) -> f64 {
         self.rise / libm::cos(self.theta_1)
     }
 
-    /// ζ at H₁: −λ, or a turn less where that brings the part of the way that has light near ζ = 0.
-    /// The whole way lies within three right angles of 0 then.
+    /// Returns ζ at H₁: −λ, or a turn less where that brings the part of the way that has light near ζ = 0. The whole
+    /// way lies within three right angles of 0 then.
     pub fn zeta_start(&self) -> f64 {
         if self.gamma - self.lambda > 1.5 * PI { -self.lambda - TAU } else { -self.lambda }
     }
@@ -184,7 +184,7 @@ pub fn direction(name: &'static str, vector: Vector) -> Result<Vector, Error> {
     vector.unit().ok_or(Error::NoDirection(name))
 }
 
-/// The half vector (L + V)/|L + V| of the directions toward the light and the viewer, whose names come first.
+/// Returns the half vector (L + V)/|L + V| of the directions toward the light and the viewer, whose names come first.
 ///
 /// # Errors
 /// [`Error::NoDirection`], of the sum too.
@@ -193,7 +193,7 @@ pub fn half(names: [&'static str; 3], light: Vector, view: Vector) -> Result<Vec
     direction(of_both, direction(of_light, light)? + direction(of_view, view)?)
 }
 
-/// H₂′: H₂ turned as N₂ is turned into N₁ about the normal of both; all unit vectors.
+/// Returns H₂′: H₂ turned as N₂ is turned into N₁ about the normal of both; all unit vectors.
 fn turned(normal_1: Vector, normal_2: Vector, half_2: Vector) -> Vector {
     let cosine = normal_1.dot(normal_2);
     if cosine <= OPPOSITE {
@@ -225,12 +225,12 @@ pub struct Line {
 }
 
 impl Line {
-    /// ζ of point number `index`.
+    /// Returns ζ of point number `index`.
     pub fn zeta(&self, index: u32) -> f64 {
         self.zeta_start + f64::from(index) * self.delta_zeta
     }
 
-    /// By what a device without an exponent takes the angles: a = √(n/2).
+    /// Returns a = √(n/2), by which a device without an exponent takes the angles.
     pub fn stretch(&self) -> f64 {
         (f64::from(self.exponent) / 2.0).sqrt()
     }

@@ -1,4 +1,4 @@
-//! The output of `cosim --exhaustive` and `merge`.
+//! Prints the outcome of `cosim --exhaustive` and `merge`.
 
 use std::collections::BTreeMap;
 

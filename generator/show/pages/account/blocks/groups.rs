@@ -26,8 +26,8 @@ pub struct Groups<'a> {
 }
 
 impl<'a> Groups<'a> {
-    /// The groups of a design. In a `figure`, gates and wiring are blocks only where the source numbers them, or where
-    /// several signals meet.
+    /// Groups the nets of a design. In a `figure`, gates and wiring are blocks only where the source numbers them, or
+    /// where several signals meet.
     pub fn new(design: &'a Design, figure: bool) -> Self {
         let ports: Vec<NetId> = design.ports.iter().map(|port| port.net).collect();
         let cell = design.iter().map(|(id, net)| {

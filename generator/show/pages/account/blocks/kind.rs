@@ -1,4 +1,4 @@
-//! The kinds of blocks.
+//! The kinds of blocks in a datapath (register, ROM, adder, mux, …), and what they are called.
 
 use std::fmt;
 

@@ -1,4 +1,4 @@
-//! The blocks of a datapath: every register, table and operator of the netlist is in one of them.
+//! Finds the blocks of a datapath: every register, table and operator of the netlist is in one of them.
 //!
 //! A statement of the description makes one block: a rounding with its limits, a tree of muxes, a product in parts. Wires, and
 //! gates with one signal, are part of the way from block to block; in a pipeline a register belongs to the block whose value it holds.
@@ -73,8 +73,8 @@ pub struct Blocks<'a> {
 }
 
 impl<'a> Blocks<'a> {
-    /// The blocks of a design. In a `figure`, gates and wiring are blocks only where the source numbers them, or where
-    /// several signals meet.
+    /// Finds the blocks of a design. In a `figure`, gates and wiring are blocks only where the source numbers them, or
+    /// where several signals meet.
     pub fn new(design: &'a Design, figure: bool) -> Self {
         Self { design, groups: Groups::new(design, figure) }
     }
