@@ -221,8 +221,6 @@ fn median(mut values: Vec<f64>) -> f64 {
     if values.len() % 2 == 1 { values[middle] } else { (values[middle - 1] + values[middle]) / 2.0 }
 }
 
-/// The errors are those that stand beside the weights in `generator/base/target.rs`: of the look-up tables in the median and
-/// at most. Where there is a frequency the estimates are as often above as below.
 /// Eight products: 130 MHz and 30 million points a second leave four clocks a point and two multipliers, 5 million the eight clocks
 /// of the sequential core and one.
 #[test]
@@ -255,6 +253,8 @@ fn a_rate_chooses_architecture_and_interval() {
     assert!(tune(&device, &plain, &architecture, &goal, &|_| ()).is_err());
 }
 
+/// The errors are those that stand beside the weights in `generator/base/target.rs`: of the look-up tables in the median and
+/// at most. Where there is a frequency the estimates are as often above as below.
 #[test]
 fn estimates_are_as_near_to_synthesis_as_is_said() {
     let records = input::records::<Record>(Path::new(synth::DIRECTORY)).expect("records");

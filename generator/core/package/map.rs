@@ -130,7 +130,7 @@ impl Map {
         if design.pipeline.is_some() {
             bail!(unfit(
                 format!("`{name}` is a pipeline, for which a bus is too slow"),
-                "remove it, or set interface.stream = true or architecture = \"sequential\"",
+                "remove it, or set architecture = \"sequential\"; interface.stream = true is for pipelines",
             ));
         }
         let length = inputs.accuracy.as_ref().and_then(|accuracy| accuracy.length.as_ref());
@@ -139,7 +139,7 @@ impl Map {
                 format!(
                     "`{name}` shows as many results as `{length}` says, which no register can hold"
                 ),
-                "remove it, or set interface.stream = true in its place",
+                "remove it; interface.stream = true is for such a core",
             ));
         }
         design.handshake()?;
