@@ -19,7 +19,7 @@ use super::binding::Binding;
 use super::outcome::{Course, Outcome, Seen, share, stream_seed};
 use super::recorded::Recording;
 use super::runner::Runner;
-use crate::package::Vectors;
+use crate::observation::Vectors;
 use glint_golden::{Contract, Model};
 use glint_rtl::netlist::Design;
 use glint_rtl::sim::Simulator;

@@ -7,10 +7,10 @@ use super::instances::Instances;
 use super::points::length;
 use super::ports::Ports;
 use super::{Points, Random, through};
-use crate::package::{Computation, LineClocks, Linear, Quantity, Shown, Timing, WorkedExample};
+use crate::observation::{Computation, LineClocks, Linear, Quantity, Shown, WorkedExample};
 use glint_base::fixed::Format;
 use glint_golden::{Contract, Highlight, Operand};
-use glint_rtl::netlist::{self, Design, NetId};
+use glint_rtl::netlist::{self, Design, NetId, Timing};
 use glint_rtl::sim::Simulator;
 
 /// More clocks than any device takes.

@@ -2,8 +2,9 @@
 //! it is listed.
 
 use super::bus::Bus;
+use super::inputs::EmitInputs;
 use super::map::Map;
-use super::{EmitInputs, OutputFile};
+use super::output_file::OutputFile;
 use glint_rtl::netlist::Design;
 use glint_rtl::verilog::naming::Naming;
 

@@ -3,8 +3,8 @@
 use anyhow::{Result, ensure};
 use glint_base::fill;
 
-use super::Vectors;
 use super::artifact::{Artifacts, Job, Kind};
+use crate::observation::Vectors;
 use glint_base::fixed::mask;
 use glint_rtl::netlist::{Design, Port, Role};
 use glint_rtl::verilog::rows::{connections, variables};

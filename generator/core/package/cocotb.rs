@@ -4,8 +4,9 @@ use anyhow::Result;
 use glint_base::fill;
 
 use super::artifact::{Artifacts, Job, Kind};
+use super::output_file::OutputFile;
 use super::seal::{Seal, sealed};
-use super::{ContractFacts, OutputFile, Quantity, WorkedExample};
+use crate::observation::{ContractFacts, Quantity, WorkedExample};
 
 /// The tests of the driver for a core with a microprogram; the first needs a formula.
 const SEQUENTIAL: [&str; 5] = [

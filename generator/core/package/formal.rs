@@ -8,7 +8,8 @@ use anyhow::Result;
 use glint_base::fill;
 
 use super::artifact::{Artifacts, Job, Kind};
-use super::{Computation, Timing};
+use crate::observation::Computation;
+use glint_rtl::netlist::Timing;
 use glint_rtl::netlist::termination::{self, Left};
 use glint_rtl::netlist::{Design, Driver, NetId, Op, Partition, Port, RegId, Role, Sequence};
 use glint_rtl::verilog::naming::Naming;

@@ -7,9 +7,12 @@ use serde_json::{Value, json};
 
 use super::artifact::{Artifacts, Job, Kind};
 use super::facts::{self, Port, Rom};
+use super::inputs::EmitInputs;
 use super::map::Register;
+use super::output_file::{OutputFile, digest};
 use super::wrap::fields::{Field, Transfer};
-use super::{Computation, ContractFacts, EmitInputs, OutputFile, Quantity, Timing, digest};
+use crate::observation::{Computation, ContractFacts, Quantity};
+use glint_rtl::netlist::Timing;
 use glint_rtl::netlist::{Design, Pipeline, RegId};
 
 /// The version of the manifest's structure, for programs that read it: of what names mean and where they stand. It grows

@@ -6,7 +6,8 @@ use std::collections::BTreeSet;
 use anyhow::{Result, bail};
 use serde::Deserialize;
 
-use super::{EmitInputs, Unfit};
+use super::inputs::EmitInputs;
+use super::unfit::Unfit;
 use glint_base::fixed::Format;
 use glint_rtl::netlist::{Design, Port, Role};
 use glint_rtl::verilog::text::ascii;

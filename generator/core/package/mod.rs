@@ -28,12 +28,14 @@ pub mod facts;
 mod formal;
 mod formal_pipeline;
 mod fusesoc;
+mod inputs;
 mod instance;
 mod languages;
 mod manifest;
 mod map;
 pub mod module_names;
 mod multiplier;
+mod output_file;
 mod points;
 pub mod seal;
 mod software;
@@ -44,12 +46,10 @@ mod vendor;
 mod wrap;
 
 use anyhow::{Result, ensure};
-use sha2::{Digest, Sha256};
 
 use artifact::{Artifacts, Job, Kind};
 use glint_rtl::netlist::Design;
 use glint_rtl::verilog;
-use glint_rtl::verilog::header::Origin;
 use glint_rtl::verilog::naming::Naming;
 use glint_rtl::verilog::plan::Plan;
 
@@ -58,7 +58,9 @@ pub use crate::observation::{
 };
 pub use cocotb::driver;
 pub use glint_rtl::netlist::Timing;
+pub use inputs::EmitInputs;
 pub use instance::instance;
+pub use output_file::{OutputFile, digest, sources, sources_for};
 pub use points::{POINTS_FILE, PointsBench, RESULTS_FILE};
 pub use seal::{Seal, is_sealed, sealed, sealed_json};
 pub use surroundings::{Surroundings, check_clock, check_rom_style};
@@ -73,81 +75,6 @@ pub fn points_bench(design: &Design, limit: u32) -> Result<PointsBench> {
     match design.pipeline {
         Some(_) => points::pipeline::points_bench(design, limit),
         None => points::points_bench(design, limit),
-    }
-}
-
-/// A file to be written.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct OutputFile {
-    /// Relative to the output directory, with `/`: `rtl_out/<name>/<name>.v`.
-    pub path: String,
-    /// The whole text, ending with a newline.
-    pub contents: String,
-}
-
-impl OutputFile {
-    /// Returns the last part of the path.
-    pub fn name(&self) -> &str {
-        self.path.rsplit('/').next().unwrap_or(&self.path)
-    }
-
-    /// Returns the target that the file is for, of one that stands in its directory: `rtl_out/<name>/<target>/…`.
-    fn target(&self) -> Option<&str> {
-        match self.path.split('/').collect::<Vec<_>>()[..] {
-            [_, _, target, _] => Some(target),
-            _ => None,
-        }
-    }
-}
-
-/// Returns the files that simulators and synthesisers read, Verilog and memories, each with its plain name.
-pub fn sources(files: Vec<OutputFile>) -> Vec<(String, String)> {
-    sources_for(files, "")
-}
-
-/// Returns the files for a target, whose own take the place of portable ones of the same name.
-pub fn sources_for(files: Vec<OutputFile>, target: &str) -> Vec<(String, String)> {
-    let needed = |file: &OutputFile| [".v", ".mem"].iter().any(|it| file.name().ends_with(it));
-    let (primitives, portable): (Vec<_>, Vec<_>) =
-        files.into_iter().filter(needed).partition(|file| file.target().is_some());
-    let own =
-        |name: &str| primitives.iter().find(|it| it.target() == Some(target) && it.name() == name);
-    portable
-        .into_iter()
-        .map(|file| {
-            let name = file.name().to_owned();
-            let contents = own(&name).map_or(file.contents, |own| own.contents.clone());
-            (name, contents)
-        })
-        .collect()
-}
-
-/// The inputs of the files beyond the design.
-#[derive(Clone, Debug, Default)]
-pub struct EmitInputs {
-    /// The command that makes the files again, with the configuration by its [`glint_base::input::label`].
-    pub regenerate: String,
-    /// Tells the configuration from others: SHA-256 in hexadecimal.
-    pub configuration: String,
-    /// Clocks, for header and manifest.
-    pub timing: Timing,
-    /// One computation with all its numbers, for the manifest.
-    pub example: Option<WorkedExample>,
-    /// The contract of the results, for the manifest.
-    pub accuracy: Option<ContractFacts>,
-    /// Computations with all that they show, for the manifest.
-    pub computations: Vec<Computation>,
-    /// Stimulus and expected outputs; without them there is no bench.
-    pub vectors: Option<Vectors>,
-    /// The surroundings of the core.
-    pub around: Surroundings,
-    /// The design with the microprogram from which a pipeline is made: the model in C is made of it.
-    pub sequential: Option<Design>,
-}
-
-impl EmitInputs {
-    fn origin(&self) -> Origin<'_> {
-        Origin { regenerate: &self.regenerate, timing: &self.timing }
     }
 }
 
@@ -197,9 +124,4 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
     let contents = manifest::contents(&job, &names, &files)?;
     files.push(OutputFile { path: format!("rtl_out/{0}/{0}.json", design.name), contents });
     Ok(files)
-}
-
-/// Returns the digest of a file, as the manifest holds it: SHA-256 in hexadecimal.
-pub fn digest(contents: &[u8]) -> String {
-    Sha256::digest(contents).iter().map(|byte| format!("{byte:02x}")).collect()
 }

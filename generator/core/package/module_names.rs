@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use anyhow::{Result, bail};
 
-use super::OutputFile;
+use super::output_file::OutputFile;
 
 /// Makes sure that the name of every module in some files of one configuration stands for the module alone.
 ///

@@ -4,7 +4,7 @@
 use anyhow::{Context, Result};
 use serde_json::Value;
 
-use super::digest;
+use super::output_file::digest;
 
 /// Where a file of some language has the digest of the rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,7 +1,7 @@
 //! Reads from the keys of a configuration what stands around a core, and checks whether the core allows it.
 
-use super::Unfit;
 use super::bus::{BUSES, Bus};
+use super::unfit::Unfit;
 use glint_config::{Config, Schema, Shared};
 use glint_rtl::netlist::{Design, Pipeline};
 use glint_rtl::verilog::naming::Style;

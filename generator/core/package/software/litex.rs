@@ -3,10 +3,10 @@
 use anyhow::{Result, bail};
 use glint_base::fill;
 
-use crate::package::Unfit;
 use crate::package::artifact::{Artifacts, Job, Kind};
 use crate::package::bus::Bus;
 use crate::package::tops::{Face, Top, TopPort};
+use crate::package::unfit::Unfit;
 use glint_rtl::netlist::{Design, Role};
 use glint_rtl::verilog::text::ascii;
 

@@ -6,8 +6,9 @@ use std::collections::BTreeMap;
 use anyhow::{Context, Result};
 
 use super::print::{Line, Printer, comment, field, literal, pattern_type, taken};
+use crate::observation::WorkedExample;
 use crate::package::artifact::{Artifacts, Job, Kind};
-use crate::package::{Unfit, WorkedExample};
+use crate::package::unfit::Unfit;
 use glint_base::fixed::{Format, mask};
 use glint_rtl::netlist::{Design, Port, Role, RomId};
 use glint_rtl::pipeline::{

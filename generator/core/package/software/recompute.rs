@@ -5,8 +5,8 @@
 use anyhow::Result;
 
 use super::model::{Field, table_names};
-use crate::package::Unfit;
 use crate::package::artifact::{Artifacts, Job, Kind};
+use crate::package::unfit::Unfit;
 use glint_base::fill;
 use glint_formula::parse;
 use glint_rtl::netlist::RomId;

@@ -6,7 +6,7 @@ use glint_base::fill;
 
 use super::fields::{Field, Transfer};
 use super::points::{points, received, sent};
-use crate::package::Vectors;
+use crate::observation::Vectors;
 use crate::package::artifact::{Artifacts, Job, Kind};
 use crate::package::map::{INTERRUPT_PENDING, Map, Part, Placed, Register};
 use glint_base::fixed::mask;

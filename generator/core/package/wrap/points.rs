@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use anyhow::{Context, Result};
 
 use super::fields::{Field, Transfer};
-use crate::package::Vectors;
+use crate::observation::Vectors;
 use crate::package::bench::packed;
 use glint_base::fixed::mask;
 use glint_rtl::netlist::{Design, Port, Role};
