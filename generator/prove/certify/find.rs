@@ -6,12 +6,10 @@ use std::time::Duration;
 use anyhow::{Context, Result};
 use rayon::prelude::*;
 
-use super::{Outcome, Statement, prove};
+use super::proof::{Outcome, prove};
+use super::statement::{ASKED, Statement};
 use glint_tools::transient::Directory;
 use glint_tools::{LimitReached, Tool};
-
-/// The goal of a script that asks for a bound.
-const ASKED: &str = "| in ? }";
 
 /// An answer has six digits behind the point.
 const MILLIONTHS: f64 = 1e6;
@@ -19,24 +17,6 @@ const MILLIONTHS: f64 = 1e6;
 /// Bounds are searched in these steps, by proofs that take no longer.
 const STEP: f64 = 1.0 / 2048.0;
 const TRY: Duration = Duration::from_secs(2);
-
-/// Returns the goal of a script: a bound is asked for where none is stated, or the difference is within this one.
-pub fn goal(difference: &str, bound: Option<f64>) -> String {
-    match bound {
-        Some(bound) => format!("|{difference}| <= {}", super::terms::number(bound)),
-        None => format!("|{difference}| in ?"),
-    }
-}
-
-impl Statement {
-    /// Puts a bound into the statement's scripts in place of the question for one.
-    #[must_use]
-    pub fn within(&self, bound: f64) -> Self {
-        let stated = format!("| <= {} }}", super::terms::number(bound));
-        let scripts = self.scripts.iter().map(|script| script.replace(ASKED, &stated));
-        Self { scripts: scripts.collect(), ..self.clone() }
-    }
-}
 
 /// Returns a bound of all that the statements ask for. What Gappa answers is an upper limit; where a smaller one can be proved the
 /// largest is brought down by halves.

@@ -5,7 +5,8 @@ use std::time::Duration;
 
 use anyhow::{Context, Result, bail};
 
-use super::{Statement, witness};
+use super::statement::Statement;
+use super::witness;
 use glint_tools::transient::Directory;
 use glint_tools::{LimitReached, Tool};
 

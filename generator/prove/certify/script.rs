@@ -7,7 +7,6 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 
 use super::exact::{self, Branch};
-use super::find;
 use super::hardware::Variables;
 use super::terms::{Id, Term, Terms, number};
 use glint_base::fixed::exp2;
@@ -37,7 +36,7 @@ impl Script<'_> {
         let mut terms = self.terms.clone();
         let exact = exact::folded(&mut terms, Term::Mul(f, factor));
         let difference = terms.insert(Term::Sub(out, exact), "difference");
-        let goal = find::goal(&terms.name(difference), bound);
+        let goal = goal(&terms.name(difference), bound);
         self.statement(terms, difference, &goal, &[])
     }
 
@@ -237,6 +236,14 @@ fn line_through(x: &[f64], y: &[f64]) -> Option<(f64, f64)> {
         (factor * x + offset - y).abs() <= size * exp2(-46)
     };
     (factor != 0.0 && x.iter().zip(y).all(fits)).then_some((factor, offset))
+}
+
+/// Returns the goal of a script: a bound is asked for where none is stated, or the difference is within this one.
+pub fn goal(difference: &str, bound: Option<f64>) -> String {
+    match bound {
+        Some(bound) => format!("|{difference}| <= {}", number(bound)),
+        None => format!("|{difference}| in ?"),
+    }
 }
 
 /// Returns the script with its names numbered as they come: equal ones say the same.

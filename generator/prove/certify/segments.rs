@@ -19,9 +19,10 @@ use std::fmt::Write as _;
 
 use super::cases::{self, Case};
 use super::hardware::{self, Hardware, Value, Variables};
-use super::script::Script;
+use super::script::{Script, goal};
+use super::statement::{Statement, Statements};
+use super::task::Task;
 use super::terms::{Id, Term, Terms, number};
-use super::{Statement, Statements, Task};
 use glint_base::fixed::exp2;
 use glint_formula::{Enclosure, Formula, Function, Kind, Operator, parse};
 use glint_rtl::netlist::NetId;
@@ -330,7 +331,7 @@ fn about_output(
         presupposed: &presupposed,
         ways: &[],
     };
-    let goal = super::find::goal(&terms.name(difference), Some(bound));
+    let goal = goal(&terms.name(difference), Some(bound));
     Ok(script.statement(terms.clone(), difference, &goal, &[hint]))
 }
 

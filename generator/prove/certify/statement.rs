@@ -1,0 +1,58 @@
+//! Collects the statements of a proof, each once.
+
+use std::collections::HashMap;
+
+use super::script;
+use super::terms::number;
+
+/// The goal of a script that asks for a bound.
+pub(super) const ASKED: &str = "| in ? }";
+
+/// A statement for Gappa to prove.
+#[derive(Clone, Debug)]
+pub struct Statement {
+    /// The output that it speaks of, or the value on the way to the outputs.
+    pub output: String,
+    /// Its number among those of the output, from 1.
+    pub number: usize,
+    /// Other outputs of which it is the statement too, by another name.
+    pub also: Vec<String>,
+    /// Scripts of which one has to be accepted: where the formula jumps there are two that are right.
+    pub scripts: Vec<String>,
+}
+
+impl Statement {
+    /// Puts a bound into the statement's scripts in place of the question for one.
+    #[must_use]
+    pub fn within(&self, bound: f64) -> Self {
+        let stated = format!("| <= {} }}", number(bound));
+        let scripts = self.scripts.iter().map(|script| script.replace(ASKED, &stated));
+        Self { scripts: scripts.collect(), ..self.clone() }
+    }
+}
+
+/// Statements, each once.
+#[derive(Default)]
+pub(super) struct Statements {
+    pub(super) list: Vec<Statement>,
+    /// Where each is, by its scripts with all names replaced.
+    known: HashMap<Vec<String>, usize>,
+}
+
+impl Statements {
+    /// Adds a statement about an output, or the output to one that is the same but for its names.
+    pub(super) fn push(&mut self, output: &str, scripts: Vec<String>) {
+        let nameless = scripts.iter().map(|script| script::nameless(script)).collect();
+        if let Some(&at) = self.known.get(&nameless) {
+            let Statement { output: own, also, .. } = &mut self.list[at];
+            if own != output && !also.iter().any(|other| other == output) {
+                also.push(output.to_owned());
+            }
+            return;
+        }
+        self.known.insert(nameless, self.list.len());
+        let before = self.list.iter().filter(|other| other.output == output).count();
+        let (output, number) = (output.to_owned(), before + 1);
+        self.list.push(Statement { output, number, also: Vec::new(), scripts });
+    }
+}
