@@ -96,8 +96,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     }
     let faults: Vec<Faults> = loaded.iter().map(|one| Faults::of(&one.core.design)).collect();
     if arguments.list {
-        list(output, &loaded, &faults);
-        return Ok(true);
+        return Ok(list(output, &loaded, &faults));
     }
     let texts: Vec<Option<(Text, Vec<TextFault>)>> = loaded
         .iter()
@@ -144,14 +143,11 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     }
     bar.finish_and_clear();
     let holds = scores.iter().all(Scored::holds);
-    if output.json {
-        tables::print_json(&json!({ "ok": holds, "configurations": scores }));
-    }
-    Ok(holds)
+    Ok(output.concluded(holds, scores))
 }
 
 /// Prints the names of all faults.
-fn list(output: Output, loaded: &[Loaded], faults: &[Faults]) {
+fn list(output: Output, loaded: &[Loaded], faults: &[Faults]) -> bool {
     let mut list = Vec::new();
     for (one, faults) in loaded.iter().zip(faults) {
         if output.json {
@@ -165,9 +161,7 @@ fn list(output: Output, loaded: &[Loaded], faults: &[Faults]) {
             say!("  {}  {}", fault.id, fault.kind);
         }
     }
-    if output.json {
-        tables::print_json(&json!({ "ok": true, "configurations": list }));
-    }
+    output.concluded(true, list)
 }
 
 /// Returns one fault, with what reproduces it.
