@@ -14,7 +14,6 @@ use crate::destination::Destination;
 use crate::own_file::OwnFile;
 use crate::{Configs, Output, TimeLimit, progress, say, tables, wrong_usage};
 use glint_base::program::Program;
-use glint_core::cosim::Lockstep;
 use glint_core::registry::Registry;
 use glint_prove::mutate::{
     self, Detector, Difference, Fault, Faults, Found, GOAL_MEMORY, GOAL_TEXT, Score, Share,
@@ -180,9 +179,7 @@ fn only(output: Output, one: &Loaded, id: &str) -> Result<bool> {
     let mut waveform = None;
     if let Verdict::Caught(_, Difference { held, mismatch }) = verdict {
         let mutant = fault.planted(&one.core.design);
-        let model = one.core.device.golden(&one.core.config);
-        let lockstep = Lockstep::new(&mutant, model, one.core.contract.as_ref(), mismatch.seed)?;
-        let lockstep = lockstep.holding(held);
+        let lockstep = one.core.lockstep_of(&mutant, mismatch.seed)?.holding(held);
         let path = PathBuf::from(format!("{}_mutant.vcd", one.core.config.name));
         let from = first_clock(mismatch.clock);
         traced(one, &lockstep, Destination::open(&path)?, u64::MAX, from)?;
