@@ -84,14 +84,13 @@ fn clock_widths(waves: &Waves) -> [i32; 2] {
 
 /// Returns the stretches of some places in which a value stays, as half-open ranges.
 fn segments(lane: &Lane, places: Range<usize>) -> Vec<(usize, usize)> {
-    let mut segments: Vec<(usize, usize)> = Vec::new();
-    for at in places {
-        match segments.last_mut() {
-            Some((from, to)) if lane.values[*from] == lane.values[at] => *to = at + 1,
-            _ => segments.push((at, at + 1)),
-        }
-    }
-    segments
+    let mut to = places.start;
+    let stretch = |alike: &[Option<String>]| {
+        let from = to;
+        to += alike.len();
+        (from, to)
+    };
+    lane.values[places].chunk_by(|a, b| a == b).map(stretch).collect()
 }
 
 /// A strip: where its clocks are.
