@@ -15,6 +15,8 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand};
+use serde::Serialize;
+use serde_json::json;
 
 use failure::wrong_usage;
 use glint_base::program::{self, Program};
@@ -127,6 +129,16 @@ struct Output {
     /// No progress bars
     #[arg(long, short, global = true)]
     quiet: bool,
+}
+
+impl Output {
+    /// Returns whether everything `holds`, once scripts are told what was found of each configuration.
+    fn concluded(self, holds: bool, configurations: impl Serialize) -> bool {
+        if self.json {
+            tables::print_json(&json!({ "ok": holds, "configurations": configurations }));
+        }
+        holds
+    }
 }
 
 /// Reads a command line; help has examples with the name of the running program.

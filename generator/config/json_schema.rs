@@ -92,11 +92,8 @@ fn of_key(key: &Key) -> Json {
         }),
     };
     entry["default"] = match &key.default {
-        Value::Integer(value) => json!(value),
-        Value::Number(value) => json!(value),
         Value::Text(value) => choice(key, value),
-        Value::Flag(value) => json!(value),
-        Value::Integers(values) => json!(values),
+        other => json!(other),
     };
     let condition = key.only_when.map(|(other, value)| format!(" Only with {other} = {value}."));
     entry["description"] = json!(format!("{}{}", key.doc, condition.unwrap_or_default()));

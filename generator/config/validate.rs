@@ -9,6 +9,7 @@ use super::problems::{Problem, Problems, Violation, out_of_range, quoted, shown}
 use super::schema::{Key, Kind, Schema};
 use super::shared::Shared;
 use super::values::{Config, Value, is_integer};
+use super::write::tables;
 
 impl Key {
     /// Returns the problems of a value; none if the key accepts it.
@@ -213,17 +214,16 @@ fn check(schema: &Schema, draft: &Draft, problems: &mut Problems) {
     if keys.stages != 0 && draft.given.contains("pipeline.clock_mhz") {
         problems.push(
             "pipeline.clock_mhz",
-            "`pipeline.clock_mhz` and `pipeline.stages` both say how fast the pipeline is"
-                .to_owned(),
-            "remove one of them".to_owned(),
+            "`pipeline.clock_mhz` and `pipeline.stages` both say how fast the pipeline is",
+            "remove one of them",
         );
     }
 
     if keys.stream && keys.stall == "none" {
         problems.push(
             "interface.stream",
-            "`interface.stream` needs a pipeline that its receiver can hold back".to_owned(),
-            "set pipeline.stall = \"ready\", or remove interface.stream".to_owned(),
+            "`interface.stream` needs a pipeline that its receiver can hold back",
+            "set pipeline.stall = \"ready\", or remove interface.stream",
         );
     }
 
@@ -234,16 +234,15 @@ fn check(schema: &Schema, draft: &Draft, problems: &mut Problems) {
     if keys.interval == "auto" && aims == [false; 2] && !doubtful {
         problems.push(
             "pipeline.interval",
-            "`pipeline.interval` = \"auto\" needs an aim".to_owned(),
-            "set pipeline.rate or pipeline.max_multipliers".to_owned(),
+            "`pipeline.interval` = \"auto\" needs an aim",
+            "set pipeline.rate or pipeline.max_multipliers",
         );
     }
     if aims == [true; 2] {
         problems.push(
             "pipeline.max_multipliers",
-            "`pipeline.max_multipliers` and `pipeline.rate` both say which interval it is"
-                .to_owned(),
-            "remove one of them".to_owned(),
+            "`pipeline.max_multipliers` and `pipeline.rate` both say which interval it is",
+            "remove one of them",
         );
     }
 
@@ -407,15 +406,9 @@ pub(super) fn keys_of(schema: &Schema, table: &str) -> String {
         return format!("keys of [{table}]: {}", keys.join(", "));
     }
     keys.splice(0..0, super::COMMON.map(|(name, _)| name));
-    let mut tables: Vec<String> = Vec::new();
-    for key in schema.all_keys() {
-        let (table, _) = key.table_and_leaf();
-        let table = format!("[{table}]");
-        if table != "[]" && !tables.contains(&table) {
-            tables.push(table);
-        }
-    }
-    let tables = tables.join(", ");
+    // The first is that of the keys at the top.
+    let tables = tables(schema).into_iter().skip(1).map(|(name, _)| format!("[{name}]"));
+    let tables = Vec::from_iter(tables).join(", ");
     let keys = keys.join(", ");
     if tables.is_empty() {
         format!("keys: {keys}")

@@ -1,7 +1,10 @@
 //! Holds the values of keys, and a configuration of them.
 
-/// The value of a key.
-#[derive(Clone, Debug, PartialEq)]
+use serde::Serialize;
+
+/// The value of a key. It is serialised as the value alone.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
 pub enum Value {
     /// A value of [`super::Kind::Integer`].
     Integer(i64),
@@ -63,10 +66,9 @@ impl Config {
     pub fn integer(&self, key: &str) -> i64 {
         match self.value(key) {
             Value::Integer(value) => *value,
-            Value::Text(text) => match text.parse() {
-                Ok(value) => value,
-                Err(_) => self.wrong_kind(key, "an integer"),
-            },
+            Value::Text(text) => {
+                text.parse().unwrap_or_else(|_| self.wrong_kind(key, "an integer"))
+            }
             _ => self.wrong_kind(key, "an integer"),
         }
     }

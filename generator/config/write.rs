@@ -98,7 +98,7 @@ fn common(config: &Config) -> [(&'static str, String); 3] {
 }
 
 /// Returns the keys by table, that of the keys at the top first; otherwise in the order of the schema.
-fn tables(schema: &Schema) -> Vec<(&'static str, Vec<&Key>)> {
+pub(super) fn tables(schema: &Schema) -> Vec<(&'static str, Vec<&Key>)> {
     let mut tables: Vec<(&str, Vec<&Key>)> = vec![("", Vec::new())];
     for key in schema.all_keys() {
         let (table, _) = key.table_and_leaf();

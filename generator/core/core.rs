@@ -134,8 +134,16 @@ impl Core {
     /// # Errors
     /// Model and design do not name the same signals.
     pub fn lockstep(&self, seed: u64) -> Result<Lockstep<'_>> {
+        self.lockstep_of(&self.design, seed)
+    }
+
+    /// Pairs the golden model with another design of its ports and registers: a mutant, say.
+    ///
+    /// # Errors
+    /// Model and design do not name the same signals.
+    pub fn lockstep_of<'a>(&'a self, design: &'a Design, seed: u64) -> Result<Lockstep<'a>> {
         let model = self.device.golden(&self.config);
-        Lockstep::new(&self.design, model, self.contract.as_ref(), seed)
+        Lockstep::new(design, model, self.contract.as_ref(), seed)
     }
 
     /// Returns the exhaustive check: the proof of the contract and, where they are not too many, every
@@ -212,13 +220,13 @@ impl Core {
     /// As of [`Core::vectors`].
     pub fn shipped_vectors_of(&self, known: &directed::Known) -> Result<Vectors> {
         let contract = self.contract.as_ref();
-        if self.design.pipeline.is_some() {
-            // A pipeline has the datapath of the microprogram that it was made of.
-            let sequential = self.device.sequential(&self.config)?;
-            let directed = known.computations(&sequential, contract, &self.contract_digest())?;
+        // A pipeline has the datapath of the microprogram that it was made of.
+        let sequential = self.microprogram(true)?;
+        let datapath = sequential.as_ref().unwrap_or(&self.design);
+        let directed = known.computations(datapath, contract, &self.contract_digest())?;
+        if sequential.is_some() {
             return self.lockstep(BENCH_SEED)?.record(PIPELINE_POINTS, &directed);
         }
-        let directed = known.computations(&self.design, contract, &self.contract_digest())?;
         let lockstep = self.lockstep(BENCH_SEED)?.with_lines_of(BENCH_LINE);
         let results = if self.contract.length().is_some() { BENCH_LINE as u64 } else { 1 };
         lockstep.record(BENCH_POINTS * results, &directed)

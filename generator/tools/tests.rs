@@ -29,9 +29,12 @@ impl Fakes {
         Self(dir)
     }
 
+    fn tool(&self, name: &str) -> Tool {
+        Tool::find_in(name, self.0.path().as_os_str()).unwrap()
+    }
+
     fn run(&self, name: &str, limit: Duration) -> Result<Run> {
-        let tool = Tool::find_in(name, self.0.path().as_os_str())?;
-        tool.run([] as [&str; 0], self.0.path(), limit)
+        self.tool(name).run([] as [&str; 0], self.0.path(), limit)
     }
 
     fn bench(&self, simulator: Simulator) -> Result<BenchOutcome> {
@@ -78,8 +81,7 @@ fn a_failing_tool_is_quoted_to_its_last_line() {
     let fakes = Fakes::new(&[("tool", script)]);
     let run = fakes.run("tool", LIMIT).unwrap();
     assert_eq!(run.status.code(), Some(3));
-    let tool = Tool::find_in("tool", fakes.0.path().as_os_str()).unwrap();
-    let text = message(tool.run_to_success([] as [&str; 0], fakes.0.path(), LIMIT));
+    let text = message(fakes.tool("tool").run_to_success([] as [&str; 0], fakes.0.path(), LIMIT));
     assert!(text.contains("`tool` failed (exit status: 3)"), "{text}");
     assert!(text.contains("\n    99\n    100\n    to standard error"), "{text}");
     assert!(!text.contains("    50\n"), "only the last lines: {text}");
@@ -210,7 +212,7 @@ fn the_version_is_the_first_line() {
         ("iverilog", "[ \"$1\" = -V ] && echo 'Icarus Verilog version 11.0'"),
         ("silent", ""),
     ]);
-    let version = |name| Tool::find_in(name, fakes.0.path().as_os_str()).unwrap().version();
+    let version = |name| fakes.tool(name).version();
     assert_eq!(version("yosys").unwrap(), "Yosys 0.23");
     assert_eq!(version("iverilog").unwrap(), "Icarus Verilog version 11.0");
     assert!(message(version("silent")).contains("printed nothing"));

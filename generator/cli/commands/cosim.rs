@@ -16,7 +16,7 @@ use super::mismatch::{self, Reproducer};
 use super::{Loaded, load, verdict};
 use crate::destination::Destination;
 use crate::failure::WrongUsage;
-use crate::{Configs, Force, Output, TimeLimit, count, progress, say, tables, wrong_usage};
+use crate::{Configs, Force, Output, TimeLimit, count, progress, say, wrong_usage};
 use benches::benches;
 use glint_base::text;
 use glint_core::core::{TEST_POINTS, TEST_SEED};
@@ -173,10 +173,7 @@ fn built_in(output: Output, loaded: &[Loaded], arguments: &Arguments) -> Result<
             say!("  {}", reproducer.text(mismatch));
         }
     }
-    if output.json {
-        tables::print_json(&json!({ "ok": holds, "configurations": list }));
-    }
-    Ok(holds)
+    Ok(output.concluded(holds, list))
 }
 
 fn outcome(

@@ -40,13 +40,8 @@ pub fn run(registry: &Registry, output: Output, details: bool) -> Result<bool> {
     bar.finish_and_clear();
     let holds = findings.iter().all(|finding| finding.failures.is_empty());
     if output.json {
-        let list: Vec<Value> = loaded
-            .iter()
-            .zip(&findings)
-            .map(|(one, finding)| as_json(one, finding))
-            .collect::<Result<_>>()?;
-        tables::print_json(&json!({ "ok": holds, "configurations": list }));
-        return Ok(holds);
+        let list = loaded.iter().zip(&findings).map(|(one, finding)| as_json(one, finding));
+        return Ok(output.concluded(holds, list.collect::<Result<Vec<Value>>>()?));
     }
     print(&loaded, &findings, details)?;
     Ok(holds)

@@ -4,13 +4,12 @@ use std::path::PathBuf;
 
 use anyhow::{Context, Result, ensure};
 use clap::Args;
-use serde_json::json;
 
 use super::cosim::SweepValues;
 use super::cosim::exhaustive::read;
 use super::cosim::exhaustive::show::{announce, report};
 use super::load;
-use crate::{Output, tables};
+use crate::Output;
 use glint_core::cosim::exhaustive::{Shard, State};
 use glint_core::registry::Registry;
 
@@ -54,8 +53,5 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     }
     let mut list = Vec::new();
     let holds = report(output, one, &job, &merged, &mut list)?;
-    if output.json {
-        tables::print_json(&json!({ "ok": holds, "configurations": list }));
-    }
-    Ok(holds)
+    Ok(output.concluded(holds, list))
 }

@@ -167,6 +167,13 @@ fn load_one(registry: &Registry, schemas: &[config::Schema], path: &Path) -> Res
     Ok(Loaded { path: name, core, locations })
 }
 
+/// Returns what is said of a name that is none of `names`, which are called `what`: the nearest, and all of them.
+fn none_of(name: &str, what: &str, names: &[&str]) -> String {
+    let near = config::nearest(name, names.iter().copied())
+        .map_or_else(|| ".".to_owned(), |near| format!("; did you mean `{near}`?"));
+    format!("{near} The {what} are: {}", names.join(", "))
+}
+
 /// Finds Yosys; where it is missing a note says so, and what there is without it.
 fn yosys(without: &str, notes: &mut Vec<String>) -> Option<Tool> {
     Tool::find("yosys").map_err(|missing| notes.push(format!("{missing}: {without}"))).ok()

@@ -14,7 +14,6 @@ use crate::destination::Destination;
 use crate::own_file::OwnFile;
 use crate::{Configs, Output, TimeLimit, progress, say, tables, wrong_usage};
 use glint_base::program::Program;
-use glint_core::cosim::Lockstep;
 use glint_core::registry::Registry;
 use glint_prove::mutate::{
     self, Detector, Difference, Fault, Faults, Found, GOAL_MEMORY, GOAL_TEXT, Score, Share,
@@ -96,8 +95,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     }
     let faults: Vec<Faults> = loaded.iter().map(|one| Faults::of(&one.core.design)).collect();
     if arguments.list {
-        list(output, &loaded, &faults);
-        return Ok(true);
+        return Ok(list(output, &loaded, &faults));
     }
     let texts: Vec<Option<(Text, Vec<TextFault>)>> = loaded
         .iter()
@@ -144,14 +142,11 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     }
     bar.finish_and_clear();
     let holds = scores.iter().all(Scored::holds);
-    if output.json {
-        tables::print_json(&json!({ "ok": holds, "configurations": scores }));
-    }
-    Ok(holds)
+    Ok(output.concluded(holds, scores))
 }
 
 /// Prints the names of all faults.
-fn list(output: Output, loaded: &[Loaded], faults: &[Faults]) {
+fn list(output: Output, loaded: &[Loaded], faults: &[Faults]) -> bool {
     let mut list = Vec::new();
     for (one, faults) in loaded.iter().zip(faults) {
         if output.json {
@@ -165,9 +160,7 @@ fn list(output: Output, loaded: &[Loaded], faults: &[Faults]) {
             say!("  {}  {}", fault.id, fault.kind);
         }
     }
-    if output.json {
-        tables::print_json(&json!({ "ok": true, "configurations": list }));
-    }
+    output.concluded(true, list)
 }
 
 /// Returns one fault, with what reproduces it.
@@ -186,9 +179,7 @@ fn only(output: Output, one: &Loaded, id: &str) -> Result<bool> {
     let mut waveform = None;
     if let Verdict::Caught(_, Difference { held, mismatch }) = verdict {
         let mutant = fault.planted(&one.core.design);
-        let model = one.core.device.golden(&one.core.config);
-        let lockstep = Lockstep::new(&mutant, model, one.core.contract.as_ref(), mismatch.seed)?;
-        let lockstep = lockstep.holding(held);
+        let lockstep = one.core.lockstep_of(&mutant, mismatch.seed)?.holding(held);
         let path = PathBuf::from(format!("{}_mutant.vcd", one.core.config.name));
         let from = first_clock(mismatch.clock);
         traced(one, &lockstep, Destination::open(&path)?, u64::MAX, from)?;

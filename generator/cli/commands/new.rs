@@ -4,6 +4,7 @@ use anyhow::{Result, bail};
 use clap::Args;
 use serde_json::json;
 
+use super::none_of;
 use crate::failure::WrongUsage;
 use crate::{Output, tables, wrong_usage};
 use glint_config::{self as config, Config};
@@ -37,9 +38,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     let Some(found) = registry.device(device).or(of_preset) else {
         let names = registry.devices().iter().map(|device| device.name);
         let names: Vec<&str> = names.chain(presets::names()).collect();
-        let near = config::nearest(device, names.iter().copied())
-            .map_or_else(|| ".".to_owned(), |near| format!("; did you mean `{near}`?"));
-        wrong_usage!("there is no device `{device}`{near} The devices are: {}", names.join(", "));
+        wrong_usage!("there is no device `{device}`{}", none_of(device, "devices", &names));
     };
     let schema = (found.schema)();
     let own = || if preset.is_some() { device.replace('-', "_") } else { schema.module() };

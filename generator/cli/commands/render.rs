@@ -380,12 +380,13 @@ fn vector(text: &str) -> Result<Vector, String> {
 }
 
 fn colour(text: &str) -> Result<Vector, String> {
-    let colour = vector(text)?;
-    if colour.0.iter().all(|part| (0.0..=1.0).contains(part)) {
-        Ok(colour)
-    } else {
-        Err("a colour is three numbers from 0 to 1".to_owned())
-    }
+    of_light(vector(text)?)
+}
+
+/// Returns a colour, once its parts are found to be shares of full light.
+fn of_light(colour: Vector) -> Result<Vector, String> {
+    let is_colour = colour.0.iter().all(|part| (0.0..=1.0).contains(part));
+    is_colour.then_some(colour).ok_or_else(|| "a colour is three numbers from 0 to 1".to_owned())
 }
 
 fn light(text: &str) -> Result<Light, String> {
@@ -395,30 +396,25 @@ fn light(text: &str) -> Result<Light, String> {
         [x, y, z, r, g, b] => (Vector::new(x, y, z), [r, g, b]),
         _ => return Err("a light is a direction x,y,z, or x,y,z,r,g,b with its colour".to_owned()),
     };
-    if !colour.iter().all(|part| (0.0..=1.0).contains(part)) {
-        return Err("a colour is three numbers from 0 to 1".to_owned());
-    }
+    let colour = of_light(Vector(colour))?;
     let direction = direction.unit();
-    Ok(Light { direction: direction.ok_or("0,0,0 is no direction")?, colour: Vector(colour) })
+    Ok(Light { direction: direction.ok_or("0,0,0 is no direction")?, colour })
+}
+
+/// Parses a number from `low` to `high`; `wanted` says so.
+fn between(text: &str, low: f64, high: f64, wanted: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|number| (low..=high).contains(number));
+    number.ok_or_else(|| wanted.to_owned())
 }
 
 fn share(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(share) if (0.0..=1.0).contains(&share) => Ok(share),
-        _ => Err("a share is a number from 0 to 1".to_owned()),
-    }
+    between(text, 0.0, 1.0, "a share is a number from 0 to 1")
 }
 
 fn crease(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(degrees) if (0.0..=180.0).contains(&degrees) => Ok(degrees),
-        _ => Err("an angle from 0 to 180 degrees".to_owned()),
-    }
+    between(text, 0.0, 180.0, "an angle from 0 to 180 degrees")
 }
 
 fn field(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(degrees) if (1.0..=150.0).contains(&degrees) => Ok(degrees),
-        _ => Err("an angle from 1 to 150 degrees".to_owned()),
-    }
+    between(text, 1.0, 150.0, "an angle from 1 to 150 degrees")
 }

@@ -7,11 +7,10 @@ use clap::Args;
 use csv::StringRecord;
 use serde_json::{Map, Value, json};
 
-use super::{Loaded, load_one, rows};
+use super::{Loaded, load_one, none_of, rows};
 use crate::failure::WrongUsage;
 use crate::{Output, say, tables, wrong_usage};
 use glint_base::program::Program;
-use glint_config as config;
 use glint_core::registry::Registry;
 use glint_show::render::setup::{Arc, direction, half};
 use glint_show::render::{self, Feed, Point, Vector};
@@ -196,13 +195,8 @@ impl<'a> Host<'a> {
         }
         let names = all.iter().map(|it| it.name).filter(|it| self.concerns(it));
         let names: Vec<&str> = names.collect();
-        let near = config::nearest(name, names.iter().copied());
-        let near = near.map_or_else(|| ".".to_owned(), |near| format!("; did you mean `{near}`?"));
         let device = self.one.core.device.name;
-        Err(format!(
-            "there is no input `{name}` of `{device}`{near} The inputs are: {}",
-            names.join(", ")
-        ))
+        Err(format!("there is no input `{name}` of `{device}`{}", none_of(name, "inputs", &names)))
     }
 
     /// Takes what a text gives to an input, which has nothing yet.

@@ -247,16 +247,8 @@ fn print(device: &Device, answer: &Answer, arguments: &Arguments, text: &str) {
 
 fn as_json(answer: &Answer, arguments: &Arguments, text: &str) -> Json {
     let candidate = |candidate: &Candidate| {
-        let keys = answer.free.iter().map(|key| {
-            let value = match candidate.config.value(key) {
-                Value::Integer(value) => json!(value),
-                Value::Number(value) => json!(value),
-                Value::Text(value) => json!(value),
-                Value::Flag(value) => json!(value),
-                Value::Integers(values) => json!(values),
-            };
-            ((*key).to_owned(), value)
-        });
+        let keys = answer.free.iter();
+        let keys = keys.map(|key| ((*key).to_owned(), json!(candidate.config.value(key))));
         json!({
             "error_of_f": candidate.bound.f,
             "output_units": candidate.bound.units,

@@ -98,10 +98,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
         print_conclusion(one, &record);
         say!("  written: {}", written.join(", "));
     }
-    if output.json {
-        tables::print_json(&json!({ "ok": verified, "configurations": list }));
-    }
-    Ok(verified)
+    Ok(output.concluded(verified, list))
 }
 
 fn one_configuration(

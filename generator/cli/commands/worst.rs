@@ -6,11 +6,10 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use serde::{Deserialize, Serialize};
-use serde_json::json;
 
 use super::{Loaded, load};
 use crate::own_file::OwnFile;
-use crate::{Configs, Output, count, progress, say, tables};
+use crate::{Configs, Output, count, progress, say};
 use glint_base::program::Program;
 use glint_base::{input, text};
 use glint_core::cosim::search::{self, Reached};
@@ -104,10 +103,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     }
     bar.finish_and_clear();
     let holds = reports.iter().all(|report| report.holds);
-    if output.json {
-        tables::print_json(&json!({ "ok": holds, "configurations": reports }));
-    }
-    Ok(holds)
+    Ok(output.concluded(holds, reports))
 }
 
 fn known(one: &Loaded, arguments: &Arguments, found: &Reached) -> Known {

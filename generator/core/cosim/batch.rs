@@ -70,6 +70,11 @@ impl Points {
         &self.values[at * self.operands..(at + 1) * self.operands]
     }
 
+    /// Returns the number of results before those of computation number `at`.
+    pub fn results_before(&self, at: usize) -> usize {
+        self.results[at]
+    }
+
     /// Returns the number of results of computation number `at`.
     pub fn results(&self, at: usize) -> usize {
         self.results[at + 1] - self.results[at]

@@ -48,22 +48,12 @@ pub struct Protocol {
 }
 
 /// The interfaces between two AXI4-Streams.
-pub static STREAMS: [Protocol; 2] = [
-    Protocol {
-        name: "s_axis",
-        amba: "AXI4Stream",
-        version: "r0p0_1",
-        platform: "axi4stream",
-        is_slave: true,
-    },
-    Protocol {
-        name: "m_axis",
-        amba: "AXI4Stream",
-        version: "r0p0_1",
-        platform: "axi4stream",
-        is_slave: false,
-    },
-];
+pub static STREAMS: [Protocol; 2] = [stream("s_axis", true), stream("m_axis", false)];
+
+/// Returns the interface of an AXI4-Stream.
+const fn stream(name: &'static str, is_slave: bool) -> Protocol {
+    Protocol { name, amba: "AXI4Stream", version: "r0p0_1", platform: "axi4stream", is_slave }
+}
 
 /// All buses.
 pub static BUSES: [Bus; 2] = [

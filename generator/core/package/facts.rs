@@ -8,7 +8,7 @@ use glint_rtl::netlist::{self, Design, FieldKind, NetId, Role, RomId};
 use glint_rtl::verilog::naming::{Naming, is_control_rom};
 
 /// A port of the top module.
-#[derive(Serialize)]
+#[derive(Default, Serialize)]
 pub struct Port<'a> {
     /// Its name.
     pub name: &'a str,
@@ -135,18 +135,8 @@ fn as_map<S: Serializer>(pairs: &[(&str, u64)], serializer: S) -> Result<S::Ok, 
 
 /// Returns the ports, the clock first.
 pub fn ports(design: &Design) -> Vec<Port<'_>> {
-    let clock = Port {
-        name: "clk",
-        direction: "input",
-        role: "clock",
-        width: 1,
-        format: None,
-        signed: None,
-        fraction_bits: None,
-        strobe: None,
-        block: None,
-        doc: "",
-    };
+    let clock =
+        Port { name: "clk", direction: "input", role: "clock", width: 1, ..Port::default() };
     let of_port = |port: &netlist::Port| {
         let net = design.net(port.net);
         let strobe = match port.role {

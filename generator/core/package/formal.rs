@@ -245,12 +245,9 @@ fn bounded_view(
         }
     }
     let end = |left: &Left| {
-        let mut sum = age.name.clone();
-        for (counter, name) in &counters {
-            if left.counter == Some(*counter) {
-                sum = format!("{sum} + {name}");
-            }
-        }
+        let counter = counters.iter().find(|(counter, _)| left.counter == Some(*counter));
+        let counted = counter.map_or_else(String::new, |(_, name)| format!(" + {name}"));
+        let sum = format!("{}{counted}", age.name);
         match left.clocks {
             0 => sum,
             clocks => format!("{sum} + {}", age.literal(clocks as u32)),

@@ -454,13 +454,9 @@ impl Terms {
                 })
             }
             // The low bits of a sum are the sum of the low bits.
-            Term::Add(a, b) if low == 0 => {
-                let (a, b) = (self.slice(a, 0, width), self.slice(b, 0, width));
-                Some(self.make(Term::Add(a, b), width))
-            }
-            Term::Sub(a, b) if low == 0 => {
-                let (a, b) = (self.slice(a, 0, width), self.slice(b, 0, width));
-                Some(self.make(Term::Sub(a, b), width))
+            ref sum @ (Term::Add(..) | Term::Sub(..)) if low == 0 => {
+                let low_bits = renamed(&sum.clone(), |id| self.slice(id, 0, width));
+                Some(self.make(low_bits, width))
             }
             Term::Not(a) => {
                 let a = self.slice(a, low, width);
@@ -516,7 +512,7 @@ fn ordered(mut term: Term) -> Term {
 }
 
 /// Returns the term with other operands.
-fn renamed(term: &Term, of: impl Fn(Id) -> Id) -> Term {
+fn renamed(term: &Term, mut of: impl FnMut(Id) -> Id) -> Term {
     let mut term = term.clone();
     term.operands_mut().into_iter().for_each(|id| *id = of(*id));
     term

@@ -9,7 +9,6 @@ use anyhow::Result;
 use super::coverage::{Operands, operand_of};
 use super::verdict::Difference;
 use glint_core::core::Core;
-use glint_core::cosim::Lockstep;
 use glint_core::cosim::exhaustive::Clocks;
 use glint_rtl::netlist::{Design, Driver, RegisterKind, RomId};
 
@@ -41,7 +40,8 @@ pub(super) fn addressing(core: &Core, rom: RomId, word: usize) -> Option<Operand
 /// # Errors
 /// The mutant cannot be simulated.
 pub(super) fn drawn(core: &Core, mutant: &Design, held: Operands) -> Result<Option<Difference>> {
-    let mismatch = lockstep(core, mutant, &held)?.run(POINTS, &|_| ())?.mismatch;
+    let lockstep = core.lockstep_of(mutant, SEED)?.holding(&held);
+    let mismatch = lockstep.run(POINTS, &|_| ())?.mismatch;
     Ok(mismatch.map(|mismatch| Difference { held, mismatch }))
 }
 
@@ -50,13 +50,9 @@ pub(super) fn drawn(core: &Core, mutant: &Design, held: Operands) -> Result<Opti
 /// # Errors
 /// The mutant cannot be simulated.
 pub(super) fn alone(core: &Core, mutant: &Design, held: Operands) -> Result<Option<Difference>> {
-    let mismatch = lockstep(core, mutant, &held)?.run_alone(FEW_POINTS)?.mismatch;
+    let lockstep = core.lockstep_of(mutant, SEED)?.holding(&held);
+    let mismatch = lockstep.run_alone(FEW_POINTS)?.mismatch;
     Ok(mismatch.map(|mismatch| Difference { held, mismatch }))
-}
-
-fn lockstep<'a>(core: &'a Core, mutant: &'a Design, held: &Operands) -> Result<Lockstep<'a>> {
-    let model = core.device.golden(&core.config);
-    Ok(Lockstep::new(mutant, model, core.contract.as_ref(), SEED)?.holding(held))
 }
 
 /// The result of a run through the other operands that determine `f`.

@@ -124,10 +124,15 @@ impl Bench<'_> {
             Some(_) => self.places(site),
             None => vec![(core::TEST_SEED, FIRST_POINTS)],
         };
-        for (seed, points) in looks {
-            let lockstep = self.lockstep(mutant, seed)?;
-            if let Some(mismatch) = lockstep.run_alone(points)?.mismatch {
-                return Ok(Some(mismatch));
+        self.shown(mutant, looks)
+    }
+
+    /// Returns the first difference in some streams, each a seed and how many results are looked at.
+    fn shown(&self, mutant: &Design, streams: Vec<(u64, u64)>) -> Result<Option<Mismatch>> {
+        for (seed, points) in streams {
+            let mismatch = self.lockstep(mutant, seed)?.run_alone(points)?.mismatch;
+            if mismatch.is_some() {
+                return Ok(mismatch);
             }
         }
         Ok(None)
@@ -184,18 +189,13 @@ impl Bench<'_> {
         if self.latency == 0 || !self.tested.places(rom, word).is_empty() {
             return Ok(None);
         }
-        for place in self.beyond()?.places(rom, word) {
-            let lockstep = self.lockstep(mutant, place.seed)?;
-            if let Some(mismatch) = lockstep.run_alone(self.end(place))?.mismatch {
-                return Ok(Some(mismatch));
-            }
-        }
-        Ok(None)
+        self.shown(mutant, self.ends(self.beyond()?.places(rom, word)))
     }
 
-    /// Returns the results of a stream to the end of the computation after one that reads a word.
-    fn end(&self, place: &Place) -> u64 {
-        place.points + 2 + self.latency
+    /// Returns the streams that read words, each up to the end of the computation after the one that does.
+    fn ends<'p>(&self, places: impl IntoIterator<Item = &'p Place>) -> Vec<(u64, u64)> {
+        let end = |place: &Place| (place.seed, place.points + 2 + self.latency);
+        places.into_iter().map(end).collect()
     }
 
     fn lockstep<'d>(&'d self, mutant: &'d Design, seed: u64) -> Result<Lockstep<'d>> {
@@ -216,8 +216,7 @@ impl Bench<'_> {
         let Some((rom, words)) = self.words(site) else {
             return Vec::new();
         };
-        let places = words.iter().flat_map(|&(word, _)| self.tested.places(rom, word));
-        places.map(|place| (place.seed, self.end(place))).collect()
+        self.ends(words.iter().flat_map(|&(word, _)| self.tested.places(rom, word)))
     }
 
     fn beyond(&self) -> Result<&Coverage> {

@@ -10,7 +10,6 @@ use super::{Detector, Fault, FaultKind, Faults, How, Verdict, plant, run, unreac
 use glint_base::fixed::Format;
 use glint_config as config;
 use glint_core::core::{Core, TEST_SEED};
-use glint_core::cosim::Lockstep;
 use glint_core::registry::Registry;
 use glint_rtl::dsl::fixture::design;
 use glint_rtl::dsl::step;
@@ -55,8 +54,7 @@ fn no_proof_of_what_shows() {
             .map(|fault| {
                 let is_proved = prover.proves(&fault.site).is_some();
                 let mutant = fault.planted(&sound);
-                let model = core.device.golden(&core.config);
-                let lockstep = Lockstep::new(&mutant, model, core.contract.as_ref(), 5).unwrap();
+                let lockstep = core.lockstep_of(&mutant, 5).unwrap();
                 let shows = lockstep.run_alone(POINTS).unwrap().mismatch.is_some();
                 assert!(!(is_proved && shows), "{path}: {}", fault.id);
                 let benched = is_proved && bench.notices(&mutant).unwrap();
@@ -80,9 +78,7 @@ fn what_is_never_reached_is_never_noticed() {
     assert!(unreached.len() * 4 < faults.len(), "{} of {}", unreached.len(), faults.len());
     for fault in &unreached {
         let mutant = fault.planted(&core.design);
-        let model = core.device.golden(&core.config);
-        let contract = core.contract.as_ref();
-        let lockstep = Lockstep::new(&mutant, model, contract, TEST_SEED).unwrap();
+        let lockstep = core.lockstep_of(&mutant, TEST_SEED).unwrap();
         assert_eq!(lockstep.run(2_000, &|_| ()).unwrap().mismatch, None, "{}", fault.id);
     }
     // A bit that is inverted shows wherever it is looked at.

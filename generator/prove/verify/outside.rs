@@ -386,33 +386,23 @@ pub const FORMAL: Check = Check {
     tools: &["yosys", "yosys-smtbmc", "z3"],
     steps: |_| 1,
     run: |subject, _, _| {
-        let dir = written(subject)?;
-        let (name, limit) = (&subject.core.config.name, subject.effort.time_limit);
-        let flat = dir.path().join("proof");
-        fs::create_dir(&flat).context("cannot make a directory for the proof")?;
-        for directory in ["rtl_out", "testbench"] {
-            let directory = dir.path().join(directory).join(name);
-            for entry in directory.read_dir().context("cannot read what was emitted")? {
-                let entry = entry.context("cannot read what was emitted")?;
-                if entry.path().is_dir() {
-                    // What a target has of its own.
-                    continue;
-                }
-                fs::copy(entry.path(), flat.join(entry.file_name()))
-                    .context("cannot copy what was emitted")?;
-            }
-        }
-        let limits = Limits { time: limit.min(PROOF_LIMITS.time), ..PROOF_LIMITS };
+        // All in one directory, without what a target has of its own in one below.
+        let plain = subject.files()?.iter().filter_map(|file| {
+            let path = match file.path.split('/').collect::<Vec<_>>()[..] {
+                ["rtl_out" | "testbench", _, name] => name.to_owned(),
+                _ => return None,
+            };
+            Some(OutputFile { path, contents: file.contents.clone() })
+        });
+        let plain: Vec<OutputFile> = plain.collect();
+        let dir = directory_of(&plain)?;
+        let time = subject.effort.time_limit.min(PROOF_LIMITS.time);
         // The core's, and one for each wrapper.
-        let mut proofs = Vec::new();
-        for entry in flat.read_dir().context("cannot read what was emitted")? {
-            let file = entry.context("cannot read what was emitted")?.file_name();
-            let module = file.to_str().and_then(|file| file.strip_suffix("_formal.sv"));
-            proofs.extend(module.map(str::to_owned));
-        }
-        proofs.sort();
+        let mut proofs: Vec<&str> =
+            plain.iter().filter_map(|file| file.path.strip_suffix("_formal.sv")).collect();
+        proofs.sort_unstable();
         for module in &proofs {
-            prove(&flat, module, limits)?;
+            prove(dir.path(), module, Limits { time, ..PROOF_LIMITS })?;
         }
         let files: Vec<String> =
             proofs.iter().map(|module| format!("{module}_formal.sv")).collect();

@@ -2,8 +2,10 @@
 
 use anyhow::Result;
 use glint_base::template::Template;
+use serde::Serialize;
+use serde_json::json;
 
-use super::{Answer, CheckTime, Conclusion, Record, Verdict};
+use super::{Answer, CheckTime, Record};
 
 /// The mark of a page that Glint wrote: nothing else is overwritten.
 pub const MARKER: &str = "<meta name=\"generator\" content=\"glint verify\">";
@@ -12,15 +14,15 @@ pub const MARKER: &str = "<meta name=\"generator\" content=\"glint verify\">";
 struct Page<'a> {
     marker: &'static str,
     record: &'a Record,
-    class: &'static str,
-    counts: Vec<(&'static str, &'static str, usize)>,
+    class: String,
+    counts: Vec<(String, &'static str, usize)>,
     checks: Vec<View<'a>>,
     timings: Vec<(&'static str, String)>,
 }
 
 struct View<'a> {
     answer: &'a Answer,
-    class: &'static str,
+    class: String,
 }
 
 /// Returns the page; nothing before its last section depends on the timings.
@@ -33,12 +35,7 @@ pub fn page(record: &Record, timings: &[CheckTime]) -> Result<String> {
     let page = Page {
         marker: MARKER,
         record,
-        class: match record.conclusion {
-            Conclusion::Verified => "verified",
-            Conclusion::InPart => "in-part",
-            Conclusion::Incomplete => "incomplete",
-            Conclusion::Failed => "failed",
-        },
+        class: class(record.conclusion),
         counts: counts.map(|(&it, &count)| (class(it), it.words(), count)).collect(),
         checks: checks
             .clone()
@@ -54,17 +51,7 @@ pub fn page(record: &Record, timings: &[CheckTime]) -> Result<String> {
     Ok(text)
 }
 
-/// Returns the class of a verdict in the style sheet.
-fn class(verdict: Verdict) -> &'static str {
-    match verdict {
-        Verdict::Proved => "proved",
-        Verdict::Passed => "passed",
-        Verdict::Failed => "failed",
-        Verdict::Undecided => "undecided",
-        Verdict::LimitReached => "limit-reached",
-        Verdict::NotRun => "not-run",
-        Verdict::Unconfirmed => "unconfirmed",
-        Verdict::LeftOut => "left-out",
-        Verdict::NotApplicable => "not-applicable",
-    }
+/// Returns the class of a verdict or a conclusion in the style sheet: its word for scripts.
+fn class(verdict: impl Serialize) -> String {
+    json!(verdict).as_str().unwrap_or_default().to_owned()
 }

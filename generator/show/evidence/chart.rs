@@ -103,19 +103,12 @@ pub fn even(low: f64, high: f64, steps: u32) -> Vec<f64> {
 /// Returns integers from `low` to `high` that a logarithmic axis shows evenly, about `per_decade` to a power of ten;
 /// both ends are among them.
 pub fn exponents(low: u32, high: u32, per_decade: u32) -> Vec<u32> {
-    let mut found = Vec::new();
-    let mut step = 0;
-    loop {
+    let value = |step: u32| {
         let value = f64::from(low) * libm::pow(10.0, f64::from(step) / f64::from(per_decade));
-        let value = libm::round(value) as u32;
-        if value >= high {
-            break;
-        }
-        if found.last() != Some(&value) {
-            found.push(value);
-        }
-        step += 1;
-    }
+        libm::round(value) as u32
+    };
+    let mut found: Vec<u32> = (0..).map(value).take_while(|value| *value < high).collect();
+    found.dedup();
     found.push(high);
     found
 }

@@ -253,14 +253,14 @@ mod tests {
     use super::*;
     use glint_core::registry::Registry;
 
-    fn curves(name: &str) -> DeviceCurves {
+    fn curves() -> DeviceCurves {
         let registry = Registry::catalogue();
-        device(registry.device(name).expect("it is in the catalogue"), &|| ())
+        device(registry.device("cosine-power").expect("it is in the catalogue"), &|| ())
     }
 
     #[test]
     fn formula_and_fixed_point_apart() {
-        let found = curves("cosine-power");
+        let found = curves();
         assert_eq!(found.largest_colour, 255.0);
         assert_eq!(found.exponents.len(), EXPONENTS.len());
         // For n = 16 = m the formula is c to the 16th: nothing but the fixed point is left.
@@ -277,7 +277,7 @@ mod tests {
 
     #[test]
     fn curves_end_at_a_right_angle() {
-        let found = curves("cosine-power");
+        let found = curves();
         let formula = &found.charts[1];
         let n2 = &formula.series[0];
         assert_eq!(n2.name, "n = 2");

@@ -35,24 +35,6 @@ pub struct FamilyUsage {
     pub block_rams: u64,
 }
 
-/// Returns the cells of a family that the design `top` takes.
-fn take(
-    synthesis: &dyn Synthesis,
-    files: &[(String, String)],
-    top: &str,
-    family: &Family,
-) -> Result<FamilyUsage> {
-    let usage = synthesis
-        .usage(files, top, family)
-        .with_context(|| format!("{top} for {}", family.title))?;
-    Ok(FamilyUsage {
-        family: family.title,
-        luts: usage.luts,
-        dsps: usage.dsps,
-        block_rams: usage.block_rams,
-    })
-}
-
 /// Returns the cells that one configuration takes of every family; `done` is called after each.
 ///
 /// # Errors
@@ -62,13 +44,13 @@ pub fn usage(
     synthesis: &dyn Synthesis,
     done: &(dyn Fn() + Sync),
 ) -> Result<Vec<FamilyUsage>> {
-    let files = core.verilog()?;
-    let families = FAMILIES.par_iter();
-    families
-        .map(|family| {
-            let usage = take(synthesis, &files, &core.config.name, family);
-            done();
-            usage
-        })
-        .collect()
+    let (files, top) = (core.verilog()?, &core.config.name);
+    let families = FAMILIES.par_iter().map(|family| {
+        let usage = synthesis.usage(&files, top, family);
+        done();
+        let usage = usage.with_context(|| format!("{top} for {}", family.title))?;
+        let Usage { luts, dsps, block_rams, .. } = usage;
+        Ok(FamilyUsage { family: family.title, luts, dsps, block_rams })
+    });
+    families.collect()
 }

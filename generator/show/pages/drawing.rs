@@ -88,7 +88,10 @@ impl Drawing {
     }
 }
 
-/// Estimates how wide a text is in the type of a drawing, which is `size` high.
-pub fn text_width(text: &str, size: f64) -> i32 {
-    (text.chars().count() as f64 * size * 0.6).ceil() as i32
+/// The size of the type of a drawing.
+pub const SIZE: f64 = 11.0;
+
+/// Estimates how wide a text is in the type of a drawing.
+pub fn text_width(text: &str) -> i32 {
+    (text.chars().count() as f64 * SIZE * 0.6).ceil() as i32
 }

@@ -334,14 +334,8 @@ impl Portions<'_> {
         let contract = self.core.contract.as_ref();
         let width = contract.outputs().len();
         let units: Vec<f64> = contract.outputs().iter().map(|it| it.format.to_f64(1)).collect();
-        let starts: Vec<usize> = (0..points.len())
-            .scan(0, |next, at| {
-                let first = *next;
-                *next += points.results(at);
-                Some(first)
-            })
-            .collect();
-        let errors = starts.par_iter().enumerate().map(|(at, first)| {
+        let errors = (0..points.len()).into_par_iter().map(|at| {
+            let first = points.results_before(at);
             let (mut worst, mut exact) = (0.0f64, Vec::new());
             for index in 0..points.results(at) {
                 exact.clear();

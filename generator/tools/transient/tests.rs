@@ -26,6 +26,16 @@ fn is_alive(number: u32) -> bool {
     stat.rsplit_once(')').is_some_and(|(_, rest)| !rest.trim_start().starts_with('Z'))
 }
 
+/// Waits for the end of a process, which must come within some seconds.
+#[track_caller]
+fn assert_ends(number: u32, message: &str) {
+    let deadline = Instant::now() + Duration::from_secs(10);
+    while is_alive(number) && Instant::now() < deadline {
+        thread::sleep(PAUSE);
+    }
+    assert!(!is_alive(number), "{message}");
+}
+
 #[test]
 #[cfg(target_os = "linux")]
 fn a_killed_child_takes_a_session_of_its_child_along() {
@@ -36,11 +46,7 @@ fn a_killed_child_takes_a_session_of_its_child_along() {
     let inner = number_in(&dir.path().join("inner"));
     assert!(is_alive(inner) && is_alive(child.id()));
     child.kill();
-    let deadline = Instant::now() + Duration::from_secs(10);
-    while is_alive(inner) && Instant::now() < deadline {
-        thread::sleep(PAUSE);
-    }
-    assert!(!is_alive(inner), "the solver of a killed tool runs on");
+    assert_ends(inner, "the solver of a killed tool runs on");
 }
 
 /// A process that ends in the time that a slow guard takes for a step: the end must not send a tool SIGHUP before
@@ -57,12 +63,7 @@ fn a_slow_guard_ends_a_session_of_a_child_too() {
         parent.env(PLACE, dir.path()).stdout(Stdio::null()).stderr(Stdio::null());
         assert!(parent.status().unwrap().success());
         let inner = number_in(&dir.path().join("inner"));
-        let deadline = Instant::now() + Duration::from_secs(10);
-        while is_alive(inner) && Instant::now() < deadline {
-            thread::sleep(PAUSE);
-        }
-        assert!(!is_alive(inner), "the solver of a tool runs on");
-        return;
+        return assert_ends(inner, "the solver of a tool runs on");
     };
     use std::io::Write;
     use std::os::unix::process::CommandExt;

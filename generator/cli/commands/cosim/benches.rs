@@ -64,19 +64,14 @@ pub fn benches(
         .collect::<Result<_>>()?;
     bar.finish_and_clear();
     let holds = runs.iter().all(|run| run.outcome.passed);
-    if output.json {
-        let list: Vec<Value> = loaded
-            .iter()
-            .zip(&runs)
-            .map(|(one, run)| as_json(one, run, points, arguments))
-            .collect();
-        tables::print_json(&json!({ "ok": holds, "configurations": list }));
-        return Ok(holds);
-    }
+    let mut list = Vec::new();
     for (one, run) in loaded.iter().zip(&runs) {
-        print(one, run, points, arguments.seed, which);
+        match output.json {
+            true => list.push(as_json(one, run, points, arguments)),
+            false => print(one, run, points, arguments.seed, which),
+        }
     }
-    Ok(holds)
+    Ok(output.concluded(holds, list))
 }
 
 /// Returns the emitted bench in an external simulator. The expected values are those on which golden model

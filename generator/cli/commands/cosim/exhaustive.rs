@@ -8,12 +8,11 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, ensure};
 use indicatif::HumanDuration;
-use serde_json::json;
 
 use super::Arguments;
 use crate::commands::load;
 use crate::interrupt::Deferred;
-use crate::{Output, destination, progress, say, tables, wrong_usage};
+use crate::{Output, destination, progress, say, wrong_usage};
 use glint_base::{input, text};
 use glint_core::cosim::exhaustive::{Job, Shard, State, kept};
 use glint_core::registry::Registry;
@@ -58,10 +57,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
         prove(output, &job, &mut state, arguments.resume.as_deref())?;
         holds &= report(output, one, &job, &state, &mut list)?;
     }
-    if output.json {
-        tables::print_json(&json!({ "ok": holds, "configurations": list }));
-    }
-    Ok(holds)
+    Ok(output.concluded(holds, list))
 }
 
 /// Returns the state that a file holds, if there is one.

@@ -1,6 +1,6 @@
 //! Reads operands as the user writes them: `0.99` is a value, `#1038090` a raw integer.
 
-use glint_config as config;
+use crate::commands::none_of;
 use glint_core::cosim::trial;
 use glint_golden::{Contract, Operand};
 
@@ -24,9 +24,7 @@ pub fn given(operands: &[Operand], settings: &[String]) -> Result<Vec<Option<i64
 pub fn position(operands: &[Operand], name: &str) -> Result<usize, String> {
     operands.iter().position(|operand| operand.name == name).ok_or_else(|| {
         let names: Vec<&str> = operands.iter().map(|operand| operand.name.as_str()).collect();
-        let near = config::nearest(name, names.iter().copied())
-            .map_or_else(|| ".".to_owned(), |near| format!("; did you mean `{near}`?"));
-        format!("there is no operand `{name}`{near} The operands are: {}", names.join(", "))
+        format!("there is no operand `{name}`{}", none_of(name, "operands", &names))
     })
 }
 

@@ -38,14 +38,13 @@ pub fn print(measured: &[Measured], notes: &[String]) {
 }
 
 fn row(one: &Measured, figures: &Figures) -> Vec<String> {
-    let area = &figures.area;
-    let count = |number: Option<u64>| number.map_or_else(|| NONE.to_owned(), |it| it.to_string());
-    let whole =
-        |number: Option<f64>| number.map_or_else(|| NONE.to_owned(), |it| format!("{it:.0}"));
-    let decimal =
-        |number: Option<f64>| number.map_or_else(|| NONE.to_owned(), |it| format!("{it:.2}"));
+    let (area, frequency) = (&figures.area, figures.frequency);
+    let known = |text: Option<String>| text.unwrap_or_else(|| NONE.to_owned());
+    let count = |number: Option<u64>| known(number.map(|it| it.to_string()));
+    let whole = |number: Option<f64>| known(number.map(|it| format!("{it:.0}")));
+    let decimal = |number: Option<f64>| known(number.map(|it| format!("{it:.2}")));
+    let spread = frequency.filter(|it| it.runs > 1);
     let rate = one.rate(figures);
-    let frequency = figures.frequency;
     vec![
         one.one.core.config.name.clone(),
         figures.target.to_string(),
@@ -56,9 +55,7 @@ fn row(one: &Measured, figures: &Figures) -> Vec<String> {
         whole(area.gates),
         whole(area.square_micrometres),
         decimal(frequency.map(|it| it.median)),
-        frequency
-            .filter(|it| it.runs > 1)
-            .map_or_else(|| NONE.to_owned(), |it| format!("{:.1}–{:.1}", it.lowest, it.highest)),
+        known(spread.map(|it| format!("{:.1}–{:.1}", it.lowest, it.highest))),
         format!("{:.3}", one.clocks_per_point)
             .trim_end_matches('0')
             .trim_end_matches('.')

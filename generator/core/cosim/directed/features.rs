@@ -11,9 +11,8 @@ pub const CLASSES: usize = 3;
 
 /// A bit of what is watched.
 enum Watched {
-    /// The bits that are 1, and those that are 0.
-    Ones(NetId),
-    Zeros(NetId, u64),
+    /// The bits that are 1, or with all inverted those that are 0.
+    Ones(NetId, u64),
     /// The inputs that a mux takes, where another would be different.
     Choice(NetId, Vec<NetId>),
     /// The outcomes of a comparison: less, greater, equal, and less or greater by one.
@@ -37,11 +36,11 @@ impl Watch {
     /// Makes a watch of everything in a design that can be watched.
     pub fn new(design: &Design) -> Self {
         let mut watched = Vec::new();
-        let zeros = |net| Watched::Zeros(net, mask(design.width(net)));
         for (id, net) in design.iter() {
             match &net.driver {
                 Driver::Constant(_) | Driver::Undriven | Driver::Op(Op::Relabel(_)) => continue,
-                _ => watched.extend([Watched::Ones(id), zeros(id)]),
+                // A bit that is 0 is 1 inverted.
+                _ => watched.extend([0, mask(design.width(id))].map(|it| Watched::Ones(id, it))),
             }
             let Driver::Op(op) = &net.driver else { continue };
             match op {
@@ -93,13 +92,9 @@ impl Watch {
                 }
             };
             match watched {
-                Watched::Ones(net) => {
+                Watched::Ones(net, flip) => {
                     let bits = machine.lanes(*net);
-                    add(&|lane| bits[lane]);
-                }
-                Watched::Zeros(net, mask) => {
-                    let bits = machine.lanes(*net);
-                    add(&|lane| !bits[lane] & mask);
+                    add(&|lane| bits[lane] ^ flip);
                 }
                 Watched::Choice(select, inputs) => {
                     let select = machine.lanes(*select);

@@ -136,11 +136,7 @@ impl<'a> Clocks<'a> {
 
     /// Returns how many combinations some blocks have.
     pub(super) fn visits(&self, blocks: impl Iterator<Item = u64>) -> u64 {
-        let count = |block| {
-            let places = self.of_block(block);
-            places.end - places.start
-        };
-        blocks.map(count).sum()
+        blocks.map(|block| self.of_block(block)).map(|places| places.end - places.start).sum()
     }
 
     /// Returns the first place in some blocks, in ascending order, at which something differs; on all threads of

@@ -162,12 +162,7 @@ impl<'a> Places<'a> {
 
     /// Returns how many places some blocks have.
     pub(super) fn visits(&self, blocks: impl Iterator<Item = u64>) -> u64 {
-        blocks
-            .map(|block| {
-                let places = self.of_block(block);
-                places.end - places.start
-            })
-            .sum()
+        blocks.map(|block| self.of_block(block)).map(|places| places.end - places.start).sum()
     }
 
     /// Returns how long one place takes on one thread.

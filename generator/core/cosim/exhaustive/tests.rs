@@ -65,11 +65,15 @@ fn without_colours_there_are_no_products() {
     assert_eq!(Places::of_colours(&Counting).count(), 0);
 }
 
-fn whole() -> State {
-    let mut state = State::new("digest", Shard::WHOLE);
+/// Goes on to the end of a shard.
+fn completed(mut state: State) -> State {
     let end = Job::new(&Counting).run(&mut state, &|_| (), &mut |_| ControlFlow::Continue(()));
     assert_eq!(end.unwrap(), ControlFlow::Continue(()));
     state
+}
+
+fn whole() -> State {
+    completed(State::new("digest", Shard::WHOLE))
 }
 
 #[test]
@@ -81,9 +85,7 @@ fn an_interrupted_run_ends_as_an_uninterrupted_one() {
     let broken = job.run(&mut state, &|_| (), &mut |_| ControlFlow::Break(()));
     assert_eq!(broken.unwrap(), ControlFlow::Break(()));
     let text = serde_json::to_string(&state).unwrap();
-    let mut state: State = serde_json::from_str(&text).unwrap();
-    let end = job.run(&mut state, &|_| (), &mut |_| ControlFlow::Continue(()));
-    assert_eq!(end.unwrap(), ControlFlow::Continue(()));
+    let state = completed(serde_json::from_str(&text).unwrap());
     assert_eq!(job.remaining(&state), 0);
     // Blocks 1 and 4 of 0 to 6; the largest error of block 4 is that of its last place.
     assert_eq!(state.f.done, 2);
@@ -93,11 +95,7 @@ fn an_interrupted_run_ends_as_an_uninterrupted_one() {
 #[test]
 fn shards_join_to_the_whole() {
     let job = Job::new(&Counting);
-    let shard = |number| {
-        let mut state = State::new("digest", Shard { number, of: 3 });
-        let _ = job.run(&mut state, &|_| (), &mut |_| ControlFlow::Continue(()));
-        state
-    };
+    let shard = |number| completed(State::new("digest", Shard { number, of: 3 }));
     let names: Vec<String> = ["c", "a", "b"].map(String::from).to_vec();
     let states = [shard(3), shard(1), shard(2)];
     assert_eq!(job.merge(&states, &names).unwrap(), whole());
@@ -169,8 +167,7 @@ fn a_file_that_was_changed_is_no_state() {
 #[test]
 fn missing_shards_of_many_are_counted() {
     let job = Job::new(&Counting);
-    let mut state = State::new("digest", Shard { number: 900_000, of: MOST_SHARDS });
-    let _ = job.run(&mut state, &|_| (), &mut |_| ControlFlow::Continue(()));
+    let state = completed(State::new("digest", Shard { number: 900_000, of: MOST_SHARDS }));
     let refused = job.merge(&[state], &["part".to_owned()]).unwrap_err().to_string();
     assert!(refused.starts_with("missing: shard 1/1000000, 2/1000000"), "{refused}");
     assert!(refused.ends_with("10/1000000 and 999 989 more"), "{refused}");

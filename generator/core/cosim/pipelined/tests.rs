@@ -1,4 +1,4 @@
-use crate::cosim::Lockstep;
+use crate::cosim::{Lockstep, Outcome};
 use crate::registry::{Device, Registry};
 use glint_config::{Config, Value};
 
@@ -7,6 +7,15 @@ fn pipelined(device: &Device, keys: &[(&str, Value)]) -> Config {
     let mut values = vec![("architecture".to_owned(), Value::Text("pipelined".to_owned()))];
     values.extend(keys.iter().map(|(name, value)| ((*name).to_owned(), value.clone())));
     Config::from_values(&(device.schema)(), "device", values).expect("keys that there are")
+}
+
+/// Runs so many points through a pipeline of a device with these keys, beside its golden model.
+fn outcome(device: &Device, keys: &[(&str, Value)], points: u64) -> Outcome {
+    let config = pipelined(device, keys);
+    let design = device.design(&config).unwrap_or_else(|wrong| panic!("{wrong}"));
+    let contract = (device.contract)(&config);
+    let lockstep = Lockstep::new(&design, (device.model)(&config), contract.as_ref(), 1).unwrap();
+    lockstep.run_alone(points).unwrap()
 }
 
 /// Returns the devices that compute a point at a time.
@@ -19,12 +28,7 @@ fn devices() -> Vec<Device> {
 #[test]
 fn every_device_is_what_its_golden_model_says() {
     for device in devices() {
-        let config = pipelined(&device, &[]);
-        let design = device.design(&config).unwrap_or_else(|wrong| panic!("{wrong}"));
-        let contract = (device.contract)(&config);
-        let lockstep =
-            Lockstep::new(&design, (device.model)(&config), contract.as_ref(), 1).unwrap();
-        let outcome = lockstep.run_alone(500).unwrap();
+        let outcome = outcome(&device, &[], 500);
         assert_eq!(outcome.mismatch, None, "{}", device.name);
         assert!(outcome.registers > 0, "{}", device.name);
     }
@@ -41,12 +45,7 @@ fn every_device_with_shared_multipliers_is_what_its_golden_model_says() {
             &[interval(4), ("pipeline.stall", Value::Text("none".to_owned()))],
             &[interval(4), ("pipeline.multipliers", Value::Text("registered".to_owned()))],
         ] {
-            let config = pipelined(&device, keys);
-            let design = device.design(&config).unwrap_or_else(|wrong| panic!("{wrong}"));
-            let contract = (device.contract)(&config);
-            let model = (device.model)(&config);
-            let lockstep = Lockstep::new(&design, model, contract.as_ref(), 1).unwrap();
-            let outcome = lockstep.run_alone(200).unwrap();
+            let outcome = outcome(&device, keys, 200);
             assert_eq!(outcome.mismatch, None, "{} {keys:?}", device.name);
             assert!(outcome.registers > 0 && outcome.clocks >= 400, "{}", device.name);
         }
@@ -67,13 +66,7 @@ fn a_pipeline_with_a_side_channel_or_without_stalls_is_what_its_golden_model_say
         &[(stall, none()), (side, Value::Integer(17)), ("pipeline.stages", Value::Integer(1))],
     ];
     for keys in keys {
-        let config = pipelined(device, keys);
-        let design = device.design(&config).unwrap_or_else(|wrong| panic!("{wrong}"));
-        let contract = (device.contract)(&config);
-        let lockstep =
-            Lockstep::new(&design, (device.model)(&config), contract.as_ref(), 1).unwrap();
-        let outcome = lockstep.run_alone(500).unwrap();
-        assert_eq!(outcome.mismatch, None, "{keys:?}");
+        assert_eq!(outcome(device, keys, 500).mismatch, None, "{keys:?}");
     }
 }
 

@@ -264,8 +264,7 @@ fn of_line(design: &Design, tables: &[String]) -> Result<(Vec<String>, Vec<RomId
         let text = format!("{kind} {} = {};", states[&it.before], printer.text(it.first));
         body.extend(statement(4, &text));
     }
-    body.push("    size_t count = 0;".to_owned());
-    body.push("    for (;;) {".to_owned());
+    body.extend(["    size_t count = 0;", "    for (;;) {"].map(str::to_owned));
     let mut printer = Printer::new(design, &unrolled, tables, states.clone());
     let lines = printer.lines(&mut names, &wanted);
     body.extend(lines.iter().flat_map(|line| statement(8, &line.text)));
@@ -275,12 +274,9 @@ fn of_line(design: &Design, tables: &[String]) -> Result<(Vec<String>, Vec<RomId
         let text = assigned(design, port, &printer.text(*value));
         body.extend(statement(16, &format!("points[count].{text}")));
     }
-    body.push("            }".to_owned());
-    body.push("            ++count;".to_owned());
-    body.push("        }".to_owned());
+    body.extend(["            }", "            ++count;", "        }"].map(str::to_owned));
     body.push(format!("        if ({} != 0u) {{", printer.text(done)));
-    body.push("            return count;".to_owned());
-    body.push("        }".to_owned());
+    body.extend(["            return count;", "        }"].map(str::to_owned));
     body.extend(clocked(graph, &printer, &kept, &states, &mut names));
     body.push("    }".to_owned());
     let mut read = roms(graph, &wanted);

@@ -215,17 +215,12 @@ pub fn fields(design: &Design) -> Table {
 /// Returns the microprogram as the patents print theirs: a row for each microinstruction, a column for each line.
 pub fn microprogram(design: &Design) -> Table {
     let fields = facts::fields(design);
-    let headings: Vec<String> = fields
-        .iter()
-        .map(|field| match field.lines {
-            [] => code(field.name),
-            numbers => lines(numbers),
-        })
-        .collect();
-    let mut columns = vec![("address", Align::Right)];
-    columns.extend(headings.iter().map(|heading| (heading.as_str(), Align::Left)));
-    columns.extend([("what it does", Align::Left), ("then", Align::Left)]);
-    let mut table = Table::new(&columns);
+    let heading = |field: &facts::Field| match field.lines {
+        [] => code(field.name),
+        numbers => lines(numbers),
+    };
+    let headings: String = fields.iter().map(|field| heading(field) + " | ").collect();
+    let mut table = Table::of(&format!("address: | {headings}what it does | then"));
     for microinstruction in facts::microprogram(design) {
         let mut cells = vec![microinstruction.address.to_string()];
         for (field, (_, value)) in fields.iter().zip(&microinstruction.fields) {

@@ -28,19 +28,8 @@ pub struct Table {
 }
 
 impl Table {
-    /// Makes a table of these columns, yet without rows.
-    pub fn new(columns: &[(&str, Align)]) -> Self {
-        Self {
-            columns: columns
-                .iter()
-                .map(|&(heading, align)| Column { heading: heading.to_owned(), align })
-                .collect(),
-            rows: Vec::new(),
-        }
-    }
-
-    /// Makes a table with these headings, which bars part; the cells below a heading with a colon behind it are
-    /// numbers.
+    /// Makes a table with these headings, which bars part, yet without rows; the cells below a heading with a colon behind it
+    /// are numbers.
     pub fn of(headings: &str) -> Self {
         let column = |heading: &'_ str| match heading.strip_suffix(':') {
             Some(heading) => Column { heading: heading.to_owned(), align: Align::Right },

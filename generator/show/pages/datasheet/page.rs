@@ -265,18 +265,12 @@ fn glance(subject: &Subject, measured: &Measured) -> Vec<(&'static str, String)>
 
 /// Returns how many there are of each size, the largest first.
 fn multipliers(design: &Design) -> String {
-    let mut sizes: Vec<(Multiplier, usize)> = Vec::new();
-    for multiplier in comparison::multipliers(design) {
-        match sizes.last_mut() {
-            Some((size, count)) if *size == multiplier => *count += 1,
-            _ => sizes.push((multiplier, 1)),
-        }
-    }
-    let sizes = sizes.iter().map(|(size, count)| {
-        let (first, second) = (size.first, size.second);
-        match count {
+    let all = comparison::multipliers(design);
+    let sizes = all.chunk_by(|a, b| a == b).map(|alike| {
+        let Multiplier { first, second } = alike[0];
+        match alike.len() {
             1 => format!("{first}\u{a0}×\u{a0}{second}"),
-            _ => format!("{count}\u{a0}of {first}\u{a0}×\u{a0}{second}"),
+            count => format!("{count}\u{a0}of {first}\u{a0}×\u{a0}{second}"),
         }
     });
     match sizes.collect::<Vec<_>>()[..] {

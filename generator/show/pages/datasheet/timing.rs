@@ -3,10 +3,7 @@
 use std::ops::Range;
 
 use super::waves::{Lane, LaneStyle, MICROINSTRUCTION, Waves};
-use crate::pages::drawing::{Drawing, Item, text_width};
-
-/// The size of the type.
-const SIZE: f64 = 11.0;
+use crate::pages::drawing::{Drawing, Item, SIZE, text_width};
 
 /// From one lane to the next.
 const PITCH: i32 = 26;
@@ -34,7 +31,7 @@ const APART: i32 = 22;
 
 /// Draws a waveform, in as many strips as it takes.
 pub fn drawing(waves: &Waves) -> Drawing {
-    let widest = waves.lanes.iter().map(|lane| text_width(&label(lane), SIZE));
+    let widest = waves.lanes.iter().map(|lane| text_width(&label(lane)));
     let left = widest.max().unwrap_or(0) + 16;
     let count = waves.clocks.len();
     let [named, cut] = clock_widths(waves);
@@ -73,7 +70,7 @@ fn clock_widths(waves: &Waves) -> [i32; 2] {
             let segments = segments(lane, 0..lane.values.len()).into_iter();
             segments.map(|(from, to)| {
                 let text = lane.values[from].as_deref().unwrap_or_default();
-                (text_width(text, SIZE) + MARGIN) / (to - from) as i32
+                (text_width(text) + MARGIN) / (to - from) as i32
             })
         });
         widths.max().unwrap_or(0).clamp(*CLOCK.start(), *CLOCK.end())
@@ -84,14 +81,13 @@ fn clock_widths(waves: &Waves) -> [i32; 2] {
 
 /// Returns the stretches of some places in which a value stays, as half-open ranges.
 fn segments(lane: &Lane, places: Range<usize>) -> Vec<(usize, usize)> {
-    let mut segments: Vec<(usize, usize)> = Vec::new();
-    for at in places {
-        match segments.last_mut() {
-            Some((from, to)) if lane.values[*from] == lane.values[at] => *to = at + 1,
-            _ => segments.push((at, at + 1)),
-        }
-    }
-    segments
+    let mut to = places.start;
+    let stretch = |alike: &[Option<String>]| {
+        let from = to;
+        to += alike.len();
+        (from, to)
+    };
+    lane.values[places].chunk_by(|a, b| a == b).map(stretch).collect()
 }
 
 /// A strip: where its clocks are.

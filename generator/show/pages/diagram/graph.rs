@@ -18,6 +18,7 @@ pub struct Graph {
 }
 
 /// A box of the diagram.
+#[derive(Default)]
 pub struct Node {
     /// How it is drawn.
     pub form: BoxForm,
@@ -38,7 +39,7 @@ pub struct Node {
 }
 
 /// How a box is drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BoxForm {
     /// A port at the top.
     Input,
@@ -49,6 +50,7 @@ pub enum BoxForm {
     /// A block of the datapath.
     Block(BlockKind),
     /// Nothing: a stage in which values only pass.
+    #[default]
     Empty,
 }
 
@@ -122,13 +124,10 @@ impl<'a> Builder<'a> {
         let (format, name) = (format_text(self.design.net(net).format), self.blocks.name(net));
         let from = self.add(Node {
             form: BoxForm::Block(BlockKind::Constant),
-            number: None,
             title: titled(&format!("the constant {name}"), &format, &self.design.net(net).doc),
             name,
-            caption: String::new(),
-            aliases: Vec::new(),
-            control: String::new(),
             stage: self.graph.boxes[to].stage,
+            ..Node::default()
         });
         self.graph.wires.push(Wire { from, to });
     }
@@ -137,17 +136,7 @@ impl<'a> Builder<'a> {
     fn fill(&mut self) {
         for stage in 0..self.graph.stages {
             if self.graph.boxes.iter().all(|it| it.stage != Some(stage)) {
-                let text = String::new;
-                self.add(Node {
-                    form: BoxForm::Empty,
-                    number: None,
-                    name: text(),
-                    caption: text(),
-                    aliases: Vec::new(),
-                    control: text(),
-                    title: text(),
-                    stage: Some(stage),
-                });
+                self.add(Node { stage: Some(stage), ..Node::default() });
             }
         }
     }
@@ -161,9 +150,7 @@ impl<'a> Builder<'a> {
             name: found.name.clone(),
             title: titled(&found.name, &format, &found.doc),
             caption: self.held(format, net, 0),
-            aliases: Vec::new(),
-            control: String::new(),
-            stage: None,
+            ..Node::default()
         })
     }
 
@@ -216,11 +203,9 @@ impl<'a> Builder<'a> {
             number: rom.block,
             name: "control unit".to_owned(),
             caption: format!("{words} words × {width} bits"),
-            aliases: Vec::new(),
-            control: String::new(),
-            stage: None,
             title: "Control unit: sequencer and control ROM; its lines control the blocks"
                 .to_owned(),
+            ..Node::default()
         });
         let start = self.design.port(|role| role == Role::Start);
         if let Some(start) = start {

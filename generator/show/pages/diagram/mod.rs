@@ -18,9 +18,6 @@ use graph::{BoxForm, Graph, Node};
 use place::Placement;
 use route::{Body, LANE, Net, Routes};
 
-/// The size of the type.
-const SIZE: f64 = 11.0;
-
 /// The height of a line of text in a box.
 const LINE: i32 = 14;
 
@@ -127,7 +124,7 @@ impl Sizes {
             return Self { lanes: 0.0, stub: 0.0, height: 1.0, width: f64::from(2 * LINE) };
         }
         let lines = lines(one);
-        let widest = lines.iter().map(|(_, text)| text_width(text, SIZE)).max();
+        let widest = lines.iter().map(|(_, text)| text_width(text)).max();
         let neck = if is_port(one) { NECK } else { 0 };
         Self {
             lanes: LANE * lanes as f64,
