@@ -9,7 +9,7 @@ pub use contract::contract;
 use std::sync::Arc;
 
 use super::Model;
-use super::frame::{Clocked, Frame, idle, step, step_by};
+use super::frame::{Frame, idle, step, step_by};
 use super::highlight::{self, Products};
 use super::narrow::Narrow;
 use easy_ext::ext;
@@ -156,12 +156,7 @@ impl Arithmetic {
 
 /// Returns the golden model.
 pub fn model(config: &Config) -> Box<dyn Model> {
-    Box::new(clocked(Keys::of(config)))
-}
-
-/// Returns the device, clock by clock.
-fn clocked(keys: Keys) -> Clocked {
-    let it = Arc::new(Arithmetic::new(keys));
+    let it = Arc::new(Arithmetic::new(Keys::of(config)));
     let (keys, squarings) = (&it.keys, it.squarings);
     let (shift, in_turn) = (keys.scale == Scale::Shift, keys.squares_in_turn());
     let (vector, scale) = (keys.vector_format(), keys.scale_format());
@@ -230,5 +225,5 @@ fn clocked(keys: Keys) -> Clocked {
         });
         program.push(square.repeat_while(move |s| s[remaining] > 1));
     }
-    keys.products().behind(frame, accumulator, program)
+    Box::new(keys.products().behind(frame, accumulator, program))
 }

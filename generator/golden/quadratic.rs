@@ -7,7 +7,7 @@ mod tests;
 use std::sync::Arc;
 
 use super::contract::{self, ErrorShare};
-use super::frame::{Clocked, Frame, idle, step_by};
+use super::frame::{Frame, idle, step_by};
 use super::highlight::{self, Highlight, Reflectance, Variation};
 use super::narrow::{Narrow, rounding_error};
 use super::{Contract, Model};
@@ -66,12 +66,7 @@ fn difference_format(fraction: u32) -> Format {
 
 /// Returns the golden model.
 pub fn model(config: &Config) -> Box<dyn Model> {
-    Box::new(clocked(Arithmetic::new(Keys::of(config))))
-}
-
-/// Returns the device, clock by clock.
-fn clocked(it: Arithmetic) -> Clocked {
-    let it = Arc::new(it);
+    let it = Arc::new(Arithmetic::new(Keys::of(config)));
     let mut frame = Frame::default();
     let [cosine, exponent] = highlight::slots(&it.keys.operands, &mut frame);
     let difference = frame.register("difference", difference_format(it.keys.difference_fraction));
@@ -83,7 +78,8 @@ fn clocked(it: Arithmetic) -> Clocked {
             s[intensity] = it.intensity(s[cosine], s[exponent], s[difference]);
         }),
     ];
-    highlight::products(&it.keys.operands.colours, &it.keys.f).behind(frame, intensity, program)
+    let products = highlight::products(&it.keys.operands.colours, &it.keys.f);
+    Box::new(products.behind(frame, intensity, program))
 }
 
 /// Returns the accuracy contract. Control operands: `cos_gamma`, `exponent`.

@@ -7,7 +7,7 @@ mod tests;
 use std::sync::Arc;
 
 use super::contract::{self, ErrorShare};
-use super::frame::{Clocked, Frame, idle, step_by};
+use super::frame::{Frame, idle, step_by};
 use super::highlight::{self, Highlight, Reflectance, Variation};
 use super::narrow::{Narrow, rounding_error};
 use super::{Contract, Model};
@@ -94,12 +94,7 @@ impl Arithmetic {
 
 /// Returns the golden model.
 pub fn model(config: &Config) -> Box<dyn Model> {
-    Box::new(clocked(Arithmetic::new(Keys::of(config))))
-}
-
-/// Returns the device, clock by clock.
-fn clocked(it: Arithmetic) -> Clocked {
-    let it = Arc::new(it);
+    let it = Arc::new(Arithmetic::new(Keys::of(config)));
     let mut frame = Frame::default();
     let [cosine, exponent] = highlight::slots(&it.keys.operands, &mut frame);
     let fraction = it.keys.f.fraction as i32;
@@ -110,7 +105,8 @@ fn clocked(it: Arithmetic) -> Clocked {
         step_by(&it, move |it, s| s[scaled] = it.scaled(s[cosine], s[exponent])),
         step_by(&it, move |it, s| s[intensity] = it.gated(s[cosine], s[exponent], s[scaled])),
     ];
-    highlight::products(&it.keys.operands.colours, &it.keys.f).behind(frame, intensity, program)
+    let products = highlight::products(&it.keys.operands.colours, &it.keys.f);
+    Box::new(products.behind(frame, intensity, program))
 }
 
 /// Returns the accuracy contract. Control operands: `cos_gamma`, `exponent`.
