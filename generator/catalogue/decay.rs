@@ -8,11 +8,10 @@
 use glint_base::fixed::{Format, Overflow, Rounding};
 use glint_config::Config;
 use glint_keys::decay::{Decay, Keys};
-use glint_rtl::blocks::colour::Colours;
 use glint_rtl::blocks::exponential;
 use glint_rtl::dsl::{Designer, Note, Signal, Topic, step};
 
-use super::common;
+use super::common::{self, Products};
 use super::piecewise::{Multiplier, Polynomial, Tables};
 
 /// The distance of cos γ from 1, as each of the two devices has it.
@@ -36,7 +35,7 @@ pub fn describe<'d>(
 ) {
     let keys = &Keys::of(config);
     let exponent = common::exponent(d, keys.operands.exponent_bits).q();
-    let colours = Colours::new(d, keys.operands.colours.bits as i32, None);
+    let colours = Products::new(d, &keys.operands.colours, None);
     let f = keys.f.format();
     let ratios = keys.ratio(of).expect("a configuration that is checked");
     let powers = keys.power().expect("a configuration that is checked");
@@ -110,12 +109,7 @@ pub fn describe<'d>(
     reflectance.takes(ends(d, cos_gamma, rounded));
     let _ = d.output("f_out", reflectance.q()).doc("the reflectance, for a user's own multipliers");
 
-    let outputs = common::colour_outputs(
-        &keys.operands.colours,
-        keys.f.output_rounding,
-        &colours,
-        reflectance.q(),
-    );
+    let outputs = colours.results(reflectance.q(), keys.f.output_rounding);
 
     let names = ["polynomial_select", "factor_of_offset", "offset_of_step", "polynomial_product"];
     let multiplier = Multiplier::new(d, names, &[&ratio, &exp2]);

@@ -7,12 +7,11 @@
 use glint_base::fixed::{Format, Overflow, Rounding};
 use glint_config::{Config, Shared};
 use glint_keys::lyon::{Keys, Scale};
-use glint_rtl::blocks::colour::Colours;
 use glint_rtl::blocks::squaring::Squarings;
 use glint_rtl::dsl::{Designer, Setting, Signal, Step, loop_while, step};
 use glint_rtl::netlist::{About, Note, Topic};
 
-use super::common;
+use super::common::{self, Products};
 
 /// How D² is formed, to the fraction bits of the register that takes it.
 struct Distance<'d> {
@@ -52,7 +51,7 @@ pub fn describe(d: &Designer, config: &Config) {
         Scale::Shift => by_shift(d, &keys, distance),
         Scale::Multiplier => by_multiplier(d, &keys, distance),
     };
-    let colours = Colours::new(d, keys.colours.bits as i32, None);
+    let colours = Products::new(d, &keys.colours, None);
     let accumulator = d.register("accumulator", f).doc("the powers of the base, in the end f");
 
     let value = d.narrow(
@@ -67,8 +66,7 @@ pub fn describe(d: &Designer, config: &Config) {
         d.mux("multiplier4_operand", [base, accumulator.q()]).doc("what multiplier 4 squares");
     let multiplier4 = d.mul("multiplier4", operand.out(), operand.out()).block(4);
     accumulator.takes(d.narrow("square", multiplier4, f, rounding_f, Overflow::Saturate));
-    let outputs =
-        common::colour_outputs(&keys.colours, keys.f.output_rounding, &colours, accumulator.q());
+    let outputs = colours.results(accumulator.q(), keys.f.output_rounding);
 
     let mut steps = scaled.steps;
     let first = [operand.pick(base)].into_iter().chain(scaled.squarings.load());

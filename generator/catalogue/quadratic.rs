@@ -10,11 +10,11 @@ mod coefficient;
 use glint_base::fixed::{Format, Overflow};
 use glint_config::Config;
 use glint_keys::quadratic::{Keys, Scheme};
-use glint_rtl::blocks::colour::{ChannelBlocks, Colours};
+use glint_rtl::blocks::colour::ChannelBlocks;
 use glint_rtl::dsl::{Designer, Rom, Signal, step};
 use glint_rtl::netlist::About;
 
-use super::common;
+use super::common::{self, Products};
 
 /// The seed's numbers of the colour channels.
 const CHANNELS: [ChannelBlocks; 3] = [channel(1), channel(2), channel(3)];
@@ -39,7 +39,7 @@ pub fn describe(d: &Designer, config: &Config) {
         .inputs(2, 2)
         .doc("c, the cosine of the angle between normal and half vector")
         .q();
-    let colours = Colours::new(d, keys.operands.colours.bits as i32, Some(CHANNELS));
+    let colours = Products::new(d, &keys.operands.colours, Some(CHANNELS));
 
     let difference = d
         .register("difference", Format::signed(-2, keys.difference_fraction as i32))
@@ -64,12 +64,7 @@ pub fn describe(d: &Designer, config: &Config) {
         keys.f.rounding,
         Overflow::Saturate,
     ));
-    let outputs = common::colour_outputs(
-        &keys.operands.colours,
-        keys.f.output_rounding,
-        &colours,
-        intensity.q(),
-    );
+    let outputs = colours.results(intensity.q(), keys.f.output_rounding);
 
     let steps = vec![
         step("operands; ROM(n) addressed", []),

@@ -7,12 +7,11 @@
 use glint_base::fixed::{Format, Overflow, Rounding};
 use glint_config::Config;
 use glint_keys::schlick::Keys;
-use glint_rtl::blocks::colour::Colours;
 use glint_rtl::blocks::divider::Divider;
 use glint_rtl::dsl::{Designer, Signal, loop_while, step};
 use glint_rtl::netlist::{About, Topic};
 
-use super::common;
+use super::common::{self, Products};
 
 /// Describes `schlick`: `c / (n − n·c + c)` by a multiplier and an iterative divider.
 pub fn describe(d: &Designer, config: &Config) {
@@ -21,16 +20,11 @@ pub fn describe(d: &Designer, config: &Config) {
 
     let cos_gamma = common::cosine(d, &keys.operands.cosine).q();
     let exponent = common::exponent(d, keys.operands.exponent_bits).q();
-    let colours = Colours::new(d, keys.operands.colours.bits as i32, None);
+    let colours = Products::new(d, &keys.operands.colours, None);
 
     let divisor = divisor(d, cos_gamma, exponent);
     let quotient = Divider::new(d, "quotient", cos_gamma, divisor, keys.fraction as i32);
-    let outputs = common::colour_outputs(
-        &keys.operands.colours,
-        keys.output_rounding,
-        &colours,
-        quotient.quotient(),
-    );
+    let outputs = colours.results(quotient.quotient(), keys.output_rounding);
 
     let steps = vec![
         step("operands cos gamma, n", []),
