@@ -1,5 +1,7 @@
 //! Defines signals, what can be done to their bits by wiring, and the arithmetic blocks and muxes that combine them.
 
+use std::cmp::Ordering;
+
 use super::{Designer, Setting};
 use crate::netlist::{Driver, FieldId, NetId, Op, Topic};
 use glint_base::codes;
@@ -214,6 +216,17 @@ impl<'d> Signal<'d> {
         let name = format!("{}_{suffix}", self.name());
         let id = self.designer.add_wiring(&name, format, range, Driver::Op(op));
         self.designer.signal(id)
+    }
+
+    /// Returns the low bits, or all of them and zeros or signs above, as `format`, under a name after this one's.
+    #[track_caller]
+    pub(crate) fn resized_as(self, suffix: &str, format: Format, range: Interval) -> Self {
+        let op = match format.width().cmp(&self.format().width()) {
+            Ordering::Greater => Op::Extend(self.id),
+            Ordering::Equal => Op::Relabel(self.id),
+            Ordering::Less => Op::Slice { of: self.id, low: 0 },
+        };
+        self.wiring(suffix, format, range, op)
     }
 }
 
@@ -524,15 +537,14 @@ impl Designer {
         if have == format {
             return a.id();
         }
-        let (have_width, width) = (have.width(), format.width());
-        let (suffix, op) = match width.cmp(&have_width) {
-            std::cmp::Ordering::Greater => ("wide", Op::Extend(a.id())),
-            std::cmp::Ordering::Equal => ("same", Op::Relabel(a.id())),
-            std::cmp::Ordering::Less => ("low", Op::Slice { of: a.id(), low: 0 }),
+        let suffix = match format.width().cmp(&have.width()) {
+            Ordering::Greater => "wide",
+            Ordering::Equal => "same",
+            Ordering::Less => "low",
         };
         let range = Some(a.range()).filter(|range| interval::fits(*range, format));
         let range = range.unwrap_or_else(|| format.range());
-        a.wiring(suffix, format, range, op).id()
+        a.resized_as(suffix, format, range).id()
     }
 }
 
