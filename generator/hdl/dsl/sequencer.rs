@@ -106,14 +106,10 @@ impl Sequencer {
             (next_run, Op::Relabel(bit("not_busy", Op::Not(busy.id())).id()))
         };
         d.connect(run, next_run.id(), None);
-        d.with(|inner| {
-            inner.design.nets[d.idle.index()].driver = Driver::Op(idle);
-            for register in &mut inner.design.registers {
-                if register.q == run || register.q == address {
-                    register.reset = Some(0);
-                }
-            }
-        });
+        d.with(|inner| inner.design.nets[d.idle.index()].driver = Driver::Op(idle));
+        for q in [run, address] {
+            d.change(q, |register| register.reset = Some(0));
+        }
         let last = bit("last_word", Op::Not(go_on));
         let done = bit("done", Op::And(run, last.id()));
         d.set_doc(done.id(), "high in the last clock of a computation");
@@ -146,26 +142,17 @@ fn valid_line(d: &Designer) -> NetId {
         return d.run;
     };
     for clock in 1..=clocks {
-        let q = d.add_register(
-            &format!("valid_in_{}", clocks - clock),
-            Format::BIT,
-            (0, 1),
-            RegisterKind::Internal,
-        );
-        d.set_doc(
-            q,
-            &match clocks - clock {
-                0 => "a result has come through the datapath".to_owned(),
-                1 => "a result is a clock away".to_owned(),
-                left => format!("a result is {left} clocks away"),
-            },
-        );
+        let left = clocks - clock;
+        let (name, kind) = (format!("valid_in_{left}"), RegisterKind::Internal);
+        let q = d.add_register(&name, Format::BIT, (0, 1), kind);
+        let doc = match left {
+            0 => "a result has come through the datapath".to_owned(),
+            1 => "a result is a clock away".to_owned(),
+            left => format!("a result is {left} clocks away"),
+        };
+        d.set_doc(q, &doc);
         d.connect(q, source, None);
-        d.with(|inner| {
-            if let Some(register) = inner.design.registers.last_mut() {
-                register.reset = Some(0);
-            }
-        });
+        d.change(q, |register| register.reset = Some(0));
         source = q;
     }
     source
@@ -240,12 +227,8 @@ fn control_rom(
     moved_beside(d, &mut microinstructions, address);
     let fields = d.with(|inner| inner.design.control.fields.clone());
     let widths: Vec<u32> = fields.iter().map(|field| d.net(field.net).format.width()).collect();
-    let packed: Vec<u64> = microinstructions
-        .iter()
-        .map(|microinstruction| microcode::pack(&widths, &microinstruction.values))
-        .collect();
-    let comments =
-        microinstructions.iter().map(|microinstruction| microinstruction.name.clone()).collect();
+    let packed = microinstructions.iter().map(|it| microcode::pack(&widths, &it.values)).collect();
+    let comments = microinstructions.iter().map(|it| it.name.clone()).collect();
     let width: u32 = widths.iter().sum();
     let format = Format::unsigned(width as i32, 0);
     let data = d.add_named("control_word", format, Driver::Undriven);
