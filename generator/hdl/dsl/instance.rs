@@ -231,8 +231,7 @@ impl<'d> Placed<'d, '_> {
     ) -> Instance<'d> {
         let (d, design) = (self.designer, self.design);
         let ports = design.ports.iter().filter(|port| port.role == Role::Result);
-        let shown =
-            ports.map(|port| (design.net(port.net).name.clone(), register(design, port.net)));
+        let shown = ports.map(|port| (design.net(port.net).name.clone(), design.renamed(port.net)));
         let shown: Vec<(String, NetId)> = shown.collect();
         for id in kept(design, &shown) {
             self.net(id);
@@ -348,14 +347,6 @@ impl<'d> Placed<'d, '_> {
             inner.parts.last_mut().into_iter().for_each(|it| it.settings.push(load.clone()));
             inner.parts.extend(steps);
         });
-    }
-}
-
-/// Returns the register that a result shows.
-fn register(design: &Design, port: NetId) -> NetId {
-    match design.net(port).driver {
-        Driver::Op(Op::Relabel(of)) => register(design, of),
-        _ => port,
     }
 }
 
