@@ -57,17 +57,16 @@ pub struct Label {
 }
 
 impl Label {
+    /// Makes the label of a value that its author named.
+    pub fn new(name: String, location: &'static Location<'static>) -> Self {
+        Self { name, doc: String::new(), block: None, named: true, part_of: None, location }
+    }
+
     /// Returns the label of a part of the value, or of the value that this is a part of: names do not grow with the depth.
     pub fn part(&self, name: &str) -> Self {
         let whole = self.part_of.as_ref().unwrap_or(&self.name);
-        Self {
-            name: format!("{whole}_{name}"),
-            doc: String::new(),
-            block: None,
-            named: true,
-            part_of: Some(whole.clone()),
-            location: self.location,
-        }
+        let part_of = Some(whole.clone());
+        Self { part_of, ..Self::new(format!("{whole}_{name}"), self.location) }
     }
 }
 

@@ -146,12 +146,9 @@ impl<'a> Problems<'a> {
             .cone(results.iter().copied())
             .into_iter()
             .filter(|&id| graph.constant_of(id).is_none())
-            .collect();
-        let mut users = vec![Vec::new(); graph.nodes.len()];
-        let live: Vec<NodeId> = live
-            .into_iter()
             .filter(|&id| results.contains(&id) || !is_extension(graph, id))
             .collect();
+        let mut users = vec![Vec::new(); graph.nodes.len()];
         for &id in &live {
             let operands = graph.node(id).cell.operands();
             let operands = operands.into_iter().map(|operand| held(graph, results, operand));

@@ -505,28 +505,27 @@ impl Builder<'_> {
             true => Op::Relabel(of),
             false => Op::Slice { of, low: 0 },
         };
-        let net = self.net(self.staged(&self.names[&id], stage), stage, format, Driver::Op(op));
+        self.of_node(id, stage, Driver::Op(op), self.graph.node(id).label.named)
+    }
+
+    /// Makes the net of a node in a stage, under the name of its value.
+    fn of_node(&mut self, id: NodeId, stage: usize, driver: Driver, named: bool) -> NetId {
+        let name = self.staged(&self.names[&id], stage);
+        let net = self.net(name, stage, self.graph.node(id).format, driver);
         self.labelled(net, id);
-        self.design.nets[net.index()].named = self.graph.node(id).label.named;
+        self.design.nets[net.index()].named = named;
         net
     }
 
     /// Makes a cell in a stage.
     fn cell(&mut self, id: NodeId, op: &graph::Op, stage: usize) -> NetId {
         let op = op.map(|&operand| self.value(operand, stage));
-        let label = &self.graph.node(id).label;
-        let name = self.staged(&self.names[&id], stage);
-        let net = self.net(name, stage, self.graph.node(id).format, Driver::Op(op));
-        self.labelled(net, id);
-        self.design.nets[net.index()].named = label.named;
-        net
+        self.of_node(id, stage, Driver::Op(op), self.graph.node(id).label.named)
     }
 
     /// Returns a register of a stage that takes what the stage before has of a node.
     fn behind(&mut self, id: NodeId, value: NetId, stage: usize, enable: Option<NetId>) -> NetId {
-        let name = self.staged(&self.names[&id], stage);
-        let q = self.net(name, stage, self.graph.node(id).format, Driver::Undriven);
-        self.labelled(q, id);
+        let q = self.of_node(id, stage, Driver::Undriven, true);
         self.register(q, value, enable, None);
         q
     }
@@ -561,12 +560,9 @@ impl Builder<'_> {
         };
         let op = op.map(|&operand| self.value(operand, stage));
         let name = self.distinct(&node.label.name);
-        let name = self.names.entry(id).or_insert(name).clone();
-        let name = self.staged(&name, stage);
-        let net = self.net(name, stage, node.format, Driver::Op(op));
-        self.labelled(net, id);
+        self.names.entry(id).or_insert(name);
         // It is wiring: written where it is used.
-        self.design.nets[net.index()].named = false;
+        let net = self.of_node(id, stage, Driver::Op(op), false);
         self.values.insert((id, stage), net);
         net
     }
@@ -575,13 +571,9 @@ impl Builder<'_> {
     fn read(&mut self, id: NodeId, rom: RomId, address: NodeId, stage: usize) -> NetId {
         let synchronous = self.problems.is_clocked(id);
         let address = self.value(address, stage - usize::from(synchronous));
-        let node = self.graph.node(id);
         let source = self.sequential.rom(rom).clone();
         let number = RomId(self.design.roms.len() as u32);
-        let name = self.names[&id].clone();
-        let name = self.staged(&name, stage);
-        let data = self.net(name, stage, node.format, Driver::Rom(number));
-        self.labelled(data, id);
+        let data = self.of_node(id, stage, Driver::Rom(number), true);
         // A memory has two ports.
         let ports = self.memories.entry(rom).or_default();
         let shares = (ports.len() % 2 == 1).then(|| ports[ports.len() - 1]);
