@@ -54,13 +54,8 @@ pub fn describe(d: &Designer, config: &Config) {
     let colours = Products::new(d, &keys.colours, None);
     let accumulator = d.register("accumulator", f).doc("the powers of the base, in the end f");
 
-    let value = d.narrow(
-        "beta_distance",
-        scaled.value,
-        Format::unsigned(1, f.frac),
-        rounding_f,
-        Overflow::Saturate,
-    );
+    let format = Format::unsigned(1, f.frac);
+    let value = d.narrow("beta_distance", scaled.value, format, rounding_f, Overflow::Saturate);
     let base = base(d, value.doc("beta*D^2, to the point of f"), f);
     let operand =
         d.mux("multiplier4_operand", [base, accumulator.q()]).doc("what multiplier 4 squares");
@@ -112,14 +107,9 @@ fn distance_in_turn<'d>(d: &'d Designer, keys: &Keys, components: [Signal<'d>; 3
 }
 
 fn rounded_distance<'d>(d: &'d Designer, keys: &Keys, sum: Signal<'d>) -> Signal<'d> {
-    d.narrow(
-        "distance_rounded",
-        sum,
-        Format::unsigned(4, keys.distance_fraction as i32),
-        keys.distance_rounding,
-        // The interval of the sum knows nothing of squares; it is never negative, and 12.0 at most.
-        Overflow::Wrap,
-    )
+    let format = Format::unsigned(4, keys.distance_fraction as i32);
+    // The interval of the sum knows nothing of squares; it is never negative, and 12.0 at most.
+    d.narrow("distance_rounded", sum, format, keys.distance_rounding, Overflow::Wrap)
 }
 
 /// Returns the patent's scaling: a register that shifts one place a clock, under the counter.
@@ -141,13 +131,9 @@ fn by_shift<'d>(d: &'d Designer, keys: &Keys, distance: Distance<'d>) -> Scaled<
         .shift_right(half_down)
         .named("distance_at_least_shift")
         .doc("half of D^2 at shift 0, by wiring");
-    let doubled = d.narrow(
-        "doubled",
-        register.q().shift_left(1),
-        register.format(),
-        Rounding::Truncate,
-        Overflow::Saturate,
-    );
+    let twice = register.q().shift_left(1);
+    let (rounding, overflow) = (Rounding::Truncate, Overflow::Saturate);
+    let doubled = d.narrow("doubled", twice, register.format(), rounding, overflow);
     let input = d.mux("shift_input", [small, doubled]).doc("loads or shifts");
     register.takes(input.out());
     let more = d.any("more_shifts", counter.q()).doc("not the last shift");
@@ -172,13 +158,9 @@ fn by_multiplier<'d>(d: &'d Designer, keys: &Keys, distance: Distance<'d>) -> Sc
     let beta = exponent.shift_right(count as i32 + 1).named("beta").doc("n/(2*power), by wiring");
     let multiplier5 = d.mul("multiplier5", register.q(), beta).block(5);
     let scaled = d.register("scaled", Format::unsigned(1, keys.f.fraction as i32)).doc("beta*D^2");
-    scaled.takes(d.narrow(
-        "multiplier5_rounded",
-        multiplier5,
-        scaled.format(),
-        keys.f.rounding,
-        Overflow::Saturate,
-    ));
+    let (rounding, overflow) = (keys.f.rounding, Overflow::Saturate);
+    let product = d.narrow("multiplier5_rounded", multiplier5, scaled.format(), rounding, overflow);
+    scaled.takes(product);
     let load = [register.load()].into_iter().chain(distance.settings);
     let mut steps = vec![step("operands dx, dy, dz", [])];
     steps.extend(distance.steps);

@@ -46,24 +46,15 @@ pub fn describe(d: &Designer, config: &Config) {
         .doc("c^2 - c, from -0.25 to 0");
     let intensity = d.register("intensity", keys.f.format()).doc("the reflectance f");
 
-    difference.takes(d.narrow(
-        "adder1_rounded",
-        adder1(d, cos_gamma),
-        difference.format(),
-        keys.difference_rounding,
-        // The interval of the sum is wider than its values, which lie in -0.25 ... 0: nothing is lost.
-        Overflow::Wrap,
-    ));
+    let adder1 = adder1(d, cos_gamma);
+    // The interval of the sum is wider than its values, which lie in -0.25 ... 0: nothing is lost.
+    let (rounding, overflow) = (keys.difference_rounding, Overflow::Wrap);
+    difference.takes(d.narrow("adder1_rounded", adder1, difference.format(), rounding, overflow));
     let coefficient = coefficient_rom(d, &keys, exponent).out();
     let multiplier1 = d.mul("multiplier1", difference.q(), coefficient).block(1);
     let adder2 = d.add("adder2", multiplier1, cos_gamma).block(2).doc("c + a(n)*(c^2 - c)");
-    intensity.takes(d.narrow(
-        "clamped",
-        adder2,
-        intensity.format(),
-        keys.f.rounding,
-        Overflow::Saturate,
-    ));
+    let (rounding, overflow) = (keys.f.rounding, Overflow::Saturate);
+    intensity.takes(d.narrow("clamped", adder2, intensity.format(), rounding, overflow));
     let outputs = colours.results(intensity.q(), keys.f.output_rounding);
 
     let steps = vec![

@@ -51,13 +51,8 @@ fn divisor<'d>(d: &'d Designer, cos_gamma: Signal<'d>, exponent: Signal<'d>) -> 
     let dark = d.not("dark", facing).doc("an ulp for the divisor, which n = 0 would leave at 0");
     let sum = d.add_carry("denominator", scaled, cos_gamma, dark);
     // It lies between cos γ and n, or 1.0, and is n and an ulp at the most.
-    let divisor = d.narrow(
-        "divisor",
-        sum,
-        Format::unsigned(n.int, c.frac),
-        Rounding::Truncate,
-        Overflow::Wrap,
-    );
+    let format = Format::unsigned(n.int, c.frac);
+    let divisor = d.narrow("divisor", sum, format, Rounding::Truncate, Overflow::Wrap);
     divisor.doc("n - n*cos gamma + cos gamma, never 0")
 }
 

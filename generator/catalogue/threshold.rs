@@ -46,13 +46,8 @@ pub fn describe(d: &Designer, config: &Config) {
     let adder1 = d.sub("adder1", cos_gamma, one).block(1).doc("cos gamma - 1.0");
     let half_n = exponent.shift_right(1).named("half_exponent").doc("n/2, by wiring");
     let multiplier1 = d.mul("multiplier1", adder1, half_n).block(1);
-    scaled.takes(d.narrow(
-        "multiplier1_rounded",
-        multiplier1,
-        scaled.format(),
-        rounding_f,
-        Overflow::Saturate,
-    ));
+    let (name, format) = ("multiplier1_rounded", scaled.format());
+    scaled.takes(d.narrow(name, multiplier1, format, rounding_f, Overflow::Saturate));
     let one = d.constant("base_one", 1.0, Format::unsigned(1, f.frac));
     let adder2 = d.add("adder2", scaled.q(), one).block(2).doc("base of the square, 0 ... 1.0");
     let multiplier2 = d.mul("multiplier2", adder2, adder2).block(2);
