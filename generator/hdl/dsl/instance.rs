@@ -40,10 +40,9 @@ impl<'d> Instance<'d> {
         }
         if self.outputs.is_some() {
             let names: Vec<&str> = outputs.iter().map(|(name, _)| name.as_str()).collect();
-            self.designer.error(
-                codes::PART,
-                format!("`{}` has no output `{output}`: it has {}", self.name, names.join(", ")),
-            );
+            let message =
+                format!("`{}` has no output `{output}`: it has {}", self.name, names.join(", "));
+            self.designer.error(codes::PART, message);
         }
         self.designer.raw_constant("nothing", 0, Format::BIT)
     }

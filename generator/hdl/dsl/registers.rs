@@ -260,11 +260,9 @@ impl<'d> Register<'d> {
         let net = d.net(self.q.id());
         let taken = |id| d.with(|inner| inner.design.register(id).data.is_some());
         if matches!(net.driver, Driver::Register(id) if taken(id)) {
-            d.error_at(
-                codes::TWO_DRIVERS,
-                format!("`{}` has two drivers: `{}` is the second", net.name, data.name()),
-                [("the register", net.location)],
-            );
+            let message =
+                format!("`{}` has two drivers: `{}` is the second", net.name, data.name());
+            d.error_at(codes::TWO_DRIVERS, message, [("the register", net.location)]);
             return;
         }
         if let Some(id) = d.fitted(data, net.format, &format!("register `{}`", net.name)) {

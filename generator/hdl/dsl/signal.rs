@@ -381,10 +381,9 @@ impl Designer {
         let width: u32 = parts.iter().map(|part| part.format().width()).sum();
         let format = self.sound(name, format);
         if width != format.width() {
-            self.error(
-                codes::WIDTH,
-                format!("`{name}` joins {width} bits to a word of {} ({format})", format.width()),
-            );
+            let message =
+                format!("`{name}` joins {width} bits to a word of {} ({format})", format.width());
+            self.error(codes::WIDTH, message);
             return self.raw_constant("zeros", 0, format);
         }
         // Side by side, unsigned parts are the larger the larger each is.
@@ -511,10 +510,8 @@ impl Designer {
     fn one_bit(&self, a: Signal<'_>) -> NetId {
         let a = self.own(a);
         if a.format().width() != 1 {
-            self.error(
-                codes::WIDTH,
-                format!("`{}` is {}: one bit is wanted here", a.name(), a.format()),
-            );
+            let message = format!("`{}` is {}: one bit is wanted here", a.name(), a.format());
+            self.error(codes::WIDTH, message);
         }
         a.id()
     }

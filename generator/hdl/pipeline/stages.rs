@@ -1,6 +1,6 @@
 //! Builds the pipelined design of a schedule: the logic of every stage, and registers between the stages.
 
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
 use super::graph::{self, Cell, Graph, NodeId};
 use super::schedule::{Problems, Schedule, megahertz};
@@ -608,7 +608,7 @@ impl Builder<'_> {
         let microprogram = &self.sequential.control.microprogram;
         (0..self.schedule.latency)
             .map(|stage| {
-                let mut steps: Vec<usize> = self
+                let steps: BTreeSet<usize> = self
                     .problems
                     .live()
                     .iter()
@@ -617,8 +617,6 @@ impl Builder<'_> {
                     .filter(|id| !matches!(self.graph.node(**id).cell, Cell::Operand(_)))
                     .map(|id| self.graph.node(*id).step)
                     .collect();
-                steps.sort_unstable();
-                steps.dedup();
                 let mut microinstructions: Vec<String> = Vec::new();
                 for step in steps {
                     let address = unrolled.steps.get(step).map_or(0, |step| step.address);

@@ -97,7 +97,7 @@ pub fn parsed(text: &str) -> Result<Unrolled, String> {
             None => {
                 let cell = Cell::Operand(unrolled.operands.len());
                 unrolled.operands.push(NetId(unrolled.operands.len() as u32));
-                names.insert(name, graph.leaf(cell, format, range, &label));
+                names.insert(name, graph.insert(cell, format, range, &label));
                 continue;
             }
             Some("constant") => {

@@ -153,7 +153,7 @@ impl<'a> Executor<'a> {
         let graph = &mut self.unrolled.graph;
         let mut unknown = |net: &Net| {
             let cell = Cell::Unknown(net.name.clone());
-            graph.leaf(cell, net.format, net.format.range(), &label(net))
+            graph.insert(cell, net.format, net.format.range(), &label(net))
         };
         State {
             registers: design.registers.iter().map(|it| unknown(design.net(it.q))).collect(),
@@ -197,10 +197,8 @@ impl<'a> Executor<'a> {
                         None => {
                             let body = At { state: after.clone(), address: at.address + 1 };
                             let Some(executed) = self.follow(body, Some(to))? else {
-                                return Err(self.cannot(
-                                    at.address,
-                                    "is skipped by some points, and shows results",
-                                ));
+                                let why = "is skipped by some points, and shows results";
+                                return Err(self.cannot(at.address, why));
                             };
                             let state = self.either(condition, &executed, &after);
                             at = At { state, address: to };
