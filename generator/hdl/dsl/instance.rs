@@ -120,14 +120,9 @@ impl Designer {
         let asked: Vec<&str> = asked.map(|it| design.net(it.net).name.as_str()).collect();
         let same = given.len() == asked.len() && asked.iter().all(|it| given.contains(it));
         if !same {
-            self.error(
-                codes::PART,
-                format!(
-                    "`{name}` has the operands {}, and is given {}",
-                    asked.join(", "),
-                    given.join(", ")
-                ),
-            );
+            let [asked, given] = [asked, given].map(|names| names.join(", "));
+            let message = format!("`{name}` has the operands {asked}, and is given {given}");
+            self.error(codes::PART, message);
             return wrong;
         }
         let mut signals = HashMap::new();

@@ -326,13 +326,8 @@ impl Designer {
     #[track_caller]
     fn output_as<'d>(&'d self, name: &str, source: Signal<'d>, role: Role) -> Signal<'d> {
         let source = self.own(source);
-        let id = self.add_net(
-            name,
-            source.format(),
-            source.range(),
-            Driver::Op(Op::Relabel(source.id())),
-            true,
-        );
+        let driver = Driver::Op(Op::Relabel(source.id()));
+        let id = self.add_net(name, source.format(), source.range(), driver, true);
         self.port(id, role);
         self.signal(id)
     }

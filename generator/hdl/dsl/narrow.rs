@@ -63,12 +63,8 @@ impl Designer {
         let (low, high) = a.range();
         let floor = |raw: i128| Rounding::Truncate.shift(raw, places as i32);
         let kept = Format { signed: have.signed, int: have.int, frac };
-        let truncated = a.wiring(
-            "kept",
-            kept,
-            (floor(low), floor(high)),
-            Op::Slice { of: a.id(), low: places },
-        );
+        let bits = Op::Slice { of: a.id(), low: places };
+        let truncated = a.wiring("kept", kept, (floor(low), floor(high)), bits);
         match rounding {
             Rounding::Truncate => truncated,
             Rounding::Nearest => {

@@ -40,16 +40,11 @@ impl Designer {
         select.check_inputs(name, inputs.len());
         let (low, high) = hull(inputs.iter().map(|input| input.range())).unwrap_or((0, 0));
         let format = Format::holding(low, high, 0);
-        let carried = inputs
-            .iter()
-            .map(|input| {
-                let have = input.format();
-                self.resized(
-                    *input,
-                    Format { frac: have.frac, int: format.int - have.frac, signed: format.signed },
-                )
-            })
-            .collect();
+        let carried = inputs.iter().map(|input| {
+            let frac = input.format().frac;
+            self.resized(*input, Format { frac, int: format.int - frac, ..format })
+        });
+        let carried = carried.collect();
         let op = Op::Mux { select: self.field_net(select.field()).id(), inputs: carried };
         let out = self.signal(self.add_net(name, format, (low, high), Driver::Op(op), true));
         OperandMux {
@@ -197,15 +192,9 @@ impl<'d> SharedProduct<'d> {
             let found =
                 self.pairs.iter().position(|(a, b)| a.id() == first.id() && b.id() == second.id());
             let Some(at) = found else {
-                d.error(
-                    codes::PRODUCT,
-                    format!(
-                        "`{}` never multiplies `{}` by `{}`",
-                        self.out.name(),
-                        first.name(),
-                        second.name()
-                    ),
-                );
+                let [own, first, second] = [self.out, first, second].map(Signal::name);
+                let message = format!("`{own}` never multiplies `{first}` by `{second}`");
+                d.error(codes::PRODUCT, message);
                 continue;
             };
             values.push(at as u64);

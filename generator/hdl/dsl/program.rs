@@ -62,9 +62,6 @@ impl Setting {
     /// Returns the setting with which a mux passes `input` on: found by what the mux's net selects from.
     #[track_caller]
     pub(crate) fn pick(d: &Designer, field: FieldId, mux: &str, input: Signal<'_>) -> Self {
-        if input.designer().serial != d.serial {
-            return Self::foreign(d, input);
-        }
         let inputs = match d.with(|inner| inner.design.find(mux)).map(|id| d.net(id).driver) {
             Some(Driver::Op(Op::Mux { inputs, .. })) => inputs,
             _ => Vec::new(),
@@ -87,21 +84,16 @@ impl Setting {
         input: Signal<'_>,
         inputs: &[Signal<'_>],
     ) -> Self {
-        if input.designer().serial != d.serial {
-            return Self::foreign(d, input);
-        }
         let found: Vec<_> = (0..inputs.len()).filter(|&at| inputs[at].id() == input.id()).collect();
         Self::picked(d, field, mux, input, &found)
     }
 
     #[track_caller]
-    fn foreign(d: &Designer, input: Signal<'_>) -> Self {
-        let _ = d.own(input);
-        Self::sequence(Kind::Wrong)
-    }
-
-    #[track_caller]
     fn picked(d: &Designer, field: FieldId, mux: &str, input: Signal<'_>, found: &[usize]) -> Self {
+        if input.designer().serial != d.serial {
+            let _ = d.own(input);
+            return Self::sequence(Kind::Wrong);
+        }
         let [at] = found else {
             let how = if found.is_empty() { "is no input" } else { "is more than one input" };
             d.error(codes::PICK, format!("`{}` {how} of `{mux}`", input.name()));

@@ -98,53 +98,38 @@ impl<'d> Signal<'d> {
     #[must_use]
     #[track_caller]
     pub fn with_fraction(self, frac: i32) -> Self {
-        let format = self.format();
+        let (own, format) = (self.name(), self.format());
         let places = frac.saturating_sub(format.frac);
         if places == 0 {
             return self;
         }
         if places < 0 {
-            self.designer.error(
-                codes::POINT,
-                format!(
-                    "`{}` is {format}: {frac} fraction bits would drop some; narrow it",
-                    self.name()
-                ),
-            );
+            let message =
+                format!("`{own}` is {format}: {frac} fraction bits would drop some; narrow it");
+            self.designer.error(codes::POINT, message);
             return self;
         }
-        let name = format!("{}_scaled", self.name());
         let scaled = Format { frac, ..format };
-        let sound = self.designer.sound(&name, scaled);
+        let sound = self.designer.sound(&format!("{own}_scaled"), scaled);
         if sound != scaled {
             return self.designer.raw_constant("zeros", 0, sound);
         }
         let zeros = self.designer.raw_constant("zeros", 0, Format::unsigned(places, 0));
         let (low, high) = self.range();
-        self.wiring(
-            "scaled",
-            scaled,
-            (low << places, high << places),
-            Op::Concat(vec![self.id, zeros.id]),
-        )
+        let range = (low << places, high << places);
+        self.wiring("scaled", scaled, range, Op::Concat(vec![self.id, zeros.id]))
     }
 
     /// Returns bits `low` … `low + width − 1`, read in `format` (which must be that wide).
     #[must_use]
     #[track_caller]
     pub fn bits(self, low: u32, format: Format) -> Self {
-        let have = self.format().width();
-        let name = format!("{}_bits", self.name());
-        let format = self.designer.sound(&name, format);
+        let (own, have) = (self.name(), self.format().width());
+        let format = self.designer.sound(&format!("{own}_bits"), format);
         if low.saturating_add(format.width()) > have {
-            self.designer.error(
-                codes::WIDTH,
-                format!(
-                    "bits {low} to {} of `{}`, which has {have}",
-                    u64::from(low) + u64::from(format.width()) - 1,
-                    self.name()
-                ),
-            );
+            let last = u64::from(low) + u64::from(format.width()) - 1;
+            let message = format!("bits {low} to {last} of `{own}`, which has {have}");
+            self.designer.error(codes::WIDTH, message);
             return self.designer.raw_constant("zeros", 0, format);
         }
         // All bits of a value that is never negative are still within its range.
@@ -168,17 +153,11 @@ impl<'d> Signal<'d> {
     pub fn above(self, low: Signal<'d>, format: Format) -> Self {
         let low = self.designer.own(low);
         let width = self.format().width() + low.format().width();
-        let name = format!("{}_above", self.name());
-        let format = self.designer.sound(&name, format);
+        let (own, other) = (self.name(), low.name());
+        let format = self.designer.sound(&format!("{own}_above"), format);
         if width != format.width() {
-            self.designer.error(
-                codes::WIDTH,
-                format!(
-                    "`{}` above `{}` is {width} bits, which is not {format}",
-                    self.name(),
-                    low.name()
-                ),
-            );
+            let message = format!("`{own}` above `{other}` is {width} bits, which is not {format}");
+            self.designer.error(codes::WIDTH, message);
             return self.designer.raw_constant("zeros", 0, format);
         }
         let op = Op::Concat(vec![self.id, low.id]);
