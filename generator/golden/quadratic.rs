@@ -100,10 +100,8 @@ impl Reflectance for Arithmetic {
     /// Returns the formula with a(n) as it was before ROM(n) rounded it.
     #[inline]
     fn reference(&self, control: &[i64]) -> f64 {
-        formulas::quadratic(
-            self.keys.operands.cosine.value(control[0]),
-            self.exact[control[1] as usize],
-        )
+        let cosine = self.keys.operands.cosine.value(control[0]);
+        formulas::quadratic(cosine, self.exact[control[1] as usize])
     }
 
     fn at_cosine(&self, cosine: f64, exponent: i64) -> Option<f64> {
@@ -137,21 +135,16 @@ impl Reflectance for Arithmetic {
         let f = self.keys.f.fraction;
         let scale = exp2(-(self.keys.coefficient_fraction() as i32));
         let (first, last) = self.keys.domain.exponents();
-        let table = (first..=last).map(|n| {
-            let n = n as usize;
-            (self.exact[n], self.words[n] as f64 * scale)
-        });
         let (mut rounded, mut largest) = (0.0f64, 0.0f64);
-        for (exact, word) in table {
+        for n in first as usize..=last as usize {
+            let (exact, word) = (self.exact[n], self.words[n] as f64 * scale);
             let reach = (1.0 / exact.min(word).max(4.0)).min(0.25);
             rounded = rounded.max((exact - word).abs() * reach);
             largest = largest.max(word);
         }
-        let difference = rounding_error(
-            2 * self.keys.operands.cosine.fraction,
-            self.keys.difference_fraction,
-            self.keys.difference_rounding,
-        );
+        let (square, fraction) =
+            (2 * self.keys.operands.cosine.fraction, self.keys.difference_fraction);
+        let difference = rounding_error(square, fraction, self.keys.difference_rounding);
         vec![
             ("coefficient.fraction", "rounding of a(n)", rounded),
             ("difference.fraction", "rounding of c² − c, times a(n)", difference * largest),

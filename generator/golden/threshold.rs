@@ -32,14 +32,11 @@ struct Arithmetic {
 impl Arithmetic {
     fn new(keys: Keys) -> Self {
         let (f, rounding) = (keys.f.fraction, keys.f.rounding);
+        // n/2 has one fraction bit.
+        let product = keys.operands.cosine.fraction + 1;
         let mut it = Self {
             base_one: 1 << f,
-            // n/2 has one fraction bit.
-            scaled: Narrow::new(
-                keys.operands.cosine.fraction + 1,
-                Format::signed(0, f as i32),
-                rounding,
-            ),
+            scaled: Narrow::new(product, Format::signed(0, f as i32), rounding),
             square: Narrow::new(2 * f, keys.f.format(), rounding),
             thresholds: Self::thresholds(&keys),
             margin: 0.0,
@@ -195,13 +192,11 @@ impl Reflectance for Arithmetic {
 
     /// Warns of a level above what rounds to 0, which is seen as an edge around the highlight.
     fn remarks(&self) -> Vec<String> {
-        let largest = (1 << self.keys.operands.colours.bits) - 1;
+        let (f, colour_bits) = (&self.keys.f, self.keys.operands.colours.bits);
+        let largest = (1 << colour_bits) - 1;
         let (first, last) = self.keys.domain.exponents();
-        let output = Narrow::new(
-            self.keys.f.fraction,
-            Format::unsigned(self.keys.operands.colours.bits as i32, 0),
-            self.keys.f.output_rounding,
-        );
+        let colour = Format::unsigned(colour_bits as i32, 0);
+        let output = Narrow::new(f.fraction, colour, f.output_rounding);
         let hidden = |n: i64| self.threshold(n) - 1;
         // One n of each octave stands for all.
         let Some((n, word)) = (0..=12)
