@@ -119,8 +119,9 @@ fn rounded_distance<'d>(d: &'d Designer, keys: &Keys, sum: Signal<'d>) -> Signal
 fn by_shift<'d>(d: &'d Designer, keys: &Keys, distance: Distance<'d>) -> Scaled<'d> {
     let count = keys.squarings();
     let half_down = count as i32 + 2;
-    let shift =
-        d.operand("shift", shift_format(keys)).doc("log2 of the specular exponent n, rounded").q();
+    // It holds every log2 of an exponent, rounded: 0 … `exponent.bits`.
+    let format = Format::holding(0, keys.exponent_bits.into(), 0);
+    let shift = d.operand("shift", format).doc("log2 of the specular exponent n, rounded").q();
     let register = d
         .register("shift_register", Format::unsigned(1, distance.value.format().frac + half_down))
         .doc("beta*D^2, once it has shifted");
@@ -179,11 +180,6 @@ fn base<'d>(d: &'d Designer, value: Signal<'d>, f: Format) -> Signal<'d> {
     let inverse = d.not("inverse", value.bits(0, f)).doc("1.0 - beta*D^2, less an ulp");
     let zero = d.raw_constant("zero", 0, f);
     d.choose("base", comparator, [zero, inverse]).doc("base of the power, or 0")
-}
-
-/// Returns a format that holds every log2 of an exponent, rounded: 0 … `exponent.bits`.
-fn shift_format(keys: &Keys) -> Format {
-    Format::holding(0, keys.exponent_bits.into(), 0)
 }
 
 /// Returns the note that says what the clocks of a point are for.
