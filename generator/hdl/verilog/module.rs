@@ -70,14 +70,10 @@ impl<'a> Builder<'a> {
         body.extend(self.unused());
         let formal = invariants(self.plan.design, self.naming, self.partition);
         body.extend(writer::block("`ifdef FORMAL", formal, "`endif"));
-        writer::module(
-            header::partition(self.plan.design, self.partition, origin, self.naming),
-            &self.naming.module(self.partition),
-            &parameters(self.naming, &self.interface.roms),
-            self.ports(),
-            body,
-            "",
-        )
+        let header = header::partition(self.plan.design, self.partition, origin, self.naming);
+        let name = self.naming.module(self.partition);
+        let parameters = parameters(self.naming, &self.interface.roms);
+        writer::module(header, &name, &parameters, self.ports(), body, "")
     }
 
     pub(super) fn ports(&self) -> Vec<String> {
