@@ -212,6 +212,18 @@ impl Function {
         let origin = self.operand.min_raw() as i64;
         if bits < whole { (self.domain.0, bits) } else { (origin, whole) }
     }
+
+    /// Returns a place where the formula has no value, as a refusal of the formula.
+    fn refusal(&self, raw: i64, fault: &Fault) -> Refusal {
+        let x = self.operand.to_f64(raw.into());
+        Refusal {
+            key: "function.formula",
+            place: Some(fault.span.clone()),
+            message: format!("at x = {x}: {}", fault.message),
+            remedy: "keep such places out of the domain: change function.from or function.to"
+                .to_owned(),
+        }
+    }
 }
 
 impl Piecewise {
@@ -316,20 +328,6 @@ impl Piecewise {
             return Err(Refusal::new("result.error", message, "allow a larger error"));
         }
         Ok(error)
-    }
-}
-
-impl Function {
-    /// Returns a place where the formula has no value, as a refusal of the formula.
-    fn refusal(&self, raw: i64, fault: &Fault) -> Refusal {
-        let x = self.operand.to_f64(raw.into());
-        Refusal {
-            key: "function.formula",
-            place: Some(fault.span.clone()),
-            message: format!("at x = {x}: {}", fault.message),
-            remedy: "keep such places out of the domain: change function.from or function.to"
-                .to_owned(),
-        }
     }
 }
 

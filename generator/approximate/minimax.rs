@@ -55,21 +55,13 @@ fn exchange(reference: &mut Vec<usize>, worst: usize, error: &dyn Fn(usize) -> f
     let like = |other: usize| error(other) * error(worst) > 0.0;
     let place = reference.partition_point(|&point| point < worst);
     let last = reference.len() - 1;
-    if place == 0 {
-        if !like(reference[0]) {
-            reference.insert(0, worst);
-            reference.pop();
-        } else {
-            reference[0] = worst;
-        }
-    } else if place > last {
-        if !like(reference[last]) {
-            reference.push(worst);
-            reference.remove(0);
-        } else {
-            reference[last] = worst;
-        }
-    } else if like(reference[place]) {
+    if place == 0 && !like(reference[0]) {
+        reference.insert(0, worst);
+        reference.pop();
+    } else if place > last && !like(reference[last]) {
+        reference.push(worst);
+        reference.remove(0);
+    } else if place == 0 || (place <= last && like(reference[place])) {
         reference[place] = worst;
     } else {
         reference[place - 1] = worst;
@@ -83,12 +75,8 @@ fn level(at: &[f64], values: &[f64], reference: &[usize], levelled: bool) -> ([f
     let columns = if levelled { count - 1 } else { count };
     let mut rows: Vec<Vec<f64>> = Vec::with_capacity(count);
     for (k, &point) in reference.iter().enumerate() {
-        let mut row: Vec<f64> = Vec::with_capacity(count + 1);
-        let mut power = 1.0;
-        for _ in 0..columns {
-            row.push(power);
-            power *= at[point];
-        }
+        let powers = std::iter::successors(Some(1.0), |power| Some(power * at[point]));
+        let mut row: Vec<f64> = powers.take(columns).collect();
         if levelled {
             row.push(if k.is_multiple_of(2) { 1.0 } else { -1.0 });
         }

@@ -69,13 +69,8 @@ impl Samples {
             }
         }
         let slopes = slopes(&points);
-        Ok(Self(
-            points
-                .into_iter()
-                .zip(slopes)
-                .map(|((raw, value), slope)| (raw, value, slope))
-                .collect(),
-        ))
+        let points = points.into_iter().zip(slopes);
+        Ok(Self(points.map(|((raw, value), slope)| (raw, value, slope)).collect()))
     }
 
     /// Returns how many there are.

@@ -64,11 +64,9 @@ pub(super) fn search(function: &Function, wish: Wish) -> Result<Piecewise, Refus
         ));
     }
     if matches!(function.curve, Curve::Samples(_)) && function.is_wide() {
-        return Err(Refusal::new(
-            "operand.fraction",
-            format!("of samples every operand is computed, and there are more than 2^{MOST_BITS}"),
-            "fewer operand.fraction bits",
-        ));
+        let message =
+            format!("of samples every operand is computed, and there are more than 2^{MOST_BITS}");
+        return Err(Refusal::new("operand.fraction", message, "fewer operand.fraction bits"));
     }
     if let Some(found) = attempt(function, wish)? {
         return Ok(found);

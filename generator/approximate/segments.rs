@@ -84,7 +84,7 @@ impl Segments {
         let low = within & ((1 << rest) - 1);
         let word = ((block as usize) << self.prefix) + (within >> rest) as usize;
         let places = self.rest() - rest;
-        let middle = if self.rest() == 0 { 0 } else { 1i64 << (self.rest() - 1) };
+        let middle = (1 << self.rest()) / 2;
         Place { word, offset: ((low << places) as i64) - middle }
     }
 
@@ -113,7 +113,7 @@ mod tests {
                         let Place { word, offset } = cut.place(number);
                         let (first, count) = cut.numbers(word);
                         assert!(word < cut.words() && (first..first + count).contains(&number));
-                        let half = if cut.rest() == 0 { 0 } else { 1i64 << (cut.rest() - 1) };
+                        let half = (1i64 << cut.rest()) / 2;
                         assert!((-half..half.max(1)).contains(&offset), "{cut:?} {number}");
                     }
                 }

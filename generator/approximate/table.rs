@@ -249,13 +249,8 @@ impl<'s> Table<'s> {
             Some(piece) => {
                 let mut coefficients = vec![0; widths.guard.len()];
                 let none = vec![0; piece.at.len()];
-                let found = self.place(
-                    piece,
-                    (widths, &steps),
-                    &none,
-                    &mut coefficients,
-                    widths.guard.len() - 1,
-                );
+                let (shape, degree) = ((widths, &steps[..]), widths.guard.len() - 1);
+                let found = self.place(piece, shape, &none, &mut coefficients, degree);
                 found.then_some(Some(coefficients))
             }
         };
@@ -371,13 +366,11 @@ impl<'s> Table<'s> {
         let coefficients = self.formats(widths, &words);
         // A word that no operand of the domain reads has what stands before or behind it.
         let mut before = words.iter().flatten().next()?.clone();
-        let words: Vec<Vec<i64>> = words
-            .into_iter()
-            .map(|word| {
-                before = word.unwrap_or_else(|| before.clone());
-                before.clone()
-            })
-            .collect();
+        let words = words.into_iter().map(|word| {
+            before = word.unwrap_or_else(|| before.clone());
+            before.clone()
+        });
+        let words: Vec<Vec<i64>> = words.collect();
         let mut found = Piecewise {
             operand: function.operand,
             domain: function.domain,
@@ -414,11 +407,8 @@ impl<'s> Table<'s> {
         for ((sum, (low, high)), coefficient) in sums {
             *sum = Format::holding(low, high, coefficient.frac);
         }
-        let widest = found
-            .steps
-            .iter()
-            .zip(&found.sums[1..])
-            .map(|(step, sum)| sum.width() + 1 + step.offset);
+        let products = found.steps.iter().zip(&found.sums[1..]);
+        let widest = products.map(|(step, sum)| sum.width() + 1 + step.offset);
         let narrow = widest.max().unwrap_or(0) < MAX_WIDTH;
         narrow.then_some(found)
     }

@@ -2,7 +2,7 @@
 
 use glint_base::fixed::{Format, Rounding};
 use glint_keys::common as keys;
-use glint_rtl::blocks::colour::Colours;
+use glint_rtl::blocks::colour::{ChannelBlocks, Colours};
 use glint_rtl::blocks::line::{LineBlocks, OperandBlocks};
 use glint_rtl::dsl::{Designer, Note, Operand, Signal, Step, Topic, end, step, valid};
 
@@ -19,33 +19,36 @@ pub fn exponent(d: &Designer, bits: u32) -> Operand<'_> {
     d.operand("exponent", Format::unsigned(bits as i32, 0)).doc("specular exponent n")
 }
 
-/// Returns the outputs of colours by as many multipliers as the keys say, and the microinstructions that make
-/// them, which stand before the one with the result.
-#[track_caller]
-pub fn colour_products<'d>(
-    keys: &keys::Colours,
-    rounding: Rounding,
-    colours: &Colours<'d>,
-    f: Signal<'d>,
-) -> Vec<Step> {
-    if keys.in_turn() {
-        return colours.outputs_in_turn(f, rounding);
-    }
-    colours.outputs(f, rounding);
-    Vec::new()
+/// The colours with as many multipliers as the keys say.
+pub struct Products<'d> {
+    colours: Colours<'d>,
+    in_turn: bool,
 }
 
-/// Makes the colour outputs, with the microinstruction that has the result, which ends the microprogram.
-#[track_caller]
-pub fn colour_outputs<'d>(
-    keys: &keys::Colours,
-    rounding: Rounding,
-    colours: &Colours<'d>,
-    f: Signal<'d>,
-) -> Vec<Step> {
-    let mut steps = colour_products(keys, rounding, colours, f);
-    steps.push(step("result", [valid(), end()]));
-    steps
+impl<'d> Products<'d> {
+    /// Makes the operands, with the source's numbers where it has some.
+    #[track_caller]
+    pub fn new(d: &'d Designer, keys: &keys::Colours, blocks: Option<[ChannelBlocks; 3]>) -> Self {
+        Self { colours: Colours::new(d, keys.bits as i32, blocks), in_turn: keys.in_turn() }
+    }
+
+    /// Makes the outputs, and returns the microinstructions that make them, which stand before the one with the result.
+    #[track_caller]
+    pub fn outputs(&self, f: Signal<'d>, rounding: Rounding) -> Vec<Step> {
+        if self.in_turn {
+            return self.colours.outputs_in_turn(f, rounding);
+        }
+        self.colours.outputs(f, rounding);
+        Vec::new()
+    }
+
+    /// Makes the outputs, with the microinstruction that has the result, which ends the microprogram.
+    #[track_caller]
+    pub fn results(&self, f: Signal<'d>, rounding: Rounding) -> Vec<Step> {
+        let mut steps = self.outputs(f, rounding);
+        steps.push(step("result", [valid(), end()]));
+        steps
+    }
 }
 
 /// Returns the note on writes while the device is busy and on how long its outputs hold, where each colour has a

@@ -9,12 +9,11 @@
 use glint_base::fixed::{Format, Overflow};
 use glint_config::Config;
 use glint_keys::cosine_power::Keys;
-use glint_rtl::blocks::colour::Colours;
 use glint_rtl::blocks::squaring::Squarings;
 use glint_rtl::dsl::{Designer, Signal, step};
 use glint_rtl::netlist::{About, Topic};
 
-use super::common;
+use super::common::{self, Products};
 
 /// Describes `cosine-power`: W(n,γ) by one multiplier and one accumulator.
 pub fn describe(d: &Designer, config: &Config) {
@@ -25,7 +24,7 @@ pub fn describe(d: &Designer, config: &Config) {
 
     let cos_gamma = common::cosine(d, &keys.operands.cosine).q();
     let exponent = common::exponent(d, keys.operands.exponent_bits).q();
-    let colours = Colours::new(d, keys.operands.colours.bits as i32, None);
+    let colours = Products::new(d, &keys.operands.colours, None);
 
     // With power = 2 there is no power to square again.
     let operand_select = d.select("operand_select", &["distance", "base", "power"]).partly_used();
@@ -54,12 +53,7 @@ pub fn describe(d: &Designer, config: &Config) {
     let square = d.narrow("square", square, f, rounding_f, Overflow::Saturate);
     let next = d.mux_on("accumulator_next", operand_select, [distance, square, square]);
     accumulator.takes(next.out());
-    let outputs = common::colour_outputs(
-        &keys.operands.colours,
-        keys.f.output_rounding,
-        &colours,
-        accumulator.q(),
-    );
+    let outputs = colours.results(accumulator.q(), keys.f.output_rounding);
 
     let mut steps = vec![
         step("operands 1 - cos gamma, n/m", []),

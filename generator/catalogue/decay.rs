@@ -8,11 +8,10 @@
 use glint_base::fixed::{Format, Overflow, Rounding};
 use glint_config::Config;
 use glint_keys::decay::{Decay, Keys};
-use glint_rtl::blocks::colour::Colours;
 use glint_rtl::blocks::exponential;
 use glint_rtl::dsl::{Designer, Note, Signal, Topic, step};
 
-use super::common;
+use super::common::{self, Products};
 use super::piecewise::{Multiplier, Polynomial, Tables};
 
 /// The distance of cos γ from 1, as each of the two devices has it.
@@ -36,7 +35,7 @@ pub fn describe<'d>(
 ) {
     let keys = &Keys::of(config);
     let exponent = common::exponent(d, keys.operands.exponent_bits).q();
-    let colours = Colours::new(d, keys.operands.colours.bits as i32, None);
+    let colours = Products::new(d, &keys.operands.colours, None);
     let f = keys.f.format();
     let ratios = keys.ratio(of).expect("a configuration that is checked");
     let powers = keys.power().expect("a configuration that is checked");
@@ -44,14 +43,9 @@ pub fn describe<'d>(
     let tables = Tables { split: true, synchronous: false };
     let fraction = keys.operands.cosine.fraction as i32;
     let bits = u.format().width() as i32;
-    let ratio = Polynomial::new(
-        d,
-        "ratio_",
-        &["ratio", "ratio_sum1", "ratio_sum2"],
-        u.bits(keys.unseen(), Format::unsigned(bits - keys.unseen() as i32, 0)),
-        &ratios,
-        tables,
-    );
+    let sums = ["ratio", "ratio_sum1", "ratio_sum2"];
+    let number = u.bits(keys.unseen(), Format::unsigned(bits - keys.unseen() as i32, 0));
+    let ratio = Polynomial::new(d, "ratio_", &sums, number, &ratios, tables);
     let _ = ratio.q().doc("decay over 1 - cos gamma");
     let ulp = d.raw_constant("ulp", 1, Format::unsigned(1 - fraction, fraction));
     let whole =
@@ -92,14 +86,9 @@ pub fn describe<'d>(
     let fine = scaled("halvings_fine", keys.decay_fraction);
     halvings.takes(d.choose("halvings_next", small.q(), [coarse, fine]));
 
-    let exp2 = Polynomial::new(
-        d,
-        "power_",
-        &["power", "power_sum1", "power_sum2"],
-        halvings.q().bits(0, Format::unsigned(keys.argument as i32, 0)),
-        &powers,
-        tables,
-    );
+    let sums = ["power", "power_sum1", "power_sum2"];
+    let number = halvings.q().bits(0, Format::unsigned(keys.argument as i32, 0));
+    let exp2 = Polynomial::new(d, "power_", &sums, number, &powers, tables);
     let _ = exp2.q().doc("2^-x of the fraction x of halvings");
     // An integer part that shifts every bit of f out, and no larger.
     let most = integer((f.frac as u32 + 2).ilog2() + 1);
@@ -110,12 +99,7 @@ pub fn describe<'d>(
     reflectance.takes(ends(d, cos_gamma, rounded));
     let _ = d.output("f_out", reflectance.q()).doc("the reflectance, for a user's own multipliers");
 
-    let outputs = common::colour_outputs(
-        &keys.operands.colours,
-        keys.f.output_rounding,
-        &colours,
-        reflectance.q(),
-    );
+    let outputs = colours.results(reflectance.q(), keys.f.output_rounding);
 
     let names = ["polynomial_select", "factor_of_offset", "offset_of_step", "polynomial_product"];
     let multiplier = Multiplier::new(d, names, &[&ratio, &exp2]);
@@ -126,14 +110,10 @@ pub fn describe<'d>(
     };
     let mut steps = vec![step("distance from the cosine", [])];
     steps.extend(ratio.steps().map(|k| horner(&ratio, k, "ratio")));
-    steps.push(step(
-        "factor <- way * ratio",
-        [first.pick(way), second.pick(ratio.q()), factor.load(), small.load()],
-    ));
-    steps.push(step(
-        "halvings <- n * factor",
-        [first.pick(factor.q()), second.pick(exponent), halvings.load()],
-    ));
+    let decayed = [first.pick(way), second.pick(ratio.q()), factor.load(), small.load()];
+    steps.push(step("factor <- way * ratio", decayed));
+    let halved = [first.pick(factor.q()), second.pick(exponent), halvings.load()];
+    steps.push(step("halvings <- n * factor", halved));
     steps.extend(exp2.steps().map(|k| horner(&exp2, k, "power")));
     steps.push(step("reflectance <- 2^-halvings", [reflectance.load()]));
     d.microprogram(steps.into_iter().chain(outputs));

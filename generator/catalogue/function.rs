@@ -73,18 +73,15 @@ fn number<'d>(d: &'d Designer, x: Signal<'d>, it: &Piecewise) -> Signal<'d> {
     let width = x.format().width() as i32;
     let integer = |bits: i32| Format::unsigned(bits, 0);
     let bits = it.segments.bits as i32;
-    if i128::from(it.origin) == it.operand.min_raw() {
+    let origin = i128::from(it.origin);
+    if origin == it.operand.min_raw() {
         return if it.operand.signed {
             flipped(d, "number", x, integer(width))
         } else {
             x.read_as(integer(width))
         };
     }
-    let first = d.raw_constant(
-        "first",
-        it.origin.into(),
-        Format::holding(it.origin.into(), it.origin.into(), 0),
-    );
+    let first = d.raw_constant("first", origin, Format::holding(origin, origin, 0));
     let number = d.sub("number", whole(x), first);
     if number.format() == integer(bits) { number } else { number.bits(0, integer(bits)) }
 }

@@ -7,12 +7,11 @@
 use glint_base::fixed::{Format, Overflow, Rounding};
 use glint_config::{Config, Shared};
 use glint_keys::lyon::{Keys, Scale};
-use glint_rtl::blocks::colour::Colours;
 use glint_rtl::blocks::squaring::Squarings;
 use glint_rtl::dsl::{Designer, Setting, Signal, Step, loop_while, step};
 use glint_rtl::netlist::{About, Note, Topic};
 
-use super::common;
+use super::common::{self, Products};
 
 /// How D² is formed, to the fraction bits of the register that takes it.
 struct Distance<'d> {
@@ -52,23 +51,17 @@ pub fn describe(d: &Designer, config: &Config) {
         Scale::Shift => by_shift(d, &keys, distance),
         Scale::Multiplier => by_multiplier(d, &keys, distance),
     };
-    let colours = Colours::new(d, keys.colours.bits as i32, None);
+    let colours = Products::new(d, &keys.colours, None);
     let accumulator = d.register("accumulator", f).doc("the powers of the base, in the end f");
 
-    let value = d.narrow(
-        "beta_distance",
-        scaled.value,
-        Format::unsigned(1, f.frac),
-        rounding_f,
-        Overflow::Saturate,
-    );
+    let format = Format::unsigned(1, f.frac);
+    let value = d.narrow("beta_distance", scaled.value, format, rounding_f, Overflow::Saturate);
     let base = base(d, value.doc("beta*D^2, to the point of f"), f);
     let operand =
         d.mux("multiplier4_operand", [base, accumulator.q()]).doc("what multiplier 4 squares");
     let multiplier4 = d.mul("multiplier4", operand.out(), operand.out()).block(4);
     accumulator.takes(d.narrow("square", multiplier4, f, rounding_f, Overflow::Saturate));
-    let outputs =
-        common::colour_outputs(&keys.colours, keys.f.output_rounding, &colours, accumulator.q());
+    let outputs = colours.results(accumulator.q(), keys.f.output_rounding);
 
     let mut steps = scaled.steps;
     let first = [operand.pick(base)].into_iter().chain(scaled.squarings.load());
@@ -114,14 +107,9 @@ fn distance_in_turn<'d>(d: &'d Designer, keys: &Keys, components: [Signal<'d>; 3
 }
 
 fn rounded_distance<'d>(d: &'d Designer, keys: &Keys, sum: Signal<'d>) -> Signal<'d> {
-    d.narrow(
-        "distance_rounded",
-        sum,
-        Format::unsigned(4, keys.distance_fraction as i32),
-        keys.distance_rounding,
-        // The interval of the sum knows nothing of squares; it is never negative, and 12.0 at most.
-        Overflow::Wrap,
-    )
+    let format = Format::unsigned(4, keys.distance_fraction as i32);
+    // The interval of the sum knows nothing of squares; it is never negative, and 12.0 at most.
+    d.narrow("distance_rounded", sum, format, keys.distance_rounding, Overflow::Wrap)
 }
 
 /// Returns the patent's scaling: a register that shifts one place a clock, under the counter.
@@ -131,8 +119,9 @@ fn rounded_distance<'d>(d: &'d Designer, keys: &Keys, sum: Signal<'d>) -> Signal
 fn by_shift<'d>(d: &'d Designer, keys: &Keys, distance: Distance<'d>) -> Scaled<'d> {
     let count = keys.squarings();
     let half_down = count as i32 + 2;
-    let shift =
-        d.operand("shift", shift_format(keys)).doc("log2 of the specular exponent n, rounded").q();
+    // It holds every log2 of an exponent, rounded: 0 … `exponent.bits`.
+    let format = Format::holding(0, keys.exponent_bits.into(), 0);
+    let shift = d.operand("shift", format).doc("log2 of the specular exponent n, rounded").q();
     let register = d
         .register("shift_register", Format::unsigned(1, distance.value.format().frac + half_down))
         .doc("beta*D^2, once it has shifted");
@@ -143,13 +132,9 @@ fn by_shift<'d>(d: &'d Designer, keys: &Keys, distance: Distance<'d>) -> Scaled<
         .shift_right(half_down)
         .named("distance_at_least_shift")
         .doc("half of D^2 at shift 0, by wiring");
-    let doubled = d.narrow(
-        "doubled",
-        register.q().shift_left(1),
-        register.format(),
-        Rounding::Truncate,
-        Overflow::Saturate,
-    );
+    let twice = register.q().shift_left(1);
+    let (rounding, overflow) = (Rounding::Truncate, Overflow::Saturate);
+    let doubled = d.narrow("doubled", twice, register.format(), rounding, overflow);
     let input = d.mux("shift_input", [small, doubled]).doc("loads or shifts");
     register.takes(input.out());
     let more = d.any("more_shifts", counter.q()).doc("not the last shift");
@@ -174,13 +159,9 @@ fn by_multiplier<'d>(d: &'d Designer, keys: &Keys, distance: Distance<'d>) -> Sc
     let beta = exponent.shift_right(count as i32 + 1).named("beta").doc("n/(2*power), by wiring");
     let multiplier5 = d.mul("multiplier5", register.q(), beta).block(5);
     let scaled = d.register("scaled", Format::unsigned(1, keys.f.fraction as i32)).doc("beta*D^2");
-    scaled.takes(d.narrow(
-        "multiplier5_rounded",
-        multiplier5,
-        scaled.format(),
-        keys.f.rounding,
-        Overflow::Saturate,
-    ));
+    let (rounding, overflow) = (keys.f.rounding, Overflow::Saturate);
+    let product = d.narrow("multiplier5_rounded", multiplier5, scaled.format(), rounding, overflow);
+    scaled.takes(product);
     let load = [register.load()].into_iter().chain(distance.settings);
     let mut steps = vec![step("operands dx, dy, dz", [])];
     steps.extend(distance.steps);
@@ -199,11 +180,6 @@ fn base<'d>(d: &'d Designer, value: Signal<'d>, f: Format) -> Signal<'d> {
     let inverse = d.not("inverse", value.bits(0, f)).doc("1.0 - beta*D^2, less an ulp");
     let zero = d.raw_constant("zero", 0, f);
     d.choose("base", comparator, [zero, inverse]).doc("base of the power, or 0")
-}
-
-/// Returns a format that holds every log2 of an exponent, rounded: 0 … `exponent.bits`.
-fn shift_format(keys: &Keys) -> Format {
-    Format::holding(0, keys.exponent_bits.into(), 0)
 }
 
 /// Returns the note that says what the clocks of a point are for.

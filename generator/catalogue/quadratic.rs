@@ -10,11 +10,11 @@ mod coefficient;
 use glint_base::fixed::{Format, Overflow};
 use glint_config::Config;
 use glint_keys::quadratic::{Keys, Scheme};
-use glint_rtl::blocks::colour::{ChannelBlocks, Colours};
+use glint_rtl::blocks::colour::ChannelBlocks;
 use glint_rtl::dsl::{Designer, Rom, Signal, step};
 use glint_rtl::netlist::About;
 
-use super::common;
+use super::common::{self, Products};
 
 /// The seed's numbers of the colour channels.
 const CHANNELS: [ChannelBlocks; 3] = [channel(1), channel(2), channel(3)];
@@ -39,37 +39,23 @@ pub fn describe(d: &Designer, config: &Config) {
         .inputs(2, 2)
         .doc("c, the cosine of the angle between normal and half vector")
         .q();
-    let colours = Colours::new(d, keys.operands.colours.bits as i32, Some(CHANNELS));
+    let colours = Products::new(d, &keys.operands.colours, Some(CHANNELS));
 
     let difference = d
         .register("difference", Format::signed(-2, keys.difference_fraction as i32))
         .doc("c^2 - c, from -0.25 to 0");
     let intensity = d.register("intensity", keys.f.format()).doc("the reflectance f");
 
-    difference.takes(d.narrow(
-        "adder1_rounded",
-        adder1(d, cos_gamma),
-        difference.format(),
-        keys.difference_rounding,
-        // The interval of the sum is wider than its values, which lie in -0.25 ... 0: nothing is lost.
-        Overflow::Wrap,
-    ));
+    let adder1 = adder1(d, cos_gamma);
+    // The interval of the sum is wider than its values, which lie in -0.25 ... 0: nothing is lost.
+    let (rounding, overflow) = (keys.difference_rounding, Overflow::Wrap);
+    difference.takes(d.narrow("adder1_rounded", adder1, difference.format(), rounding, overflow));
     let coefficient = coefficient_rom(d, &keys, exponent).out();
     let multiplier1 = d.mul("multiplier1", difference.q(), coefficient).block(1);
     let adder2 = d.add("adder2", multiplier1, cos_gamma).block(2).doc("c + a(n)*(c^2 - c)");
-    intensity.takes(d.narrow(
-        "clamped",
-        adder2,
-        intensity.format(),
-        keys.f.rounding,
-        Overflow::Saturate,
-    ));
-    let outputs = common::colour_outputs(
-        &keys.operands.colours,
-        keys.f.output_rounding,
-        &colours,
-        intensity.q(),
-    );
+    let (rounding, overflow) = (keys.f.rounding, Overflow::Saturate);
+    intensity.takes(d.narrow("clamped", adder2, intensity.format(), rounding, overflow));
+    let outputs = colours.results(intensity.q(), keys.f.output_rounding);
 
     let steps = vec![
         step("operands; ROM(n) addressed", []),

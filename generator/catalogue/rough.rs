@@ -9,11 +9,11 @@ mod sine;
 use glint_base::fixed::{Format, Overflow, Rounding};
 use glint_config::{Config, Shared};
 use glint_keys::rough::Keys;
-use glint_rtl::blocks::colour::{ChannelBlocks, Colours};
+use glint_rtl::blocks::colour::ChannelBlocks;
 use glint_rtl::dsl::{Designer, Register, Signal, end, hold, step, valid};
 use glint_rtl::netlist::{About, Note, Topic};
 
-use super::common;
+use super::common::{self, Products};
 use sine::sine_rom;
 
 /// The patent's numbers of the colour channels.
@@ -83,7 +83,7 @@ pub fn describe(d: &Designer, config: &Config) {
         .block(4)
         .inputs(61, 62)
         .doc("sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)");
-    let colours = Colours::new(d, keys.operands.colours.bits as i32, Some(CHANNELS));
+    let colours = Products::new(d, &keys.operands.colours, Some(CHANNELS));
 
     // V1 V2, then V3, then the load lines V4 to V7: in the order of the patent's table.
     let operand_select =
@@ -171,8 +171,7 @@ pub fn describe(d: &Designer, config: &Config) {
         // Without the clamp the square can be 1.0 or more, where f saturates.
         d.narrow("f", r13.q(), formats.f, Rounding::Truncate, Overflow::Saturate).doc(doc)
     };
-    let outputs =
-        common::colour_products(&keys.operands.colours, keys.f.output_rounding, &colours, f);
+    let outputs = colours.outputs(f, keys.f.output_rounding);
 
     d.sequencer_lines(43, 44);
     let mut steps = vec![

@@ -7,12 +7,11 @@
 use glint_base::fixed::{Format, Overflow, Rounding};
 use glint_config::Config;
 use glint_keys::schlick::Keys;
-use glint_rtl::blocks::colour::Colours;
 use glint_rtl::blocks::divider::Divider;
 use glint_rtl::dsl::{Designer, Signal, loop_while, step};
 use glint_rtl::netlist::{About, Topic};
 
-use super::common;
+use super::common::{self, Products};
 
 /// Describes `schlick`: `c / (n − n·c + c)` by a multiplier and an iterative divider.
 pub fn describe(d: &Designer, config: &Config) {
@@ -21,16 +20,11 @@ pub fn describe(d: &Designer, config: &Config) {
 
     let cos_gamma = common::cosine(d, &keys.operands.cosine).q();
     let exponent = common::exponent(d, keys.operands.exponent_bits).q();
-    let colours = Colours::new(d, keys.operands.colours.bits as i32, None);
+    let colours = Products::new(d, &keys.operands.colours, None);
 
     let divisor = divisor(d, cos_gamma, exponent);
     let quotient = Divider::new(d, "quotient", cos_gamma, divisor, keys.fraction as i32);
-    let outputs = common::colour_outputs(
-        &keys.operands.colours,
-        keys.output_rounding,
-        &colours,
-        quotient.quotient(),
-    );
+    let outputs = colours.results(quotient.quotient(), keys.output_rounding);
 
     let steps = vec![
         step("operands cos gamma, n", []),
@@ -57,13 +51,8 @@ fn divisor<'d>(d: &'d Designer, cos_gamma: Signal<'d>, exponent: Signal<'d>) -> 
     let dark = d.not("dark", facing).doc("an ulp for the divisor, which n = 0 would leave at 0");
     let sum = d.add_carry("denominator", scaled, cos_gamma, dark);
     // It lies between cos γ and n, or 1.0, and is n and an ulp at the most.
-    let divisor = d.narrow(
-        "divisor",
-        sum,
-        Format::unsigned(n.int, c.frac),
-        Rounding::Truncate,
-        Overflow::Wrap,
-    );
+    let format = Format::unsigned(n.int, c.frac);
+    let divisor = d.narrow("divisor", sum, format, Rounding::Truncate, Overflow::Wrap);
     divisor.doc("n - n*cos gamma + cos gamma, never 0")
 }
 

@@ -8,11 +8,11 @@
 use glint_base::fixed::{Format, Overflow, Rounding, exp2};
 use glint_config::Config;
 use glint_keys::threshold::Keys;
-use glint_rtl::blocks::colour::{ChannelBlocks, Colours};
+use glint_rtl::blocks::colour::ChannelBlocks;
 use glint_rtl::dsl::{Designer, Rom, Signal, step};
 use glint_rtl::netlist::About;
 
-use super::common;
+use super::common::{self, Products};
 
 /// The seed's numbers of the colour channels.
 const CHANNELS: [ChannelBlocks; 3] = [channel(3), channel(4), channel(5)];
@@ -35,7 +35,7 @@ pub fn describe(d: &Designer, config: &Config) {
 
     let cos_gamma = common::cosine(d, &keys.operands.cosine).block(1).inputs(1, 1).q();
     let exponent = common::exponent(d, keys.operands.exponent_bits).block(2).inputs(2, 2).q();
-    let colours = Colours::new(d, keys.operands.colours.bits as i32, Some(CHANNELS));
+    let colours = Products::new(d, &keys.operands.colours, Some(CHANNELS));
 
     // From -1.0, where the parabola has its zero: the saturation of the product is the clamp.
     let scaled =
@@ -46,24 +46,14 @@ pub fn describe(d: &Designer, config: &Config) {
     let adder1 = d.sub("adder1", cos_gamma, one).block(1).doc("cos gamma - 1.0");
     let half_n = exponent.shift_right(1).named("half_exponent").doc("n/2, by wiring");
     let multiplier1 = d.mul("multiplier1", adder1, half_n).block(1);
-    scaled.takes(d.narrow(
-        "multiplier1_rounded",
-        multiplier1,
-        scaled.format(),
-        rounding_f,
-        Overflow::Saturate,
-    ));
+    let (name, format) = ("multiplier1_rounded", scaled.format());
+    scaled.takes(d.narrow(name, multiplier1, format, rounding_f, Overflow::Saturate));
     let one = d.constant("base_one", 1.0, Format::unsigned(1, f.frac));
     let adder2 = d.add("adder2", scaled.q(), one).block(2).doc("base of the square, 0 ... 1.0");
     let multiplier2 = d.mul("multiplier2", adder2, adder2).block(2);
     let square = d.narrow("square", multiplier2, f, rounding_f, Overflow::Saturate);
     intensity.takes(gates(d, &keys, cos_gamma, exponent, square));
-    let outputs = common::colour_outputs(
-        &keys.operands.colours,
-        keys.f.output_rounding,
-        &colours,
-        intensity.q(),
-    );
+    let outputs = colours.results(intensity.q(), keys.f.output_rounding);
 
     let steps = vec![
         step("operands; ROM(n) addressed", []),

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use super::contract::{self, ErrorShare};
-use super::frame::{Clocked, Frame, idle, step_by};
+use super::frame::{Frame, idle, step_by};
 use super::highlight::{self, Highlight, Reflectance, Variation};
 use super::narrow::{Narrow, rounding_error};
 use super::{Contract, Model};
@@ -57,12 +57,7 @@ impl Arithmetic {
 
 /// Returns the golden model.
 pub fn model(config: &Config) -> Box<dyn Model> {
-    Box::new(clocked(Arithmetic::new(Keys::of(config))))
-}
-
-/// Returns the device, clock by clock.
-fn clocked(it: Arithmetic) -> Clocked {
-    let it = Arc::new(it);
+    let it = Arc::new(Arithmetic::new(Keys::of(config)));
     let mut frame = Frame::default();
     let [cosine, exponent] = highlight::slots(&it.keys.operands, &mut frame);
     let accumulator = frame.register("accumulator", it.keys.f.format());
@@ -87,7 +82,8 @@ fn clocked(it: Arithmetic) -> Clocked {
     .repeat_while(move |s| s[remaining] > 1);
     let mut program = vec![idle(), scale, base];
     program.extend(counted.then_some(square));
-    highlight::products(&it.keys.operands.colours, &it.keys.f).behind(frame, accumulator, program)
+    let products = highlight::products(&it.keys.operands.colours, &it.keys.f);
+    Box::new(products.behind(frame, accumulator, program))
 }
 
 /// Returns the accuracy contract. Control operands: `cos_gamma`, `exponent`.

@@ -5,7 +5,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::contract::ErrorShare;
-use super::frame::{Clocked, Frame};
+use super::frame::Frame;
 use super::highlight::{Highlight, Products, Reflectance};
 use super::line::{self, CosineTable, magnitude};
 use super::{Contract, Model, Operand, Sweep};
@@ -40,19 +40,15 @@ impl Arithmetic {
     }
 }
 
-/// Returns the golden model.
-pub fn model(config: &Config) -> Box<dyn Model> {
-    Box::new(clocked(Keys::of(config)))
-}
-
 /// Returns the product of the word of ROM 12 with the amplitude.
 fn products(keys: &Keys) -> Products {
     Products::amplitude(keys.f_format(), keys.colour_bits, keys.output_rounding)
         .at_edges(keys.stages > 2)
 }
 
-/// Returns the device, clock by clock.
-fn clocked(keys: Keys) -> Clocked {
+/// Returns the golden model.
+pub fn model(config: &Config) -> Box<dyn Model> {
+    let keys = Keys::of(config);
     let mut frame = Frame::default();
     let Keys { length_bits, stages, .. } = keys;
     let (angle, program) = line::walker(&mut frame, keys.angle_format(), length_bits, stages);
@@ -74,20 +70,17 @@ fn clocked(keys: Keys) -> Clocked {
             s[address] = it.step_of(s[angle]);
         });
     }
-    frame.model(program)
+    Box::new(frame.model(program))
 }
 
 /// Returns the accuracy contract. Control operands: `delta_zeta`, `zeta_start`, `length`; those of a point have its
 /// angle for `zeta_start`.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
-    Box::new(highlight(Keys::of(config)))
-}
-
-fn highlight(keys: Keys) -> Highlight {
+    let keys = Keys::of(config);
     let mut operands = line::angle_operands(keys.angle_format()).to_vec();
     operands.push(line::length_operand(keys.length_bits));
     let products = products(&keys);
-    Highlight::new(Arithmetic::new(keys), operands, products)
+    Box::new(Highlight::new(Arithmetic::new(keys), operands, products))
 }
 
 impl Reflectance for Arithmetic {

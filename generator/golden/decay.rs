@@ -8,7 +8,7 @@ use std::f64::consts::{LN_2, PI};
 use std::sync::Arc;
 
 use super::contract::{self, ErrorShare};
-use super::frame::{Clocked, Frame, State, idle, step, step_by};
+use super::frame::{Frame, State, idle, step, step_by};
 use super::highlight::{self, Highlight, Reflectance, Variation};
 use super::narrow::Narrow;
 use super::polynomial::Polynomial;
@@ -48,11 +48,9 @@ impl Arithmetic {
         let kept = keys.f.fraction + u32::from(keys.f.rounding == Rounding::Nearest);
         let truncate =
             |fraction: u32, format: Format| Narrow::new(fraction, format, Rounding::Truncate);
+        let product = keys.operands.cosine.fraction + keys.ratio_fraction;
         Self {
-            to_decay: truncate(
-                keys.operands.cosine.fraction + keys.ratio_fraction,
-                keys.decay_format(),
-            ),
+            to_decay: truncate(product, keys.decay_format()),
             from_fine: truncate(keys.decay_fraction, halvings),
             from_coarse: truncate(keys.coarse_fraction, halvings),
             to_kept: truncate(keys.fraction, Format::unsigned(1, kept as i32)),
@@ -156,16 +154,20 @@ impl Arithmetic {
         let weight = LN_2 * n * libm::exp2(-n * least.max(0.0));
         parts.map(|part| part * weight)
     }
+
+    /// Returns the formula in f64.
+    #[inline]
+    fn formula(&self, cosine: f64, exponent: f64) -> f64 {
+        match self.of {
+            Decay::Logarithm => formulas::blinn(cosine, exponent),
+            Decay::Angle => formulas::gauss(cosine, exponent),
+        }
+    }
 }
 
 /// Returns the golden model of one of the devices.
 pub fn model(config: &Config, of: Decay) -> Box<dyn Model> {
-    Box::new(clocked(Arithmetic::new(of, Keys::of(config))))
-}
-
-/// Returns the device, clock by clock.
-fn clocked(it: Arithmetic) -> Clocked {
-    let it = Arc::new(it);
+    let it = Arc::new(Arithmetic::new(of, Keys::of(config)));
     let keys = &it.keys;
     let mut frame = Frame::default();
     let [cosine, exponent] = highlight::slots(&keys.operands, &mut frame);
@@ -195,7 +197,8 @@ fn clocked(it: Arithmetic) -> Clocked {
     program.push(step_by(&it, move |it, s| {
         s[reflectance] = it.reflectance(s[cosine], s[halvings], s[powers]);
     }));
-    highlight::products(&keys.operands.colours, &keys.f).behind(frame, reflectance, program)
+    let products = highlight::products(&keys.operands.colours, &keys.f);
+    Box::new(products.behind(frame, reflectance, program))
 }
 
 /// Returns the accuracy contract of one of the devices. Control operands: `cos_gamma`, `exponent`.
@@ -204,17 +207,6 @@ pub fn contract(config: &Config, of: Decay) -> Box<dyn Contract> {
     let operands = highlight::operands(&it.keys.operands, &it.keys.domain);
     let products = highlight::products(&it.keys.operands.colours, &it.keys.f);
     Box::new(Highlight::new(it, operands, products))
-}
-
-impl Arithmetic {
-    /// Returns the formula in f64.
-    #[inline]
-    fn formula(&self, cosine: f64, exponent: f64) -> f64 {
-        match self.of {
-            Decay::Logarithm => formulas::blinn(cosine, exponent),
-            Decay::Angle => formulas::gauss(cosine, exponent),
-        }
-    }
 }
 
 impl Reflectance for Arithmetic {

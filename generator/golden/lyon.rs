@@ -9,7 +9,7 @@ pub use contract::contract;
 use std::sync::Arc;
 
 use super::Model;
-use super::frame::{Clocked, Frame, idle, step, step_by};
+use super::frame::{Frame, idle, step, step_by};
 use super::highlight::{self, Products};
 use super::narrow::Narrow;
 use easy_ext::ext;
@@ -90,6 +90,7 @@ impl Arithmetic {
     fn new(keys: Keys) -> Self {
         let (f, squarings) = (keys.f.fraction, keys.squarings());
         let (distance, rounding) = (keys.distance_fraction, keys.f.rounding);
+        let (squares, whole) = (2 * keys.vector_fraction, Format::unsigned(4, distance as i32));
         // n/2^(s+1) is the integer n with s + 1 fraction bits; the shift register has one more.
         let beta_fraction = match keys.scale {
             Scale::Multiplier => squarings + 1,
@@ -99,11 +100,7 @@ impl Arithmetic {
             squarings,
             one: 1 << f,
             shifted_most: (2 << (distance + squarings + 2)) - 1,
-            distance: Narrow::new(
-                2 * keys.vector_fraction,
-                Format::unsigned(4, distance as i32),
-                keys.distance_rounding,
-            ),
+            distance: Narrow::new(squares, whole, keys.distance_rounding),
             scaled: Narrow::new(distance + beta_fraction, Format::unsigned(1, f as i32), rounding),
             square: Narrow::new(2 * f, keys.f.format(), rounding),
             keys,
@@ -156,12 +153,7 @@ impl Arithmetic {
 
 /// Returns the golden model.
 pub fn model(config: &Config) -> Box<dyn Model> {
-    Box::new(clocked(Keys::of(config)))
-}
-
-/// Returns the device, clock by clock.
-fn clocked(keys: Keys) -> Clocked {
-    let it = Arc::new(Arithmetic::new(keys));
+    let it = Arc::new(Arithmetic::new(Keys::of(config)));
     let (keys, squarings) = (&it.keys, it.squarings);
     let (shift, in_turn) = (keys.scale == Scale::Shift, keys.squares_in_turn());
     let (vector, scale) = (keys.vector_format(), keys.scale_format());
@@ -230,5 +222,5 @@ fn clocked(keys: Keys) -> Clocked {
         });
         program.push(square.repeat_while(move |s| s[remaining] > 1));
     }
-    keys.products().behind(frame, accumulator, program)
+    Box::new(keys.products().behind(frame, accumulator, program))
 }

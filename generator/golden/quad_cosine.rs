@@ -8,7 +8,7 @@ mod tests;
 pub use contract::contract;
 
 use super::Model;
-use super::frame::{Clocked, Frame};
+use super::frame::Frame;
 use super::highlight::Products;
 use super::line::{self, CosineTable, magnitude};
 use glint_base::fixed::Format;
@@ -18,14 +18,11 @@ use glint_keys::quad_cosine::Keys;
 /// Returns the power that serves n, as a number of a table: the seed's ranges.
 #[inline]
 fn range_of(n: i64) -> usize {
-    if n == 1 {
-        0
-    } else if n == 2 {
-        1
-    } else if (3..=6).contains(&n) {
-        2
-    } else {
-        3
+    match n {
+        1 => 0,
+        2 => 1,
+        3..=6 => 2,
+        _ => 3,
     }
 }
 
@@ -88,19 +85,15 @@ fn root(n: i64, k: i64, fraction: u32) -> i64 {
     floor + i64::from(middle * middle * i128::from(k) <= 4 * i128::from(square))
 }
 
-/// Returns the golden model.
-pub fn model(config: &Config) -> Box<dyn Model> {
-    Box::new(clocked(Keys::of(config)))
-}
-
 /// Returns the product of the word of ROM 12 with the amplitude.
 fn products(keys: &Keys) -> Products {
     Products::amplitude(keys.f_format(), keys.colour_bits, keys.output_rounding)
         .at_edges(keys.stages > 2)
 }
 
-/// Returns the device, clock by clock.
-fn clocked(keys: Keys) -> Clocked {
+/// Returns the golden model.
+pub fn model(config: &Config) -> Box<dyn Model> {
+    let keys = Keys::of(config);
     let mut frame = Frame::default();
     let Keys { length_bits, stages, exponent_bits, .. } = keys;
     let (angle, program) = line::walker(&mut frame, keys.angle_format(), length_bits, stages);
@@ -115,7 +108,7 @@ fn clocked(keys: Keys) -> Clocked {
             s[cosine] = it.cosine_of(s[exponent], it.magnitude(s[angle]), s[root]);
             s[root] = it.root(s[exponent]);
         });
-        return frame.model(program);
+        return Box::new(frame.model(program));
     }
     // The magnitude of the angle, or nothing, and the word of ROM 9; the magnitude times the root, and whether there was one.
     let [magnitude, within, held_root, scaled, scaled_within] = [(); 5].map(|()| frame.hidden());
@@ -136,5 +129,5 @@ fn clocked(keys: Keys) -> Clocked {
         s[within] = taken.is_some().into();
         s[root] = it.root(s[exponent]);
     });
-    frame.model(program)
+    Box::new(frame.model(program))
 }

@@ -7,7 +7,7 @@ mod tests;
 use std::sync::Arc;
 
 use super::contract::{self, ErrorShare};
-use super::frame::{Clocked, Frame, idle, step_by};
+use super::frame::{Frame, idle, step_by};
 use super::highlight::{self, Highlight, Reflectance, Variation};
 use super::narrow::{Narrow, rounding_error};
 use super::{Contract, Model};
@@ -66,12 +66,7 @@ fn difference_format(fraction: u32) -> Format {
 
 /// Returns the golden model.
 pub fn model(config: &Config) -> Box<dyn Model> {
-    Box::new(clocked(Arithmetic::new(Keys::of(config))))
-}
-
-/// Returns the device, clock by clock.
-fn clocked(it: Arithmetic) -> Clocked {
-    let it = Arc::new(it);
+    let it = Arc::new(Arithmetic::new(Keys::of(config)));
     let mut frame = Frame::default();
     let [cosine, exponent] = highlight::slots(&it.keys.operands, &mut frame);
     let difference = frame.register("difference", difference_format(it.keys.difference_fraction));
@@ -83,7 +78,8 @@ fn clocked(it: Arithmetic) -> Clocked {
             s[intensity] = it.intensity(s[cosine], s[exponent], s[difference]);
         }),
     ];
-    highlight::products(&it.keys.operands.colours, &it.keys.f).behind(frame, intensity, program)
+    let products = highlight::products(&it.keys.operands.colours, &it.keys.f);
+    Box::new(products.behind(frame, intensity, program))
 }
 
 /// Returns the accuracy contract. Control operands: `cos_gamma`, `exponent`.
@@ -104,10 +100,8 @@ impl Reflectance for Arithmetic {
     /// Returns the formula with a(n) as it was before ROM(n) rounded it.
     #[inline]
     fn reference(&self, control: &[i64]) -> f64 {
-        formulas::quadratic(
-            self.keys.operands.cosine.value(control[0]),
-            self.exact[control[1] as usize],
-        )
+        let cosine = self.keys.operands.cosine.value(control[0]);
+        formulas::quadratic(cosine, self.exact[control[1] as usize])
     }
 
     fn at_cosine(&self, cosine: f64, exponent: i64) -> Option<f64> {
@@ -141,21 +135,16 @@ impl Reflectance for Arithmetic {
         let f = self.keys.f.fraction;
         let scale = exp2(-(self.keys.coefficient_fraction() as i32));
         let (first, last) = self.keys.domain.exponents();
-        let table = (first..=last).map(|n| {
-            let n = n as usize;
-            (self.exact[n], self.words[n] as f64 * scale)
-        });
         let (mut rounded, mut largest) = (0.0f64, 0.0f64);
-        for (exact, word) in table {
+        for n in first as usize..=last as usize {
+            let (exact, word) = (self.exact[n], self.words[n] as f64 * scale);
             let reach = (1.0 / exact.min(word).max(4.0)).min(0.25);
             rounded = rounded.max((exact - word).abs() * reach);
             largest = largest.max(word);
         }
-        let difference = rounding_error(
-            2 * self.keys.operands.cosine.fraction,
-            self.keys.difference_fraction,
-            self.keys.difference_rounding,
-        );
+        let (square, fraction) =
+            (2 * self.keys.operands.cosine.fraction, self.keys.difference_fraction);
+        let difference = rounding_error(square, fraction, self.keys.difference_rounding);
         vec![
             ("coefficient.fraction", "rounding of a(n)", rounded),
             ("difference.fraction", "rounding of c² − c, times a(n)", difference * largest),

@@ -1,7 +1,7 @@
 //! The golden model and the accuracy contract of `schlick`: c / (n − n·c + c), c = cos γ (seed 002).
 
 use super::contract::{self, ErrorShare};
-use super::frame::{Clocked, Frame, idle, step};
+use super::frame::{Frame, idle, step};
 use super::highlight::{self, Highlight, Products, Reflectance, Variation};
 use super::{Contract, Model};
 use crate::formulas;
@@ -38,15 +38,11 @@ fn products(keys: &Keys) -> Products {
 }
 
 /// Returns the golden model.
-pub fn model(config: &Config) -> Box<dyn Model> {
-    Box::new(clocked(Arithmetic(Keys::of(config))))
-}
-
-/// Returns the device, clock by clock.
 ///
 /// The divider's registers are predicted from the division as a whole: after k steps the quotient ends
 /// in the first k bits of the true one, and the remainder is what these leave.
-fn clocked(it: Arithmetic) -> Clocked {
+pub fn model(config: &Config) -> Box<dyn Model> {
+    let it = Arithmetic(Keys::of(config));
     let (bits, cosine_fraction) = (it.0.fraction, it.0.operands.cosine.fraction);
     let products = products(&it.0);
     let mut frame = Frame::default();
@@ -77,7 +73,7 @@ fn clocked(it: Arithmetic) -> Clocked {
         s[remaining] -= 1;
     });
     let program = vec![idle(), begin, bit.repeat_while(move |s| s[remaining] != 0)];
-    products.behind(frame, quotient, program)
+    Box::new(products.behind(frame, quotient, program))
 }
 
 /// Returns the accuracy contract. Control operands: `cos_gamma`, `exponent`.

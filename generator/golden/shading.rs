@@ -267,10 +267,8 @@ impl Formula for Shading {
         for suffix in self.keys.suffixes() {
             facing.push(cosine("l", suffix));
             let of = parse(&cosine("h", suffix)).expect("a formula");
-            shine.push(format!(
-                "({})",
-                f.substitute(&glint_formula::Formula::operand(operand), &of, &(0..0)).python()
-            ));
+            let f = f.substitute(&glint_formula::Formula::operand(operand), &of, &(0..0));
+            shine.push(format!("({})", f.python()));
         }
         let [facing, shine] = [facing, shine].map(|parts| parts.join(" + "));
         let most = exp2(self.keys.colour_bits as i32) - 1.0;

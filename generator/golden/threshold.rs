@@ -7,7 +7,7 @@ mod tests;
 use std::sync::Arc;
 
 use super::contract::{self, ErrorShare};
-use super::frame::{Clocked, Frame, idle, step_by};
+use super::frame::{Frame, idle, step_by};
 use super::highlight::{self, Highlight, Reflectance, Variation};
 use super::narrow::{Narrow, rounding_error};
 use super::{Contract, Model};
@@ -32,14 +32,11 @@ struct Arithmetic {
 impl Arithmetic {
     fn new(keys: Keys) -> Self {
         let (f, rounding) = (keys.f.fraction, keys.f.rounding);
+        // n/2 has one fraction bit.
+        let product = keys.operands.cosine.fraction + 1;
         let mut it = Self {
             base_one: 1 << f,
-            // n/2 has one fraction bit.
-            scaled: Narrow::new(
-                keys.operands.cosine.fraction + 1,
-                Format::signed(0, f as i32),
-                rounding,
-            ),
+            scaled: Narrow::new(product, Format::signed(0, f as i32), rounding),
             square: Narrow::new(2 * f, keys.f.format(), rounding),
             thresholds: Self::thresholds(&keys),
             margin: 0.0,
@@ -94,12 +91,7 @@ impl Arithmetic {
 
 /// Returns the golden model.
 pub fn model(config: &Config) -> Box<dyn Model> {
-    Box::new(clocked(Arithmetic::new(Keys::of(config))))
-}
-
-/// Returns the device, clock by clock.
-fn clocked(it: Arithmetic) -> Clocked {
-    let it = Arc::new(it);
+    let it = Arc::new(Arithmetic::new(Keys::of(config)));
     let mut frame = Frame::default();
     let [cosine, exponent] = highlight::slots(&it.keys.operands, &mut frame);
     let fraction = it.keys.f.fraction as i32;
@@ -110,7 +102,8 @@ fn clocked(it: Arithmetic) -> Clocked {
         step_by(&it, move |it, s| s[scaled] = it.scaled(s[cosine], s[exponent])),
         step_by(&it, move |it, s| s[intensity] = it.gated(s[cosine], s[exponent], s[scaled])),
     ];
-    highlight::products(&it.keys.operands.colours, &it.keys.f).behind(frame, intensity, program)
+    let products = highlight::products(&it.keys.operands.colours, &it.keys.f);
+    Box::new(products.behind(frame, intensity, program))
 }
 
 /// Returns the accuracy contract. Control operands: `cos_gamma`, `exponent`.
@@ -199,13 +192,11 @@ impl Reflectance for Arithmetic {
 
     /// Warns of a level above what rounds to 0, which is seen as an edge around the highlight.
     fn remarks(&self) -> Vec<String> {
-        let largest = (1 << self.keys.operands.colours.bits) - 1;
+        let (f, colour_bits) = (&self.keys.f, self.keys.operands.colours.bits);
+        let largest = (1 << colour_bits) - 1;
         let (first, last) = self.keys.domain.exponents();
-        let output = Narrow::new(
-            self.keys.f.fraction,
-            Format::unsigned(self.keys.operands.colours.bits as i32, 0),
-            self.keys.f.output_rounding,
-        );
+        let colour = Format::unsigned(colour_bits as i32, 0);
+        let output = Narrow::new(f.fraction, colour, f.output_rounding);
         let hidden = |n: i64| self.threshold(n) - 1;
         // One n of each octave stands for all.
         let Some((n, word)) = (0..=12)

@@ -218,18 +218,13 @@ pub fn line_stages(choices: &'static [&'static str]) -> Key {
 pub fn check_exponents(domain: &Domain, bits: u32, problems: &mut Problems) {
     let (min, max) = domain.exponents();
     if min > max {
-        problems.push(
-            "domain.exponent_min",
-            format!("{min} is above domain.exponent_max, {max}"),
-            format!("at most {max}"),
-        );
+        let message = format!("{min} is above domain.exponent_max, {max}");
+        problems.push("domain.exponent_min", message, format!("at most {max}"));
     }
     if max >= 1 << bits {
-        problems.push(
-            "domain.exponent_max",
-            format!("{max} does not fit the {bits} bits of the exponent"),
-            format!("at most {}, or a larger exponent.bits", (1 << bits) - 1),
-        );
+        let message = format!("{max} does not fit the {bits} bits of the exponent");
+        let remedy = format!("at most {}, or a larger exponent.bits", (1 << bits) - 1);
+        problems.push("domain.exponent_max", message, remedy);
     }
 }
 
@@ -246,11 +241,9 @@ pub fn check_rom_size(
 ) {
     let bits = i64::from(width) << address;
     if bits > ROM_LIMIT {
-        problems.push(
-            key,
-            format!("{rom} would have 2^{address} entries of {width} bits, {bits} bits in all"),
-            format!("{remedy}, for at most {ROM_LIMIT} bits"),
-        );
+        let message =
+            format!("{rom} would have 2^{address} entries of {width} bits, {bits} bits in all");
+        problems.push(key, message, format!("{remedy}, for at most {ROM_LIMIT} bits"));
     }
 }
 
@@ -261,11 +254,11 @@ pub fn check_segments(segments: &[u32], key: &str, bits: u32, problems: &mut Pro
     for (range, &prefix) in (0u32..).zip(segments) {
         let bits = bits.saturating_sub(2 * range);
         if prefix > bits {
-            problems.push(
-                key,
-                format!("range {range} has {bits} bits of 1 - cos, which cannot be cut into 2^{prefix} segments"),
-                "fewer ranges or smaller entries, or a larger cosine.fraction".to_owned(),
+            let message = format!(
+                "range {range} has {bits} bits of 1 - cos, which cannot be cut into 2^{prefix} segments"
             );
+            let remedy = "fewer ranges or smaller entries, or a larger cosine.fraction".to_owned();
+            problems.push(key, message, remedy);
             break;
         }
         most = most.max(bits - prefix);

@@ -40,11 +40,9 @@ fn check(config: &Config, problems: &mut Problems) {
     let keys = Keys::of(config);
     let fraction = keys.angle_fraction;
     if keys.table_address > fraction {
-        problems.push(
-            "table.address",
-            format!("the angle has {fraction} fraction bits"),
-            format!("at most {fraction}, or a larger angle.fraction"),
-        );
+        let message = format!("the angle has {fraction} fraction bits");
+        let remedy = format!("at most {fraction}, or a larger angle.fraction");
+        problems.push("table.address", message, remedy);
     }
     let size = (keys.table_address, keys.fraction);
     let remedy = "fewer address bits or narrower entries";

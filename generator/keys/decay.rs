@@ -167,15 +167,13 @@ pub(super) fn schema(device: &'static str, check: fn(&Config, &mut Problems)) ->
 pub(super) fn check(config: &Config, decay: Decay, problems: &mut Problems) {
     let keys = Keys::of(config);
     common::check_exponents(&keys.domain, keys.operands.exponent_bits, problems);
-    if keys.coarse_fraction > keys.decay_fraction {
-        problems.push(
-            "decay.coarse_fraction",
-            format!(
-                "{} fraction bits of the decay for the product by n do not go with {} of the decay",
-                keys.coarse_fraction, keys.decay_fraction
-            ),
-            format!("at most {}, or a larger decay.fraction", keys.decay_fraction),
+    let (coarse, fine) = (keys.coarse_fraction, keys.decay_fraction);
+    if coarse > fine {
+        let message = format!(
+            "{coarse} fraction bits of the decay for the product by n do not go with {fine} of the decay"
         );
+        let remedy = format!("at most {fine}, or a larger decay.fraction");
+        problems.push("decay.coarse_fraction", message, remedy);
     }
     if problems.is_refused() {
         return;

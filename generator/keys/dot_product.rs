@@ -55,10 +55,7 @@ fn check(config: &Config, problems: &mut Problems) {
     let Keys { fraction, address, inverse, factor, kept, .. } = Keys::of(config);
     normaliser::check_root(fraction, address, inverse, problems);
     if kept >= 2 * factor {
-        problems.push(
-            "output.fraction",
-            format!("more fraction bits than the {} of the last product", 2 * factor - 1),
-            "a larger factor.bits".to_owned(),
-        );
+        let message = format!("more fraction bits than the {} of the last product", 2 * factor - 1);
+        problems.push("output.fraction", message, "a larger factor.bits".to_owned());
     }
 }

@@ -58,10 +58,9 @@ fn check(config: &Config, problems: &mut Problems) {
     common::check_exponents(&keys.domain, keys.exponent_bits, problems);
     let (distance, vector) = (keys.distance_fraction, keys.vector_fraction);
     if distance > 2 * vector {
-        problems.push(
-            "distance.fraction",
-            format!("{distance} fraction bits are more than the squares of the components have"),
-            format!("at most {}, or a larger vector.fraction", 2 * vector),
-        );
+        let message =
+            format!("{distance} fraction bits are more than the squares of the components have");
+        let remedy = format!("at most {}, or a larger vector.fraction", 2 * vector);
+        problems.push("distance.fraction", message, remedy);
     }
 }

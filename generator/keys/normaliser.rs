@@ -36,11 +36,9 @@ fn check(config: &Config, problems: &mut Problems) {
     let Keys { fraction, address, inverse, kept, .. } = Keys::of(config);
     check_root(fraction, address, inverse, problems);
     if kept > inverse {
-        problems.push(
-            "output.fraction",
-            format!("more fraction bits than the {inverse} of the inverse root"),
-            format!("at most {inverse}, or a larger inverse.fraction"),
-        );
+        let message = format!("more fraction bits than the {inverse} of the inverse root");
+        let remedy = format!("at most {inverse}, or a larger inverse.fraction");
+        problems.push("output.fraction", message, remedy);
     }
 }
 
@@ -48,17 +46,14 @@ fn check(config: &Config, problems: &mut Problems) {
 pub(super) fn check_root(fraction: u32, address: u32, inverse: u32, problems: &mut Problems) {
     let sum = 2 * fraction + 4;
     if address >= sum {
-        problems.push(
-            "table.address",
-            format!("the sum of squares has {sum} bits, of which one at least is left for the way along a segment"),
-            format!("at most {}, or a larger vector.fraction", sum - 1),
+        let message = format!(
+            "the sum of squares has {sum} bits, of which one at least is left for the way along a segment"
         );
+        let remedy = format!("at most {}, or a larger vector.fraction", sum - 1);
+        problems.push("table.address", message, remedy);
     }
     if inverse < address {
-        problems.push(
-            "inverse.fraction",
-            format!("coarser than the {address} bits of table.address"),
-            format!("at least {address}"),
-        );
+        let message = format!("coarser than the {address} bits of table.address");
+        problems.push("inverse.fraction", message, format!("at least {address}"));
     }
 }

@@ -44,27 +44,20 @@ fn check(config: &Config, problems: &mut Problems) {
     let keys = Keys::of(config);
     common::check_exponents(&keys.domain, keys.exponent_bits, problems);
     if keys.exponent_bits < 3 {
-        problems.push(
-            "exponent.bits",
-            "decoder 10 tells n = 7 from smaller ones, which takes three bits".to_owned(),
-            "at least 3".to_owned(),
-        );
+        let message = "decoder 10 tells n = 7 from smaller ones, which takes three bits".to_owned();
+        problems.push("exponent.bits", message, "at least 3".to_owned());
     }
     let fraction = keys.angle_fraction;
     if keys.angle_multiplied > fraction {
-        problems.push(
-            "angle.multiplied",
-            format!("the angle has {fraction} fraction bits"),
-            format!("at most {fraction}, or a larger angle.fraction"),
-        );
+        let message = format!("the angle has {fraction} fraction bits");
+        let remedy = format!("at most {fraction}, or a larger angle.fraction");
+        problems.push("angle.multiplied", message, remedy);
     }
     let product = keys.angle_multiplied + keys.root_fraction;
     if keys.table_address > product {
-        problems.push(
-            "table.address",
-            format!("the angle times the root has {product} fraction bits"),
-            format!("at most {product}, or a larger angle.multiplied or root.fraction"),
-        );
+        let message = format!("the angle times the root has {product} fraction bits");
+        let remedy = format!("at most {product}, or a larger angle.multiplied or root.fraction");
+        problems.push("table.address", message, remedy);
     }
     let size = (keys.table_address + 2, keys.fraction);
     let remedy = "fewer address bits or narrower entries";

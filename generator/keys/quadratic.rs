@@ -48,10 +48,9 @@ fn check(config: &Config, problems: &mut Problems) {
     common::check_exponents(&keys.domain, keys.operands.exponent_bits, problems);
     let (difference, cosine) = (keys.difference_fraction, keys.operands.cosine.fraction);
     if difference > 2 * cosine {
-        problems.push(
-            "difference.fraction",
-            format!("{difference} fraction bits are more than the square of the cosine has"),
-            format!("at most {}, or a larger cosine.fraction", 2 * cosine),
-        );
+        let message =
+            format!("{difference} fraction bits are more than the square of the cosine has");
+        let remedy = format!("at most {}, or a larger cosine.fraction", 2 * cosine);
+        problems.push("difference.fraction", message, remedy);
     }
 }

@@ -89,28 +89,21 @@ fn check(config: &Config, problems: &mut Problems) {
     // No range of a key makes a net wider than 64 bits: the widest is n/2 * adder 15 with the point of the
     // square, 13 + 48 bits.
     if keys.patent() && keys.operands.exponent_bits < 2 {
-        problems.push(
-            "exponent.bits",
-            "the patent's wiring of n/2 drops the only bit of n".to_owned(),
-            "at least 2 with arithmetic = \"patent\"".to_owned(),
-        );
+        let message = "the patent's wiring of n/2 drops the only bit of n".to_owned();
+        let remedy = "at least 2 with arithmetic = \"patent\"".to_owned();
+        problems.push("exponent.bits", message, remedy);
     }
     let (fraction, product) =
         if keys.patent() { (cosine, cosine) } else { (keys.sine_fraction, keys.product_fraction) };
     if product > 2 * fraction.min(cosine) {
-        problems.push(
-            "product.fraction",
-            format!("{product} fraction bits are more than the products have"),
-            format!("at most {}", 2 * fraction.min(cosine)),
-        );
+        let message = format!("{product} fraction bits are more than the products have");
+        problems.push("product.fraction", message, format!("at most {}", 2 * fraction.min(cosine)));
     }
     if keys.scheme == Scheme::Direct {
         if keys.address > cosine {
-            problems.push(
-                "sine.address",
-                "more address bits than the cosine has fraction bits".to_owned(),
-                format!("at most {cosine}, or a larger cosine.fraction"),
-            );
+            let message = "more address bits than the cosine has fraction bits".to_owned();
+            let remedy = format!("at most {cosine}, or a larger cosine.fraction");
+            problems.push("sine.address", message, remedy);
         }
         let remedy = "fewer address bits, or sine.scheme = \"segmented\"";
         let size = (keys.address, fraction);
@@ -128,10 +121,9 @@ fn check(config: &Config, problems: &mut Problems) {
     }
     let slope = keys.slope_fraction;
     if slope > fraction || most + slope < fraction {
-        problems.push(
-            "sine.slope_fraction",
-            format!("{slope} fraction bits of the slope do not go with {fraction} of the sine"),
-            format!("{} to {fraction}", fraction.saturating_sub(most).max(8)),
-        );
+        let message =
+            format!("{slope} fraction bits of the slope do not go with {fraction} of the sine");
+        let remedy = format!("{} to {fraction}", fraction.saturating_sub(most).max(8));
+        problems.push("sine.slope_fraction", message, remedy);
     }
 }

@@ -60,11 +60,10 @@ fn check(config: &Config, problems: &mut Problems) {
     let keys = Keys::of(config);
     let most = (1 << keys.exponent_bits) - 1;
     if keys.most > most {
-        problems.push(
-            "domain.exponent_max",
-            format!("{} does not fit the {} bits of the exponent", keys.most, keys.exponent_bits),
-            format!("at most {most}, or a larger exponent.bits"),
-        );
+        let message =
+            format!("{} does not fit the {} bits of the exponent", keys.most, keys.exponent_bits);
+        let remedy = format!("at most {most}, or a larger exponent.bits");
+        problems.push("domain.exponent_max", message, remedy);
     } else if let Err((part, why)) = keys.parts() {
         let why = why.iter().map(|it| format!("{}: {}", it.key, it.message)).next();
         let message = format!("its part `{part}` cannot be made: {}", why.unwrap_or_default());

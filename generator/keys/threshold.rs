@@ -24,12 +24,10 @@ fn check(config: &Config, problems: &mut Problems) {
     common::check_exponents(&keys.domain, keys.operands.exponent_bits, problems);
     let most = 100 * ((1 << keys.operands.colours.bits) - 1);
     if let Some(level) = keys.levels.iter().find(|&&level| level >= most) {
-        problems.push(
-            "visibility.levels",
-            format!(
-                "{level} hundredths are as much as the largest output: nothing would be visible"
-            ),
-            format!("at most {}, or a larger colour.bits", most - 1),
+        let message = format!(
+            "{level} hundredths are as much as the largest output: nothing would be visible"
         );
+        let remedy = format!("at most {}, or a larger colour.bits", most - 1);
+        problems.push("visibility.levels", message, remedy);
     }
 }

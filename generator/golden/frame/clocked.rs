@@ -23,8 +23,9 @@ pub(super) struct Fixed {
     pub(super) edges: Vec<Does>,
     /// Results with the registers that take them.
     pub(super) taken: Vec<(Slot, Slot)>,
-    /// The buffer of each operand; empty where the operand registers take the writes.
-    buffers: Vec<Slot>,
+    /// What takes the writes of each operand: its register, or a buffer in front of it.
+    written: Vec<Slot>,
+    buffered: bool,
     flags: Vec<Slot>,
     pub(super) valid_delay: u32,
     inputs: Vec<String>,
@@ -69,11 +70,12 @@ impl Frame {
             shown: self.shown.iter().map(|it| (it.slot, mask(it.format.width()))).collect(),
             outputs: self.shown.iter().filter(|it| it.output).count(),
             program,
+            written: self.operands.iter().map(|it| it.slot).collect(),
+            buffered: false,
             operands: self.operands,
             logic: self.logic,
             edges: self.edges,
             taken: Vec::new(),
-            buffers: Vec::new(),
             flags: self.flags,
             valid_delay: self.valid_delay,
         };
@@ -82,30 +84,14 @@ impl Frame {
 }
 
 impl Fixed {
-    /// Loads the buffers from data and strobes, and at a start the operand registers from the buffers. Returns whether
-    /// anything was loaded.
-    fn write_buffers(&self, state: &mut State, ports: &[u64], starts: bool) -> bool {
-        let mut taken = starts;
-        let buffers = self.operands.iter().zip(&self.buffers);
-        for ((operand, &buffer), ports) in buffers.zip(ports.chunks_exact(2)) {
-            if ports[1] & 1 == 1 {
-                taken = true;
-                state[buffer] = operand.held(ports[0]);
-            }
-            if starts {
-                state[operand.slot] = state[buffer];
-            }
-        }
-        taken
-    }
-
-    /// Loads the operand registers. Returns whether anything was loaded.
-    fn write_operands(&self, state: &mut State, ports: &[u64]) -> bool {
+    /// Loads the operand registers, or the buffers in front of them, from data and strobes. Returns whether anything was loaded.
+    fn write(&self, state: &mut State, ports: &[u64]) -> bool {
         let mut taken = false;
-        for (operand, ports) in self.operands.iter().zip(ports.chunks_exact(2)) {
+        let registers = self.operands.iter().zip(&self.written);
+        for ((operand, &register), ports) in registers.zip(ports.chunks_exact(2)) {
             if ports[1] & 1 == 1 {
                 taken = true;
-                state[operand.slot] = operand.held(ports[0]);
+                state[register] = operand.held(ports[0]);
             }
         }
         taken
@@ -217,15 +203,17 @@ impl Model for Clocked {
         if let Some(does) = &here.does {
             does(state);
         }
-        let buffered = !it.buffers.is_empty();
         let ends = matches!(here.next, Next::End);
         // With buffers a start is heard in the last microinstruction too.
-        let starts = start && (!self.run || ends && buffered);
-        let taken = if buffered {
-            it.write_buffers(state, &inputs[2..], starts)
-        } else {
-            !self.run && it.write_operands(state, &inputs[2..])
-        };
+        let starts = start && (!self.run || ends && it.buffered);
+        let mut taken = (it.buffered || !self.run) && it.write(state, &inputs[2..]);
+        if it.buffered && starts {
+            taken = true;
+            it.operands
+                .iter()
+                .zip(&it.written)
+                .for_each(|(to, from)| state[to.slot] = state[*from]);
+        }
         // Registers and outputs change by loads alone where no edge and no flag changes them.
         let still = here.does.is_none()
             && !(taken || here.takes_results)
@@ -255,9 +243,10 @@ impl Model for Clocked {
     fn with_operand_buffers(&self) -> Option<Box<dyn Model>> {
         let mut it = Fixed::clone(&self.fixed);
         let mut slots = self.state.len();
-        for operand in &it.operands {
+        it.buffered = !it.operands.is_empty();
+        for (operand, written) in it.operands.iter().zip(&mut it.written) {
             let register = it.shown.iter().find(|(shown, _)| *shown == operand.slot);
-            it.buffers.push(Slot(slots));
+            *written = Slot(slots);
             it.shown.push((Slot(slots), register.map_or(0, |(_, mask)| *mask)));
             it.signals.push(format!("{}_buffer", operand.name));
             slots += 1;

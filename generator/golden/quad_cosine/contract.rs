@@ -14,10 +14,7 @@ use glint_config::Config;
 /// Returns the accuracy contract. Control operands: `delta_zeta`, `zeta_start`, `exponent`, `length`; those of a
 /// point have its angle for `zeta_start`.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
-    Box::new(highlight(Keys::of(config)))
-}
-
-fn highlight(keys: Keys) -> Highlight {
+    let keys = Keys::of(config);
     let mut operands = line::angle_operands(keys.angle_format()).to_vec();
     operands.push(shared::exponent_operand(
         Format::unsigned(keys.exponent_bits as i32, 0),
@@ -25,7 +22,7 @@ fn highlight(keys: Keys) -> Highlight {
     ));
     operands.push(line::length_operand(keys.length_bits));
     let products = products(&keys);
-    Highlight::new(Arithmetic::new(keys), operands, products)
+    Box::new(Highlight::new(Arithmetic::new(keys), operands, products))
 }
 
 impl Arithmetic {

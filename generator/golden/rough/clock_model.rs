@@ -2,23 +2,18 @@
 
 use std::sync::Arc;
 
-use super::{Arithmetic, Derived as _, Keys, keys_of};
+use super::{Arithmetic, Derived as _, keys_of};
 use crate::Model;
-use crate::frame::{Clocked, Frame, idle, step_by};
+use crate::frame::{Frame, idle, step_by};
 use glint_base::fixed::Format;
 use glint_config::Config;
 
 /// Returns the golden model.
-pub fn model(config: &Config) -> Box<dyn Model> {
-    Box::new(clocked(keys_of(config)))
-}
-
-/// Returns the device, clock by clock.
 ///
 /// A synchronous ROM 18 is addressed a microinstruction before its sine is taken, with operands that do not change in
 /// between, so that it shows the same as another would.
-pub(super) fn clocked(keys: Keys) -> Clocked {
-    let it = Arc::new(Arithmetic::new(keys));
+pub fn model(config: &Config) -> Box<dyn Model> {
+    let it = Arc::new(Arithmetic::new(keys_of(config)));
     let keys = &it.keys;
     let largest = keys.largest_cosine();
     let product = |int| Format::unsigned(int, keys.product_fraction as i32);
@@ -63,5 +58,5 @@ pub(super) fn clocked(keys: Keys) -> Clocked {
     ];
     program.extend(keys.products().slots(&mut frame, reflectance));
     program.extend([idle().valid(), idle().end()]);
-    frame.model(program)
+    Box::new(frame.model(program))
 }

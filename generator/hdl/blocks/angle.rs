@@ -51,13 +51,8 @@ pub fn address<'d>(
     within: Signal<'d>,
     bits: i32,
 ) -> Signal<'d> {
-    let leading = d.narrow(
-        &format!("{name}_limited"),
-        scaled,
-        Format::unsigned(0, bits),
-        Rounding::Truncate,
-        Overflow::Saturate,
-    );
+    let (limited, format) = (format!("{name}_limited"), Format::unsigned(0, bits));
+    let leading = d.narrow(&limited, scaled, format, Rounding::Truncate, Overflow::Saturate);
     let step = leading.read_as(Format::unsigned(bits, 0));
     let last = d.raw_constant(&format!("{name}_last"), (1 << bits) - 1, step.format());
     d.choose(name, within, [last, step])
@@ -75,15 +70,8 @@ pub fn cosine_power_table(power: u32, bits: i32, fraction: i32) -> Vec<i128> {
         let cosine = libm::cos(angle);
         (0..power).fold(1.0, |product, _| product * cosine)
     };
-    (0..steps)
-        .map(|step| {
-            if step + 1 == steps {
-                0
-            } else {
-                format.quantise((value(step) + value(step + 1)) / 2.0)
-            }
-        })
-        .collect()
+    let middle = |step: u32| format.quantise((value(step) + value(step + 1)) / 2.0);
+    (0..steps - 1).map(middle).chain([0]).collect()
 }
 
 /// Returns the comments of such a table: for each word the angles that it stands for.
@@ -92,11 +80,8 @@ pub fn step_comments(power: u32, bits: i32) -> Vec<String> {
     let steps = 1u32 << bits;
     (0..steps)
         .map(|step| {
-            if step + 1 == steps {
-                format!("cos^{power}, {:.3} degrees and on", degrees(step))
-            } else {
-                format!("cos^{power}, {:.3} degrees", degrees(step))
-            }
+            let on = if step + 1 == steps { " and on" } else { "" };
+            format!("cos^{power}, {:.3} degrees{on}", degrees(step))
         })
         .collect()
 }

@@ -59,10 +59,8 @@ impl<'d> Divider<'d> {
     ) -> Self {
         let part = |suffix: &str| format!("{name}_{suffix}");
         if bits < 2 {
-            d.error(
-                codes::WIDE,
-                format!("divider `{name}` gives {bits} bits: ask for two or more"),
-            );
+            let message = format!("divider `{name}` gives {bits} bits: ask for two or more");
+            d.error(codes::WIDE, message);
         }
         for operand in [dividend, divisor] {
             let (low, high) = operand.range();

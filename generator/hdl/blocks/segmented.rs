@@ -185,10 +185,7 @@ pub fn interpolate<'d>(
                 })
                 .collect(),
         );
-    let rom = match block {
-        Some(number) => rom.block(number),
-        None => rom,
-    };
+    let rom = block.map_or(rom, |number| rom.block(number));
     let rest =
         if shape.synchronous { d.pipeline(&format!("{name}_rest_held"), rest) } else { rest };
     let base = rom.out().bits(slope_bits, value).named(&format!("{name}_base"));

@@ -40,10 +40,9 @@ impl<'d> Instance<'d> {
         }
         if self.outputs.is_some() {
             let names: Vec<&str> = outputs.iter().map(|(name, _)| name.as_str()).collect();
-            self.designer.error(
-                codes::PART,
-                format!("`{}` has no output `{output}`: it has {}", self.name, names.join(", ")),
-            );
+            let message =
+                format!("`{}` has no output `{output}`: it has {}", self.name, names.join(", "));
+            self.designer.error(codes::PART, message);
         }
         self.designer.raw_constant("nothing", 0, Format::BIT)
     }
@@ -121,14 +120,9 @@ impl Designer {
         let asked: Vec<&str> = asked.map(|it| design.net(it.net).name.as_str()).collect();
         let same = given.len() == asked.len() && asked.iter().all(|it| given.contains(it));
         if !same {
-            self.error(
-                codes::PART,
-                format!(
-                    "`{name}` has the operands {}, and is given {}",
-                    asked.join(", "),
-                    given.join(", ")
-                ),
-            );
+            let [asked, given] = [asked, given].map(|names| names.join(", "));
+            let message = format!("`{name}` has the operands {asked}, and is given {given}");
+            self.error(codes::PART, message);
             return wrong;
         }
         let mut signals = HashMap::new();
@@ -231,8 +225,7 @@ impl<'d> Placed<'d, '_> {
     ) -> Instance<'d> {
         let (d, design) = (self.designer, self.design);
         let ports = design.ports.iter().filter(|port| port.role == Role::Result);
-        let shown =
-            ports.map(|port| (design.net(port.net).name.clone(), register(design, port.net)));
+        let shown = ports.map(|port| (design.net(port.net).name.clone(), design.renamed(port.net)));
         let shown: Vec<(String, NetId)> = shown.collect();
         for id in kept(design, &shown) {
             self.net(id);
@@ -348,14 +341,6 @@ impl<'d> Placed<'d, '_> {
             inner.parts.last_mut().into_iter().for_each(|it| it.settings.push(load.clone()));
             inner.parts.extend(steps);
         });
-    }
-}
-
-/// Returns the register that a result shows.
-fn register(design: &Design, port: NetId) -> NetId {
-    match design.net(port).driver {
-        Driver::Op(Op::Relabel(of)) => register(design, of),
-        _ => port,
     }
 }
 

@@ -229,10 +229,8 @@ impl Designer {
         let format = self.sound(name, format);
         let raw = format.quantise(value);
         if format.to_f64(raw) != value {
-            self.error(
-                codes::FORMAT,
-                format!("constant `{name}`: {value} is not representable in {format}"),
-            );
+            let message = format!("constant `{name}`: {value} is not representable in {format}");
+            self.error(codes::FORMAT, message);
         }
         let id = self.add_wiring(name, format, (raw, raw), Driver::Constant(format.bits(raw)));
         self.signal(id)
@@ -262,11 +260,9 @@ impl Designer {
         let wire = self.own(wire);
         let (format, net) = (wire.format(), self.net(wire.id()));
         if net.driver != Driver::Undriven {
-            self.error_at(
-                codes::TWO_DRIVERS,
-                format!("`{}` has two drivers: `{}` is the second", net.name, source.name()),
-                [("the first is here", net.location)],
-            );
+            let message =
+                format!("`{}` has two drivers: `{}` is the second", net.name, source.name());
+            self.error_at(codes::TWO_DRIVERS, message, [("the first is here", net.location)]);
             return;
         }
         if let Some(id) = self.fitted(source, format, &format!("wire `{}`", net.name)) {
@@ -304,10 +300,8 @@ impl Designer {
         let first = synchronous.then_some(0);
         let mut range = interval::of_values(words.iter().copied().chain(first)).unwrap_or((0, 0));
         if let Some((at, raw)) = words.iter().enumerate().find(|(_, raw)| !format.holds(**raw)) {
-            self.error(
-                codes::FORMAT,
-                format!("ROM `{name}`: word {at} is {raw}, which does not fit {format}"),
-            );
+            let message = format!("ROM `{name}`: word {at} is {raw}, which does not fit {format}");
+            self.error(codes::FORMAT, message);
             range = format.range();
         }
         let data = self.add_net(&format!("{name}_word"), format, range, Driver::Undriven, true);
@@ -332,13 +326,8 @@ impl Designer {
     #[track_caller]
     fn output_as<'d>(&'d self, name: &str, source: Signal<'d>, role: Role) -> Signal<'d> {
         let source = self.own(source);
-        let id = self.add_net(
-            name,
-            source.format(),
-            source.range(),
-            Driver::Op(Op::Relabel(source.id())),
-            true,
-        );
+        let driver = Driver::Op(Op::Relabel(source.id()));
+        let id = self.add_net(name, source.format(), source.range(), driver, true);
         self.port(id, role);
         self.signal(id)
     }
@@ -366,15 +355,11 @@ impl Designer {
     pub fn valid_after(&self, signal: Signal<'_>, clocks: u32) {
         let signal = self.own(signal);
         if signal.format().width() != 1 {
-            self.error(
-                codes::VALID,
-                format!("valid follows `{}`, which has more than one bit", signal.name()),
-            );
+            let message = format!("valid follows `{}`, which has more than one bit", signal.name());
+            self.error(codes::VALID, message);
         } else if self.inner.borrow_mut().valid.replace((signal.id(), clocks)).is_some() {
-            self.error(
-                codes::VALID,
-                format!("valid follows `{}` and another signal", signal.name()),
-            );
+            let message = format!("valid follows `{}` and another signal", signal.name());
+            self.error(codes::VALID, message);
         }
     }
 
@@ -402,10 +387,8 @@ impl Designer {
     #[track_caller]
     pub fn buffer_operands(&self) {
         if self.with(|inner| inner.design.ports.iter().any(|it| it.role == Role::Strobe)) {
-            self.error(
-                codes::BUFFER,
-                "an operand is declared before its buffer is asked for".to_owned(),
-            );
+            let message = "an operand is declared before its buffer is asked for".to_owned();
+            self.error(codes::BUFFER, message);
             return;
         }
         let taken = Driver::Op(Op::And(self.start, self.idle));

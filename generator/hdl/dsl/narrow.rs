@@ -5,6 +5,7 @@ use std::panic::Location;
 use super::{Designer, Signal};
 use crate::netlist::{Driver, NetId, Op};
 use glint_base::fixed::{Format, Overflow, Rounding};
+use glint_base::interval;
 
 impl Designer {
     /// Brings `a` to `format`.
@@ -24,16 +25,13 @@ impl Designer {
         let (a, format) = (self.own(a), self.sound(name, format));
         let rounded = self.rounded(name, a, format.frac, rounding);
         let (low, high) = rounded.range();
-        let fits = format.holds(low) && format.holds(high);
-        let (op, range) = match (fits, overflow) {
+        let limited = |raw: i128| raw.clamp(format.min_raw(), format.max_raw());
+        let (op, range) = match (interval::fits((low, high), format), overflow) {
             (true, _) => (Op::Relabel(self.resized(rounded, format)), (low, high)),
             (false, Overflow::Wrap) => (self.low_bits(rounded, format), format.range()),
             (false, Overflow::Saturate) => (
                 self.located(Location::caller(), || self.saturated(name, rounded, format)),
-                (
-                    low.clamp(format.min_raw(), format.max_raw()),
-                    high.clamp(format.min_raw(), format.max_raw()),
-                ),
+                (limited(low), limited(high)),
             ),
         };
         self.signal(self.add_net(name, format, range, Driver::Op(op), true))
@@ -65,12 +63,8 @@ impl Designer {
         let (low, high) = a.range();
         let floor = |raw: i128| Rounding::Truncate.shift(raw, places as i32);
         let kept = Format { signed: have.signed, int: have.int, frac };
-        let truncated = a.wiring(
-            "kept",
-            kept,
-            (floor(low), floor(high)),
-            Op::Slice { of: a.id(), low: places },
-        );
+        let bits = Op::Slice { of: a.id(), low: places };
+        let truncated = a.wiring("kept", kept, (floor(low), floor(high)), bits);
         match rounding {
             Rounding::Truncate => truncated,
             Rounding::Nearest => {
@@ -80,7 +74,7 @@ impl Designer {
                 let format = Format::holding(range.0.min(floor(low)), range.1, frac);
                 let op = Op::Add {
                     a: self.resized(truncated, format),
-                    b: self.resized(half, unsigned_as(format)),
+                    b: self.resized(half, with_sign(format, false)),
                     carry: None,
                 };
                 let id = self.add_wiring(&format!("{name}_nearest"), format, range, Driver::Op(op));
@@ -92,24 +86,12 @@ impl Designer {
     /// Returns the low bits of `a`, in `format`.
     #[track_caller]
     fn low_bits(&self, a: Signal<'_>, format: Format) -> Op {
-        if a.format().width() <= format.width() {
-            // Only the meaning of the top bit changes.
-            let same = Format { signed: a.format().signed, ..unsigned_as(format) };
-            let same = if same.signed { signed_as(format) } else { same };
-            let wide = a.wiring(
-                "wide",
-                same,
-                a.range(),
-                if a.format().width() == format.width() {
-                    Op::Relabel(a.id())
-                } else {
-                    Op::Extend(a.id())
-                },
-            );
-            Op::Relabel(wide.id())
-        } else {
-            Op::Slice { of: a.id(), low: 0 }
+        if a.format().width() > format.width() {
+            return Op::Slice { of: a.id(), low: 0 };
         }
+        // Only the meaning of the top bit changes.
+        let same = with_sign(format, a.format().signed);
+        Op::Relabel(a.resized_as("wide", same, a.range()).id())
     }
 
     /// Returns the saturation of `v`, whose range `format` does not hold.
@@ -120,12 +102,8 @@ impl Designer {
         let have = v.format();
         let (width, kept) = (have.width(), format.width());
         let constant = |suffix: &str, raw: i128| {
-            self.add_wiring(
-                &format!("{name}_{suffix}"),
-                format,
-                (raw, raw),
-                Driver::Constant(format.bits(raw)),
-            )
+            let driver = Driver::Constant(format.bits(raw));
+            self.add_wiring(&format!("{name}_{suffix}"), format, (raw, raw), driver)
         };
         let flag = |suffix: &str, op: Op| {
             let id =
@@ -142,9 +120,13 @@ impl Designer {
             .signal(wide)
             .wiring("inside", format, format.range(), Op::Slice { of: wide, low: 0 })
             .id();
-        let mux = |select: NetId, normal: NetId, limit: NetId| Op::Mux {
-            select,
-            inputs: vec![normal, limit],
+        let mux = |select: NetId, normal: NetId, limit: NetId| {
+            let inputs = vec![normal, limit];
+            Op::Mux { select, inputs }
+        };
+        let limited = |op: Op| {
+            let name = format!("{name}_limited");
+            self.add_wiring(&name, format, format.range(), Driver::Op(op))
         };
         let upper = |from: u32, to: u32| {
             (from < to).then(|| v.bits(from, Format::unsigned((to - from) as i32, 0)))
@@ -162,13 +144,7 @@ impl Designer {
                 let top = upper(kept, width - 1).filter(|_| above);
                 let limited = top.map_or(inside, |top| {
                     let over = flag("over", Op::Any(top.id()));
-                    let op = mux(over.id(), inside, constant("most", format.max_raw()));
-                    self.add_wiring(
-                        &format!("{name}_limited"),
-                        format,
-                        format.range(),
-                        Driver::Op(op),
-                    )
+                    limited(mux(over.id(), inside, constant("most", format.max_raw())))
                 });
                 mux(sign.id(), limited, constant("least", 0))
             }
@@ -191,16 +167,7 @@ impl Designer {
                 }
                 // One limit behind the other, rather than a choice of limits: the outer one becomes the
                 // synchronous reset of the register that takes the result.
-                let limited = if above {
-                    self.add_wiring(
-                        &format!("{name}_limited"),
-                        format,
-                        format.range(),
-                        Driver::Op(over()),
-                    )
-                } else {
-                    inside
-                };
+                let limited = if above { limited(over()) } else { inside };
                 let ones = flag("low", Op::All(top.id()));
                 let off = not(ones, "mixed");
                 let under = flag("under", Op::And(sign.id(), off.id()));
@@ -210,12 +177,8 @@ impl Designer {
     }
 }
 
-/// Returns `format` without a sign bit, as wide.
-fn unsigned_as(format: Format) -> Format {
-    Format { signed: false, int: format.int + i32::from(format.signed), frac: format.frac }
-}
-
-/// Returns `format` with a sign bit, as wide.
-fn signed_as(format: Format) -> Format {
-    Format { signed: true, int: format.int - i32::from(!format.signed), frac: format.frac }
+/// Returns `format` with a sign bit or without, as wide.
+fn with_sign(format: Format, signed: bool) -> Format {
+    let int = format.int + i32::from(format.signed) - i32::from(signed);
+    Format { signed, int, frac: format.frac }
 }

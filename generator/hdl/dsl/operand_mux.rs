@@ -6,8 +6,6 @@
 //! in their point. [`Designer::finish`] then proves for every word that a register which takes such a view is loaded
 //! under a selection that it is for.
 
-use std::cmp::Ordering;
-
 use super::{Designer, Select, SelectedProduct, Setting, Signal};
 use crate::netlist::{Driver, FieldId, Op};
 use glint_base::codes;
@@ -42,16 +40,11 @@ impl Designer {
         select.check_inputs(name, inputs.len());
         let (low, high) = hull(inputs.iter().map(|input| input.range())).unwrap_or((0, 0));
         let format = Format::holding(low, high, 0);
-        let carried = inputs
-            .iter()
-            .map(|input| {
-                let have = input.format();
-                self.resized(
-                    *input,
-                    Format { frac: have.frac, int: format.int - have.frac, signed: format.signed },
-                )
-            })
-            .collect();
+        let carried = inputs.iter().map(|input| {
+            let frac = input.format().frac;
+            self.resized(*input, Format { frac, int: format.int - frac, ..format })
+        });
+        let carried = carried.collect();
         let op = Op::Mux { select: self.field_net(select.field()).id(), inputs: carried };
         let out = self.signal(self.add_net(name, format, (low, high), Driver::Op(op), true));
         OperandMux {
@@ -199,15 +192,9 @@ impl<'d> SharedProduct<'d> {
             let found =
                 self.pairs.iter().position(|(a, b)| a.id() == first.id() && b.id() == second.id());
             let Some(at) = found else {
-                d.error(
-                    codes::PRODUCT,
-                    format!(
-                        "`{}` never multiplies `{}` by `{}`",
-                        self.out.name(),
-                        first.name(),
-                        second.name()
-                    ),
-                );
+                let [own, first, second] = [self.out, first, second].map(Signal::name);
+                let message = format!("`{own}` never multiplies `{first}` by `{second}`");
+                d.error(codes::PRODUCT, message);
                 continue;
             };
             values.push(at as u64);
@@ -229,7 +216,7 @@ impl<'d> SharedProduct<'d> {
             Some(excess) if range.0 < 0 && format.width() > excess.low => {
                 self.corrected(format, range, excess)
             }
-            _ => resized(self.out, "view", format, range),
+            _ => self.out.resized_as("view", format, range),
         };
         let described = SelectedProduct { field: self.field, values, delay: self.delay };
         d.with(|inner| inner.views.insert(view.id(), described));
@@ -242,9 +229,9 @@ impl<'d> SharedProduct<'d> {
         let d = self.out.designer();
         let upper = Format::unsigned((format.width() - excess.low) as i32, 0);
         let whole = Format::unsigned(format.width() as i32, 0);
-        let raw = resized(self.out, "wide", whole, whole.range());
+        let raw = self.out.resized_as("wide", whole, whole.range());
         let too_large = raw.bits(excess.low, upper);
-        let amount = resized(excess.amount, "wide", upper, upper.range());
+        let amount = excess.amount.resized_as("wide", upper, upper.range());
         let name = format!("{}_upper", self.out.name());
         let op = Op::Sub(too_large.id(), amount.id());
         let upper = d.add_wiring(&name, upper, upper.range(), Driver::Op(op));
@@ -252,16 +239,4 @@ impl<'d> SharedProduct<'d> {
         let op = Op::Concat(vec![upper, lower.id()]);
         self.out.wiring("view", format, range, op)
     }
-}
-
-/// Returns the low bits of `signal`, or all of them and zeros or signs above, as `format`.
-#[track_caller]
-fn resized<'d>(signal: Signal<'d>, suffix: &str, format: Format, range: Interval) -> Signal<'d> {
-    let id = signal.id();
-    let op = match format.width().cmp(&signal.format().width()) {
-        Ordering::Equal => Op::Relabel(id),
-        Ordering::Less => Op::Slice { of: id, low: 0 },
-        Ordering::Greater => Op::Extend(id),
-    };
-    signal.wiring(suffix, format, range, op)
 }

@@ -45,13 +45,8 @@ pub(super) fn insert(d: &Designer, program: &mut Program) {
 /// Returns the ports of results that are no registers.
 fn logic(design: &Design) -> Vec<NetId> {
     let results = design.ports.iter().filter(|port| port.role == Role::Result);
-    let is_register = |port: NetId| {
-        let mut net = port;
-        while let Driver::Op(Op::Relabel(of)) = design.net(net).driver {
-            net = of;
-        }
-        matches!(design.net(net).driver, Driver::Register(_))
-    };
+    let is_register =
+        |port: NetId| matches!(design.net(design.renamed(port)).driver, Driver::Register(_));
     results.map(|port| port.net).filter(|&port| !is_register(port)).collect()
 }
 
@@ -100,10 +95,8 @@ fn loaded(d: &Designer, steps: &mut Vec<Step>, load: &Setting) {
 
 /// Adds a microinstruction at the end, while the last result goes through the registers.
 fn followed(steps: &mut Vec<Step>) {
-    if let Some(last) = steps.last_mut() {
-        let after = last.divided();
-        steps.push(after);
-    }
+    let after = steps.last_mut().map(Step::divided);
+    steps.extend(after);
 }
 
 impl Step {

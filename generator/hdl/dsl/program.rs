@@ -1,6 +1,6 @@
 //! Defines microinstructions as lists of settings, and lowers a microprogram of them to the values of fields.
 
-use std::collections::HashSet;
+use std::collections::{BTreeSet, HashSet};
 use std::panic::Location;
 
 use super::sequencer::{SequenceFields, Sequencer};
@@ -62,9 +62,6 @@ impl Setting {
     /// Returns the setting with which a mux passes `input` on: found by what the mux's net selects from.
     #[track_caller]
     pub(crate) fn pick(d: &Designer, field: FieldId, mux: &str, input: Signal<'_>) -> Self {
-        if input.designer().serial != d.serial {
-            return Self::foreign(d, input);
-        }
         let inputs = match d.with(|inner| inner.design.find(mux)).map(|id| d.net(id).driver) {
             Some(Driver::Op(Op::Mux { inputs, .. })) => inputs,
             _ => Vec::new(),
@@ -87,21 +84,16 @@ impl Setting {
         input: Signal<'_>,
         inputs: &[Signal<'_>],
     ) -> Self {
-        if input.designer().serial != d.serial {
-            return Self::foreign(d, input);
-        }
         let found: Vec<_> = (0..inputs.len()).filter(|&at| inputs[at].id() == input.id()).collect();
         Self::picked(d, field, mux, input, &found)
     }
 
     #[track_caller]
-    fn foreign(d: &Designer, input: Signal<'_>) -> Self {
-        let _ = d.own(input);
-        Self::sequence(Kind::Wrong)
-    }
-
-    #[track_caller]
     fn picked(d: &Designer, field: FieldId, mux: &str, input: Signal<'_>, found: &[usize]) -> Self {
+        if input.designer().serial != d.serial {
+            let _ = d.own(input);
+            return Self::sequence(Kind::Wrong);
+        }
         let [at] = found else {
             let how = if found.is_empty() { "is no input" } else { "is more than one input" };
             d.error(codes::PICK, format!("`{}` {how} of `{mux}`", input.name()));
@@ -208,25 +200,22 @@ pub(crate) fn assemble(d: &Designer, program: &Program) {
     let picked = steps.iter().flat_map(|step| step.settings.iter().filter_map(field));
     let picked: HashSet<FieldId> = picked.collect();
     d.with(|inner| inner.picked = picked);
-    let mut loops: Vec<(NetId, usize)> = Vec::new();
     let sequences: Vec<Sequence> = steps.iter().map(|step| sequence(d, steps, step)).collect();
-    for sequence in &sequences {
-        if let Sequence::LoopWhile { condition, to } = sequence
-            && !loops.contains(&(*condition, *to))
-        {
-            loops.push((*condition, *to));
-        }
-    }
+    let loops = sequences.iter().filter_map(|sequence| match sequence {
+        Sequence::LoopWhile { condition, to } => Some((*condition, *to)),
+        _ => None,
+    });
+    let (conditions, targets): (BTreeSet<NetId>, BTreeSet<usize>) = loops.unzip();
+    let (conditions, targets) = (Vec::from_iter(conditions), Vec::from_iter(targets));
     let waits = sequences.contains(&Sequence::WaitStart);
     d.with(|inner| inner.partition = Partition::Control);
-    let (conditions, targets) = distinct(&loops);
     let address_width = usize::BITS - (steps.len() - 1).leading_zeros();
     let sequence_field = |name: &str, width: u32| d.add_field(name, width, FieldKind::Sequence);
     let by_field = d.with(|inner| inner.valid.is_none());
     let fields = SequenceFields {
         valid: by_field.then(|| d.add_field("valid_word", 1, FieldKind::Flag)),
         wait: waits.then(|| sequence_field("wait_word", 1)),
-        again: (!loops.is_empty()).then(|| sequence_field("loop_word", 1)),
+        again: (!conditions.is_empty()).then(|| sequence_field("loop_word", 1)),
         condition: (conditions.len() > 1).then(|| {
             let bits = usize::BITS - (conditions.len() - 1).leading_zeros();
             sequence_field("loop_condition", bits)
@@ -275,19 +264,11 @@ fn foreign(d: &Designer, steps: &[Step]) -> bool {
     any
 }
 
-fn distinct(loops: &[(NetId, usize)]) -> (Vec<NetId>, Vec<usize>) {
-    let mut conditions: Vec<NetId> = loops.iter().map(|(condition, _)| *condition).collect();
-    conditions.sort_unstable();
-    conditions.dedup();
-    let mut targets: Vec<usize> = loops.iter().map(|(_, to)| *to).collect();
-    targets.sort_unstable();
-    targets.dedup();
-    (conditions, targets)
-}
-
 fn sequence(d: &Designer, steps: &[Step], step: &Step) -> Sequence {
     let mut found: Option<(Sequence, SourceLocation)> = None;
+    let own = &step.name;
     for setting in &step.settings {
+        let wrong = |code, message| Diagnostic::new(code, message, setting.location);
         let sequence = match &setting.kind {
             Kind::Next => Sequence::Next,
             // Microinstruction 0 waits anyhow.
@@ -295,11 +276,10 @@ fn sequence(d: &Designer, steps: &[Step], step: &Step) -> Sequence {
             Kind::WaitForStart => {
                 if d.with(|inner| inner.taken.is_some()) {
                     let message = format!(
-                        "microinstruction `{}` waits for start, and the operands have buffers, which the start of a \
-                         computation alone empties: leave operands.buffered out",
-                        step.name
+                        "microinstruction `{own}` waits for start, and the operands have buffers, which the start of a \
+                         computation alone empties: leave operands.buffered out"
                     );
-                    d.report(Diagnostic::new(codes::BUFFER, message, setting.location));
+                    d.report(wrong(codes::BUFFER, message));
                 }
                 Sequence::WaitStart
             }
@@ -307,25 +287,18 @@ fn sequence(d: &Designer, steps: &[Step], step: &Step) -> Sequence {
             Kind::LoopWhile { condition, to } => {
                 if d.net(*condition).format.width() != 1 {
                     let name = d.net(*condition).name;
-                    d.report(Diagnostic::new(
-                        codes::WIDTH,
-                        format!(
-                            "microinstruction `{}`: the condition `{name}` has more than one bit",
-                            step.name
-                        ),
-                        setting.location,
-                    ));
+                    let message = format!(
+                        "microinstruction `{own}`: the condition `{name}` has more than one bit"
+                    );
+                    d.report(wrong(codes::WIDTH, message));
                 }
                 match steps.iter().position(|step| step.name == *to) {
                     Some(to) => Sequence::LoopWhile { condition: *condition, to },
                     None => {
-                        d.report(Diagnostic::new(
-                            codes::SUCCESSOR, format!(
-                                "microinstruction `{}` goes to `{to}`, but no microinstruction has that name",
-                                step.name
-                            ),
-                            setting.location,
-                        ));
+                        let message = format!(
+                            "microinstruction `{own}` goes to `{to}`, but no microinstruction has that name"
+                        );
+                        d.report(wrong(codes::SUCCESSOR, message));
                         Sequence::Next
                     }
                 }
@@ -335,14 +308,9 @@ fn sequence(d: &Designer, steps: &[Step], step: &Step) -> Sequence {
         if let Some((first, location)) = &found
             && *first != sequence
         {
-            d.report(
-                Diagnostic::new(
-                    codes::SUCCESSOR,
-                    format!("microinstruction `{}` states two successors", step.name),
-                    setting.location,
-                )
-                .note("the other way".to_owned(), location),
-            );
+            let message = format!("microinstruction `{own}` states two successors");
+            let note = "the other way".to_owned();
+            d.report(wrong(codes::SUCCESSOR, message).note(note, location));
         }
         found = Some((sequence, setting.location));
     }
@@ -360,17 +328,13 @@ fn microinstructions(
         .with(|inner| inner.design.control.fields.iter().map(|field| field.kind.clone()).collect());
     let mut microinstructions: Vec<Microinstruction> = Vec::new();
     for (step, sequence) in steps.iter().zip(sequences) {
+        let own = &step.name;
         if let Some(first) = steps.iter().find(|other| other.name == step.name)
             && !std::ptr::eq(first, step)
         {
-            d.report(
-                Diagnostic::new(
-                    codes::NAME_TWICE,
-                    format!("two microinstructions are named `{}`", step.name),
-                    step.location,
-                )
-                .note("the first".to_owned(), first.location),
-            );
+            let message = format!("two microinstructions are named `{own}`");
+            let found = Diagnostic::new(codes::NAME_TWICE, message, step.location);
+            d.report(found.note("the first".to_owned(), first.location));
         }
         let mut values = vec![0; kinds.len()];
         if step.settings.iter().any(|setting| matches!(setting.kind, Kind::Hold))
@@ -389,13 +353,10 @@ fn microinstructions(
                 Kind::Valid => match fields.valid {
                     Some(field) => (field, 1, "valid"),
                     None => {
-                        d.report(Diagnostic::new(
-                            codes::VALID, format!(
-                                "microinstruction `{}` raises valid, which follows a signal in this design",
-                                step.name
-                            ),
-                            setting.location,
-                        ));
+                        let message = format!(
+                            "microinstruction `{own}` raises valid, which follows a signal in this design"
+                        );
+                        d.report(Diagnostic::new(codes::VALID, message, setting.location));
                         continue;
                     }
                 },
@@ -404,13 +365,11 @@ fn microinstructions(
             if let Some((other, other_what, location)) = set[field.index()]
                 && other != value
             {
-                d.report(
-                    Diagnostic::new(
-                        codes::CLASH, format!("microinstruction `{}`: `{what}` clashes with `{other_what}`: they share select lines", step.name),
-                        setting.location,
-                    )
-                    .note("the other".to_owned(), location),
+                let message = format!(
+                    "microinstruction `{own}`: `{what}` clashes with `{other_what}`: they share select lines"
                 );
+                let found = Diagnostic::new(codes::CLASH, message, setting.location);
+                d.report(found.note("the other".to_owned(), location));
             }
             set[field.index()] = Some((value, what, setting.location));
             values[field.index()] = value;

@@ -1,7 +1,7 @@
 //! Builds registers, operands, flags, counters and select lines, and makes their settings for microinstructions.
 
 use super::{Designer, Setting, Signal};
-use crate::netlist::{Driver, FieldId, FieldKind, NetId, Op, RegisterKind, Role};
+use crate::netlist::{self, Driver, FieldId, FieldKind, NetId, Op, RegisterKind, Role};
 use glint_base::codes;
 use glint_base::fixed::Format;
 use glint_base::interval::Interval;
@@ -24,21 +24,14 @@ impl Designer {
             let (from, to) = format.range();
             let mut value = port;
             let limit = |suffix: &str, raw: i128| {
-                self.raw_constant(
-                    &format!("{name}_{suffix}"),
-                    raw,
-                    Format::holding(raw, raw, format.frac),
-                )
+                let own = Format::holding(raw, raw, format.frac);
+                self.raw_constant(&format!("{name}_{suffix}"), raw, own)
             };
             if from < least {
                 let least = limit("least", least);
                 let under = self.less(&format!("{name}_under"), port, least);
-                value = self.chosen_within(
-                    &format!("{name}_at_least"),
-                    under,
-                    [value, least],
-                    (least.range().0, to),
-                );
+                let (name, range) = (format!("{name}_at_least"), (least.range().0, to));
+                value = self.chosen_within(&name, under, [value, least], range);
             }
             if to > most {
                 let range = (value.range().0, most);
@@ -90,12 +83,8 @@ impl Designer {
                 (data, self.and(&format!("{name}_load"), strobed[0], strobed[1]).id())
             }
             Some(taken) => {
-                let buffer = self.add_register(
-                    &format!("{name}_buffer"),
-                    data.format(),
-                    data.range(),
-                    RegisterKind::Buffer,
-                );
+                let (own, kind) = (format!("{name}_buffer"), RegisterKind::Buffer);
+                let buffer = self.add_register(&own, data.format(), data.range(), kind);
                 self.set_doc(buffer, "for the next computation");
                 self.connect(buffer, data.id(), Some(strobe));
                 // What is written in the clock of `start` is taken at once.
@@ -104,12 +93,8 @@ impl Designer {
                 (self.chosen_within(&name, self.signal(strobe), inputs, range), taken)
             }
         };
-        let q = self.add_register(
-            &format!("{name}_reg"),
-            data.format(),
-            data.range(),
-            RegisterKind::Operand,
-        );
+        let (own, kind) = (format!("{name}_reg"), RegisterKind::Operand);
+        let q = self.add_register(&own, data.format(), data.range(), kind);
         self.connect(q, data.id(), Some(load));
         Operand { port: self.signal(port), strobe: self.signal(strobe), q: self.signal(q) }
     }
@@ -123,11 +108,7 @@ impl Designer {
         let enable = self.field_net(field).id();
         let format = self.sound(name, format);
         let q = self.add_register(name, format, format.range(), RegisterKind::Architectural);
-        self.with(|inner| {
-            if let Some(register) = inner.design.registers.last_mut() {
-                register.enable = Some(enable);
-            }
-        });
+        self.change(q, |register| register.enable = Some(enable));
         Register { q: self.signal(q), field }
     }
 
@@ -183,18 +164,11 @@ impl Designer {
         let load = self.add_field(&format!("{name}_load"), 1, FieldKind::Enable);
         let count = self.add_field(&format!("{name}_count"), 1, FieldKind::Enable);
         let (load_net, count_net) = (self.field_net(load), self.field_net(count));
-        let q = self.signal(self.add_register(
-            name,
-            format,
-            format.range(),
-            RegisterKind::Architectural,
-        ));
+        let q = self.add_register(name, format, format.range(), RegisterKind::Architectural);
+        let q = self.signal(q);
         let one = self.raw_constant("one", 1, format);
-        let less_one = self.add_named(
-            &format!("{name}_less_one"),
-            format,
-            Driver::Op(Op::Sub(q.id(), one.id())),
-        );
+        let less_one = Driver::Op(Op::Sub(q.id(), one.id()));
+        let less_one = self.add_named(&format!("{name}_less_one"), format, less_one);
         let next = Op::Mux { select: load_net.id(), inputs: vec![less_one, start.id()] };
         let next = self.add_named(&format!("{name}_next"), format, Driver::Op(next));
         let enable = self.or(&format!("{name}_enable"), load_net, count_net);
@@ -203,10 +177,14 @@ impl Designer {
     }
 
     pub(crate) fn connect(&self, q: NetId, data: NetId, enable: Option<NetId>) {
+        self.change(q, |it| (it.data, it.enable) = (Some(data), enable));
+    }
+
+    /// Changes the register that drives a net.
+    pub(crate) fn change(&self, q: NetId, change: impl FnOnce(&mut netlist::Register)) {
         self.with(|inner| {
             if let Driver::Register(id) = inner.design.net(q).driver {
-                let register = &mut inner.design.registers[id.index()];
-                (register.data, register.enable) = (Some(data), enable);
+                change(&mut inner.design.registers[id.index()]);
             }
         });
     }
@@ -282,11 +260,9 @@ impl<'d> Register<'d> {
         let net = d.net(self.q.id());
         let taken = |id| d.with(|inner| inner.design.register(id).data.is_some());
         if matches!(net.driver, Driver::Register(id) if taken(id)) {
-            d.error_at(
-                codes::TWO_DRIVERS,
-                format!("`{}` has two drivers: `{}` is the second", net.name, data.name()),
-                [("the register", net.location)],
-            );
+            let message =
+                format!("`{}` has two drivers: `{}` is the second", net.name, data.name());
+            d.error_at(codes::TWO_DRIVERS, message, [("the register", net.location)]);
             return;
         }
         if let Some(id) = d.fitted(data, net.format, &format!("register `{}`", net.name)) {

@@ -41,93 +41,82 @@ impl Sequencer {
         location: SourceLocation,
     ) {
         let Self { fields, conditions, targets, address_width } = self;
-        let op = |name: &str, format: Format, op: Op| {
-            d.signal(d.add_named(name, format, Driver::Op(op)))
-        };
+        let op = |name: &str, format: Format, op: Op| d.add_named(name, format, Driver::Op(op));
         let bit = |name: &str, cell: Op| op(name, Format::BIT, cell);
         let wide = Format::unsigned(*address_width as i32, 0);
         let last_word = microinstructions.len() as i128 - 1;
         let run = d.run;
         let start = d.start;
         let go_on = d.field_net(fields.go_on).id();
-        let zero = d.raw_constant("first_word", 0, wide);
-        let one = d.raw_constant("one_word", 1, wide);
+        let zero = d.raw_constant("first_word", 0, wide).id();
+        let one = d.raw_constant("one_word", 1, wide).id();
 
         let address = d.add_register("word_address", wide, (0, last_word), RegisterKind::Sequencer);
         d.set_doc(address, "the microinstruction that is executed");
-        let following =
-            op("following_word", wide, Op::Add { a: address, b: one.id(), carry: None });
+        let following = op("following_word", wide, Op::Add { a: address, b: one, carry: None });
         // Where control goes while the program goes on: around a loop, or to the following microinstruction.
         let mut onward = following;
         if let Some(again) = fields.again {
             let condition = match (fields.condition, &conditions[..]) {
-                (Some(select), inputs) => bit(
-                    "condition",
-                    Op::Mux { select: d.field_net(select).id(), inputs: inputs.to_vec() },
-                ),
+                (Some(field), inputs) => {
+                    let (select, inputs) = (d.field_net(field).id(), inputs.to_vec());
+                    bit("condition", Op::Mux { select, inputs })
+                }
                 (None, [only, ..]) => bit("condition", Op::Relabel(*only)),
                 (None, []) => return,
             };
-            let again = bit("loop_back", Op::And(d.field_net(again).id(), condition.id()));
+            let again = bit("loop_back", Op::And(d.field_net(again).id(), condition));
             let target = match fields.target {
                 Some(field) => d.field_net(field),
                 None => {
                     d.raw_constant("loop_start", targets.first().map_or(0, |&to| to as i128), wide)
                 }
             };
-            onward = op(
-                "onward_word",
-                wide,
-                Op::Mux { select: again.id(), inputs: vec![following.id(), target.id()] },
-            );
+            let inputs = vec![following, target.id()];
+            onward = op("onward_word", wide, Op::Mux { select: again, inputs });
         }
-        let next =
-            op("next_word", wide, Op::Mux { select: go_on, inputs: vec![zero.id(), onward.id()] });
+        let next = op("next_word", wide, Op::Mux { select: go_on, inputs: vec![zero, onward] });
         // The address moves while a program runs and does not wait.
         let (busy, advance) = match fields.wait {
             None => (bit("busy", Op::Relabel(run)), run),
             Some(wait) => {
                 let wait = d.field_net(wait).id();
                 let working = bit("working", Op::Not(wait));
-                let busy = bit("busy", Op::And(run, working.id()));
-                let released = bit("released", Op::Or(working.id(), start));
-                (busy, bit("advance", Op::And(run, released.id())).id())
+                let busy = bit("busy", Op::And(run, working));
+                let released = bit("released", Op::Or(working, start));
+                (busy, bit("advance", Op::And(run, released)))
             }
         };
-        d.set_doc(busy.id(), "high from the clock after start to the end");
-        d.connect(address, next.id(), Some(advance));
+        d.set_doc(busy, "high from the clock after start to the end");
+        d.connect(address, next, Some(advance));
         let overlaps = d.with(|inner| inner.taken.is_some());
         let (next_run, idle) = if overlaps {
             // In its last clock a computation gives way to the next one.
             let goes_on = bit("goes_on", Op::And(run, go_on));
-            (bit("next_run", Op::Or(goes_on.id(), start)), Op::Not(goes_on.id()))
+            (bit("next_run", Op::Or(goes_on, start)), Op::Not(goes_on))
         } else {
             let next_run = bit("next_run", Op::Mux { select: run, inputs: vec![start, go_on] });
-            (next_run, Op::Relabel(bit("not_busy", Op::Not(busy.id())).id()))
+            (next_run, Op::Relabel(bit("not_busy", Op::Not(busy))))
         };
-        d.connect(run, next_run.id(), None);
-        d.with(|inner| {
-            inner.design.nets[d.idle.index()].driver = Driver::Op(idle);
-            for register in &mut inner.design.registers {
-                if register.q == run || register.q == address {
-                    register.reset = Some(0);
-                }
-            }
-        });
+        d.connect(run, next_run, None);
+        d.with(|inner| inner.design.nets[d.idle.index()].driver = Driver::Op(idle));
+        for q in [run, address] {
+            d.change(q, |register| register.reset = Some(0));
+        }
         let last = bit("last_word", Op::Not(go_on));
-        let done = bit("done", Op::And(run, last.id()));
-        d.set_doc(done.id(), "high in the last clock of a computation");
+        let done = bit("done", Op::And(run, last));
+        d.set_doc(done, "high in the last clock of a computation");
         let source = match fields.valid {
             Some(field) => d.field_net(field).id(),
             None => valid_line(d),
         };
         let valid = bit("valid", Op::Relabel(source));
-        d.set_doc(valid.id(), "the results are on the outputs");
+        d.set_doc(valid, "the results are on the outputs");
         control_rom(d, location, microinstructions, address);
 
-        d.port(valid.id(), Role::Valid);
-        d.port(busy.id(), Role::Busy);
-        d.port(done.id(), Role::Done);
+        d.port(valid, Role::Valid);
+        d.port(busy, Role::Busy);
+        d.port(done, Role::Done);
         d.with(|inner| {
             inner.partition = Partition::Datapath;
             // Inputs first, then the handshake, then results.
@@ -146,26 +135,17 @@ fn valid_line(d: &Designer) -> NetId {
         return d.run;
     };
     for clock in 1..=clocks {
-        let q = d.add_register(
-            &format!("valid_in_{}", clocks - clock),
-            Format::BIT,
-            (0, 1),
-            RegisterKind::Internal,
-        );
-        d.set_doc(
-            q,
-            &match clocks - clock {
-                0 => "a result has come through the datapath".to_owned(),
-                1 => "a result is a clock away".to_owned(),
-                left => format!("a result is {left} clocks away"),
-            },
-        );
+        let left = clocks - clock;
+        let (name, kind) = (format!("valid_in_{left}"), RegisterKind::Internal);
+        let q = d.add_register(&name, Format::BIT, (0, 1), kind);
+        let doc = match left {
+            0 => "a result has come through the datapath".to_owned(),
+            1 => "a result is a clock away".to_owned(),
+            left => format!("a result is {left} clocks away"),
+        };
+        d.set_doc(q, &doc);
         d.connect(q, source, None);
-        d.with(|inner| {
-            if let Some(register) = inner.design.registers.last_mut() {
-                register.reset = Some(0);
-            }
-        });
+        d.change(q, |register| register.reset = Some(0));
         source = q;
     }
     source
@@ -240,12 +220,8 @@ fn control_rom(
     moved_beside(d, &mut microinstructions, address);
     let fields = d.with(|inner| inner.design.control.fields.clone());
     let widths: Vec<u32> = fields.iter().map(|field| d.net(field.net).format.width()).collect();
-    let packed: Vec<u64> = microinstructions
-        .iter()
-        .map(|microinstruction| microcode::pack(&widths, &microinstruction.values))
-        .collect();
-    let comments =
-        microinstructions.iter().map(|microinstruction| microinstruction.name.clone()).collect();
+    let packed = microinstructions.iter().map(|it| microcode::pack(&widths, &it.values)).collect();
+    let comments = microinstructions.iter().map(|it| it.name.clone()).collect();
     let width: u32 = widths.iter().sum();
     let format = Format::unsigned(width as i32, 0);
     let data = d.add_named("control_word", format, Driver::Undriven);

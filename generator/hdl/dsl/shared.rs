@@ -79,12 +79,10 @@ impl Designer {
         let width = i64::from(format.int) + i64::from(format.frac) + i64::from(format.signed);
         let point = format.frac.clamp(-MAX_POINT, MAX_POINT);
         if !(1..=i64::from(MAX_WIDTH)).contains(&width) {
-            self.error(
-                codes::WIDE,
-                format!(
-                    "`{name}` would be {width} bits wide ({format}); a net has 1 to {MAX_WIDTH}"
-                ),
+            let message = format!(
+                "`{name}` would be {width} bits wide ({format}); a net has 1 to {MAX_WIDTH}"
             );
+            self.error(codes::WIDE, message);
         } else if point != format.frac {
             self.error(codes::WIDE, format!(
                 "`{name}` would have {} fraction bits ({format}); -{MAX_POINT} to {MAX_POINT} are possible",

@@ -1,5 +1,7 @@
 //! Defines signals, what can be done to their bits by wiring, and the arithmetic blocks and muxes that combine them.
 
+use std::cmp::Ordering;
+
 use super::{Designer, Setting};
 use crate::netlist::{Driver, FieldId, NetId, Op, Topic};
 use glint_base::codes;
@@ -96,53 +98,38 @@ impl<'d> Signal<'d> {
     #[must_use]
     #[track_caller]
     pub fn with_fraction(self, frac: i32) -> Self {
-        let format = self.format();
+        let (own, format) = (self.name(), self.format());
         let places = frac.saturating_sub(format.frac);
         if places == 0 {
             return self;
         }
         if places < 0 {
-            self.designer.error(
-                codes::POINT,
-                format!(
-                    "`{}` is {format}: {frac} fraction bits would drop some; narrow it",
-                    self.name()
-                ),
-            );
+            let message =
+                format!("`{own}` is {format}: {frac} fraction bits would drop some; narrow it");
+            self.designer.error(codes::POINT, message);
             return self;
         }
-        let name = format!("{}_scaled", self.name());
         let scaled = Format { frac, ..format };
-        let sound = self.designer.sound(&name, scaled);
+        let sound = self.designer.sound(&format!("{own}_scaled"), scaled);
         if sound != scaled {
             return self.designer.raw_constant("zeros", 0, sound);
         }
         let zeros = self.designer.raw_constant("zeros", 0, Format::unsigned(places, 0));
         let (low, high) = self.range();
-        self.wiring(
-            "scaled",
-            scaled,
-            (low << places, high << places),
-            Op::Concat(vec![self.id, zeros.id]),
-        )
+        let range = (low << places, high << places);
+        self.wiring("scaled", scaled, range, Op::Concat(vec![self.id, zeros.id]))
     }
 
     /// Returns bits `low` … `low + width − 1`, read in `format` (which must be that wide).
     #[must_use]
     #[track_caller]
     pub fn bits(self, low: u32, format: Format) -> Self {
-        let have = self.format().width();
-        let name = format!("{}_bits", self.name());
-        let format = self.designer.sound(&name, format);
+        let (own, have) = (self.name(), self.format().width());
+        let format = self.designer.sound(&format!("{own}_bits"), format);
         if low.saturating_add(format.width()) > have {
-            self.designer.error(
-                codes::WIDTH,
-                format!(
-                    "bits {low} to {} of `{}`, which has {have}",
-                    u64::from(low) + u64::from(format.width()) - 1,
-                    self.name()
-                ),
-            );
+            let last = u64::from(low) + u64::from(format.width()) - 1;
+            let message = format!("bits {low} to {last} of `{own}`, which has {have}");
+            self.designer.error(codes::WIDTH, message);
             return self.designer.raw_constant("zeros", 0, format);
         }
         // All bits of a value that is never negative are still within its range.
@@ -166,17 +153,11 @@ impl<'d> Signal<'d> {
     pub fn above(self, low: Signal<'d>, format: Format) -> Self {
         let low = self.designer.own(low);
         let width = self.format().width() + low.format().width();
-        let name = format!("{}_above", self.name());
-        let format = self.designer.sound(&name, format);
+        let (own, other) = (self.name(), low.name());
+        let format = self.designer.sound(&format!("{own}_above"), format);
         if width != format.width() {
-            self.designer.error(
-                codes::WIDTH,
-                format!(
-                    "`{}` above `{}` is {width} bits, which is not {format}",
-                    self.name(),
-                    low.name()
-                ),
-            );
+            let message = format!("`{own}` above `{other}` is {width} bits, which is not {format}");
+            self.designer.error(codes::WIDTH, message);
             return self.designer.raw_constant("zeros", 0, format);
         }
         let op = Op::Concat(vec![self.id, low.id]);
@@ -214,6 +195,17 @@ impl<'d> Signal<'d> {
         let name = format!("{}_{suffix}", self.name());
         let id = self.designer.add_wiring(&name, format, range, Driver::Op(op));
         self.designer.signal(id)
+    }
+
+    /// Returns the low bits, or all of them and zeros or signs above, as `format`, under a name after this one's.
+    #[track_caller]
+    pub(crate) fn resized_as(self, suffix: &str, format: Format, range: Interval) -> Self {
+        let op = match format.width().cmp(&self.format().width()) {
+            Ordering::Greater => Op::Extend(self.id),
+            Ordering::Equal => Op::Relabel(self.id),
+            Ordering::Less => Op::Slice { of: self.id, low: 0 },
+        };
+        self.wiring(suffix, format, range, op)
     }
 }
 
@@ -368,10 +360,9 @@ impl Designer {
         let width: u32 = parts.iter().map(|part| part.format().width()).sum();
         let format = self.sound(name, format);
         if width != format.width() {
-            self.error(
-                codes::WIDTH,
-                format!("`{name}` joins {width} bits to a word of {} ({format})", format.width()),
-            );
+            let message =
+                format!("`{name}` joins {width} bits to a word of {} ({format})", format.width());
+            self.error(codes::WIDTH, message);
             return self.raw_constant("zeros", 0, format);
         }
         // Side by side, unsigned parts are the larger the larger each is.
@@ -498,10 +489,8 @@ impl Designer {
     fn one_bit(&self, a: Signal<'_>) -> NetId {
         let a = self.own(a);
         if a.format().width() != 1 {
-            self.error(
-                codes::WIDTH,
-                format!("`{}` is {}: one bit is wanted here", a.name(), a.format()),
-            );
+            let message = format!("`{}` is {}: one bit is wanted here", a.name(), a.format());
+            self.error(codes::WIDTH, message);
         }
         a.id()
     }
@@ -524,15 +513,14 @@ impl Designer {
         if have == format {
             return a.id();
         }
-        let (have_width, width) = (have.width(), format.width());
-        let (suffix, op) = match width.cmp(&have_width) {
-            std::cmp::Ordering::Greater => ("wide", Op::Extend(a.id())),
-            std::cmp::Ordering::Equal => ("same", Op::Relabel(a.id())),
-            std::cmp::Ordering::Less => ("low", Op::Slice { of: a.id(), low: 0 }),
+        let suffix = match format.width().cmp(&have.width()) {
+            Ordering::Greater => "wide",
+            Ordering::Equal => "same",
+            Ordering::Less => "low",
         };
         let range = Some(a.range()).filter(|range| interval::fits(*range, format));
         let range = range.unwrap_or_else(|| format.range());
-        a.wiring(suffix, format, range, op).id()
+        a.resized_as(suffix, format, range).id()
     }
 }
 

@@ -85,12 +85,8 @@ impl Design {
             let to = pipeline.clock_of(last);
             let (from, enable) =
                 (pipeline.clock_of(self.register(registers[0]).q) - 1, register.enable);
-            let line = lines.entry((from, to)).or_insert_with(|| DelayLine {
-                from,
-                to,
-                enable,
-                values: Vec::new(),
-            });
+            let empty = DelayLine { from, to, enable, values: Vec::new() };
+            let line = lines.entry((from, to)).or_insert(empty);
             if line.enable == enable {
                 line.values.push(Delayed { data, registers });
             }

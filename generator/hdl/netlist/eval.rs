@@ -71,19 +71,14 @@ pub fn cell<'a, Operand: Copy, const N: usize>(
         }
         Op::Mux { select, inputs } => {
             let last = inputs.len() - 1;
-            let mut out = *of(inputs[last]);
-            for (at, input) in inputs[..last].iter().enumerate() {
-                let taken =
-                    two(
-                        of(*select),
-                        of(*input),
-                        |select, input| {
-                            if select == at as u64 { input } else { 0 }
-                        },
-                    );
-                let kept =
-                    two(of(*select), &out, |select, out| if select == at as u64 { 0 } else { out });
-                out = two(&taken, &kept, |a, b| a | b);
+            let (select, mut out) = (of(*select), *of(inputs[last]));
+            for (at, &input) in (0u64..).zip(&inputs[..last]) {
+                let input = of(input);
+                out = std::array::from_fn(
+                    |lane| {
+                        if select[lane] == at { input[lane] } else { out[lane] }
+                    },
+                );
             }
             out
         }

@@ -302,7 +302,7 @@ fn add_register(design: &mut Design, net: NetId, taken: &mut HashSet<String>) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dsl::{Designer, Step, end, hold, step, valid, wait_for_start};
+    use crate::dsl::{Designer, Step, end, fixture, hold, step, valid, wait_for_start};
     use crate::netlist::Interpreter;
     use glint_base::fixed::{Format, Overflow, Rounding};
 
@@ -311,22 +311,20 @@ mod tests {
     /// A chain with thousands of places for each of two registers: to try all pairs would never end.
     #[test]
     fn a_long_chain_is_cut_in_three() {
-        let d = Designer::new("chain");
-        let x = d.operand("x", BYTE);
-        let mut last = x.q();
-        for number in 0..3000 {
-            let sum = d.add(&format!("sum{number}"), last, x.q());
-            let name = format!("part{number}");
-            last = d.narrow(&name, sum, BYTE, Rounding::Truncate, Overflow::Wrap);
-        }
-        let y = d.register("y", BYTE);
-        y.takes(last);
-        d.output("y_out", y.q());
-        let settle = (0..3).map(|at| step(&format!("settle{at}"), []));
-        let load = step("load", [y.load()]);
-        let steps = [step("idle", [])].into_iter().chain(settle);
-        d.microprogram(steps.chain([load, step("shown", [valid(), end()])]));
-        let design = d.finish().unwrap_or_else(|mistakes| panic!("{mistakes}"));
+        let design = fixture::design(|d| {
+            let x = d.operand("x", BYTE);
+            let mut last = x.q();
+            for number in 0..3000 {
+                let sum = d.add(&format!("sum{number}"), last, x.q());
+                let name = format!("part{number}");
+                last = d.narrow(&name, sum, BYTE, Rounding::Truncate, Overflow::Wrap);
+            }
+            let y = d.register("y", BYTE);
+            y.takes(last);
+            d.output("y_out", y.q());
+            let settle = (0..3).map(|at| step(&format!("settle{at}"), []));
+            settle.chain([step("load", [y.load()])]).collect()
+        });
         let name = |net: &crate::netlist::Net| {
             let number = net.name.strip_suffix("_held")?.trim_matches(char::is_alphabetic);
             number.parse::<u32>().ok()
@@ -340,16 +338,15 @@ mod tests {
 
     #[test]
     fn operand_logic_can_be_kept() {
-        let d = Designer::new("device");
-        d.keep_operand_logic();
-        let a = d.operand("a", BYTE).q();
-        let y = d.register("y", Format::unsigned(32, 0));
-        let square = d.mul("square", a, a);
-        y.takes(d.mul("fourth", square, square));
-        d.output("y_out", y.q());
-        let load = step("load", [y.load()]);
-        d.microprogram([step("idle", []), load, step("shown", [valid(), end()])]);
-        let design = d.finish().unwrap_or_else(|mistakes| panic!("{mistakes}"));
+        let design = fixture::design(|d| {
+            d.keep_operand_logic();
+            let a = d.operand("a", BYTE).q();
+            let y = d.register("y", Format::unsigned(32, 0));
+            let square = d.mul("square", a, a);
+            y.takes(d.mul("fourth", square, square));
+            d.output("y_out", y.q());
+            vec![step("load", [y.load()])]
+        });
         assert!(design.nets.iter().all(|net| !net.name.ends_with("_held")));
     }
 

@@ -39,6 +39,7 @@ use glint_base::fixed::Format;
 use glint_base::interval::Interval;
 pub use handshake::Handshake;
 pub use held::register_held;
+pub(crate) use needed::passed_on;
 pub use needed::setting_of;
 pub use pipeline::{Checkpoint, Multiplier, Pipeline, Stage, Unit};
 pub use termination::latest_done;
@@ -363,6 +364,14 @@ impl Design {
     pub fn find(&self, name: &str) -> Option<NetId> {
         let at = self.nets.iter().position(|net| net.name == name)?;
         Some(NetId(at as u32))
+    }
+
+    /// Returns the net that a net shows under another name; itself where it shows none.
+    pub fn renamed(&self, id: NetId) -> NetId {
+        match self.net(id).driver {
+            Driver::Op(Op::Relabel(of)) => self.renamed(of),
+            _ => id,
+        }
     }
 
     /// Returns every net with its id.

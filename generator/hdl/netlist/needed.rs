@@ -60,6 +60,17 @@ pub fn setting_of(
     }
 }
 
+/// Returns the nets on which a net depends within the clock of a microinstruction: of a mux that it controls, the chosen input
+/// alone.
+pub fn passed_on(design: &Design, microinstruction: &Microinstruction, net: NetId) -> Vec<NetId> {
+    if let Driver::Op(Op::Mux { select, inputs }) = &design.net(net).driver
+        && let Some(chosen) = setting_of(design, microinstruction, *select)
+    {
+        return inputs.get(chosen as usize).or(inputs.last()).copied().into_iter().collect();
+    }
+    design.combinational_inputs(net)
+}
+
 struct Walk<'a> {
     design: &'a Design,
     /// The fewest clocks from the first microinstruction to each.
@@ -86,16 +97,6 @@ impl Walk<'_> {
             *needed = self.clocks[at].min(*needed);
             let before = || design.control.predecessors(at, 1).into_iter();
             match &design.net(net).driver {
-                Driver::Op(Op::Mux { select, inputs }) => {
-                    pending.push((at, *select));
-                    match setting_of(design, &design.control.microprogram[at], *select) {
-                        Some(chosen) => {
-                            let chosen = inputs.get(chosen as usize).or(inputs.last());
-                            pending.extend(chosen.map(|&input| (at, input)));
-                        }
-                        None => pending.extend(inputs.iter().map(|&input| (at, input))),
-                    }
-                }
                 Driver::Register(id) if design.register(*id).enable.is_none() => {
                     let data = design.register(*id).data;
                     pending.extend(before().filter_map(|at| Some((at, data?))));
@@ -104,9 +105,12 @@ impl Walk<'_> {
                     let address = design.rom(*rom).address;
                     pending.extend(before().map(|at| (at, address)));
                 }
-                _ => {
-                    let inputs = design.combinational_inputs(net).into_iter();
-                    pending.extend(inputs.map(|input| (at, input)));
+                driver => {
+                    if let Driver::Op(Op::Mux { select, .. }) = driver {
+                        pending.push((at, *select));
+                    }
+                    let inputs = passed_on(design, &design.control.microprogram[at], net);
+                    pending.extend(inputs.into_iter().map(|input| (at, input)));
                 }
             }
         }

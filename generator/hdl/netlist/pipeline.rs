@@ -6,7 +6,7 @@ use super::{Design, Driver, Net, NetId, Op, RegId};
 use glint_base::target::DelayMemory;
 
 /// The pipeline of a design: it takes a point every clock, or every few.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Pipeline {
     /// The name of the target whose delays the schedule assumes.
     pub target: String,

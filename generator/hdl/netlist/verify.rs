@@ -4,7 +4,7 @@
 
 use std::collections::HashMap;
 
-use super::{Design, Driver, FieldKind, NetId, Op, Role, Sequence};
+use super::{Design, Driver, FieldKind, Net, NetId, Op, Role, Sequence};
 use glint_base::codes;
 use glint_base::diagnostic::{Diagnostic, SourceLocation};
 use glint_base::fixed::{MAX_WIDTH, mask};
@@ -181,19 +181,10 @@ impl Design {
             if let Driver::Op(op) = &net.driver
                 && let Err(why) = self.cell(id, op)
             {
-                let operands: Vec<String> = op
-                    .operands()
-                    .iter()
-                    .map(|&operand| self.net(operand))
-                    .map(|operand| format!("`{}` ({})", operand.name, operand.format))
-                    .collect();
-                let message = format!(
-                    "`{}` ({}) = {} of {}: {why}",
-                    net.name,
-                    net.format,
-                    op.mnemonic(),
-                    operands.join(", ")
-                );
+                let named = |net: &Net| format!("`{}` ({})", net.name, net.format);
+                let operands = op.operands().into_iter().map(|operand| named(self.net(operand)));
+                let operands = operands.collect::<Vec<String>>().join(", ");
+                let message = format!("{} = {} of {operands}: {why}", named(net), op.mnemonic());
                 found.push(Diagnostic::new(codes::WIDTH, message, net.location));
             }
         }
@@ -337,11 +328,8 @@ impl Design {
                 && microprogram.iter().all(|microinstruction| microinstruction.values[at] == 0)
             {
                 let message = format!("no microinstruction sets `{}`", field.name);
-                found.push(Diagnostic::new(
-                    codes::UNUSED_CONTROL,
-                    message,
-                    self.net(field.net).location,
-                ));
+                let location = self.net(field.net).location;
+                found.push(Diagnostic::new(codes::UNUSED_CONTROL, message, location));
             }
         }
     }

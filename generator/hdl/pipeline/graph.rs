@@ -57,17 +57,16 @@ pub struct Label {
 }
 
 impl Label {
+    /// Makes the label of a value that its author named.
+    pub fn new(name: String, location: &'static Location<'static>) -> Self {
+        Self { name, doc: String::new(), block: None, named: true, part_of: None, location }
+    }
+
     /// Returns the label of a part of the value, or of the value that this is a part of: names do not grow with the depth.
     pub fn part(&self, name: &str) -> Self {
         let whole = self.part_of.as_ref().unwrap_or(&self.name);
-        Self {
-            name: format!("{whole}_{name}"),
-            doc: String::new(),
-            block: None,
-            named: true,
-            part_of: Some(whole.clone()),
-            location: self.location,
-        }
+        let part_of = Some(whole.clone());
+        Self { part_of, ..Self::new(format!("{whole}_{name}"), self.location) }
     }
 }
 
@@ -169,18 +168,8 @@ impl Graph {
         self.insert(Cell::Read { rom, address }, format, range, label)
     }
 
-    /// Returns the leaf for an operand or an unknown.
-    pub fn leaf(&mut self, cell: Cell, format: Format, range: Interval, label: &Label) -> NodeId {
-        self.insert(cell, format, range, label)
-    }
-
-    pub(super) fn insert(
-        &mut self,
-        cell: Cell,
-        format: Format,
-        range: Interval,
-        label: &Label,
-    ) -> NodeId {
+    /// Returns the node of a cell: where there is one already, that one, limited to `range` too.
+    pub fn insert(&mut self, cell: Cell, format: Format, range: Interval, label: &Label) -> NodeId {
         let key = (cell.clone(), format.width(), format.signed);
         if let Some(&id) = self.known.get(&key) {
             let node = &mut self.nodes[id.index()];
@@ -264,10 +253,11 @@ impl Graph {
             let other = graph.node(id).format;
             other.width() == width && other.signed == format.signed
         };
+        let again = |graph: &mut Self, op: Op| Some(graph.op(op, format, label));
         match op {
             Op::Relabel(a) if same(self, *a) => Some(*a),
             Op::Relabel(a) => match self.node(*a).cell {
-                Cell::Op(Op::Relabel(b)) => Some(self.op(Op::Relabel(b), format, label)),
+                Cell::Op(Op::Relabel(b)) => again(self, Op::Relabel(b)),
                 _ => None,
             },
             Op::Extend(a) => {
@@ -279,7 +269,7 @@ impl Graph {
             }
             Op::Slice { of, low } => self.fold_slice(*of, *low, format, label),
             Op::Concat(parts) => match &parts[..] {
-                [only] => Some(self.op(Op::Relabel(*only), format, label)),
+                [only] => again(self, Op::Relabel(*only)),
                 _ => None,
             },
             Op::Not(a) => match self.node(*a).cell {
@@ -296,9 +286,7 @@ impl Graph {
                     }
                     (Op::And(..), Some(bits)) if bits == ones && same(self, a) => Some(a),
                     (Op::Or(..) | Op::Xor(..), Some(0)) if same(self, a) => Some(a),
-                    (Op::Xor(..), Some(bits)) if bits == ones => {
-                        Some(self.op(Op::Not(a), format, label))
-                    }
+                    (Op::Xor(..), Some(bits)) if bits == ones => again(self, Op::Not(a)),
                     (Op::And(..) | Op::Or(..), None) if a == b && same(self, a) => Some(a),
                     (_, None) if self.is_inverse(a, b) || self.is_inverse(b, a) => {
                         let bits = if matches!(op, Op::And(..)) { 0 } else { ones };
@@ -323,34 +311,30 @@ impl Graph {
                     return Some(self.constant(1, format, label));
                 }
                 if let Cell::Op(Op::Extend(b)) = self.node(*a).cell {
-                    return Some(self.op(Op::Any(b), format, label));
+                    return again(self, Op::Any(b));
                 }
                 if self.width(*a) == 1 {
-                    return Some(self.op(Op::Relabel(*a), format, label));
+                    return again(self, Op::Relabel(*a));
                 }
                 let bits = self.without_zeros(*a, label)?;
-                Some(self.op(Op::Any(bits), format, label))
+                again(self, Op::Any(bits))
             }
-            Op::All(a) if self.width(*a) == 1 => Some(self.op(Op::Relabel(*a), format, label)),
+            Op::All(a) if self.width(*a) == 1 => again(self, Op::Relabel(*a)),
             Op::Equal(..) | Op::Less(..) | Op::All(_) => None,
             Op::Mux { select, inputs } => {
                 if let Some(value) = self.constant_of(*select) {
                     let input = inputs[(value as usize).min(inputs.len() - 1)];
-                    return Some(self.op(Op::Relabel(input), format, label));
+                    return again(self, Op::Relabel(input));
                 }
                 if inputs.iter().all(|input| *input == inputs[0]) {
-                    return Some(self.op(Op::Relabel(inputs[0]), format, label));
+                    return again(self, Op::Relabel(inputs[0]));
                 }
                 let bits: Vec<_> = inputs.iter().map(|&input| self.constant_of(input)).collect();
                 match bits[..] {
-                    [Some(0), Some(1)] if width == 1 => {
-                        Some(self.op(Op::Relabel(*select), format, label))
-                    }
-                    [Some(1), Some(0)] if width == 1 => {
-                        Some(self.op(Op::Not(*select), format, label))
-                    }
+                    [Some(0), Some(1)] if width == 1 => again(self, Op::Relabel(*select)),
+                    [Some(1), Some(0)] if width == 1 => again(self, Op::Not(*select)),
                     [None, Some(limit)] if self.is_kept(inputs[0], *select, limit) => {
-                        Some(self.op(Op::Relabel(inputs[0]), format, label))
+                        again(self, Op::Relabel(inputs[0]))
                     }
                     _ => None,
                 }

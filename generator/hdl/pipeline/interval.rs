@@ -50,25 +50,21 @@ pub fn clocks<'a>(
         Interval::Clocks(interval) => Ok(interval),
         Interval::Rate(rate) => {
             let Goal::ClockMhz(clock) = options.goal else {
-                return wrong(
-                    "pipeline.rate",
-                    format!(
-                        "pipeline.stages leaves the clock of `{name}` open, and with it the rate"
-                    ),
-                    "set pipeline.clock_mhz in place of pipeline.stages".to_owned(),
+                let message = format!(
+                    "pipeline.stages leaves the clock of `{name}` open, and with it the rate"
                 );
+                let remedy = "set pipeline.clock_mhz in place of pipeline.stages".to_owned();
+                return wrong("pipeline.rate", message, remedy);
             };
             let longest = (clock / rate + 1e-9).floor() as usize;
             if longest == 0 {
-                return wrong(
-                    "pipeline.rate",
-                    format!(
-                        "`{name}` takes {clock} million points a second at most: one every clock at {clock} MHz"
-                    ),
-                    format!(
-                        "set pipeline.rate to {clock} or less, or pipeline.clock_mhz to {rate} or more"
-                    ),
+                let message = format!(
+                    "`{name}` takes {clock} million points a second at most: one every clock at {clock} MHz"
                 );
+                let remedy = format!(
+                    "set pipeline.rate to {clock} or less, or pipeline.clock_mhz to {rate} or more"
+                );
+                return wrong("pipeline.rate", message, remedy);
             }
             Ok((1..=longest.min(most)).rev().find(reaches).unwrap_or(1))
         }
@@ -79,13 +75,11 @@ pub fn clocks<'a>(
                 return Ok(1);
             };
             if fewest > allowed {
-                return wrong(
-                    "pipeline.max_multipliers",
-                    format!(
-                        "`{name}` has {fewest} multipliers at the least: with a point every {interval} clocks"
-                    ),
-                    format!("set pipeline.max_multipliers to {fewest} or more"),
+                let message = format!(
+                    "`{name}` has {fewest} multipliers at the least: with a point every {interval} clocks"
                 );
+                let remedy = format!("set pipeline.max_multipliers to {fewest} or more");
+                return wrong("pipeline.max_multipliers", message, remedy);
             }
             Ok(all().find(|&(_, multipliers)| multipliers <= allowed).map_or(interval, |it| it.0))
         }

@@ -146,19 +146,13 @@ impl<'a> Problems<'a> {
             .cone(results.iter().copied())
             .into_iter()
             .filter(|&id| graph.constant_of(id).is_none())
-            .collect();
-        let mut users = vec![Vec::new(); graph.nodes.len()];
-        let live: Vec<NodeId> = live
-            .into_iter()
             .filter(|&id| results.contains(&id) || !is_extension(graph, id))
             .collect();
+        let mut users = vec![Vec::new(); graph.nodes.len()];
         for &id in &live {
             let operands = graph.node(id).cell.operands();
             let operands = operands.into_iter().map(|operand| held(graph, results, operand));
-            let mut operands: Vec<NodeId> = operands.collect();
-            operands.sort_unstable();
-            operands.dedup();
-            for operand in operands {
+            for operand in operands.collect::<BTreeSet<NodeId>>() {
                 if graph.constant_of(operand).is_none() {
                     users[operand.index()].push(id);
                 }
@@ -247,16 +241,10 @@ impl<'a> Problems<'a> {
     /// # Errors
     /// An operation takes longer than the period; the solver fails.
     pub fn for_period(&self, period: f64) -> Result<Schedule, Refusal> {
-        match self.fastest() {
-            Some(unreachable) if unreachable.period > period + 1e-9 => {
-                return Err(Refusal::Unreachable(unreachable));
-            }
-            _ => {}
+        if let Some(unreachable) = self.fastest().filter(|it| it.period > period + 1e-9) {
+            return Err(Refusal::Unreachable(unreachable));
         }
-        let differences = self.differences(period);
-        let taken = self.taken(&differences);
-        let latency = self.latency(&differences, &taken);
-        self.solve(&differences, &taken, latency, period)
+        self.solve(period, 0)
     }
 
     /// Returns the schedule of this number of stages with the shortest period. With more than there are of use the
@@ -266,17 +254,10 @@ impl<'a> Problems<'a> {
     /// The solver fails.
     pub fn for_stages(&self, stages: usize) -> Result<Schedule, Refusal> {
         let fastest = self.fastest().map_or(0.0, |it| it.period);
-        let least = |period: f64| {
-            let differences = self.differences(period);
-            self.latency(&differences, &self.taken(&differences))
-        };
-        let fits = |period: f64| least(period) <= stages;
+        let fits = |period: f64| self.least_stages(period) <= stages;
         let all = self.delay.iter().chain(&self.setup).sum::<f64>();
-        let mut high = self.target.register + all + 1.0;
         let mut low = fastest;
-        if fits(fastest) {
-            high = fastest;
-        }
+        let mut high = if fits(fastest) { fastest } else { self.target.register + all + 1.0 };
         // To a picosecond.
         while high - low > 0.001 {
             let middle = f64::midpoint(low, high);
@@ -286,15 +267,16 @@ impl<'a> Problems<'a> {
                 low = middle;
             }
         }
-        let differences = self.differences(high);
-        let taken = self.taken(&differences);
-        let latency = stages.max(self.latency(&differences, &taken));
-        self.solve(&differences, &taken, latency, high)
+        self.solve(high, stages)
     }
 
     /// Returns the most stages that shorten the clock.
     pub fn most_stages(&self) -> usize {
-        let period = self.fastest().map_or(0.0, |it| it.period);
+        self.least_stages(self.fastest().map_or(0.0, |it| it.period))
+    }
+
+    /// Returns the fewest stages for a period in nanoseconds.
+    fn least_stages(&self, period: f64) -> usize {
         let differences = self.differences(period);
         self.latency(&differences, &self.taken(&differences))
     }
@@ -464,13 +446,11 @@ impl<'a> Problems<'a> {
         Ok(())
     }
 
-    fn solve(
-        &self,
-        differences: &[Difference],
-        taken: &Taken,
-        latency: usize,
-        period: f64,
-    ) -> Result<Schedule, Refusal> {
+    /// Returns the schedule with the fewest register bits for a period, in no fewer than `stages`.
+    fn solve(&self, period: f64, stages: usize) -> Result<Schedule, Refusal> {
+        let differences = self.differences(period);
+        let taken = self.taken(&differences);
+        let latency = stages.max(self.latency(&differences, &taken));
         let mut problem = Problem::new(OptimizationDirection::Minimize);
         let last = latency as f64;
         let nodes = 0..self.graph.nodes.len();
@@ -485,7 +465,7 @@ impl<'a> Problems<'a> {
         };
         let stage: Vec<_> =
             stages.enumerate().map(|(id, it)| problem.add_var(late(id), it)).collect();
-        for &(from, to, apart) in differences {
+        for &(from, to, apart) in &differences {
             let (from, to) = (stage[from.index()], stage[to.index()]);
             problem.add_constraint([(to, 1.0), (from, -1.0)], ComparisonOp::Ge, apart as f64);
         }
@@ -517,17 +497,14 @@ impl<'a> Problems<'a> {
                 problem.add_constraint(terms, ComparisonOp::Ge, 1.0 + self.apart(user) as f64);
             }
         }
-        let stage: Vec<usize> = match problem.solve() {
-            Ok(SolveOutcome::Solution(solution)) => {
-                stage.iter().map(|&it| solution.var_value(it).round() as usize).collect()
-            }
-            Ok(_) => {
-                let message = "the linear program has no solution".to_owned();
-                return Err(Refusal::Unsolved(message, None));
-            }
-            Err(error) => return Err(Refusal::Unsolved(error.to_string(), None)),
+        let unsolved = |message: String| Refusal::Unsolved(message, None);
+        let solution = match problem.solve().map_err(|error| unsolved(error.to_string()))? {
+            SolveOutcome::Solution(solution) => solution,
+            _ => return Err(unsolved("the linear program has no solution".to_owned())),
         };
-        self.verify(differences, &stage, latency)?;
+        let stage = stage.into_iter().map(|it| solution.var_value(it).round() as usize);
+        let stage: Vec<usize> = stage.collect();
+        self.verify(&differences, &stage, latency)?;
         let logic = self.logic(&stage, latency);
         Ok(Schedule { stage, latency, period, logic })
     }

@@ -168,16 +168,19 @@ fn summed(graph: &mut Graph, mut parts: Vec<Term>, format: Format, label: &Label
 
 /// Returns a term as a number of this width and sign.
 fn in_ones(graph: &mut Graph, term: Term, width: u32, signed: bool, label: &Label) -> NodeId {
-    let Term { value, places } = term;
-    let format = graph.node(value).format;
-    let shifted = if places == 0 {
-        value
-    } else {
-        let zeros = graph.constant(0, unsigned(places), &unnamed(label));
-        let format = integer(format.signed, format.width() + places);
-        graph.op(Op::Concat(vec![value, zeros]), format, &unnamed(label))
-    };
+    let shifted = shifted(graph, term, label);
     graph.resize(shifted, width, signed)
+}
+
+/// Returns a term as a number, with a zero for each of its places.
+fn shifted(graph: &mut Graph, Term { value, places }: Term, label: &Label) -> NodeId {
+    if places == 0 {
+        return value;
+    }
+    let format = graph.node(value).format;
+    let zeros = graph.constant(0, unsigned(places), &unnamed(label));
+    let format = integer(format.signed, format.width() + places);
+    graph.op(Op::Concat(vec![value, zeros]), format, &unnamed(label))
 }
 
 /// Returns the terms of a product whose wider factor is cut into its `limit` upper bits and the rest.
@@ -231,18 +234,12 @@ fn rows(graph: &mut Graph, wide: NodeId, rest: u32, narrow: NodeId, label: &Labe
         let zero = graph.constant(0, format(width), &unnamed);
         let mux = Op::Mux { select: bit, inputs: vec![zero, narrow] };
         let taken = graph.op(mux, format(width), &unnamed);
-        let shifted = if row == 0 {
-            taken
-        } else {
-            let low = graph.constant(0, Format::unsigned(row as i32, 0), &unnamed);
-            graph.op(Op::Concat(vec![taken, low]), format(width + row), &unnamed)
-        };
+        let shifted = shifted(graph, Term { value: taken, places: row }, &unnamed);
         sum = Some(match sum {
             None => shifted,
             Some(sum) => {
                 let total = width + row + 1;
-                let (a, b) =
-                    (graph.resize(sum, total, signed), graph.resize(shifted, total, signed));
+                let [a, b] = [sum, shifted].map(|it| graph.resize(it, total, signed));
                 let (op, format) = (Op::Add { a, b, carry: None }, format(total));
                 shortened(graph, op, format, format.range(), &label.part("rows"))
             }

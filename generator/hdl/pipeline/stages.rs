@@ -1,6 +1,6 @@
 //! Builds the pipelined design of a schedule: the logic of every stage, and registers between the stages.
 
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{BTreeSet, HashMap, HashSet};
 
 use super::graph::{self, Cell, Graph, NodeId};
 use super::schedule::{Problems, Schedule, megahertz};
@@ -30,27 +30,31 @@ pub fn assemble(
         notes: notes.filter(|note| note.topic == Topic::Device).cloned().collect(),
         ..sequential.about.clone()
     };
+    let pipeline = Pipeline {
+        target: options.target.name.to_owned(),
+        clock_mhz: match options.goal {
+            Goal::ClockMhz(clock) => clock,
+            Goal::Stages(_) => megahertz(schedule.period),
+        },
+        most_mhz: problems.fastest().map_or(f64::INFINITY, |it| megahertz(it.period)),
+        interval,
+        stall: options.stall,
+        side: options.side,
+        delay_memory: options.target.delay_memory.filter(|_| options.delays == Delays::Memory),
+        ..Pipeline::default()
+    };
     let mut builder = Builder {
         sequential,
         graph: &unrolled.graph,
         problems,
         schedule,
         design: Design { about, ..Design::empty(&sequential.name) },
-        stage_of: Vec::new(),
-        value_of: Vec::new(),
+        pipeline,
         advance: None,
-        interval,
-        slot: None,
-        loads: BTreeMap::new(),
         shared: HashMap::new(),
-        units: Vec::new(),
         taken: HashSet::from(["clk".to_owned()]),
         names: HashMap::new(),
         values: HashMap::new(),
-        flow: Vec::new(),
-        valid: Vec::new(),
-        side_values: Vec::new(),
-        registered: Vec::new(),
         memories: HashMap::new(),
     };
     builder.ports(unrolled, options);
@@ -62,9 +66,7 @@ pub fn assemble(
     builder.results(unrolled);
     let stages = builder.stages(unrolled);
     let checkpoints = builder.checkpoints(unrolled);
-    let Builder { mut design, stage_of, value_of, flow, valid, side_values, registered, .. } =
-        builder;
-    let (slot, loads, units) = (builder.slot, builder.loads, builder.units);
+    let Builder { mut design, pipeline, .. } = builder;
     design.ports.sort_by_key(|port| match port.role {
         role if role.is_input() => 0,
         Role::InReady => 1,
@@ -72,29 +74,7 @@ pub fn assemble(
         Role::SideOut => 4,
         _ => 3,
     });
-    design.pipeline = Some(Pipeline {
-        target: options.target.name.to_owned(),
-        clock_mhz: match options.goal {
-            Goal::ClockMhz(clock) => clock,
-            Goal::Stages(_) => megahertz(schedule.period),
-        },
-        most_mhz: problems.fastest().map_or(f64::INFINITY, |it| megahertz(it.period)),
-        interval,
-        slot,
-        loads,
-        units,
-        stall: options.stall,
-        side: options.side,
-        delay_memory: options.target.delay_memory.filter(|_| options.delays == Delays::Memory),
-        stages,
-        stage_of,
-        value_of,
-        handshake: flow,
-        valid,
-        side_values,
-        registered,
-        checkpoints,
-    });
+    design.pipeline = Some(Pipeline { stages, checkpoints, ..pipeline });
     count_delayed(&mut design);
     design
 }
@@ -119,34 +99,17 @@ struct Builder<'a> {
     problems: &'a Problems<'a>,
     schedule: &'a Schedule,
     design: Design,
-    /// The stage of every net.
-    stage_of: Vec<usize>,
-    /// The name of every net's value.
-    value_of: Vec<String>,
+    /// What is known of the pipeline so far: all but its stages and checkpoints in the end.
+    pipeline: Pipeline,
     /// 1 when every point moves on by a stage; none if they always do.
     advance: Option<NetId>,
-    /// Clocks from a point to the next at least.
-    interval: usize,
-    /// The counter of the slots.
-    slot: Option<NetId>,
-    /// The enables of registers that hold a value for all slots from this one on.
-    loads: BTreeMap<usize, NetId>,
     /// The register behind the multiplier of each product that shares one.
     shared: HashMap<NodeId, NetId>,
-    units: Vec<netlist::Unit>,
     taken: HashSet<String>,
     /// The name of every node's value, without a stage.
     names: HashMap<NodeId, String>,
     /// The net with the value of a node in a stage.
     values: HashMap<(NodeId, usize), NetId>,
-    /// The nets of the handshake.
-    flow: Vec<NetId>,
-    /// Whether a stage has a point, from stage 1 on.
-    valid: Vec<NetId>,
-    /// The side values of the points, from stage 1 on.
-    side_values: Vec<NetId>,
-    /// The registers inside multipliers.
-    registered: Vec<RegId>,
     /// The read ports of each memory.
     memories: HashMap<RomId, Vec<RomId>>,
 }
@@ -154,8 +117,8 @@ struct Builder<'a> {
 impl Builder<'_> {
     fn net(&mut self, name: String, stage: usize, format: Format, driver: Driver) -> NetId {
         self.taken.insert(name.clone());
-        self.stage_of.push(stage);
-        self.value_of.push(name.clone());
+        self.pipeline.stage_of.push(stage);
+        self.pipeline.value_of.push(name.clone());
         let location = self.sequential.nets[0].location;
         self.design.add_net(Net::new(name, format, driver, location))
     }
@@ -167,7 +130,7 @@ impl Builder<'_> {
 
     fn labelled(&mut self, id: NetId, node: NodeId) -> NetId {
         if let Some(name) = self.names.get(&node) {
-            name.clone_into(&mut self.value_of[id.index()]);
+            name.clone_into(&mut self.pipeline.value_of[id.index()]);
         }
         let node = self.graph.node(node);
         let net = &mut self.design.nets[id.index()];
@@ -272,14 +235,14 @@ impl Builder<'_> {
                 format!("stage {stage} has a point")
             };
             self.documented(id, &what);
-            self.flow.push(id);
+            self.pipeline.handshake.push(id);
             valid.push(id);
         }
         let last = valid[latency];
         let out_valid =
             self.net("out_valid".to_owned(), latency, Format::BIT, Driver::Op(Op::Relabel(last)));
         self.documented(out_valid, "the results are on the outputs");
-        self.flow.push(out_valid);
+        self.pipeline.handshake.push(out_valid);
         self.design.ports.push(Port { net: out_valid, role: Role::Valid });
         if let Some(ready) = find(&self.design, Role::OutReady) {
             let empty =
@@ -289,7 +252,7 @@ impl Builder<'_> {
             let advance = self.net("advance".to_owned(), latency, Format::BIT, op);
             self.documented(advance, "every point moves on by a stage");
             self.advance = Some(advance);
-            self.flow.extend([empty, advance]);
+            self.pipeline.handshake.extend([empty, advance]);
         }
         let first = self.slots();
         let ready = match (self.advance, first) {
@@ -299,7 +262,7 @@ impl Builder<'_> {
         if let Some(ready) = ready {
             let in_ready = self.net("in_ready".to_owned(), latency, Format::BIT, Driver::Op(ready));
             self.documented(in_ready, "a point that is offered is taken in this clock");
-            self.flow.push(in_ready);
+            self.pipeline.handshake.push(in_ready);
             self.design.ports.push(Port { net: in_ready, role: Role::InReady });
         }
         if let Some(first) = first {
@@ -308,14 +271,14 @@ impl Builder<'_> {
         for stage in 1..=latency {
             self.register(valid[stage], valid[stage - 1], self.advance, Some(0));
         }
-        self.valid = valid.split_off(1);
+        self.pipeline.valid = valid.split_off(1);
         if let Some(mut side) = find(&self.design, Role::SideIn) {
             let format = self.design.net(side).format;
             for stage in 1..=latency {
                 let name = self.staged("side", stage);
                 let q = self.net(name, stage, format, Driver::Undriven);
                 self.register(q, side, self.advance, None);
-                self.side_values.push(q);
+                self.pipeline.side_values.push(q);
                 side = q;
             }
             let driver = Driver::Op(Op::Relabel(side));
@@ -329,24 +292,24 @@ impl Builder<'_> {
     fn inner(&mut self, name: &str, format: Format, driver: Driver) -> NetId {
         let id = self.net(self.free(name.to_owned()), 0, format, driver);
         self.design.nets[id.index()].named = false;
-        self.flow.push(id);
+        self.pipeline.handshake.push(id);
         id
     }
 
     /// Returns the counter of the slots, and whether it stands in slot 0; none if there is one slot.
     fn slots(&mut self) -> Option<NetId> {
-        let last = self.interval.checked_sub(1).filter(|last| *last > 0)?;
+        let last = self.pipeline.interval.checked_sub(1).filter(|last| *last > 0)?;
         let bits = usize::BITS - last.leading_zeros();
         let format = Format::unsigned(bits as i32, 0);
         let slot = self.net(self.free("slot".to_owned()), 1, format, Driver::Undriven);
         self.documented(slot, "the point in stage s is there in slot s modulo the interval");
-        self.flow.push(slot);
-        self.slot = Some(slot);
+        self.pipeline.handshake.push(slot);
+        self.pipeline.slot = Some(slot);
         let first = self.is_slot(slot, 0);
         let one = self.inner("slot_step", format, Driver::Constant(1));
         let next = Op::Add { a: slot, b: one, carry: None };
         let mut next = self.inner("slot_after", format, Driver::Op(next));
-        if !self.interval.is_power_of_two() {
+        if !self.pipeline.interval.is_power_of_two() {
             let begin = self.inner("slot_begin", format, Driver::Constant(0));
             let select = self.is_slot(slot, last);
             let inputs = vec![next, begin];
@@ -366,17 +329,17 @@ impl Builder<'_> {
 
     /// Returns the enable of registers that take what a stage makes, and hold it until the next point is there.
     fn load(&mut self, stage: usize) -> Option<NetId> {
-        let Some(slot) = self.slot else { return self.advance };
-        let number = stage % self.interval;
-        if let Some(&load) = self.loads.get(&number) {
+        let Some(slot) = self.pipeline.slot else { return self.advance };
+        let number = stage % self.pipeline.interval;
+        if let Some(&load) = self.pipeline.loads.get(&number) {
             return Some(load);
         }
         let here = self.is_slot(slot, number);
         let op = self.advance.map_or(Op::Relabel(here), |advance| Op::And(advance, here));
         let load = self.net(self.free(format!("load_{number}")), 0, Format::BIT, Driver::Op(op));
         self.documented(load, &format!("points move on from slot {number}"));
-        self.flow.push(load);
-        self.loads.insert(number, load);
+        self.pipeline.handshake.push(load);
+        self.pipeline.loads.insert(number, load);
         Some(load)
     }
 
@@ -404,17 +367,17 @@ impl Builder<'_> {
             let product = self.net(self.free(format!("{name}_product")), stage - 1, wide, op);
             let q = self.net(name.clone(), stage, wide, Driver::Undriven);
             if registered {
-                self.registered.push(RegId(self.design.registers.len() as u32));
+                self.pipeline.registered.push(RegId(self.design.registers.len() as u32));
             }
             self.register(q, product, self.advance, None);
             self.shared.extend(products.map(|id| (id, q)));
             // The multiplier works in the slot before the one in which its register has the product.
-            let serves = (0..self.interval).map(|slot| {
-                let served = unit.serves[(slot + 1) % self.interval].as_ref();
+            let serves = (0..self.pipeline.interval).map(|slot| {
+                let served = unit.serves[(slot + 1) % self.pipeline.interval].as_ref();
                 served.map(|(id, _)| self.names[id].clone())
             });
             let (nets, serves) = (vec![factors[0], factors[1], product, q], serves.collect());
-            self.units.push(netlist::Unit { name, nets, serves });
+            self.pipeline.units.push(netlist::Unit { name, nets, serves });
             made.push((unit, factors));
         }
         made
@@ -424,11 +387,11 @@ impl Builder<'_> {
     fn muxes(&mut self, units: Vec<(sharing::Unit, [NetId; 2])>) {
         for (at, (unit, factors)) in units.into_iter().enumerate() {
             for (side, q) in factors.into_iter().enumerate() {
-                let mut inputs = vec![None; self.interval];
+                let mut inputs = vec![None; self.pipeline.interval];
                 for (id, of) in unit.serves.iter().flatten() {
                     let stage = self.schedule.stage[id.index()] - 2;
                     let value = self.value(of[side], stage);
-                    inputs[stage % self.interval] = Some(self.widened(value, q));
+                    inputs[stage % self.pipeline.interval] = Some(self.widened(value, q));
                 }
                 // In slots without a product anything may come: what comes before.
                 let first = inputs.iter().rev().flatten().next().copied();
@@ -438,14 +401,14 @@ impl Builder<'_> {
                     known
                 });
                 let inputs: Vec<NetId> = inputs.collect();
-                let data = match self.slot {
+                let data = match self.pipeline.slot {
                     Some(select) if inputs.iter().any(|it| *it != inputs[0]) => {
                         let name = self.free(format!("{}_next", self.design.net(q).name));
                         let format = self.design.net(q).format;
-                        let stage = self.stage_of[q.index()] - 1;
+                        let stage = self.pipeline.stage_of[q.index()] - 1;
                         let mux = Driver::Op(Op::Mux { select, inputs });
                         let mux = self.net(name, stage, format, mux);
-                        self.units[at].nets.insert(0, mux);
+                        self.pipeline.units[at].nets.insert(0, mux);
                         mux
                     }
                     _ => inputs[0],
@@ -462,7 +425,7 @@ impl Builder<'_> {
             return value;
         }
         let name = self.free(format!("{}_wide", self.design.net(value).name));
-        let stage = self.stage_of[value.index()];
+        let stage = self.pipeline.stage_of[value.index()];
         let wide = self.net(name, stage, format, Driver::Op(Op::Extend(value)));
         self.design.nets[wide.index()].named = false;
         wide
@@ -480,7 +443,7 @@ impl Builder<'_> {
                 Cell::Op(_) if self.shared.contains_key(&id) => self.shared_product(id, stage),
                 Cell::Op(op) if self.problems.is_clocked(id) => {
                     let product = self.cell(id, op, stage - 1);
-                    self.registered.push(RegId(self.design.registers.len() as u32));
+                    self.pipeline.registered.push(RegId(self.design.registers.len() as u32));
                     self.behind(id, product, stage, self.advance)
                 }
                 Cell::Op(op) => self.cell(id, op, stage),
@@ -488,11 +451,11 @@ impl Builder<'_> {
             };
             self.values.insert((id, stage), value);
             let last = last[id.index()];
-            for from in (stage..last).step_by(self.interval) {
+            for from in (stage..last).step_by(self.pipeline.interval) {
                 // What is read in the next stage alone need not stay.
                 let enable = if last - stage > 1 { self.load(from) } else { self.advance };
                 value = self.behind(id, value, from + 1, enable);
-                let held = from + 1..=last.min(from + self.interval);
+                let held = from + 1..=last.min(from + self.pipeline.interval);
                 self.values.extend(held.map(|stage| ((id, stage), value)));
             }
         }
@@ -505,28 +468,27 @@ impl Builder<'_> {
             true => Op::Relabel(of),
             false => Op::Slice { of, low: 0 },
         };
-        let net = self.net(self.staged(&self.names[&id], stage), stage, format, Driver::Op(op));
+        self.of_node(id, stage, Driver::Op(op), self.graph.node(id).label.named)
+    }
+
+    /// Makes the net of a node in a stage, under the name of its value.
+    fn of_node(&mut self, id: NodeId, stage: usize, driver: Driver, named: bool) -> NetId {
+        let name = self.staged(&self.names[&id], stage);
+        let net = self.net(name, stage, self.graph.node(id).format, driver);
         self.labelled(net, id);
-        self.design.nets[net.index()].named = self.graph.node(id).label.named;
+        self.design.nets[net.index()].named = named;
         net
     }
 
     /// Makes a cell in a stage.
     fn cell(&mut self, id: NodeId, op: &graph::Op, stage: usize) -> NetId {
         let op = op.map(|&operand| self.value(operand, stage));
-        let label = &self.graph.node(id).label;
-        let name = self.staged(&self.names[&id], stage);
-        let net = self.net(name, stage, self.graph.node(id).format, Driver::Op(op));
-        self.labelled(net, id);
-        self.design.nets[net.index()].named = label.named;
-        net
+        self.of_node(id, stage, Driver::Op(op), self.graph.node(id).label.named)
     }
 
     /// Returns a register of a stage that takes what the stage before has of a node.
     fn behind(&mut self, id: NodeId, value: NetId, stage: usize, enable: Option<NetId>) -> NetId {
-        let name = self.staged(&self.names[&id], stage);
-        let q = self.net(name, stage, self.graph.node(id).format, Driver::Undriven);
-        self.labelled(q, id);
+        let q = self.of_node(id, stage, Driver::Undriven, true);
         self.register(q, value, enable, None);
         q
     }
@@ -561,12 +523,9 @@ impl Builder<'_> {
         };
         let op = op.map(|&operand| self.value(operand, stage));
         let name = self.distinct(&node.label.name);
-        let name = self.names.entry(id).or_insert(name).clone();
-        let name = self.staged(&name, stage);
-        let net = self.net(name, stage, node.format, Driver::Op(op));
-        self.labelled(net, id);
+        self.names.entry(id).or_insert(name);
         // It is wiring: written where it is used.
-        self.design.nets[net.index()].named = false;
+        let net = self.of_node(id, stage, Driver::Op(op), false);
         self.values.insert((id, stage), net);
         net
     }
@@ -575,13 +534,9 @@ impl Builder<'_> {
     fn read(&mut self, id: NodeId, rom: RomId, address: NodeId, stage: usize) -> NetId {
         let synchronous = self.problems.is_clocked(id);
         let address = self.value(address, stage - usize::from(synchronous));
-        let node = self.graph.node(id);
         let source = self.sequential.rom(rom).clone();
         let number = RomId(self.design.roms.len() as u32);
-        let name = self.names[&id].clone();
-        let name = self.staged(&name, stage);
-        let data = self.net(name, stage, node.format, Driver::Rom(number));
-        self.labelled(data, id);
+        let data = self.of_node(id, stage, Driver::Rom(number), true);
         // A memory has two ports.
         let ports = self.memories.entry(rom).or_default();
         let shares = (ports.len() % 2 == 1).then(|| ports[ports.len() - 1]);
@@ -616,7 +571,7 @@ impl Builder<'_> {
         let microprogram = &self.sequential.control.microprogram;
         (0..self.schedule.latency)
             .map(|stage| {
-                let mut steps: Vec<usize> = self
+                let steps: BTreeSet<usize> = self
                     .problems
                     .live()
                     .iter()
@@ -625,8 +580,6 @@ impl Builder<'_> {
                     .filter(|id| !matches!(self.graph.node(**id).cell, Cell::Operand(_)))
                     .map(|id| self.graph.node(*id).step)
                     .collect();
-                steps.sort_unstable();
-                steps.dedup();
                 let mut microinstructions: Vec<String> = Vec::new();
                 for step in steps {
                     let address = unrolled.steps.get(step).map_or(0, |step| step.address);
@@ -638,9 +591,9 @@ impl Builder<'_> {
                 let boundary = stage + 1;
                 let registers = (0..).map(RegId).zip(&self.design.registers);
                 // A multiplier's own register is none of the fabric, as that of a block memory.
-                let registers = registers.filter(|(id, _)| !self.registered.contains(id));
+                let registers = registers.filter(|(id, _)| !self.pipeline.registered.contains(id));
                 let bits = registers.map(|(_, register)| register.q);
-                let bits = bits.filter(|q| self.stage_of[q.index()] == boundary);
+                let bits = bits.filter(|q| self.pipeline.stage_of[q.index()] == boundary);
                 Stage {
                     microinstructions,
                     logic_ns: self.schedule.logic[stage],

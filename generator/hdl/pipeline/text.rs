@@ -84,14 +84,7 @@ pub fn parsed(text: &str) -> Result<Unrolled, String> {
         let (name, format) = value.split_once(' ').ok_or_else(|| wrong("no format"))?;
         let format: Format = format.parse()?;
         let range = range.unwrap_or_else(|| format.range());
-        let label = Label {
-            name: name.to_owned(),
-            doc: String::new(),
-            block: None,
-            named: true,
-            part_of: None,
-            location: Location::caller(),
-        };
+        let label = Label::new(name.to_owned(), Location::caller());
         let mut words = operation.split_whitespace();
         let operation = words.next();
         let numbers: Vec<Option<u64>> = words.clone().map(|word| word.parse().ok()).collect();
@@ -104,7 +97,7 @@ pub fn parsed(text: &str) -> Result<Unrolled, String> {
             None => {
                 let cell = Cell::Operand(unrolled.operands.len());
                 unrolled.operands.push(NetId(unrolled.operands.len() as u32));
-                names.insert(name, graph.leaf(cell, format, range, &label));
+                names.insert(name, graph.insert(cell, format, range, &label));
                 continue;
             }
             Some("constant") => {

@@ -120,12 +120,9 @@ fn executed(
     let Some(results) = executor.shown.take() else {
         let place =
             design.control.microprogram.last().map_or(design.nets[0].location, |it| it.location);
-        return Err(Diagnostic::new(
-            codes::UNROLL,
-            "no microinstruction sets `valid`: a pipeline needs to know when the results are there"
-                .to_owned(),
-            place,
-        ));
+        let message =
+            "no microinstruction sets `valid`: a pipeline needs to know when the results are there";
+        return Err(Diagnostic::new(codes::UNROLL, message.to_owned(), place));
     };
     Ok((executor, results))
 }
@@ -153,7 +150,7 @@ impl<'a> Executor<'a> {
         let graph = &mut self.unrolled.graph;
         let mut unknown = |net: &Net| {
             let cell = Cell::Unknown(net.name.clone());
-            graph.leaf(cell, net.format, net.format.range(), &label(net))
+            graph.insert(cell, net.format, net.format.range(), &label(net))
         };
         State {
             registers: design.registers.iter().map(|it| unknown(design.net(it.q))).collect(),
@@ -197,10 +194,8 @@ impl<'a> Executor<'a> {
                         None => {
                             let body = At { state: after.clone(), address: at.address + 1 };
                             let Some(executed) = self.follow(body, Some(to))? else {
-                                return Err(self.cannot(
-                                    at.address,
-                                    "is skipped by some points, and shows results",
-                                ));
+                                let why = "is skipped by some points, and shows results";
+                                return Err(self.cannot(at.address, why));
                             };
                             let state = self.either(condition, &executed, &after);
                             at = At { state, address: to };
@@ -414,14 +409,10 @@ impl<'a> Executor<'a> {
 
     fn cannot(&self, address: usize, why: &str) -> Diagnostic {
         let microinstruction = &self.design.control.microprogram[address];
-        Diagnostic::new(
-            codes::UNROLL,
-            format!(
-                "`{}` cannot be a pipeline: the microinstruction `{}` {why}",
-                self.design.name, microinstruction.name
-            ),
-            microinstruction.location,
-        )
+        let (design, own) = (&self.design.name, &microinstruction.name);
+        let message =
+            format!("`{design}` cannot be a pipeline: the microinstruction `{own}` {why}");
+        Diagnostic::new(codes::UNROLL, message, microinstruction.location)
     }
 
     /// Checks that no result depends on what an earlier computation has left.
@@ -430,16 +421,13 @@ impl<'a> Executor<'a> {
         for &(port, value) in results {
             for id in graph.cone([value]) {
                 if let Cell::Unknown(register) = &graph.node(id).cell {
-                    return Err(Diagnostic::new(
-                        codes::UNROLL,
-                        format!(
-                            "`{}` {what}: `{}` depends on what `{register}` held before the computation; load \
-                             `{register}` in each before it is read",
-                            self.design.name,
-                            self.design.net(port).name
-                        ),
-                        graph.node(id).label.location,
-                    ));
+                    let (design, result) = (&self.design.name, &self.design.net(port).name);
+                    let message = format!(
+                        "`{design}` {what}: `{result}` depends on what `{register}` held before the computation; \
+                         load `{register}` in each before it is read"
+                    );
+                    let place = graph.node(id).label.location;
+                    return Err(Diagnostic::new(codes::UNROLL, message, place));
                 }
             }
         }

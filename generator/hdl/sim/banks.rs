@@ -252,10 +252,7 @@ impl Divider<'_> {
     fn edge(&mut self, reads: &[ReadEdge], registers: &[RegisterEdge]) {
         for edge in reads {
             let wide = self.is_wide[edge.to as usize];
-            let mut slot = |slot: Slot| {
-                let sources = self.compiler.sources[slot as usize];
-                self.operand(slot, wide, sources)
-            };
+            let mut slot = |slot: Slot| self.settled(slot, wide);
             let edge = ReadEdge {
                 to: slot(edge.to),
                 address: slot(edge.address),
@@ -266,10 +263,7 @@ impl Divider<'_> {
         }
         for edge in registers {
             let wide = self.is_wide[edge.q as usize];
-            let mut slot = |slot: Slot| {
-                let sources = self.compiler.sources[slot as usize];
-                self.operand(slot, wide, sources)
-            };
+            let mut slot = |slot: Slot| self.settled(slot, wide);
             let edge = RegisterEdge {
                 q: slot(edge.q),
                 data: slot(edge.data),
@@ -279,6 +273,11 @@ impl Divider<'_> {
             };
             self.bank(wide).registers.push(edge);
         }
+    }
+
+    /// Returns the value of a slot of the compiler in a bank, once everything is settled.
+    fn settled(&mut self, slot: Slot, wide: bool) -> Slot {
+        self.operand(slot, wide, self.compiler.sources[slot as usize])
     }
 
     fn bank(&mut self, wide: bool) -> &mut Bank {

@@ -46,13 +46,8 @@ impl Compiler<'_> {
                     None => self.add(a, b, drop),
                     Some(carry) => {
                         let carry = slot(*carry);
-                        self.emit(&[a, b, carry], |to| Instruction::AddCarry {
-                            to,
-                            a,
-                            b,
-                            carry,
-                            drop,
-                        })
+                        let add = |to| Instruction::AddCarry { to, a, b, carry, drop };
+                        self.emit(&[a, b, carry], add)
                     }
                 }
             }
@@ -156,16 +151,9 @@ impl Compiler<'_> {
         if of_a == a || of_b == b {
             return self.emit(&[a, b], |to| Instruction::Add { to, a, b, drop });
         }
-        self.emit(&[of_a, of_b], |to| Instruction::AddSlices {
-            to,
-            a: of_a,
-            b: of_b,
-            low_a,
-            drop_a,
-            low_b,
-            drop_b,
-            drop,
-        })
+        let [a, b] = [of_a, of_b];
+        let add = |to| Instruction::AddSlices { to, a, b, low_a, drop_a, low_b, drop_b, drop };
+        self.emit(&[a, b], add)
     }
 
     /// Returns a mux of two inputs, together with what only prepares its operands: chains of such muxes tell in

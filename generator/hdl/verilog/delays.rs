@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use super::module::Builder;
 use super::naming::Naming;
 use super::plan::address_width;
-use super::text::{literal, statement};
+use super::text::{literal, statement, together};
 use super::writer;
 use crate::netlist::{DelayLine, NetId};
 
@@ -46,12 +46,4 @@ pub fn section(builder: &mut Builder<'_>, naming: &Naming) -> Vec<String> {
         text.push("    );".to_owned());
     }
     writer::section(TITLE, text)
-}
-
-/// Returns one value, or several side by side.
-fn together(values: Vec<String>) -> String {
-    match &values[..] {
-        [only] => only.clone(),
-        _ => format!("{{{}}}", values.join(", ")),
-    }
 }

@@ -7,7 +7,7 @@
 
 use super::bits::{Bits, Piece};
 use super::plan::{NetForm, Plan, Reader};
-use super::text::{Names, constant_name, literal};
+use super::text::{Names, constant_name, literal, together};
 use crate::netlist::{Driver, NetId, Op, Rom};
 use glint_base::fixed::mask;
 
@@ -155,11 +155,7 @@ impl<'a> Expressions<'a> {
 
     /// Writes wiring: one piece, or several side by side.
     pub fn bits(&self, bits: &Bits) -> String {
-        let parts: Vec<_> = bits.pieces().iter().map(|piece| self.piece(*piece)).collect();
-        match &parts[..] {
-            [only] => only.clone(),
-            _ => format!("{{{}}}", parts.join(", ")),
-        }
+        together(bits.pieces().iter().map(|piece| self.piece(*piece)).collect())
     }
 
     fn piece(&self, piece: Piece) -> String {
@@ -197,9 +193,7 @@ impl<'a> Expressions<'a> {
                 format!("{sum} + {carry}")
             }
             Op::Sub(a, b) => self.binary(*a, "-", *b),
-            Op::Mul(a, b) => {
-                format!("{} * {}", self.with_sign(*a), self.with_sign(*b))
-            }
+            Op::Mul(a, b) => format!("{} * {}", self.with_sign(*a), self.with_sign(*b)),
             Op::Equal(a, b) => self.binary(*a, "==", *b),
             Op::Less(a, b) => match self.plan.constant_comparison(*a, *b) {
                 Some(known) => literal(known, 1),

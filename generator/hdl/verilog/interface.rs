@@ -37,12 +37,10 @@ impl Interface {
         });
         let outputs =
             design.outputs().map(|port| port.net).filter(|net| plan.partition(*net) == partition);
-        let roms: Vec<_> = (0..design.roms.len() as u32)
-            .map(RomId)
-            .filter(|rom| plan.partition(design.rom(*rom).data) == partition)
-            .collect();
-        let registers =
-            design.registers.iter().any(|register| plan.partition(register.q) == partition);
+        let roms = (0..design.roms.len() as u32).map(RomId);
+        let roms = roms.filter(|rom| plan.partition(design.rom(*rom).data) == partition);
+        let roms: Vec<RomId> = roms.collect();
+        let registers = design.registers.iter().any(|it| plan.partition(it.q) == partition);
         Self {
             clocked: registers || roms.iter().any(|rom| design.rom(*rom).synchronous),
             inputs: inputs.chain(nets_read(partition, other)).collect(),

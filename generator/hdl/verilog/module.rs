@@ -70,14 +70,10 @@ impl<'a> Builder<'a> {
         body.extend(self.unused());
         let formal = invariants(self.plan.design, self.naming, self.partition);
         body.extend(writer::block("`ifdef FORMAL", formal, "`endif"));
-        writer::module(
-            header::partition(self.plan.design, self.partition, origin, self.naming),
-            &self.naming.module(self.partition),
-            &parameters(self.naming, &self.interface.roms),
-            self.ports(),
-            body,
-            "",
-        )
+        let header = header::partition(self.plan.design, self.partition, origin, self.naming);
+        let name = self.naming.module(self.partition);
+        let parameters = parameters(self.naming, &self.interface.roms);
+        writer::module(header, &name, &parameters, self.ports(), body, "")
     }
 
     pub(super) fn ports(&self) -> Vec<String> {
@@ -310,10 +306,8 @@ impl<'a> Builder<'a> {
             lines.extend(["        endcase", "    endfunction"].map(str::to_owned));
             return lines;
         }
-        let attribute = match style.rom_style {
-            Some(style) if rom.synchronous => format!("(* {style} *) "),
-            _ => String::new(),
-        };
+        let attribute = style.rom_style.filter(|_| rom.synchronous);
+        let attribute = attribute.map_or_else(String::new, |style| format!("(* {style} *) "));
         let (range, last) = (range(width), rom.words.len().saturating_sub(1));
         let declaration = format!("    {attribute}reg {range} {memory} [0:{last}];");
         if style.inline {
@@ -361,26 +355,27 @@ impl<'a> Builder<'a> {
         type Key = (Option<NetId>, bool);
         let design = self.plan.design;
         let mut groups: Vec<(Key, Vec<RegId>)> = Vec::new();
-        for (at, register) in design.registers.iter().enumerate() {
-            let inside = design.multiplier(RegId(at as u32)).is_some();
-            if self.plan.partition(register.q) != self.partition || inside || !wanted(register.q) {
-                continue;
-            }
+        for member in self.written(wanted) {
+            let register = design.register(member);
             let key = (register.enable, register.reset.is_some());
-            let member = RegId(at as u32);
-            if self.plan.delayed(member).is_some() {
-                continue;
-            }
             match groups.iter_mut().find(|(group, _)| *group == key) {
                 Some((_, members)) => members.push(member),
                 None => groups.push((key, vec![member])),
             }
         }
-        let mut blocks = Vec::new();
-        for ((enable, _), members) in groups {
-            blocks.push(self.group(enable, &members));
-        }
-        blocks
+        groups.into_iter().map(|((enable, _), members)| self.group(enable, &members)).collect()
+    }
+
+    /// Returns the wanted registers here to which statements assign.
+    fn written(&self, wanted: &dyn Fn(NetId) -> bool) -> Vec<RegId> {
+        let design = self.plan.design;
+        let registers = (0..).map(RegId).zip(&design.registers).filter(|(id, register)| {
+            wanted(register.q)
+                && self.plan.partition(register.q) == self.partition
+                && design.multiplier(*id).is_none()
+                && self.plan.delayed(*id).is_none()
+        });
+        registers.map(|(id, _)| id).collect()
     }
 
     /// Returns the statements by which registers load.
@@ -397,16 +392,9 @@ impl<'a> Builder<'a> {
 
     /// Returns the blocks of the wanted registers of a pipeline: one for those that take their values under the same enable.
     pub(super) fn stage(&mut self, wanted: &dyn Fn(NetId) -> bool) -> Vec<String> {
-        let design = self.plan.design;
-        let registers = (0..).map(RegId).zip(&design.registers);
-        let written = registers.filter(|(id, register)| {
-            wanted(register.q)
-                && design.multiplier(*id).is_none()
-                && self.plan.delayed(*id).is_none()
-        });
         let mut groups: BTreeMap<Option<NetId>, Vec<RegId>> = BTreeMap::new();
-        for (id, register) in written {
-            groups.entry(register.enable).or_default().push(id);
+        for id in self.written(wanted) {
+            groups.entry(self.plan.design.register(id).enable).or_default().push(id);
         }
         let mut lines = Vec::new();
         for (enable, members) in groups {

@@ -58,6 +58,7 @@ impl Naming {
             });
         }
         let numbers = (0..design.roms.len() as u32).map(RomId);
+        let file = |rom: &Rom| format!("{}_{}.mem", design.name, rom.name);
         Self {
             control_instance,
             datapath_instance,
@@ -69,11 +70,7 @@ impl Naming {
                 .iter()
                 .map(|rom| names.fresh(&format!("{}_FILE", constant_name(&rom.name))))
                 .collect(),
-            files: design
-                .roms
-                .iter()
-                .map(|rom| format!("{}_{}.mem", design.name, rom.name))
-                .collect(),
+            files: design.roms.iter().map(file).collect(),
             choices: choices(&design.control, &mut names),
             unused: names.fresh("unused"),
             valid: names.fresh("valid"),

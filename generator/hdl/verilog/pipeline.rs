@@ -65,14 +65,10 @@ pub fn module(plan: &Plan, naming: &Naming, pipeline: &Pipeline, origin: &Origin
         true => String::new(),
         false => DELAY.replace("module delay", &format!("module {}", naming.delay())),
     };
-    writer::module(
-        header::top(design, origin),
-        &design.name,
-        &parameters(naming, &interface.roms),
-        builder.ports(),
-        [writer::section("Constants", builder.constants()), stages, builder.unused()].concat(),
-        &delay,
-    )
+    let (header, parameters) = (header::top(design, origin), parameters(naming, &interface.roms));
+    let constants = writer::section("Constants", builder.constants());
+    let body = [constants, stages, builder.unused()].concat();
+    writer::module(header, &design.name, &parameters, builder.ports(), body, &delay)
 }
 
 /// Writes `multiplier_1: in slots 0, 1, 2, 3 it takes the factors of base, -, red_product, green_product`: a slot before it
@@ -97,25 +93,13 @@ fn handshake(plan: &Plan, naming: &Naming, pipeline: &Pipeline) -> Vec<String> {
     let [offered, shown, reset] =
         [Role::InValid, Role::Valid, Role::Reset].map(|role| port(role).unwrap_or_default());
     let (valid, last) = (&naming.valid, pipeline.stages.len());
-    let slot = pipeline.slot.map(|slot| {
-        let (name, bits) = (&design.net(slot).name, design.width(slot));
-        let slot = |number: usize| literal(number as u64, bits);
-        let first = format!("{name} == {}", slot(0));
-        let next = match pipeline.interval.is_power_of_two() {
-            true => format!("{name} + {}", slot(1)),
-            false => {
-                let end = slot(pipeline.interval - 1);
-                format!("({name} == {end}) ? {} : {name} + {}", slot(0), slot(1))
-            }
-        };
-        let loads = pipeline.loads.iter().map(|(&number, &net)| {
-            (design.net(net).name.as_str(), format!("({name} == {})", slot(number)))
-        });
-        (name, first, next, slot(0), loads.collect::<Vec<_>>())
-    });
-    let loads = slot.iter().flat_map(|(.., loads)| loads.clone()).collect::<Vec<_>>();
-    let offered = match &slot {
-        Some((_, first, ..)) => format!("{offered} & ({first})"),
+    let slot = pipeline.slot.map(|slot| (&design.net(slot).name, design.width(slot)));
+    // The condition of a slot; none where there is one slot.
+    let in_slot = |number: usize| {
+        slot.map(|(name, bits)| format!("({name} == {})", literal(number as u64, bits)))
+    };
+    let offered = match in_slot(0) {
+        Some(first) => format!("{offered} & {first}"),
         None => offered.to_owned(),
     };
     let next = match last {
@@ -125,8 +109,7 @@ fn handshake(plan: &Plan, naming: &Naming, pipeline: &Pipeline) -> Vec<String> {
     };
     let mut lines =
         vec![format!("reg  [{last}:1] {valid};"), format!("assign {shown} = {valid}[{last}];")];
-    if let Some((name, ..)) = &slot {
-        let bits = pipeline.slot.map_or(1, |it| design.width(it));
+    if let Some((name, bits)) = slot {
         let bits = if bits == 1 { String::new() } else { format!("{} ", range(bits)) };
         lines.insert(1, format!("reg  {bits}{name};"));
     }
@@ -135,8 +118,7 @@ fn handshake(plan: &Plan, naming: &Naming, pipeline: &Pipeline) -> Vec<String> {
         lines.push(format!("wire {advance} = {ready} | ~{valid}[{last}];"));
     }
     if let Some(taken) = port(Role::InReady) {
-        let first = slot.as_ref().map(|(_, first, ..)| format!("({first})"));
-        let when = enable.cloned().into_iter().chain(first).collect::<Vec<_>>().join(" & ");
+        let when = enable.cloned().into_iter().chain(in_slot(0)).collect::<Vec<_>>().join(" & ");
         lines.push(format!("assign {taken} = {when};"));
     }
     let when = enable.map_or(String::new(), |it| format!("if ({it}) "));
@@ -147,7 +129,14 @@ fn handshake(plan: &Plan, naming: &Naming, pipeline: &Pipeline) -> Vec<String> {
             lines.push(format!("    if (!{reset}) {valid} <= {empty};"));
             lines.push(format!("    else {when}{valid} <= {next};"));
         }
-        Some((slot, _, after, begin, _)) => {
+        Some((slot, bits)) => {
+            let [begin, one] = [0, 1].map(|number| literal(number, bits));
+            let last =
+                in_slot(pipeline.interval - 1).filter(|_| !pipeline.interval.is_power_of_two());
+            let after = match last {
+                Some(last) => format!("{last} ? {begin} : {slot} + {one}"),
+                None => format!("{slot} + {one}"),
+            };
             lines.push(format!("    if (!{reset}) begin"));
             lines.extend([
                 format!("        {valid} <= {empty};"),
@@ -162,7 +151,8 @@ fn handshake(plan: &Plan, naming: &Naming, pipeline: &Pipeline) -> Vec<String> {
         }
     }
     lines.push("end".to_owned());
-    for (name, here) in loads {
+    for (&number, &load) in &pipeline.loads {
+        let (name, here) = (&design.net(load).name, in_slot(number).unwrap_or_default());
         let when = enable.map_or(String::new(), |it| format!("{it} & "));
         lines.push(format!("wire {name} = {when}{here};"));
     }

@@ -245,13 +245,8 @@ impl<'a> Plan<'a> {
     /// Finds the cells that are written: those that nobody named and nothing needs are left out.
     fn find_live(&mut self, order: &[NetId]) {
         let mut live = vec![false; self.design.nets.len()];
-        let mut pending: Vec<Reader> = Vec::new();
-        for (at, _) in self.design.registers.iter().enumerate() {
-            pending.push(Reader::Register(RegId(at as u32)));
-        }
-        for (at, _) in self.design.roms.iter().enumerate() {
-            pending.push(Reader::Rom(RomId(at as u32)));
-        }
+        // Registers and ROMs: no cell is known to be written yet.
+        let mut pending = self.readers();
         for (id, net) in self.design.iter() {
             if self.forms[id.index()] == NetForm::Declared && (net.named || self.is_port(id)) {
                 live[id.index()] = true;

@@ -91,6 +91,14 @@ pub fn literal(value: u64, width: u32) -> String {
     }
 }
 
+/// Returns one word, or several side by side.
+pub fn together(words: Vec<String>) -> String {
+    match &words[..] {
+        [only] => only.clone(),
+        _ => format!("{{{}}}", words.join(", ")),
+    }
+}
+
 /// Returns `[7:0]`, or nothing for one bit.
 pub fn range(width: u32) -> String {
     match width {

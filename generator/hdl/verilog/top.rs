@@ -35,14 +35,8 @@ pub fn module(
         body.extend(instance(plan, naming, partition, interface));
     }
     let roms: Vec<_> = units.iter().flat_map(|(_, interface)| interface.roms.clone()).collect();
-    writer::module(
-        header::top(design, origin),
-        &design.name,
-        &parameters(naming, &roms),
-        Row::ports(&ports),
-        body,
-        "",
-    )
+    let (header, parameters) = (header::top(design, origin), parameters(naming, &roms));
+    writer::module(header, &design.name, &parameters, Row::ports(&ports), body, "")
 }
 
 fn instance(

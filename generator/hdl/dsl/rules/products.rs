@@ -4,7 +4,7 @@
 use std::collections::{HashMap, HashSet};
 
 use super::SelectedProduct;
-use crate::netlist::{Design, Driver, FieldKind, NetId, Op, setting_of};
+use crate::netlist::{Design, Driver, FieldKind, NetId, passed_on};
 use glint_base::codes;
 use glint_base::diagnostic::Diagnostic;
 
@@ -56,14 +56,6 @@ impl Checker<'_> {
                     self.found.push(diagnostic.note("the product".to_owned(), location));
                     break;
                 }
-                if let Driver::Op(Op::Mux { select, inputs }) = &design.net(id).driver
-                    && let Some(chosen) = setting_of(design, &microprogram[now], *select)
-                {
-                    // Of a mux that the microinstruction controls, only the chosen input matters.
-                    let chosen = inputs.get(chosen as usize).or(inputs.last());
-                    pending.extend(chosen.map(|&input| (now, input)));
-                    continue;
-                }
                 match &design.net(id).driver {
                     Driver::Register(of) if design.register(*of).enable.is_none() => {
                         let data = design.register(*of).data;
@@ -71,7 +63,7 @@ impl Checker<'_> {
                         pending.extend(before.filter_map(|from| Some((from, data?))));
                     }
                     _ => {
-                        let inputs = design.combinational_inputs(id).into_iter();
+                        let inputs = passed_on(design, &microprogram[now], id).into_iter();
                         pending.extend(inputs.map(|input| (now, input)));
                     }
                 }

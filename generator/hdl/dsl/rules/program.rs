@@ -3,8 +3,8 @@
 use std::collections::HashSet;
 
 use crate::netlist::{
-    Control, Design, Driver, FieldId, FieldKind, NetId, Op, RegId, RegisterKind, Role, Sequence,
-    setting_of,
+    Control, Design, Driver, FieldId, FieldKind, NetId, RegId, RegisterKind, Role, Sequence,
+    passed_on, setting_of,
 };
 use glint_base::codes;
 use glint_base::cone::reached;
@@ -49,11 +49,8 @@ fn unpicked(design: &Design, picked: &HashSet<FieldId>) -> Vec<Diagnostic> {
                 field.name,
                 choices.join("`, `")
             );
-            found.push(Diagnostic::new(
-                codes::UNUSED_CONTROL,
-                message,
-                design.net(field.net).location,
-            ));
+            let location = design.net(field.net).location;
+            found.push(Diagnostic::new(codes::UNUSED_CONTROL, message, location));
         }
     }
     found
@@ -129,17 +126,9 @@ fn controlled(control: &Control, from: usize, goes: impl Fn(usize) -> bool) -> H
 /// microinstruction controls, only the
 /// chosen input counts; fields are what the microinstruction says.
 fn cone(design: &Design, at: usize, net: NetId) -> HashSet<NetId> {
-    reached([net], |id| match &design.net(id).driver {
+    reached([net], |id| match design.net(id).driver {
         Driver::Field(_) => Vec::new(),
-        Driver::Op(Op::Mux { select, inputs }) => {
-            match setting_of(design, &design.control.microprogram[at], *select) {
-                Some(chosen) => {
-                    inputs.get(chosen as usize).or(inputs.last()).copied().into_iter().collect()
-                }
-                None => design.combinational_inputs(id),
-            }
-        }
-        _ => design.combinational_inputs(id),
+        _ => passed_on(design, &design.control.microprogram[at], id),
     })
 }
 

@@ -70,11 +70,8 @@ fn unmade(design: &Design, partly_used: &HashSet<FieldId>) -> Vec<Diagnostic> {
         if !names.is_empty() {
             let names = names.join("`, `");
             let message = format!("no microinstruction selects `{names}` by `{}`", field.name);
-            found.push(Diagnostic::new(
-                codes::UNUSED_CONTROL,
-                message,
-                design.net(field.net).location,
-            ));
+            let location = design.net(field.net).location;
+            found.push(Diagnostic::new(codes::UNUSED_CONTROL, message, location));
         }
     }
     found

@@ -117,7 +117,7 @@ impl<'e, 'a> Clock<'e, 'a> {
                     Some(at) if self.first => Cell::Operand(at),
                     _ => Cell::Unknown(net.name.clone()),
                 };
-                self.graph().leaf(cell, net.format, net.range, label)
+                self.graph().insert(cell, net.format, net.range, label)
             }
         }
     }

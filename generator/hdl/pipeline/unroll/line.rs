@@ -220,15 +220,12 @@ impl Points<'_> {
     }
 
     fn cannot(&self, address: usize, why: &str) -> Diagnostic {
-        let microinstruction = &self.executor.design.control.microprogram[address];
-        Diagnostic::new(
-            codes::UNROLL,
-            format!(
-                "the points of `{}` are not alike: the microinstruction `{}` {why}",
-                self.executor.design.name, microinstruction.name
-            ),
-            microinstruction.location,
-        )
+        let design = self.executor.design;
+        let (microinstruction, name) = (&design.control.microprogram[address], &design.name);
+        let own = &microinstruction.name;
+        let message =
+            format!("the points of `{name}` are not alike: the microinstruction `{own}` {why}");
+        Diagnostic::new(codes::UNROLL, message, microinstruction.location)
     }
 }
 

@@ -16,36 +16,23 @@ fn check(
 ) {
     let name = |at: usize| format!("operand_{at}");
     let mut from_ports = Build::new();
-    let nets: Vec<_> = operands
-        .iter()
-        .enumerate()
-        .map(|(at, format)| from_ports.input(&name(at), *format))
-        .collect();
+    let nets = operands.iter().enumerate();
+    let nets: Vec<_> = nets.map(|(at, format)| from_ports.input(&name(at), *format)).collect();
     let direct = from_ports.op("direct", result, op(&nets));
-    let registers: Vec<_> = operands
-        .iter()
-        .enumerate()
-        .map(|(at, format)| {
-            let q = from_ports.register(&format!("{}_q", name(at)), *format);
-            from_ports.of(q).data = Some(nets[at]);
-            q
-        })
-        .collect();
+    let registers = operands.iter().enumerate().map(|(at, format)| {
+        let q = from_ports.register(&format!("{}_q", name(at)), *format);
+        from_ports.of(q).data = Some(nets[at]);
+        q
+    });
+    let registers: Vec<_> = registers.collect();
     let registered = from_ports.op("registered", result, op(&registers));
     let mut simulator: Simulator = Simulator::new(&from_ports.design).unwrap();
 
     for _ in 0..24 {
         let patterns: Vec<_> =
             operands.iter().map(|format| random.pattern(format.width())).collect();
-        let raws: Vec<_> = operands
-            .iter()
-            .zip(&patterns)
-            .map(|(format, bits)| {
-                let bits = i128::from(*bits);
-                let negative = format.signed && bits >> (format.width() - 1) == 1;
-                bits - (i128::from(negative) << format.width())
-            })
-            .collect();
+        let raws = operands.iter().zip(&patterns).map(|(format, bits)| format.raw(*bits));
+        let raws: Vec<_> = raws.collect();
         let wanted = expected(&raws).rem_euclid(1 << result.width()) as u64;
 
         for (at, bits) in patterns.iter().enumerate() {
@@ -118,17 +105,13 @@ fn concatenation() {
             left -= part;
         }
         let all = random.format(width);
-        check(
-            random,
-            &parts,
-            all,
-            |n| Op::Concat(n.to_vec()),
-            |v| {
-                parts.iter().zip(v).fold(0, |all, (format, raw)| {
-                    (all << format.width()) + wire(*raw, format.width())
-                })
-            },
-        );
+        let joined = |v: &[i128]| {
+            parts
+                .iter()
+                .zip(v)
+                .fold(0, |all, (format, raw)| (all << format.width()) + wire(*raw, format.width()))
+        };
+        check(random, &parts, all, |n| Op::Concat(n.to_vec()), joined);
     });
 }
 
@@ -153,12 +136,8 @@ fn sums() {
     widths(|random, width| {
         let of = [random.format(width), random.format(width), Format::BIT];
         let to = random.format(width);
-        let add = |carry| {
-            move |n: &[NetId]| Op::Add {
-                a: n[0],
-                b: n[1],
-                carry: if carry { Some(n[2]) } else { None },
-            }
+        let add = |carry: bool| {
+            move |n: &[NetId]| Op::Add { a: n[0], b: n[1], carry: carry.then(|| n[2]) }
         };
         check(random, &of[..2], to, add(false), |v| v[0] + v[1]);
         check(random, &of, to, add(true), |v| v[0] + v[1] + v[2]);
