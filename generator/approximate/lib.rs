@@ -288,7 +288,7 @@ impl Piecewise {
         self.reduced(raw).1.result(polynomial)
     }
 
-    /// Returns bits of the table.
+    /// Returns the number of bits of the table.
     pub fn rom_bits(&self) -> u64 {
         let width: u32 = self.coefficients.iter().map(|format| format.width()).sum();
         self.words.len() as u64 * u64::from(width)

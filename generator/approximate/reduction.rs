@@ -1,8 +1,8 @@
 //! Reduces ranges: the operand of a whole format becomes one of a short domain, and the polynomial's result there
 //! becomes that of the operand.
 //!
-//! An identity of the formula is taken for granted here and shown nowhere: every operand of the whole format is computed and set
-//! against the formula, as without a reduction.
+//! An identity of the formula is tried at a few points here and proved nowhere. No bound rests on it: every
+//! operand of the whole domain is computed and set against the formula; a domain that is too large for that is refused.
 
 use super::{Curve, Function, Outside, Refusal};
 use glint_base::fixed::{Format, exp2};
@@ -229,7 +229,7 @@ fn refused<T>(message: &str, remedy: &str) -> Result<T, Refusal> {
     Err(Refusal::new(KEY, message.to_owned(), remedy))
 }
 
-/// Returns the formula is not as the identity wants it.
+/// Refuses a formula of which the identity does not hold, for the reason `wanted`.
 fn unlike<T>(wanted: &str) -> Result<T, Refusal> {
     refused(&format!("the formula has no such identity: {wanted}"), "\"none\", or another")
 }

@@ -46,17 +46,18 @@ pub struct Place {
 }
 
 impl Segments {
-    /// Returns bits of the way through the longest segment.
+    /// Returns the number of bits of an offset in the longest segment.
     pub fn rest(&self) -> u32 {
         self.bits - self.prefix - u32::from(self.octaves > 0)
     }
 
-    /// Returns bits of the way through a segment of a block: number 0 lies below the octaves, and the last is the highest.
+    /// Returns the number of bits of an offset in a segment of a block. Block 0 lies below the octaves, and the last is
+    /// the highest octave.
     pub fn rest_of(&self, block: u32) -> u32 {
         (self.bits + block.max(1) - 1) - self.octaves - self.prefix
     }
 
-    /// Returns words of the whole table.
+    /// Returns the number of words of the whole table.
     pub fn words(&self) -> usize {
         (self.octaves as usize + 1) << self.prefix
     }

@@ -1,4 +1,5 @@
-//! Ends the program on Ctrl-C, and on the other signals that ask a process to end.
+//! Ends the program and its child processes, and deletes its temporary files, on Ctrl-C and the other signals that ask
+//! a process to end. A command can defer the end until it has saved its work; a second signal then ends it at once.
 
 use std::fmt;
 use std::sync::atomic::{AtomicBool, AtomicI32, Ordering};

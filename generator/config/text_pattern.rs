@@ -1,4 +1,5 @@
-//! Checks texts in a configuration by patterns. Each that fits can stand in Tcl, XML, YAML and TOML as it is.
+//! Checks texts in a configuration by patterns. A text that fits needs no escapes in Tcl, XML, YAML and TOML, except
+//! `<` and `>` of a formula in XML.
 
 /// The pattern of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

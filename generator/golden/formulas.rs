@@ -1,8 +1,8 @@
-//! The formulas of the seeds in f64: what the hardware approximates, unrounded.
+//! The formulas of the seeds (the documents that the devices come from) in f64: what the hardware
+//! approximates, unrounded.
 //!
-//! Everything takes cosines and exponents as plain numbers and returns the reflectance `f`, in 0 … 1.
-//! A surface that faces away (`c ≤ 0`) reflects nothing. Transcendentals come from `libm`, so a
-//! figure is the same on every machine.
+//! Operands are plain numbers; angles are in radians. A reflectance `f` is in 0 … 1; a surface that faces away
+//! (`c ≤ 0`) reflects nothing. Transcendentals come from `libm`, so a figure is the same on every machine.
 
 use std::f64::consts::FRAC_PI_2;
 

@@ -43,7 +43,7 @@ impl Root {
         (self.width - 1).ilog2()
     }
 
-    /// Returns the sum shifted by so many pairs.
+    /// Returns the mantissa of a sum: the sum shifted left by `pairs` pairs of bits.
     pub fn mantissa(&self, sum: i64, pairs: i64) -> i64 {
         if sum == 0 { 0 } else { sum << (2 * pairs) }
     }

@@ -65,14 +65,14 @@ impl Decay {
         }
     }
 
-    /// Returns bits of the distance of which the first is always 0.
+    /// Returns the number of bits of the distance, of which the first is always 0.
     fn known(self) -> u32 {
         u32::from(self == Self::Logarithm)
     }
 }
 
 impl Keys {
-    /// Returns bits of u, the distance 1 − c less an ulp of the cosine.
+    /// Returns the number of bits of u, the distance 1 − c less an ulp of the cosine.
     pub fn distance(&self, decay: Decay) -> u32 {
         self.operands.cosine.fraction - decay.known()
     }
@@ -82,14 +82,14 @@ impl Keys {
         Format::unsigned(1, self.decay_fraction as i32)
     }
 
-    /// Returns bits of the integer of a decay: of the number of an octave, and one more.
+    /// Returns the number of bits of the integer of a decay: of the number of an octave, and one more.
     fn whole_bits(&self, decay: Decay) -> u32 {
         let octave = (self.operands.cosine.fraction - 1).ilog2() + 1;
         1 + octave * decay.known()
     }
 
-    /// Returns bits of a decay as a factor: of a small one, below ¼, all that are not 0, of others the integer and the coarse
-    /// fraction.
+    /// Returns the number of bits of a decay as a factor: of a small one, below ¼, all that are not 0, of others the
+    /// integer and the coarse fraction.
     pub fn factor_bits(&self, decay: Decay) -> u32 {
         (self.decay_fraction - 2).max(self.whole_bits(decay) + self.coarse_fraction)
     }

@@ -246,7 +246,7 @@ impl Build {
         }
     }
 
-    /// Returns a slice of it may be known beforehand.
+    /// Returns whether a slice of the net may be known beforehand.
     fn is_partly_constant(&self, id: NetId) -> bool {
         let net = self.design.net(id);
         match &net.driver {

@@ -31,7 +31,7 @@ fn run(core: &Core, design: &Design, points: u64, threads: usize) -> Outcome {
     pool.install(|| lockstep.run(points, &|_| ())).expect("it can be simulated")
 }
 
-/// Returns a word of the sine that is seldom read is off by one.
+/// Returns the design with one bit inverted in a word of the sine that is seldom read.
 fn rarely_wrong(core: &Core) -> Design {
     let mut design = core.design.clone();
     let sine = design.roms.iter_mut().find(|rom| rom.name.contains("sine"));

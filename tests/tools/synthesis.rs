@@ -185,7 +185,7 @@ impl<'a> Cells<'a> {
     }
 }
 
-/// Returns bits of a synchronous ROM from which on it is in block RAM; a smaller one may well be logic.
+/// Returns the number of bits from which on a synchronous ROM is in block RAM; a smaller one may well be logic.
 fn warrants_block_ram(family: &Family) -> u64 {
     if family.command.starts_with("synth_xilinx") {
         // A look-up table is a ROM of 64 bits, and a block RAM has 18 432.

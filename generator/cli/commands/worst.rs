@@ -151,7 +151,8 @@ fn climbs(starts: u64) -> String {
     format!("{} climb{}", text::grouped(starts), if starts == 1 { "" } else { "s" })
 }
 
-/// Returns the record to be, and the one that is there if it is of the same contract.
+/// Returns the file of the record, and the record that it holds if that is of the same contract; `None` without
+/// `--out`.
 fn record(one: &Loaded, arguments: &Arguments) -> Result<Option<(OwnFile, Option<Known>)>> {
     let Some(directory) = &arguments.out else { return Ok(None) };
     let name = format!("{}.json", one.core.config.name);

@@ -179,7 +179,7 @@ impl Map {
         last_place(&self.results)
     }
 
-    /// Returns bits of an address in bytes.
+    /// Returns the number of bits of an address in bytes.
     pub fn address_bits(&self) -> u32 {
         (4 * self.last()).ilog2() + 1
     }

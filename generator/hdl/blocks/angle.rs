@@ -58,10 +58,8 @@ pub fn address<'d>(
     d.choose(name, within, [last, step])
 }
 
-/// Returns the words of a table of `cosᵏ` over a right angle in 2^`bits` steps, in `u0.fraction`.
-///
-/// A word stands for all angles of its step, and is the middle of the values there; the last one is 0,
-/// because it also stands for all angles beyond.
+/// Returns the words of a table of `cosᵏ` over a right angle in 2^`bits` steps, in `u0.fraction`: for each step the
+/// middle of the values at its ends. The last word is 0, because it also stands for all angles beyond.
 pub fn cosine_power_table(power: u32, bits: i32, fraction: i32) -> Vec<i128> {
     let format = Format::unsigned(0, fraction);
     let steps = 1u32 << bits;

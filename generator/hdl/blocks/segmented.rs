@@ -110,12 +110,12 @@ impl Segmentation {
         blocks
     }
 
-    /// Returns bits of the remainder that the slope multiplies; one, a zero, when every entry is exact.
+    /// Returns the width of the remainder that the slope multiplies, in bits; one, a zero, when every entry is exact.
     fn rest_bits(&self) -> u32 {
         self.blocks().iter().map(|block| block.bits - block.prefix).max().unwrap_or(0).max(1)
     }
 
-    /// Returns words of the table.
+    /// Returns the number of words of the table.
     pub fn entries(&self) -> usize {
         self.blocks()
             .iter()

@@ -94,8 +94,7 @@ impl Control {
     }
 
     /// Returns the microinstructions that can follow microinstruction `at`, in ascending order; the number of
-    /// microinstructions itself where the last
-    /// one does not end. Idle, the device stays in microinstruction 0.
+    /// microinstructions itself where the last one does not end. Idle, the device stays in microinstruction 0.
     pub fn successors(&self, at: usize) -> Vec<usize> {
         let next = at + 1;
         let mut successors = match self.microprogram[at].sequence {

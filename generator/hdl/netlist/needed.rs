@@ -1,4 +1,5 @@
-//! Finds the first clock of a computation in which the value of each net is used.
+//! Finds the first clock of a computation in which the value of each net is used. `held` inserts registers
+//! only where that is later than the first microinstruction.
 
 use std::collections::{HashSet, VecDeque};
 

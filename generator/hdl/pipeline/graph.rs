@@ -103,7 +103,7 @@ impl Graph {
         &self.nodes[id.index()]
     }
 
-    /// Returns bits of a node.
+    /// Returns the width of a node in bits.
     pub fn width(&self, id: NodeId) -> u32 {
         self.node(id).format.width()
     }

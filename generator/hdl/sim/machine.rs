@@ -346,7 +346,7 @@ fn enabled<W: Word, const LANES: usize>(
     new
 }
 
-/// Stores a value; `source` when that changes any lane, unless it is among the `news` already.
+/// Stores a value. Returns `source` when that changes any lane, unless it is among the `news` already.
 #[inline(always)]
 fn store<W: Word, const LANES: usize>(
     slot: &mut [W; LANES],
@@ -376,7 +376,7 @@ fn changed<W: Word, const LANES: usize>(
     if differences == W::ZERO { 0 } else { source }
 }
 
-/// Executes one instruction; the field that has changed, if it was one.
+/// Executes one instruction. Returns the source of the field that has changed, if the instruction takes a field.
 #[inline(always)]
 pub(super) fn execute<W: Word, const LANES: usize>(
     instruction: Instruction,

@@ -1,4 +1,5 @@
-//! Writes the statements of one case of a device that computes points: each output is as near to the formula as the bound says.
+//! Writes, for Gappa, the statements of one case of a device that computes points: each output differs from the formula
+//! by at most the bound.
 
 use std::collections::{BTreeMap, HashMap};
 

@@ -56,8 +56,8 @@ struct Task<'a> {
 }
 
 impl Task<'_> {
-    /// Writes the statement that a node has these values alone, by completing the square. Returns nothing where it is
-    /// no square.
+    /// Writes the statement that the values of a node, a quadratic polynomial, lie from `low` to `high`, with a hint
+    /// that completes the square. Returns `None` where the node or the variable of the polynomial is a constant.
     fn parabola(
         &mut self,
         node: NodeId,

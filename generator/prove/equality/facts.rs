@@ -1,8 +1,9 @@
 //! Makes instances of laws about products and words of memories, both of which the solver takes for unknown functions.
 //!
-//! The laws are those of integers, of products modulo 2^64: bits of a factor can be multiplied on their own; a product by 0, 1
-//! and -1 is known; of factors within bounds the product is within bounds. No instance depends on where it is taken from:
-//! a useless one does not help, and none is wrong.
+//! Products are of integers modulo 2^64: a product is the sum of the products of the parts of a factor; a product by 0,
+//! 1 and -1 is known; the product of factors within bounds is within bounds. A word of a small memory is the one at its
+//! address; of a larger one it is within the bounds of all words. Every instance is true, whatever the terms are: one
+//! that does not help does no harm.
 
 use std::collections::{HashMap, HashSet};
 

@@ -221,7 +221,7 @@ struct Comparison<'p> {
     proof: TextProof,
 }
 
-/// Returns the operands come with a point, everything else is the handshake's.
+/// Returns the term of an input in a clock: operands come with a point, and all other inputs are those of the handshake.
 fn input(
     terms: &mut Terms,
     inputs: &mut HashMap<(String, usize), Id>,

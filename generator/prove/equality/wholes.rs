@@ -49,7 +49,7 @@ pub fn agree(terms: &Terms, one: Id, other: Id) -> bool {
         && samples(terms, &cone).all(|values| values[&one] == values[&other])
 }
 
-/// Returns values of a cone's terms for numbers at random in place of the unknowns.
+/// Evaluates the terms of a cone `SAMPLES` times, with new random values of the unknowns each time. The seed is fixed.
 pub fn samples(terms: &Terms, cone: &[Id]) -> impl Iterator<Item = HashMap<Id, u64>> {
     let mut random = ChaCha8Rng::seed_from_u64(2);
     (0..SAMPLES).map(move |_| {

@@ -80,7 +80,7 @@ pub struct Found {
 }
 
 impl Found {
-    /// Returns whether a check notices it and the shipped bench does not.
+    /// Returns whether a check catches the fault and the vectors of the shipped bench do not.
     pub fn is_missed(&self) -> bool {
         matches!(self.verdict, Verdict::Caught(..)) && !self.shipped
     }

@@ -232,10 +232,11 @@ fn ticks(axis: &ChartAxis) -> Vec<f64> {
     }
 }
 
-/// Returns a value at a tick: at most six significant digits, no trailing zeros.
+/// Returns the label of a tick: at most six decimals, without trailing zeros; nearer to 0 than 0.001, two digits and an
+/// exponent.
 fn number(value: f64) -> String {
     if value != 0.0 && value.abs() < 0.001 {
-        return format!("{value:.0e}").replace("e-", "e\u{2212}");
+        return format!("{value:.1e}").replace(".0e", "e").replace("e-", "e\u{2212}");
     }
     let text = format!("{value:.6}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
@@ -330,6 +331,7 @@ mod tests {
         let labels: Vec<String> = logarithmic.into_iter().map(number).collect();
         assert_eq!(labels, ["0.1", "1", "10", "100", "1000"]);
         assert_eq!(ticks(&ChartAxis::logarithmic("", 2.0, 60.0)), [2.0, 5.0, 10.0, 20.0, 50.0]);
-        assert_eq!([-0.5, 1e-5].map(number), ["\u{2212}0.5", "1e\u{2212}5"]);
+        let labels = [-0.5, 1e-5, 0.00015].map(number);
+        assert_eq!(labels, ["\u{2212}0.5", "1e\u{2212}5", "1.5e\u{2212}4"]);
     }
 }

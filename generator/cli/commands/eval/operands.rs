@@ -4,7 +4,11 @@ use crate::commands::none_of;
 use glint_core::cosim::trial;
 use glint_golden::{Contract, Operand};
 
-/// Returns the raw operands that `name=value` settings give.
+/// Returns the raw operands that `name=value` settings give, in the order of `operands`; `None` for one without a
+/// setting.
+///
+/// # Errors
+/// A setting without `=`, an operand that is unknown or set twice, or a value that is no number of its format.
 pub fn given(operands: &[Operand], settings: &[String]) -> Result<Vec<Option<i64>>, String> {
     let mut raw: Vec<Option<i64>> = vec![None; operands.len()];
     for setting in settings {

@@ -1,4 +1,5 @@
-//! Finds computations that notice a fault in a word of a ROM: their results change when a bit of the word is inverted.
+//! Finds test computations that detect faults in the words of the datapath's ROMs: their results change when a bit in
+//! the upper half of a word is inverted. Where no candidate detects a bit, others near the candidates are searched.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};

@@ -64,7 +64,8 @@ impl Reference {
         })
     }
 
-    /// Returns one computation, of these bit patterns in the order of the ports.
+    /// Runs one computation on the bit patterns of the operands, in the order of the ports, and returns its results and
+    /// its registers at the checkpoints.
     ///
     /// # Errors
     /// A model that does not come to an end.

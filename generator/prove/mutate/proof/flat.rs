@@ -53,8 +53,9 @@ impl Flat {
         flat
     }
 
-    /// Gives each product a multiplier of its own in place of the shared one, which nothing reads then. Returns the net that
-    /// has a product, by the register of the shared multiplier and the slot in which this computes.
+    /// Gives each product a multiplier of its own in place of the shared one, whose nets are left without drivers.
+    /// Returns the copies of these nets, by the original net and the slot in which the shared multiplier computes the
+    /// product.
     fn unshared(&mut self, pipeline: &Pipeline) -> BTreeMap<(NetId, usize), NetId> {
         let mut made = BTreeMap::new();
         for unit in &pipeline.units {

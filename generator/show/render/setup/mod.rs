@@ -88,7 +88,7 @@ pub struct Arc {
 }
 
 impl Arc {
-    /// Sets up an arc from the normals and half vectors at the ends of the line, of any length.
+    /// Sets up an arc from the normals and half vectors at the ends of the line. The vectors may have any length.
     ///
     /// # Errors
     /// [`Error::NoDirection`] and [`Error::OppositeHalves`].
