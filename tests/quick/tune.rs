@@ -4,20 +4,11 @@ use std::path::Path;
 
 use glint::base::input;
 use glint::config::{Config, Value};
-use glint::registry::{Device, Registry};
 use glint::synth::{self, Record, Target};
 use glint::tune::{Candidate, Cost, ErrorUnit, Goal, Objective, exhaustive, tune};
 
-use crate::common::cores::configuration;
+use crate::common::cores::{configuration, device};
 use crate::common::sample::sampled_alone;
-
-fn device(name: &str) -> Device {
-    *Registry::catalogue().device(name).expect("a device of the catalogue")
-}
-
-fn defaults(device: &Device) -> Config {
-    device.defaults()
-}
 
 fn integers(range: std::ops::RangeInclusive<i64>) -> Vec<Value> {
     range.map(Value::Integer).collect()
@@ -72,7 +63,7 @@ fn goal(error: f64, target: Target) -> Goal {
 fn the_answer_is_within_a_tenth_of_the_best_there_is() {
     for (name, error, values) in sampled_alone("spaces of tune", spaces(), 2) {
         let device = device(name);
-        let base = defaults(&device);
+        let base = device.defaults();
         let inside: Vec<&str> = values.iter().map(|(key, _)| *key).collect();
         let fixed: Vec<&str> =
             base.values().map(|(key, _)| key).filter(|key| !inside.contains(key)).collect();
@@ -97,7 +88,7 @@ fn the_answer_is_within_a_tenth_of_the_best_there_is() {
 #[test]
 fn half_the_error_takes_a_bit_more() {
     let device = device("cosine-power");
-    let base = defaults(&device);
+    let base = device.defaults();
     let bits = |error: f64| {
         let goal = Goal { unit: ErrorUnit::F, ..goal(error, Target::Ecp5) };
         let answer = tune(&device, &base, &[], &goal, &|_| ()).expect("an answer");
@@ -112,7 +103,7 @@ fn half_the_error_takes_a_bit_more() {
 #[test]
 fn ports_and_formula_stay() {
     let device = device("lyon");
-    let base = defaults(&device);
+    let base = device.defaults();
     let answer = tune(&device, &base, &[], &goal(0.9, Target::Ecp5), &|_| ()).expect("an answer");
     for key in ["power", "scale", "vector.fraction", "colour.bits"] {
         assert!(!answer.free.contains(&key), "{key} is free");
@@ -126,7 +117,7 @@ fn ports_and_formula_stay() {
 #[test]
 fn the_formula_is_compared_where_it_lives() {
     let device = device("quadratic");
-    let base = defaults(&device);
+    let base = device.defaults();
     let answer = tune(&device, &base, &[], &goal(0.85, Target::Ecp5), &|_| ()).expect("an answer");
     assert!(!answer.free.contains(&"coefficient.scheme"), "{:?}", answer.free);
     let reference = |config: &Config| {
@@ -147,7 +138,7 @@ fn the_formula_is_compared_where_it_lives() {
 #[test]
 fn of_equal_cost_the_least_error_is_taken() {
     let device = device("cosine-squared");
-    let answer = tune(&device, &defaults(&device), &[], &goal(0.82, Target::Ecp5), &|_| ());
+    let answer = tune(&device, &device.defaults(), &[], &goal(0.82, Target::Ecp5), &|_| ());
     let best = answer.expect("an answer").best;
     assert!(best.bound.units < 0.711, "{best:?}");
 }
@@ -156,7 +147,7 @@ fn of_equal_cost_the_least_error_is_taken() {
 #[test]
 fn configurations_that_fit_the_chip_are_preferred() {
     let device = device("lyon");
-    let answer = tune(&device, &defaults(&device), &[], &goal(0.9, Target::Ice40), &|_| ());
+    let answer = tune(&device, &device.defaults(), &[], &goal(0.9, Target::Ice40), &|_| ());
     let best = answer.expect("an answer").best;
     assert!(best.cost.dsps <= 8 && best.cost.excess(Target::Ice40).is_empty(), "{best:?}");
     assert_eq!(best.config.choice("colour.multipliers"), "1");
@@ -165,7 +156,7 @@ fn configurations_that_fit_the_chip_are_preferred() {
 #[test]
 fn the_front_falls_and_has_the_answer() {
     let device = device("cosine-power");
-    let base = defaults(&device);
+    let base = device.defaults();
     let run = || tune(&device, &base, &[], &goal(0.75, Target::Ecp5), &|_| ()).expect("an answer");
     let (answer, again) = (run(), run());
     for pair in answer.front.windows(2) {
@@ -183,7 +174,7 @@ fn the_front_falls_and_has_the_answer() {
 fn a_goal_out_of_reach_says_what_is_in_the_way() {
     let device = device("cosine-power");
     // Rounding to eight bits costs half a unit, whatever f is.
-    let refused = tune(&device, &defaults(&device), &[], &goal(0.1, Target::Ecp5), &|_| ());
+    let refused = tune(&device, &device.defaults(), &[], &goal(0.1, Target::Ecp5), &|_| ());
     let refused = format!("{:#}", refused.expect_err("out of reach"));
     assert!(refused.contains("no configuration keeps 0.1 output units"), "{refused}");
     assert!(
@@ -191,11 +182,11 @@ fn a_goal_out_of_reach_says_what_is_in_the_way() {
         "{refused}"
     );
     let fast = Goal { clock: Some(5000.0), ..goal(0.9, Target::Ecp5) };
-    let refused = tune(&device, &defaults(&device), &[], &fast, &|_| ());
+    let refused = tune(&device, &device.defaults(), &[], &fast, &|_| ());
     let refused = format!("{:#}", refused.expect_err("out of reach"));
     assert!(refused.contains("5000.0 MHz are wanted"), "{refused}");
     let many = Goal { rate: Some(500.0), ..goal(0.9, Target::Ecp5) };
-    let refused = tune(&device, &defaults(&device), &[], &many, &|_| ());
+    let refused = tune(&device, &device.defaults(), &[], &many, &|_| ());
     let refused = format!("{:#}", refused.expect_err("out of reach"));
     let wanted = "4000.0 MHz are wanted for 500 million points a second at 8 clocks a point";
     assert!(refused.contains(wanted), "{refused}");
@@ -205,13 +196,13 @@ fn a_goal_out_of_reach_says_what_is_in_the_way() {
 #[test]
 fn a_rate_asks_for_the_clock_that_the_clocks_of_a_point_need() {
     let device = device("cosine-power");
-    let slow = tune(&device, &defaults(&device), &[], &goal(0.9, Target::Ecp5), &|_| ());
+    let slow = tune(&device, &device.defaults(), &[], &goal(0.9, Target::Ecp5), &|_| ());
     let slow = slow.expect("an answer").best;
     assert_eq!(slow.clocks, Some(8.0));
     assert_eq!(slow.rate(), Some(slow.cost.mhz / 8.0));
     let wanted = slow.rate().expect("a rate") * 0.99;
     let kept = Goal { rate: Some(wanted), ..goal(0.9, Target::Ecp5) };
-    let kept = tune(&device, &defaults(&device), &[], &kept, &|_| ()).expect("an answer").best;
+    let kept = tune(&device, &device.defaults(), &[], &kept, &|_| ()).expect("an answer").best;
     assert!(kept.cost.mhz >= 8.0 * wanted, "{} MHz", kept.cost.mhz);
 }
 
@@ -226,9 +217,9 @@ fn median(mut values: Vec<f64>) -> f64 {
 #[test]
 fn a_rate_chooses_architecture_and_interval() {
     let device = device("cosine-power");
-    let mut pipelined = defaults(&device);
+    let mut pipelined = device.defaults();
     pipelined.set("architecture", Value::Text("pipelined".to_owned()));
-    let plain = defaults(&device);
+    let plain = device.defaults();
     let architecture = ["architecture"];
     for (base, fixed, rate, interval, multipliers) in [
         (&plain, &[][..], 30.0, "4", 2),

@@ -9,21 +9,21 @@ use glint::equality::{Open, TextVerdict, Verdict, compare, compare_text};
 use glint::fixed::Format;
 use glint::hdl::netlist::{Design, Driver, NetId, Op};
 use glint::hdl::pipeline::{Delays, Goal, Interval, Options, pipeline};
-use glint::tools::{Tool, elaborate};
+use glint::tools::elaborate;
 
+use crate::common::Sure;
 use crate::common::cores::{all_configurations, configuration, configuration_with};
+use crate::common::tools::tool;
 
 /// A number that no test at random meets.
 const NUMBER: u64 = 0x5_a5a5;
 
 fn found(sequential: &Design, pipeline: &Design) -> anyhow::Result<Verdict> {
-    let z3 = Tool::find("z3").unwrap_or_else(|error| panic!("{error}"));
-    compare(sequential, pipeline, &z3, Duration::from_secs(900))
+    compare(sequential, pipeline, &tool("z3"), Duration::from_secs(900))
 }
 
 fn verdict(sequential: &Design, pipeline: &Design) -> Verdict {
-    let found = found(sequential, pipeline);
-    found.unwrap_or_else(|error| panic!("{}: {error:#}", pipeline.name))
+    found(sequential, pipeline).sure_of(&pipeline.name)
 }
 
 fn sequential(core: &Core) -> Design {
@@ -133,7 +133,7 @@ fn square(faulty: bool) -> Design {
     d.output("square_out", square.q());
     let squares = step("square", [square.load()]);
     d.microprogram([step("idle", []), squares, step("result", [valid(), end()])]);
-    d.finish().unwrap_or_else(|mistakes| panic!("{mistakes}"))
+    d.finish().sure()
 }
 
 /// No point at random meets the one that differs.
@@ -165,14 +165,13 @@ fn what_the_solver_leaves_open_is_unknown_or_a_limit() {
     let core = configuration_with("configs/quadratic_pipelined.toml", wide);
     assert_eq!(verdict(&sequential(&core), &core.design), Verdict::Open(Open::Unknown));
     let core = configuration("configs/cosine_power_pipelined.toml");
-    let z3 = Tool::find("z3").unwrap_or_else(|error| panic!("{error}"));
-    let limited = compare(&sequential(&core), &core.design, &z3, Duration::from_millis(1));
+    let limited = compare(&sequential(&core), &core.design, &tool("z3"), Duration::from_millis(1));
     assert_eq!(limited.expect("a verdict"), Verdict::Open(Open::Limit));
 }
 
 /// Returns the verdict on the text of a pipeline, which is changed.
 fn of_text(core: &Core, limit: u64, change: impl Fn(&str) -> String) -> TextVerdict {
-    let [yosys, z3] = ["yosys", "z3"].map(|name| Tool::find(name).expect("a tool"));
+    let [yosys, z3] = ["yosys", "z3"].map(tool);
     let limit = Duration::from_secs(limit);
     let mut files = core.verilog().expect("Verilog");
     for (_, text) in files.iter_mut().filter(|(name, _)| name.ends_with(".v")) {

@@ -7,6 +7,9 @@ use std::process::{Command, Output};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
+use crate::common::Sure;
+use crate::common::files::{put, read, root};
+
 /// 18 operand bits: long enough that a task can be met in its middle, short enough for a test.
 const CONFIG: &str = "device = \"cosine-power\"\ncosine.fraction = 8\nexponent.bits = 6\ncolour.bits = 1\nintensity.fraction = 8\n";
 
@@ -14,14 +17,9 @@ const PARTS: usize = 3;
 
 const LIMIT: Duration = Duration::from_secs(300);
 
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
-
 /// Runs a command to its good end; its output.
 fn run(command: &mut Command) -> String {
-    let output: Output =
-        command.current_dir(root()).output().unwrap_or_else(|error| panic!("{command:?}: {error}"));
+    let output: Output = command.current_dir(root()).output().sure_of(format_args!("{command:?}"));
     let text =
         [output.stdout, output.stderr].map(|text| String::from_utf8_lossy(&text).into_owned());
     assert!(output.status.success(), "{command:?}: {}", text.concat());
@@ -31,8 +29,7 @@ fn run(command: &mut Command) -> String {
 /// Returns the configuration, written into a directory.
 fn config(dir: &Path) -> String {
     let path = dir.join("core.toml");
-    fs::create_dir_all(dir).expect("a directory");
-    fs::write(&path, CONFIG).expect("a configuration");
+    put(&path, CONFIG);
     path.to_str().expect("a plain name").to_owned()
 }
 
@@ -143,7 +140,7 @@ fn a_job_array_with_tasks_put_back_and_killed_gives_the_record_of_one_process() 
     let array = slurm.submit(submit_with(&results, path).args(["-x", "--exclusive"]));
     run(slurm.command("scancel").arg(format!("{array}_3")));
     slurm.wait();
-    let missing = fs::read_to_string(results.join("missing")).expect("the names of tasks");
+    let missing = read(results.join("missing"));
     assert!(missing.starts_with("these tasks did not end well: 2 3;"), "{missing}");
     assert!(!results.join("merged.json").exists());
 }
@@ -152,15 +149,13 @@ fn a_job_array_with_tasks_put_back_and_killed_gives_the_record_of_one_process() 
 fn gnu_parallel_gives_the_record_of_one_process() {
     let dir = tempfile::tempdir().expect("a directory");
     run(submit(dir.path()).args(["-j", "2"]));
-    let merged = || fs::read_to_string(dir.path().join("merged.json")).expect("a record");
-    assert_eq!(merged(), whole(dir.path()));
+    assert_eq!(read(dir.path().join("merged.json")), whole(dir.path()));
     // Submitted again, nothing is left to do.
-    let before =
-        fs::metadata(dir.path().join("part-1.json")).and_then(|it| it.modified()).expect("a part");
+    let part = dir.path().join("part-1.json");
+    let changed = || fs::metadata(&part).and_then(|it| it.modified()).expect("a part");
+    let before = changed();
     run(submit(dir.path()).args(["-j", "2"]));
-    let after =
-        fs::metadata(dir.path().join("part-1.json")).and_then(|it| it.modified()).expect("a part");
-    assert_eq!(before, after);
+    assert_eq!(before, changed());
 }
 
 #[test]

@@ -11,6 +11,7 @@ use glint::hdl::netlist::Design;
 use glint::package::{self, EmitInputs};
 use glint::synth::{self, Area, Figures, Flow, Record, Subject, Target};
 
+use crate::common::Sure;
 use crate::common::cores::configuration;
 use crate::common::sample::sampled;
 use crate::common::tools::LIMIT;
@@ -28,14 +29,14 @@ fn flow(target: Target) -> Flow {
     let dirs = env::split_paths(&path).chain([venv]);
     let search: OsString = env::join_paths(dirs).expect("a search path");
     let liberty = Path::new("/usr/share/qflow/tech/osu018/osu018_stdcells.lib");
-    Flow::find(target, &search, liberty).unwrap_or_else(|error| panic!("{error:#}"))
+    Flow::find(target, &search, liberty).sure()
 }
 
 fn measured(target: Target, design: &Design, seeds: u32) -> Figures {
     let files = package::emit(design, &EmitInputs::default()).expect("Verilog");
     let files = package::sources_for(files, target.name());
     let subject = Subject { design, files: &files, seeds, limit: LIMIT };
-    flow(target).measure(&subject, &|| ()).unwrap_or_else(|error| panic!("{error:#}"))
+    flow(target).measure(&subject, &|| ()).sure()
 }
 
 /// Returns a register, a product of 16 by 16 bits, a register.
@@ -51,7 +52,7 @@ fn square() -> Design {
         step("square", [y.load()]),
         step("result", [valid(), end()]),
     ]);
-    d.finish().unwrap_or_else(|mistakes| panic!("{mistakes}"))
+    d.finish().sure()
 }
 
 /// The multipliers' delays stand in the tools' tables: 16 by 16 bits take at least 6.6 ns in UP5K (`icetime`, to the

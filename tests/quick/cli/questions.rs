@@ -3,6 +3,7 @@
 use glint::registry::Registry;
 use serde_json::Value;
 
+use crate::common::json::Json;
 use crate::workspace::Workspace;
 
 /// Whatever is left out, the point is lit and its error is in the bound.
@@ -18,8 +19,8 @@ fn a_point_of_the_evaluators_choice_is_lit() {
         assert_eq!(formula["f"].is_null(), name == "function", "{name}: {formula}");
         assert!(formula["f"].as_f64().is_none_or(|f| (0.1..0.9).contains(&f)), "{name}: {formula}");
         assert!(value["inside_the_domain"] == true, "{name}: {formula}");
-        let errors = formula["errors"].as_array().expect("errors").iter();
-        let errors: Vec<f64> = errors.map(|error| error.as_f64().expect("a number")).collect();
+        let errors = formula["errors"].list().iter();
+        let errors: Vec<f64> = errors.map(|error| error.number()).collect();
         assert!(!errors.is_empty() && errors.iter().all(|it| *it < 1.0), "{name}: {errors:?}");
     }
 }
@@ -27,8 +28,7 @@ fn a_point_of_the_evaluators_choice_is_lit() {
 #[test]
 fn every_device_is_listed() {
     let value = Workspace::new().glint(["list", "--json"]).json();
-    let names: Vec<&Value> =
-        value["devices"].as_array().unwrap().iter().map(|device| &device["name"]).collect();
+    let names: Vec<&Value> = value["devices"].list().iter().map(|device| &device["name"]).collect();
     let registry = Registry::shipped();
     let all: Vec<&str> = registry.devices().iter().map(|device| device.name).collect();
     assert_eq!(names, all);

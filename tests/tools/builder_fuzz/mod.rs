@@ -5,6 +5,7 @@ mod build;
 
 use std::panic::Location;
 
+use crate::common::Sure;
 use crate::common::cores::{Files, write};
 use crate::common::tools::{assert_lint_clean, yosys};
 use build::{Call, build, calls};
@@ -81,8 +82,8 @@ fn what_is_accepted_the_tools_accept() {
     for _ in 0..OUTSIDE {
         let mut drawn: Vec<Call> = calls(false).new_tree(&mut runner).expect("calls").current();
         drawn.retain(|call| !call.may_be_known());
-        let design = build(&drawn).unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
-        let files = answer(&design).unwrap_or_else(|error| panic!("{error}"));
+        let design = build(&drawn).sure();
+        let files = answer(&design).sure();
         let dir = tempfile::tempdir().expect("a directory");
         write(dir.path(), &files);
         assert_lint_clean(dir.path(), &design.name);
