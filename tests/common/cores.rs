@@ -25,6 +25,17 @@ pub fn configurations() -> Vec<(String, Core)> {
     all_configurations().into_iter().filter(sequential).collect()
 }
 
+/// Returns those that are pipelines, by path, sorted.
+///
+/// # Panics
+/// One of them is wrong, or there are others than are known.
+pub fn pipelines() -> Vec<(String, Core)> {
+    let pipelined = |(_, core): &(String, Core)| core.design.pipeline.is_some();
+    let found: Vec<_> = all_configurations().into_iter().filter(pipelined).collect();
+    assert_eq!(found.len(), 11, "pipelines");
+    found
+}
+
 /// Returns the configurations in `configs/` and `configs/studies/`, pipelines too, by path, sorted.
 ///
 /// # Panics

@@ -22,6 +22,9 @@ pub trait Json {
     /// Returns an integer that is not negative.
     fn count(&self) -> u64;
 
+    /// Returns the text that each element of a list has as this member.
+    fn each(&self, key: &str) -> Vec<&str>;
+
     /// Returns the element of a list whose member of this name is this text.
     fn of(&self, key: &str, text: &str) -> &Value;
 }
@@ -55,6 +58,11 @@ impl Json for Value {
     #[track_caller]
     fn count(&self) -> u64 {
         self.as_u64().unwrap_or_else(|| panic!("no count: {self}"))
+    }
+
+    #[track_caller]
+    fn each(&self, key: &str) -> Vec<&str> {
+        self.list().iter().map(|it| it[key].text()).collect()
     }
 
     #[track_caller]

@@ -9,6 +9,7 @@ use std::process::Command;
 use std::time::Duration;
 
 use super::Sure;
+use super::cores::{Files, write};
 use super::files::{paths, root};
 use glint::core::Core;
 use glint::tools::{BenchOutcome, Simulator, Tool, lint, run_bench};
@@ -114,6 +115,16 @@ pub fn assert_lint_clean(directory: &Path, top: &str) {
         let output = lint(&tool, directory, &sources, top, LIMIT).sure_of(directory.display());
         assert_eq!(output, "", "{tool} has remarks on {}", directory.display());
     }
+}
+
+/// Checks the same of files.
+///
+/// # Panics
+/// A linter has something to say.
+pub fn assert_files_are_clean(files: &Files, top: &str) {
+    let directory = tempfile::tempdir().expect("a directory");
+    write(directory.path(), files);
+    assert_lint_clean(directory.path(), top);
 }
 
 /// A warning of Yosys 0.23 about its own model of a Xilinx block RAM; those of the outputs are given as

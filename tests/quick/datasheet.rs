@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use crate::common::Sure;
-use crate::common::cores::{all_configurations, configuration, configurations};
+use crate::common::cores::{configuration, configurations, pipelines};
 use crate::common::files::json;
 use crate::common::json::Json;
 use crate::common::sample::sampled_alone;
@@ -384,8 +384,7 @@ fn area_and_speed_are_those_of_the_record() {
 
 #[test]
 fn every_pipeline_has_its_page() {
-    let all = all_configurations().into_iter();
-    for (path, core) in all.filter(|(_, core)| core.design.pipeline.is_some()) {
+    for (path, core) in pipelines() {
         let made = make(&path, &core);
         let document = parse(&made.page);
         needs_nothing_else(&path, &made.page, &document);

@@ -2,7 +2,6 @@
 //! circuit that computes something else would be no measure.
 
 use std::fmt::Write;
-use std::fs;
 use std::path::Path;
 
 use crate::common::files::read;
@@ -138,10 +137,6 @@ fn its_sine_table_is_the_sine() {
 
 #[test]
 fn it_is_clean() {
-    let dir = tempfile::tempdir().unwrap();
-    for name in ["rough_hand.v", "rough_hand_sine.mem"] {
-        let (name, text) = baseline(name);
-        fs::write(dir.path().join(name), text).unwrap();
-    }
-    tools::assert_lint_clean(dir.path(), "rough_hand");
+    let files = ["rough_hand.v", "rough_hand_sine.mem"].map(baseline);
+    tools::assert_files_are_clean(&files.to_vec(), "rough_hand");
 }

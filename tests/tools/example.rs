@@ -78,9 +78,7 @@ fn the_catalogue_is_not_there() {
     let directory = tempfile::tempdir().expect("a directory");
     let list = succeed(directory.path(), &["list", "--json"]);
     let list: serde_json::Value = serde_json::from_str(&list).expect("JSON");
-    let names: Vec<&str> =
-        list["devices"].list().iter().filter_map(|device| device["name"].as_str()).collect();
-    assert_eq!(names, ["fresnel"]);
+    assert_eq!(list["devices"].each("name"), ["fresnel"]);
     let rough = run(directory.path(), &["new", "rough"]);
     assert_eq!(rough.status.code(), Some(2));
 }

@@ -18,10 +18,7 @@ use rayon::prelude::*;
 
 #[test]
 fn every_configuration_is_proved() {
-    all_configurations().par_iter().for_each(|(path, core)| {
-        let (dir, name) = emitted(core);
-        prove(dir.path(), &name, LIMIT).sure_of(path);
-    });
+    all_configurations().par_iter().for_each(|(path, core)| assert_proved(core, path));
 }
 
 #[test]
@@ -29,18 +26,14 @@ fn pipelines_with_and_without_stalls_and_a_side_channel_are_proved() {
     for more in
         ["side = 8", "stall = \"none\"", "stall = \"none\"\nside = 3", "stages = 1\nside = 2"]
     {
-        let core = pipeline(more);
-        let (dir, name) = emitted(&core);
-        prove(dir.path(), &name, LIMIT).sure_of(more);
+        assert_proved(&pipeline(more), more);
     }
 }
 
 #[test]
 fn starts_in_the_last_clock_are_proved() {
-    ["lyon", "quad-cosine"].par_iter().for_each(|device| {
-        let (dir, name) = emitted(&buffered(device));
-        prove(dir.path(), &name, LIMIT).sure_of(device);
-    });
+    let devices = ["lyon", "quad-cosine"];
+    devices.par_iter().for_each(|device| assert_proved(&buffered(device), device));
     let core = buffered("quad-cosine");
     faults("buffered").par_iter().for_each(|fault| assert_breaks(&core, fault));
 }
@@ -74,6 +67,11 @@ fn faults_break_the_proof() {
         let faults: Vec<Fault> = headings.iter().flat_map(|heading| faults(heading)).collect();
         faults.par_iter().for_each(|fault| assert_breaks(&core, fault));
     }
+}
+
+fn assert_proved(core: &Core, what: &str) {
+    let (dir, name) = emitted(core);
+    prove(dir.path(), &name, LIMIT).sure_of(what);
 }
 
 fn assert_breaks(core: &Core, fault: &Fault) {

@@ -4,9 +4,9 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 
-use crate::common::cores::{Emitted, assert_agrees, parsed, random, write};
+use crate::common::cores::{Emitted, assert_agrees, parsed, random};
 use crate::common::sample::sampled;
-use crate::common::tools::{assert_bench_passes, assert_lint_clean};
+use crate::common::tools::{assert_bench_passes, assert_files_are_clean};
 use glint::core::Core;
 use glint::keys::presets::DEVICE as FUNCTION;
 use glint::registry::{Device, Registry};
@@ -83,9 +83,7 @@ fn what_was_wrong_once_is_right() {
 fn passes_outside(toml: &str, core: &Core, seed: u64) {
     let check = || {
         let emitted = Emitted::new(core, BENCH_POINTS, seed);
-        let dir = tempfile::tempdir().expect("a directory");
-        write(dir.path(), &emitted.rtl());
-        assert_lint_clean(dir.path(), &emitted.name);
+        assert_files_are_clean(&emitted.rtl(), &emitted.name);
         assert_bench_passes(Simulator::Icarus, &emitted.simulated(), &emitted.bench());
     };
     if let Err(panic) = catch_unwind(AssertUnwindSafe(check)) {

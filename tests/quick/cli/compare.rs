@@ -85,18 +85,12 @@ fn errors_of_schlick_at_20_agree_with_integers() {
 fn every_device_is_there_and_configurations_as_they_are() {
     let dir = Workspace::new();
     let devices = dir.glint(["list", "--json"]).json()["devices"].clone();
-    let mut names: Vec<&str> = devices
-        .list()
-        .iter()
-        .map(|device| device["name"].text())
-        // These are no highlights.
-        .filter(|name| !["function", "normaliser", "dot-product", "shading"].contains(name))
-        .collect();
+    let mut names = devices.each("name");
+    // These are no highlights.
+    names.retain(|name| !["function", "normaliser", "dot-product", "shading"].contains(name));
     let value = compared(&["core.toml", "--bits", "10"]);
-    let told: Vec<&str> =
-        value["entries"].list().iter().map(|entry| entry["name"].text()).collect();
     names.push("core.toml");
-    assert_eq!(told, names);
+    assert_eq!(value["entries"].each("name"), names);
     // The width is of the devices; the configuration has its own.
     let toml = |name| entry(&value, name)["toml"].text().to_owned();
     assert!(toml("cosine-power").contains("bits = 10\n"), "{}", toml("cosine-power"));

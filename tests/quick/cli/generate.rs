@@ -196,10 +196,8 @@ fn computations_name_their_columns_in_the_order_of_the_ports() {
             ports.map(|port| port["name"].text()).collect()
         };
         let computations = &manifest["computations"];
-        let names = |key: &str| -> Vec<&str> {
-            let names = computations[key].list().iter();
-            names.map(|name| name.text()).collect()
-        };
+        let names =
+            |key: &str| -> Vec<&str> { computations[key].list().iter().map(Json::text).collect() };
         assert_eq!(names("operands"), ports("operand"), "{device}");
         assert_eq!(names("results"), ports("result"), "{device}");
         for point in computations["points"].list() {

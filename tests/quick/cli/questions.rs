@@ -1,7 +1,6 @@
 //! `eval`, `list`, `-V`: every device of the catalogue.
 
 use glint::registry::Registry;
-use serde_json::Value;
 
 use crate::common::json::Json;
 use crate::workspace::Workspace;
@@ -9,9 +8,8 @@ use crate::workspace::Workspace;
 /// Whatever is left out, the point is lit and its error is in the bound.
 #[test]
 fn a_point_of_the_evaluators_choice_is_lit() {
-    let registry = Registry::catalogue();
-    let names: Vec<&str> = registry.devices().iter().map(|device| device.name).collect();
-    for name in names {
+    for device in Registry::catalogue().devices() {
+        let name = device.name;
         let dir = Workspace::with("core.toml", format!("device = \"{name}\"\n"));
         let value = dir.glint(["eval", "core.toml", "--json"]).quiet().json();
         let formula = &value["formula"];
@@ -28,10 +26,9 @@ fn a_point_of_the_evaluators_choice_is_lit() {
 #[test]
 fn every_device_is_listed() {
     let value = Workspace::new().glint(["list", "--json"]).json();
-    let names: Vec<&Value> = value["devices"].list().iter().map(|device| &device["name"]).collect();
     let registry = Registry::shipped();
     let all: Vec<&str> = registry.devices().iter().map(|device| device.name).collect();
-    assert_eq!(names, all);
+    assert_eq!(value["devices"].each("name"), all);
 }
 
 #[test]

@@ -5,11 +5,11 @@ use std::fs;
 use std::path::Path;
 
 use crate::common::Sure;
-use crate::common::cores::{Emitted, configuration_between, configuration_with, write};
+use crate::common::cores::{Emitted, configuration_between, configuration_with};
 use crate::common::files::{below, read, root};
 use crate::common::sample::sampled;
 use crate::common::tools::{
-    LIMIT, assert_bench_passes, assert_lint_clean, benched, ran, tool, yosys,
+    LIMIT, assert_bench_passes, assert_files_are_clean, benched, ran, tool, yosys,
 };
 use glint::core::Core;
 use glint::tools::Simulator;
@@ -187,9 +187,7 @@ fn rom_contents_in_the_verilog_are_those_of_the_files() {
             let files: Vec<_> = rtl.iter().chain(&bench).cloned().collect();
             assert_bench_passes(simulator, &files, &with_files.bench());
         }
-        let dir = tempfile::tempdir().expect("a directory");
-        write(dir.path(), &rtl);
-        assert_lint_clean(dir.path(), &emitted.name);
+        assert_files_are_clean(&rtl, &emitted.name);
         // A wrong word is noticed.
         let wrong = wrong_word(&rtl);
         let files: Vec<_> = wrong.into_iter().chain(bench).collect();
