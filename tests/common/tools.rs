@@ -41,6 +41,19 @@ pub fn ran<A: AsRef<OsStr>>(
     tool(name).run_to_success(arguments, directory, LIMIT).sure()
 }
 
+/// Runs a command, which is expected to succeed, and returns its standard output.
+///
+/// # Panics
+/// It does not.
+#[track_caller]
+pub fn succeeded(command: &mut Command) -> String {
+    let output = command.output().sure_of(format_args!("{command:?}"));
+    let [text, errors] =
+        [output.stdout, output.stderr].map(|text| String::from_utf8_lossy(&text).into_owned());
+    assert!(output.status.success(), "{command:?}: {text}{errors}");
+    text
+}
+
 /// Runs a script of the examples, which is expected to succeed, with the program of these tests, and returns what it says.
 ///
 /// # Panics

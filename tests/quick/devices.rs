@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use glint::config::{Config, Problems, Schema};
+use glint::config::{Config, Schema};
 use glint::core::Core;
 use glint::cosim::exhaustive::{Clocks, Peak, Places, Proof, Shard, State};
 use glint::cosim::{Random, search, trial};
@@ -223,6 +223,10 @@ fn vectors_by_hand() {
     }
 }
 
+fn without_keys(device: &'static str) -> Schema {
+    Schema { device, keys: vec![], check: |_, _| {} }
+}
+
 /// A sum of two points, this and the one before.
 struct Sum;
 
@@ -252,7 +256,7 @@ fn results_that_depend_on_the_past_and_results_that_never_come_are_refused() {
     let sum = Device {
         name: "sum",
         summary: "",
-        schema: || Schema { device: "sum", keys: vec![], check: |_: &Config, _: &mut Problems| {} },
+        schema: || without_keys("sum"),
         describe: |d: &Designer, _| {
             let x = d.operand("x", Format::unsigned(8, 0)).q();
             let before = d.register("earlier", Format::unsigned(8, 0));
@@ -315,11 +319,7 @@ fn a_reference_without_a_value_is_a_failure_everywhere() {
     let of_nan = Device {
         name: "copy",
         summary: "",
-        schema: || Schema {
-            device: "copy",
-            keys: vec![],
-            check: |_: &Config, _: &mut Problems| {},
-        },
+        schema: || without_keys("copy"),
         describe: |d: &Designer, _| {
             let x = d.operand("x", Format::unsigned(4, 0)).q();
             let copy = d.register("copy", Format::unsigned(4, 0));

@@ -17,7 +17,7 @@ use rayon::prelude::*;
 
 use crate::common::cores::{configuration, parsed};
 use crate::common::files::{paths, put, read};
-use crate::common::tools::{cargo_example, tool};
+use crate::common::tools::{cargo_example, succeeded, tool};
 use crate::example::fresnel;
 
 /// The time limit of a proof; Gappa takes a second where it finds one.
@@ -135,10 +135,7 @@ fn the_bound_of_a_device_of_a_user_is_printed() {
     let dir = tempfile::tempdir().expect("a directory");
     put(dir.path().join("s.toml"), "device = \"smoothstep\"\n");
     let file = dir.path().join("s.toml");
-    let output = cargo_example("smoothstep").arg("certify").arg(&file).output();
-    let output = output.expect("the example runs");
-    let text = String::from_utf8_lossy(&output.stdout);
-    assert!(output.status.success(), "{output:?}");
+    let text = succeeded(cargo_example("smoothstep").arg("certify").arg(&file));
     assert!(text.contains("certified: |output - formula| <= 0.6"), "{text}");
     assert!(text.contains("a bound that is found, as the contract states none"), "{text}");
 }

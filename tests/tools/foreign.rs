@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use std::process::Command;
 
 use crate::common::files::{put, read, root};
+use crate::common::tools::succeeded;
 
 /// Returns the directory that all builds here share, beside that of the tests.
 fn target() -> PathBuf {
@@ -48,18 +49,13 @@ impl Foreign {
     fn cargo(&self, arguments: &[&str]) -> String {
         let mut cargo = Command::new(env!("CARGO"));
         cargo.args(arguments).current_dir(&self.0).env("CARGO_TARGET_DIR", target());
-        let output = cargo.output().expect("cargo runs");
-        let errors = String::from_utf8_lossy(&output.stderr);
-        assert!(output.status.success(), "{arguments:?}: {errors}");
-        String::from_utf8(output.stdout).expect("UTF-8")
+        succeeded(&mut cargo)
     }
 }
 
 /// Returns the packages, unpacked, each in place of the one in the registry.
 fn packages() -> String {
-    let said = Command::new("bash").arg(root().join("tools/package")).output().expect("bash runs");
-    assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
-    let unpacked = String::from_utf8(said.stdout).expect("UTF-8");
+    let unpacked = succeeded(Command::new("bash").arg(root().join("tools/package")));
     let crates = unpacked.lines().map(|path| {
         let name =
             path.rsplit('/').next().and_then(|name| name.rsplit_once('-')).expect("a name").0;

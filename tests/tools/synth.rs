@@ -13,6 +13,7 @@ use glint::synth::{self, Area, Figures, Flow, Record, Subject, Target};
 
 use crate::common::Sure;
 use crate::common::cores::configuration;
+use crate::common::files::root;
 use crate::common::sample::sampled;
 use crate::common::tools::LIMIT;
 
@@ -24,7 +25,7 @@ const RUNS: usize = 1;
 
 /// Returns the flow of a target, its tools from the Python environment that `tools/install` makes, or from `PATH`.
 fn flow(target: Target) -> Flow {
-    let venv = Path::new(env!("CARGO_MANIFEST_DIR")).join("target/tools/venv/bin");
+    let venv = root().join("target/tools/venv/bin");
     let path = env::var_os("PATH").unwrap_or_default();
     let dirs = env::split_paths(&path).chain([venv]);
     let search: OsString = env::join_paths(dirs).expect("a search path");
@@ -128,7 +129,7 @@ fn frequencies_are_those_of_the_record() {
 
 /// Returns every configuration with a record, and its figures for each target.
 fn recorded() -> Vec<(String, Figures)> {
-    let directory = Path::new(env!("CARGO_MANIFEST_DIR")).join(synth::DIRECTORY);
+    let directory = root().join(synth::DIRECTORY);
     let records = input::records::<Record>(&directory).expect("records");
     let pairs = records.into_iter().flat_map(|(_, record)| {
         let config = record.config.clone();
