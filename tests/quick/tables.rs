@@ -24,7 +24,7 @@ use serde::Deserialize;
 use serde_json::Value;
 
 use crate::common::Sure;
-use crate::common::cores::{all_configurations, configuration};
+use crate::common::cores::{all_configurations, configuration, parsed};
 use crate::common::files::{json, read};
 use crate::common::json::Json;
 
@@ -247,10 +247,8 @@ fn area_and_speed(rows: &mut Vec<Row>) {
 fn pipeline(name: &str, clock: Option<&str>) -> Pipeline {
     let text = read(format!("configs/{name}_pipelined.toml"));
     let line = text.lines().find(|line| line.starts_with("clock_mhz")).expect("a clock");
-    let dir = tempfile::tempdir().expect("a directory");
-    let path = dir.path().join(format!("{name}.toml"));
-    fs::write(&path, text.replace(line, clock.unwrap_or(line))).expect("written");
-    configuration(path.to_str().expect("a path")).design.pipeline.expect("a pipeline")
+    let text = text.replace(line, clock.unwrap_or(line));
+    parsed(&format!("{name}.toml"), &text).design.pipeline.expect("a pipeline")
 }
 
 fn register_bits(pipeline: &Pipeline) -> String {

@@ -5,11 +5,11 @@
 //! [`glint::hdl::netlist::Op`] predicts the outputs, Icarus Verilog simulates the text, and both linters
 //! must have nothing to say.
 
-use crate::common::cores::Files;
+use crate::common::cores::Emitted;
 use crate::common::random_netlist::{Random, SMALL, design};
 use crate::common::tools::{assert_bench_passes, assert_files_are_clean};
 use glint::hdl::netlist::{Design, Interpreter, Role};
-use glint::package::{EmitInputs, OutputFile, Vectors, emit};
+use glint::package::{EmitInputs, Vectors, emit};
 use glint::tools::Simulator;
 
 const DESIGNS: u64 = 60;
@@ -29,12 +29,9 @@ fn emitted_verilog_means_what_the_netlist_means() {
         };
         let files = emit(&design, &inputs).unwrap_or_else(|error| panic!("{error:?}\n{design}"));
         files.iter().for_each(|file| check_text(file.name(), &file.contents));
-        let named = |file: &OutputFile| (file.name().to_owned(), file.contents.clone());
-        let rtl = files.iter().filter(|file| file.path.starts_with("rtl_out/"));
-        assert_files_are_clean(&rtl.map(named).collect(), &design.name);
-        let mut texts: Files = files.iter().map(named).collect();
-        texts.retain(|(name, _)| name.ends_with(".v") || name.ends_with(".mem"));
-        assert_bench_passes(Simulator::Icarus, &texts, &format!("{}_tb", design.name));
+        let emitted = Emitted { files, name: design.name };
+        assert_files_are_clean(&emitted.rtl(), &emitted.name);
+        assert_bench_passes(Simulator::Icarus, &emitted.simulated(), &emitted.bench());
     }
 }
 

@@ -11,7 +11,7 @@ use crate::common::tools::{assert_lint_clean, yosys};
 use build::{Call, build, calls};
 use glint::hdl::netlist::Design;
 use glint::hdl::sim::Simulator;
-use glint::package::{EmitInputs, emit};
+use glint::package::{EmitInputs, emit, sources};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
@@ -33,12 +33,7 @@ fn answer(design: &Design) -> Result<Files, TestCaseError> {
         let settles = simulator.clock();
         prop_assert!(settles.is_ok(), "{design}");
     }
-    let plain = files.into_iter().filter_map(|file| {
-        let name = file.path.rsplit('/').next()?.to_owned();
-        let needed = name.ends_with(".v") || name.ends_with(".mem");
-        needed.then_some((name, file.contents))
-    });
-    Ok(plain.collect())
+    Ok(sources(files))
 }
 
 proptest! {
