@@ -4,7 +4,7 @@
 use std::fs;
 use std::hint::black_box;
 
-use anyhow::{Context, Result, anyhow};
+use anyhow::{Context, Result};
 use criterion::{Criterion, criterion_group, criterion_main};
 use glint::config;
 use glint::core::Core;
@@ -18,8 +18,7 @@ use glint::registry::Registry;
 const CONFIGS: [&str; 2] = ["configs/rough.toml", "configs/cosine_power.toml"];
 
 fn generate(registry: &Registry, path: &str, text: &str) -> Result<Vec<OutputFile>> {
-    let config =
-        config::parse(path, text, &registry.schemas()).map_err(|problems| anyhow!("{problems}"))?;
+    let config = config::parse(path, text, &registry.schemas())?;
     let device = registry.device(&config.device).context("a device")?;
     let core = Core::new(*device, config)?;
     black_box(core.contract.bound());

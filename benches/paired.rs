@@ -26,7 +26,7 @@ use std::hint::black_box;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use anyhow::{Context, Result, anyhow, ensure};
+use anyhow::{Context, Result, ensure};
 use glint::config;
 use glint::core::Core;
 use glint::cosim::{Lockstep, Outcome};
@@ -112,8 +112,7 @@ fn cores() -> Result<Vec<Core>> {
         let name = device.name.replace('-', "_");
         for path in [format!("configs/{name}.toml"), format!("configs/{name}_pipelined.toml")] {
             if Path::new(&path).exists() {
-                let config = config::read(Path::new(&path), &registry.schemas());
-                let config = config.map_err(|problems| anyhow!("{problems}"))?;
+                let config = config::read(Path::new(&path), &registry.schemas())?;
                 cores.push(Core::new(*device, config)?);
             }
         }

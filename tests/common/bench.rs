@@ -49,9 +49,7 @@ impl Bench {
             }
         };
         let arguments = arguments.split(' ').chain([top]).chain(sources);
-        let output = tool(compiler)
-            .run_to_success(arguments, dir.path(), LIMIT)
-            .unwrap_or_else(|error| panic!("{top}: {error:#}"));
+        let output = tool(compiler).run_to_success(arguments, dir.path(), LIMIT).sure_of(top);
         (Self { dir, simulator }, output)
     }
 

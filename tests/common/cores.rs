@@ -5,10 +5,13 @@ use std::path::Path;
 
 use glint::config::{self, Config, Problems};
 use glint::core::Core;
-use glint::cosim::trial;
+use glint::cosim::{Outcome, trial};
 use glint::package::{Computation, OutputFile, sources, sources_for};
 use glint::registry::{Device, Registry};
 use tempfile::TempDir;
+
+use super::Sure;
+use super::files::{paths, put, read};
 
 /// Pairs of a plain file name and contents.
 pub type Files = Vec<(String, String)>;
@@ -22,31 +25,29 @@ pub fn configurations() -> Vec<(String, Core)> {
     all_configurations().into_iter().filter(sequential).collect()
 }
 
+/// Returns those that are pipelines, by path, sorted.
+///
+/// # Panics
+/// One of them is wrong, or there are others than are known.
+pub fn pipelines() -> Vec<(String, Core)> {
+    let pipelined = |(_, core): &(String, Core)| core.design.pipeline.is_some();
+    let found: Vec<_> = all_configurations().into_iter().filter(pipelined).collect();
+    assert_eq!(found.len(), 11, "pipelines");
+    found
+}
+
 /// Returns the configurations in `configs/` and `configs/studies/`, pipelines too, by path, sorted.
 ///
 /// # Panics
 /// There are none, or one of them is wrong.
 pub fn all_configurations() -> Vec<(String, Core)> {
-    let mut paths: Vec<String> =
-        ["configs", "configs/studies"].into_iter().flat_map(configurations_in).collect();
-    paths.sort();
+    let mut all = ["configs", "configs/studies"].map(|it| paths(it, ".toml")).concat();
+    all.sort();
     let with_unit = |path: String| {
         let core = configuration(&path);
         (path, core)
     };
-    paths.into_iter().map(with_unit).collect()
-}
-
-/// Returns the paths of the configurations in a directory.
-fn configurations_in(directory: &str) -> Vec<String> {
-    let entries = fs::read_dir(directory).unwrap_or_else(|error| panic!("{directory}: {error}"));
-    let paths = entries.map(|entry| entry.expect("a directory entry").path());
-    let paths: Vec<String> = paths
-        .filter(|path| path.extension().is_some_and(|extension| extension == "toml"))
-        .map(|path| path.display().to_string())
-        .collect();
-    assert!(!paths.is_empty(), "no configuration in {directory}/");
-    paths
+    all.into_iter().map(with_unit).collect()
 }
 
 /// Returns the configuration of that path.
@@ -58,9 +59,24 @@ pub fn configuration(path: &str) -> Core {
 }
 
 fn of_config(path: &str, config: Result<Config, Problems>) -> Core {
-    let config = config.unwrap_or_else(|problems| panic!("{problems}"));
-    let device = *Registry::shipped().device(&config.device).expect("a device");
-    Core::new(device, config).unwrap_or_else(|error| panic!("{path}: {error:?}"))
+    let config = config.sure();
+    Core::new(device(&config.device), config).sure_of(path)
+}
+
+/// Returns the device of that name.
+///
+/// # Panics
+/// There is none.
+pub fn device(name: &str) -> Device {
+    *Registry::shipped().device(name).unwrap_or_else(|| panic!("no device {name}"))
+}
+
+/// Returns the core of a device with its defaults.
+///
+/// # Panics
+/// There is none.
+pub fn default(device: Device) -> Core {
+    Core::new(device, device.defaults()).sure()
 }
 
 /// Returns the configuration of that path with more TOML: a table, whose keys join those that the file has of it.
@@ -68,7 +84,7 @@ fn of_config(path: &str, config: Result<Config, Problems>) -> Core {
 /// # Panics
 /// It is wrong.
 pub fn configuration_with(path: &str, more: &str) -> Core {
-    let text = fs::read_to_string(path).unwrap_or_else(|error| panic!("{path}: {error}"));
+    let text = read(path);
     let text = match more.trim_start().split_once("]\n") {
         Some((heading, keys)) if text.contains(&format!("\n{heading}]\n")) => {
             let heading = format!("\n{heading}]\n");
@@ -84,7 +100,7 @@ pub fn configuration_with(path: &str, more: &str) -> Core {
 /// # Panics
 /// It is wrong.
 pub fn configuration_between(path: &str, interface: &str) -> Core {
-    let text = fs::read_to_string(path).unwrap_or_else(|error| panic!("{path}: {error}"));
+    let text = read(path);
     let own = text.split("\n[interface]\n").next().unwrap_or_default();
     let own = own.split("\n[package]\n").next().unwrap_or_default();
     parsed(path, &format!("{own}\n[interface]\n{interface}"))
@@ -108,7 +124,7 @@ pub fn parsed(path: &str, text: &str) -> Core {
 pub fn with_keys(device: Device, more: &str) -> anyhow::Result<Core> {
     let text = format!("device = \"{}\"\n{more}", device.name);
     let config = config::parse("core.toml", &text, &[(device.schema)()]);
-    Core::new(device, config.unwrap_or_else(|problems| panic!("{problems}")))
+    Core::new(device, config.sure())
 }
 
 /// Returns the computations that are listed of a core.
@@ -120,11 +136,21 @@ pub fn computations(core: &Core) -> Vec<Computation> {
     listed.expect("computations that agree with the golden model")
 }
 
+/// Returns what comes of golden model and simulation, side by side.
+///
+/// # Panics
+/// The design cannot be simulated.
+pub fn run(core: &Core, points: u64, seed: u64, what: &str) -> Outcome {
+    core.lockstep(seed).and_then(|it| it.run(points, &|_| ())).sure_of(what)
+}
+
 /// # Panics
 /// Golden model and simulation differ, or an error is beyond the bound.
-pub fn assert_agrees(core: &Core, points: u64, what: &str) {
-    let outcome = core.lockstep(1).and_then(|it| it.run(points, &|_| ())).expect("a run");
+pub fn assert_agrees(core: &Core, points: u64, seed: u64, what: &str) {
+    let outcome = run(core, points, seed, what);
     assert!(outcome.mismatch.is_none(), "{what}: {:?}", outcome.mismatch);
+    assert_eq!(outcome.points, points, "{what}");
+    assert!(outcome.worst.is_some(), "{what}: no error was measured");
     let failures = outcome.failures(&core.contract.bound());
     assert!(failures.is_empty(), "{what}: {failures:?}");
 }
@@ -157,7 +183,7 @@ impl Emitted {
         let files = core
             .vectors(points, seed)
             .and_then(|vectors| core.files(&format!("configs/{name}.toml"), vectors))
-            .unwrap_or_else(|error| panic!("{name}: {error:?}"));
+            .sure_of(&name);
         Self { files, name }
     }
 
@@ -185,11 +211,7 @@ impl Emitted {
     /// Returns all files in a directory, each where it would be written.
     pub fn tree(&self) -> TempDir {
         let dir = tempfile::tempdir().expect("a directory");
-        for file in &self.files {
-            let path = dir.path().join(&file.path);
-            fs::create_dir_all(path.parent().expect("a directory")).expect("a directory");
-            fs::write(path, &file.contents).expect("written");
-        }
+        self.files.iter().for_each(|it| put(dir.path().join(&it.path), &it.contents));
         dir
     }
 
@@ -217,6 +239,6 @@ impl Emitted {
 /// It cannot be done.
 pub fn write(directory: &Path, files: &Files) {
     for (name, contents) in files {
-        fs::write(directory.join(name), contents).unwrap_or_else(|error| panic!("{name}: {error}"));
+        fs::write(directory.join(name), contents).sure_of(name);
     }
 }

@@ -5,12 +5,17 @@
 
 pub mod bench;
 pub mod cores;
+pub mod files;
 pub mod host;
+pub mod json;
 pub mod netlist;
 pub mod random_netlist;
 pub mod said;
 pub mod sample;
 pub mod tools;
+pub mod waveform;
+
+use std::fmt::Display;
 
 /// A result without which a test cannot go on.
 pub trait Sure<T> {
@@ -19,12 +24,23 @@ pub trait Sure<T> {
     /// # Panics
     /// There is an error, which is told with its causes.
     fn sure(self) -> T;
+
+    /// Returns the value of what is named in the message otherwise.
+    ///
+    /// # Panics
+    /// There is an error, which is told with its causes.
+    fn sure_of(self, what: impl Display) -> T;
 }
 
-impl<T, E: std::fmt::Display> Sure<T> for Result<T, E> {
+impl<T, E: Display> Sure<T> for Result<T, E> {
     #[track_caller]
     fn sure(self) -> T {
         self.unwrap_or_else(|error| panic!("{error:#}"))
+    }
+
+    #[track_caller]
+    fn sure_of(self, what: impl Display) -> T {
+        self.unwrap_or_else(|error| panic!("{what}: {error:#}"))
     }
 }
 

@@ -1,11 +1,11 @@
 //! Netlists from synthesis, and their simulation with models of the family's cells.
 
-use std::path::Path;
-
 use super::Sure;
+use super::files::{json, read};
 use glint::target::Family;
 use glint::tools::Simulator;
 use glint::tools::gates;
+use serde_json::Value;
 
 use super::bench::Bench;
 use super::cores::{Emitted, write};
@@ -14,11 +14,21 @@ use super::tools::{tool, verilog_files, yosys};
 /// Points of the bench that a netlist runs.
 pub const POINTS: u64 = 40;
 
-/// Writes the RTL into a directory, synthesises it, and leaves `netlist.json` and `netlist.v` there.
+/// What synthesis makes, in two forms.
+pub struct Netlist {
+    /// As Yosys describes it.
+    pub json: Value,
+    /// For a simulator.
+    pub verilog: String,
+}
+
+/// Returns the netlist of the RTL.
 ///
 /// # Panics
 /// Yosys fails or warns, or there is a latch.
-pub fn synthesise(directory: &Path, emitted: &Emitted, family: &Family) {
+pub fn synthesise(emitted: &Emitted, family: &Family) -> Netlist {
+    let directory = tempfile::tempdir().expect("a directory");
+    let directory = directory.path();
     write(directory, &emitted.rtl_for(family.name()));
     let commands = format!(
         "{}read_verilog {}; hierarchy -check -top {top}; proc; \
@@ -30,6 +40,10 @@ pub fn synthesise(directory: &Path, emitted: &Emitted, family: &Family) {
         top = emitted.name,
     );
     yosys(directory, &commands);
+    Netlist {
+        json: json(directory.join("netlist.json")),
+        verilog: read(directory.join("netlist.v")),
+    }
 }
 
 /// Returns the bench of the source around a netlist, ROM contents within.

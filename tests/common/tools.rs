@@ -3,12 +3,17 @@
 //! A missing tool fails the test, with the remedy: a test that skips itself proves nothing.
 
 use std::env;
-use std::ffi::{OsStr, OsString};
-use std::path::{Path, PathBuf};
+use std::ffi::OsStr;
+use std::path::Path;
+use std::process::Command;
 use std::time::Duration;
 
 use super::Sure;
+use super::cores::{Files, write};
+use super::files::{paths, root};
+use glint::core::Core;
 use glint::tools::{BenchOutcome, Simulator, Tool, lint, run_bench};
+use glint::verify::{CHECKS, Effort, Finding, Subject};
 
 /// The time limit of any tool.
 pub const LIMIT: Duration = Duration::from_secs(1200);
@@ -18,10 +23,9 @@ pub const LIMIT: Duration = Duration::from_secs(1200);
 /// # Panics
 /// It is in neither.
 pub fn tool(name: &str) -> Tool {
-    let venv = Path::new(env!("CARGO_MANIFEST_DIR")).join("target/tools/venv/bin");
     let path = env::var_os("PATH").unwrap_or_default();
-    let dirs = std::iter::once(venv).chain(env::split_paths(&path));
-    let search: OsString = env::join_paths(dirs).expect("a search path");
+    let dirs = std::iter::once(root().join("target/tools/venv/bin"));
+    let search = env::join_paths(dirs.chain(env::split_paths(&path))).expect("a search path");
     Tool::find_in(name, &search).sure()
 }
 
@@ -37,6 +41,65 @@ pub fn ran<A: AsRef<OsStr>>(
     tool(name).run_to_success(arguments, directory, LIMIT).sure()
 }
 
+/// Runs a command, which is expected to succeed, and returns its standard output.
+///
+/// # Panics
+/// It does not.
+#[track_caller]
+pub fn succeeded(command: &mut Command) -> String {
+    let output = command.output().sure_of(format_args!("{command:?}"));
+    let [text, errors] =
+        [output.stdout, output.stderr].map(|text| String::from_utf8_lossy(&text).into_owned());
+    assert!(output.status.success(), "{command:?}: {text}{errors}");
+    text
+}
+
+/// Runs a script of the examples, which is expected to succeed, with the program of these tests, and returns what it says.
+///
+/// # Panics
+/// It does not.
+pub fn example(script: &str, arguments: &[&OsStr]) -> String {
+    let glint = format!("GLINT={}", env!("CARGO_BIN_EXE_glint"));
+    let script = root().join("examples").join(script);
+    let all = [glint.as_ref(), script.as_os_str()].into_iter().chain(arguments.iter().copied());
+    ran("env", all, root())
+}
+
+/// Returns an example as a program that Cargo runs, to be given its arguments.
+pub fn cargo_example(name: &str) -> Command {
+    let mut cargo = Command::new(env!("CARGO"));
+    // The features of the test, so that the library is not built once more.
+    cargo.args(["run", "--quiet", "--features", "outside-tools", "--example", name]);
+    cargo.arg("--manifest-path").arg(root().join("Cargo.toml"));
+    if !cfg!(debug_assertions) {
+        cargo.arg("--release");
+    }
+    cargo.arg("--");
+    cargo
+}
+
+/// The effort of a check that is not full.
+pub const EFFORT: Effort = Effort { full: false, without_tools: false, time_limit: LIMIT };
+
+/// Returns what a check of `glint verify` finds of a core.
+///
+/// # Panics
+/// There is no such check.
+pub fn finding(core: &Core, id: &str, effort: Effort) -> Finding {
+    let check = CHECKS.iter().find(|check| check.id == id).expect("the check");
+    let subject = Subject::new("core.toml", core, effort, Path::new("proofs"));
+    check.run(&subject, &|_| ()).finding
+}
+
+/// Runs a bench, and returns what came of it.
+///
+/// # Panics
+/// It cannot be built or run.
+#[track_caller]
+pub fn benched(simulator: Simulator, files: &[(String, String)], top: &str) -> BenchOutcome {
+    run_bench(simulator, files, top, LIMIT).sure_of(format_args!("{top} under {simulator}"))
+}
+
 /// Runs a bench that is expected to pass; returns what came of it.
 ///
 /// # Panics
@@ -46,7 +109,7 @@ pub fn assert_bench_passes(
     files: &[(String, String)],
     top: &str,
 ) -> BenchOutcome {
-    let outcome = run_bench(simulator, files, top, LIMIT).sure();
+    let outcome = benched(simulator, files, top);
     assert!(outcome.passed, "{top} under {simulator}:\n{}", outcome.transcript);
     if simulator == Simulator::Icarus {
         assert_eq!(outcome.build, "", "{top}: warnings of iverilog -Wall");
@@ -62,10 +125,19 @@ pub fn assert_bench_passes(
 pub fn assert_lint_clean(directory: &Path, top: &str) {
     let sources = verilog_files(directory);
     for tool in ["iverilog", "verilator"].map(tool) {
-        let output = lint(&tool, directory, &sources, top, LIMIT)
-            .unwrap_or_else(|error| panic!("{}: {error:#}", directory.display()));
+        let output = lint(&tool, directory, &sources, top, LIMIT).sure_of(directory.display());
         assert_eq!(output, "", "{tool} has remarks on {}", directory.display());
     }
+}
+
+/// Checks the same of files.
+///
+/// # Panics
+/// A linter has something to say.
+pub fn assert_files_are_clean(files: &Files, top: &str) {
+    let directory = tempfile::tempdir().expect("a directory");
+    write(directory.path(), files);
+    assert_lint_clean(directory.path(), top);
 }
 
 /// A warning of Yosys 0.23 about its own model of a Xilinx block RAM; those of the outputs are given as
@@ -79,7 +151,7 @@ const YOSYS_ON_ITSELF: &str = r"Resizing cell port .*\.DO(P?)[AB]DO(P?) from";
 pub fn yosys(directory: &Path, commands: &str) -> String {
     tool("yosys")
         .run_to_success(["-w", YOSYS_ON_ITSELF, "-e", ".*", "-p", commands], directory, LIMIT)
-        .unwrap_or_else(|error| panic!("{}: {error:#}", directory.display()))
+        .sure_of(directory.display())
 }
 
 /// Returns the names of the Verilog files in `directory`, sorted.
@@ -87,15 +159,6 @@ pub fn yosys(directory: &Path, commands: &str) -> String {
 /// # Panics
 /// It cannot be read, or there are none.
 pub fn verilog_files(directory: &Path) -> Vec<String> {
-    let entries =
-        directory.read_dir().unwrap_or_else(|error| panic!("{}: {error}", directory.display()));
-    let paths = entries.map(|entry| entry.expect("a directory entry").path());
-    let is_verilog = |path: &PathBuf| path.extension().is_some_and(|extension| extension == "v");
-    let mut names: Vec<String> = paths
-        .filter(is_verilog)
-        .filter_map(|path| Some(path.file_name()?.to_str()?.to_owned()))
-        .collect();
-    assert!(!names.is_empty(), "no Verilog in {}", directory.display());
-    names.sort();
-    names
+    let paths = paths(directory, ".v").into_iter();
+    paths.filter_map(|path| Some(Path::new(&path).file_name()?.to_str()?.to_owned())).collect()
 }

@@ -12,6 +12,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 use rayon::prelude::*;
 
+use crate::common::Sure;
 use crate::common::cores::parsed;
 
 /// Random configurations of each device.
@@ -136,10 +137,7 @@ fn assert_places_within_bound(
 /// and the record of its proof.
 #[test]
 fn blinn_is_as_close_as_it_promises() {
-    let read = |path: &str| {
-        config::read(Path::new(path), &Registry::catalogue().schemas())
-            .unwrap_or_else(|problems| panic!("{problems}"))
-    };
+    let read = |path: &str| config::read(Path::new(path), &Registry::catalogue().schemas()).sure();
     let best = blinn::contract(&read("configs/blinn.toml"));
     assert!(best.bound().f <= 1.0e-4, "{:?}", best.bound());
     assert!(best.highlight().expect("a highlight").f_format().frac >= 14);

@@ -7,6 +7,7 @@ mod fresnel;
 #[path = "../../examples/smoothstep/main.rs"]
 mod smoothstep;
 
+use crate::common::Sure;
 use crate::common::cores::all_configurations;
 use glint::config::{Config, parse};
 use glint::core::Core;
@@ -34,7 +35,7 @@ fn so_is_every_operator_of_the_examples_and_of_composed_devices() {
         );
         let pipelined = parse("core.toml", &pipelined, std::slice::from_ref(&schema));
         for config in [Config::defaults(&schema, "core"), pipelined.expect("a configuration")] {
-            let core = Core::new(device, config).unwrap_or_else(|error| panic!("{error:#}"));
+            let core = Core::new(device, config).sure();
             check(device.name, &core.design);
         }
     }

@@ -1,15 +1,15 @@
 //! Values worked out by hand, in the files of `by_hand/` (its `README.md` says how they are written), against both
 //! the design in the built-in simulator and the golden model.
 
-use std::fs;
-use std::path::Path;
-
 use glint::config::{Config, Kind, Schema, parse};
 use glint::golden::Model;
 use glint::hdl::netlist::Design;
 use glint::registry::{Device, Registry};
 use rayon::prelude::*;
 
+use crate::common::Sure;
+use crate::common::cores::device;
+use crate::common::files::{paths, read};
 use crate::common::host::Host;
 
 /// More clocks than any computation there takes.
@@ -30,9 +30,8 @@ fn configuration(path: &str, text: &str) -> (Device, Config) {
     let catalogue = Registry::catalogue();
     let schemas: Vec<Schema> =
         catalogue.devices().iter().map(|device| widened((device.schema)())).collect();
-    let config = parse("by_hand.toml", text, &schemas);
-    let config = config.unwrap_or_else(|problems| panic!("{path}: {problems}"));
-    (*catalogue.device(&config.device).expect("a device"), config)
+    let config = parse("by_hand.toml", text, &schemas).sure_of(path);
+    (device(&config.device), config)
 }
 
 /// The design in the simulator and the golden model, which get the same inputs.
@@ -138,22 +137,16 @@ impl<'a> Pair<'a> {
 
 #[test]
 fn designs_and_golden_models_show_what_was_worked_out() {
-    let directory = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/quick/by_hand");
-    let entries = fs::read_dir(directory).expect("a directory");
-    let paths = entries.map(|entry| entry.expect("an entry").path());
-    let paths: Vec<_> =
-        paths.filter(|path| path.extension().is_some_and(|it| it == "txt")).collect();
-    assert!(!paths.is_empty());
-    paths.into_par_iter().for_each(|path| {
-        let text = fs::read_to_string(&path).expect("a text");
+    paths("tests/quick/by_hand", ".txt").into_par_iter().for_each(|path| {
+        let text = read(&path);
         let (common, cores) = text.split_once("\n## ").expect("a core");
         for core in cores.split("\n## ") {
             let title = core.lines().next().unwrap_or_default();
-            let place = format!("{}: {title}", path.display());
+            let place = format!("{path}: {title}");
             let mut groups = core[title.len()..].split("\n-- ");
             let keys = groups.next().unwrap_or_default();
             let (device, config) = configuration(&place, &format!("{common}\n{keys}\n"));
-            let design = device.sequential(&config).unwrap_or_else(|it| panic!("{place}: {it}"));
+            let design = device.sequential(&config).sure_of(&place);
             for group in groups {
                 let (head, rows) = group.split_once('\n').expect("rows");
                 let mut pair = Pair::new(&design, device.golden(&config), head);

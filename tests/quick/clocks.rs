@@ -3,24 +3,13 @@
 
 use std::collections::BTreeSet;
 
-use glint::config::{self, Config};
 use glint::core::Core;
 use glint::cosim::trial;
-use glint::registry::Registry;
 
-use crate::common::cores::configurations;
+use crate::common::cores::{configurations, device, random, with_keys};
 
 /// Random configurations of `lyon`, whose clocks depend on an operand or not, as a key says.
 const CONFIGURATIONS: u64 = 48;
-
-fn lyon() -> glint::registry::Device {
-    *Registry::catalogue().device("lyon").expect("lyon")
-}
-
-fn parsed(text: &str) -> Config {
-    let schemas = Registry::catalogue().schemas();
-    config::parse("lyon.toml", text, &schemas).unwrap_or_else(|problems| panic!("{problems}"))
-}
 
 /// Clocks from start to start for every value of the port `shift`, or of none, and for the lowest and the highest
 /// of all others.
@@ -66,11 +55,9 @@ fn assert_stated_clocks_are_right(core: &Core) {
 
 #[test]
 fn random_configurations_of_lyon_have_the_stated_clocks() {
-    let device = lyon();
     let mut by_shift = 0;
     for seed in 0..CONFIGURATIONS {
-        let config = config::sample(&(device.schema)(), seed);
-        let core = Core::new(device, config).expect("a design");
+        let (_, core) = random(device("lyon"), seed);
         by_shift += u64::from(core.design.find("shift").is_some());
         assert_stated_clocks_are_right(&core);
     }
@@ -81,8 +68,7 @@ fn random_configurations_of_lyon_have_the_stated_clocks() {
 #[test]
 fn a_domain_with_a_single_shift_has_clocks_for_every_shift() {
     let domain = "[domain]\nexponent_min = 100\nexponent_max = 150\n";
-    let core =
-        Core::new(lyon(), parsed(&format!("device = \"lyon\"\n{domain}"))).expect("a design");
+    let core = with_keys(device("lyon"), domain).expect("a design");
     let operand = core.contract.operands().iter().find(|operand| operand.name == "shift").cloned();
     let (low, high) = operand.expect("shift").domain;
     assert_eq!(low, high);

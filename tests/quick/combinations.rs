@@ -9,7 +9,8 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use crate::common::cores::{configuration, configuration_with};
+use crate::common::cores::{configuration, configuration_with, device};
+use crate::common::files::{paths, read};
 use crate::common::sample::sampled_alone;
 use glint::config::Config;
 use glint::core::Core;
@@ -136,8 +137,7 @@ fn parts(what: &str) -> Vec<Shard> {
 fn every_combination_of_every_device_agrees() {
     let parts = parts("combinations");
     let mut devices = BTreeSet::new();
-    for entry in fs::read_dir("configs/reduced").expect("configs/reduced/") {
-        let path = entry.expect("an entry").path().display().to_string();
+    for path in paths("configs/reduced", ".toml") {
         let core = configuration(&path);
         let job = core.job().expect("they fit");
         let clocks = job.clocks.as_ref().expect("combinations");
@@ -163,8 +163,8 @@ fn every_combination_of_every_device_agrees() {
 #[test]
 fn every_combination_of_every_pipeline_agrees() {
     let parts = parts("combinations of pipelines");
-    for entry in fs::read_dir("configs/reduced").expect("configs/reduced/") {
-        let path = entry.expect("an entry").path().display().to_string();
+    let mut pipelines = 0;
+    for path in paths("configs/reduced", ".toml") {
         let sequential = configuration(&path);
         if sequential.contract.length().is_some() {
             continue;
@@ -178,7 +178,9 @@ fn every_combination_of_every_pipeline_agrees() {
         let differs = clocks.check(blocks, &|_| ()).expect("it can be simulated");
         let difference = differs.map(|place| clocks.difference(place));
         assert!(difference.is_none(), "{path}: {difference:?}");
+        pipelines += 1;
     }
+    assert_eq!(pipelines, 9);
 }
 
 /// Returns the combination of which a model errs, in a pipeline: found, had again, and no other.
@@ -242,15 +244,10 @@ fn the_first_difference_is_the_same_however_the_work_is_divided() {
 /// `quadratic` with a model that is wrong for some combinations.
 fn wrong_device() -> Device {
     fn model(config: &Config) -> Box<dyn Model> {
-        let inner = (quadratic().model)(config);
+        let inner = (device("quadratic").model)(config);
         Box::new(Wrong::new(inner, &[("exponent", 13)]))
     }
-    Device { model, ..quadratic() }
-}
-
-fn quadratic() -> Device {
-    let registry = Registry::catalogue();
-    *registry.device("quadratic").expect("quadratic")
+    Device { model, ..device("quadratic") }
 }
 
 /// Says to the test below that it is the command line of the wrong device, which it starts.
@@ -305,7 +302,7 @@ fn a_difference_leaves_all_that_it_takes_to_have_it_again() {
     assert_eq!((run["ok"].as_bool(), text(one, "signal").as_str()), (Some(false), "red_out"));
     assert_eq!(bits(one, "golden") ^ bits(one, "simulated"), 1);
     assert!(text(one, "during").starts_with("microinstruction `intensity"), "{one}");
-    let vcd = fs::read_to_string(place.path().join(text(one, "vcd"))).expect("a waveform");
+    let vcd = read(place.path().join(text(one, "vcd")));
     assert!(vcd.contains("red_out"), "{vcd}");
     // The command that it names finds the same, alone.
     let again = text(one, "reproduce").replace("FILE", "all.vcd");

@@ -1,12 +1,13 @@
 //! Keys that a file does not name follow from those that it does.
 
-use std::path::Path;
-
 use glint::config::{Config, Key, Kind, Problems, Schema, Value, parse};
 use glint::core::Core;
 use glint::keys::presets::DEVICE as FUNCTION;
 use glint::registry::Registry;
 
+use crate::common::Sure;
+use crate::common::cores::device;
+use crate::common::files::{paths, read};
 use crate::config_device::{lamp, schemas};
 
 /// Reads a file of a device of the catalogue.
@@ -19,8 +20,7 @@ fn a_narrower_exponent_ends_its_domain() {
     let devices =
         "rough threshold quadratic cosine-power schlick blinn gauss lyon quad-cosine".split(' ');
     for device in devices {
-        let config = of(&format!("device = \"{device}\"\nexponent.bits = 8\n"));
-        let config = config.unwrap_or_else(|problems| panic!("{problems}"));
+        let config = of(&format!("device = \"{device}\"\nexponent.bits = 8\n")).sure();
         // The largest of eight bits.
         assert_eq!(config.integer("domain.exponent_max"), 255, "{device}");
         assert_eq!(config.integer("exponent.bits"), 8, "{device}");
@@ -35,14 +35,11 @@ fn a_narrower_exponent_ends_its_domain() {
 
 #[test]
 fn a_coarse_cosine_alone_is_a_valid_rough() {
-    let config = of("device = \"rough\"\ncosine.fraction = 12\n");
-    let config = config.unwrap_or_else(|problems| panic!("{problems}"));
+    let config = of("device = \"rough\"\ncosine.fraction = 12\n").sure();
     assert_eq!(config.integer("cosine.fraction"), 12);
     // Two bits a range of twelve: the last of the default's nine ranges have no bits left.
     assert!(config.integers("sine.segments").len() <= 6, "{config:?}");
-    let device = Registry::catalogue();
-    let device = device.device("rough").expect("rough");
-    Core::new(*device, config).unwrap_or_else(|error| panic!("{error:#}"));
+    Core::new(device("rough"), config).sure();
 }
 
 /// Every integer of every device, at either end of its range and alone, makes a configuration, or is itself what is wrong.
@@ -121,16 +118,10 @@ fn a_problem_of_a_key_that_is_not_given_names_it() {
 /// Values that follow are written into the file that others read.
 #[test]
 fn shipped_configurations_follow_from_nothing() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs");
-    for entry in std::fs::read_dir(root).expect("configs/") {
-        let path = entry.expect("an entry").path();
-        if path.extension().is_some_and(|it| it == "toml") {
-            let text = std::fs::read_to_string(&path).expect("text");
-            let config = of(&text).unwrap_or_else(|problems| panic!("{problems}"));
-            let schemas = Registry::shipped().schemas();
-            let schema = schemas.iter().find(|it| it.device == config.device).expect("a schema");
-            let again = parse("core.toml", &config.to_toml(schema), &schemas).expect("valid");
-            assert_eq!(again.values().collect::<Vec<_>>(), config.values().collect::<Vec<_>>());
-        }
+    for path in paths("configs", ".toml") {
+        let config = of(&read(&path)).sure_of(&path);
+        let schema = (device(&config.device).schema)();
+        let again = of(&config.to_toml(&schema)).sure_of(&path);
+        assert_eq!(again.values().collect::<Vec<_>>(), config.values().collect::<Vec<_>>());
     }
 }

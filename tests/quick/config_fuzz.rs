@@ -1,6 +1,7 @@
 //! Whatever the text, the reader answers with a configuration or with problems that have a place.
 
 use crate::common::cases;
+use crate::common::cores::device;
 use crate::config_device::{lamp, schemas};
 use glint::config::{Config, Schema, commented, parse, read, sample};
 use glint::core::Core;
@@ -156,10 +157,8 @@ proptest! {
     /// A configuration that the reader accepts is accepted by the description and the golden model too.
     #[test]
     fn an_accepted_configuration_is_a_device(text in settings()) {
-        let registry = Registry::catalogue();
-        if let Some(config) = answer(&text, &registry.schemas())? {
-            let device = *registry.device(&config.device).expect("a device");
-            let core = Core::new(device, config);
+        if let Some(config) = answer(&text, &Registry::catalogue().schemas())? {
+            let core = Core::new(device(&config.device), config);
             prop_assert!(core.is_ok(), "{:?}", core.err());
             prop_assert!(core.expect("a core").lockstep(1).is_ok());
         }

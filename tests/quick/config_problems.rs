@@ -1,8 +1,8 @@
 //! Each mistake in a configuration file: its message, its place and its remedy, word for word.
 
-use std::fs;
 use std::path::Path;
 
+use crate::common::files::put;
 use crate::common::said::{Case, cases};
 use crate::config_device::{lamp, schemas};
 use glint::config::{Config, Problems, Value, parse, read};
@@ -192,34 +192,33 @@ fn files_that_cannot_be_read() {
         Ok(config) => vec![format!("accepted: {config:?}")],
         Err(problems) => lines(&problems),
     };
-    assert_eq!(
-        of(&path("lamp.toml")),
-        ["0:0  | there is no such file | `glint new DEVICE` writes a file to start from"]
-    );
-    fs::write(path("lamp-8.toml"), "device = \"lamp\"\n").expect("written");
-    assert_eq!(
-        of(&path("lamp_9.toml")),
-        [format!(
-            "0:0  | there is no such file | did you mean `{}`?",
-            path("lamp-8.toml").display()
-        )]
-    );
+    let new = "0:0  | there is no such file | `glint new DEVICE` writes a file to start from";
+    assert_eq!(of(&path("lamp.toml")), [new]);
+    put(path("lamp-8.toml"), "device = \"lamp\"\n");
+    let near = path("lamp-8.toml").display().to_string();
+    let near = format!("0:0  | there is no such file | did you mean `{near}`?");
+    assert_eq!(of(&path("lamp_9.toml")), [near]);
     assert_eq!(of(directory.path()), ["0:0  | this is a directory | give the path of a TOML file"]);
-    fs::write(path("latin.toml"), b"device = \"lamp\"\n# gr\xfcn\n").expect("written");
-    assert_eq!(
-        of(&path("latin.toml")),
-        ["2:5  | the file is not UTF-8: byte 20 is 0xfc | save it as UTF-8 text"]
-    );
-    fs::write(path("wide.toml"), b"\xff\xfed\0e\0").expect("written");
-    assert_eq!(
-        of(&path("wide.toml")),
-        ["1:1  | the file is not UTF-8: byte 0 is 0xff | it looks like UTF-16; save it as UTF-8"]
-    );
-    fs::write(path("large.toml"), "#".repeat(65_537)).expect("written");
-    assert_eq!(
-        of(&path("large.toml")),
-        ["0:0  | the file has more than 65536 bytes | give the path of a TOML file"]
-    );
+    for (name, contents, said) in [
+        (
+            "latin.toml",
+            &b"device = \"lamp\"\n# gr\xfcn\n"[..],
+            "2:5  | the file is not UTF-8: byte 20 is 0xfc | save it as UTF-8 text",
+        ),
+        (
+            "wide.toml",
+            b"\xff\xfed\0e\0",
+            "1:1  | the file is not UTF-8: byte 0 is 0xff | it looks like UTF-16; save it as UTF-8",
+        ),
+        (
+            "large.toml",
+            &[b'#'; 65_537],
+            "0:0  | the file has more than 65536 bytes | give the path of a TOML file",
+        ),
+    ] {
+        put(path(name), contents);
+        assert_eq!(of(&path(name)), [said], "{name}");
+    }
     let config = read(&path("lamp-8.toml"), &schemas()).expect("a good file");
     assert_eq!((config.name.as_str(), config.device.as_str()), ("lamp_8", "lamp"));
 }

@@ -2,10 +2,12 @@
 //! true to the netlist, the manifest and the formula.
 
 use std::collections::BTreeSet;
-use std::fs;
 use std::path::Path;
 
-use crate::common::cores::{all_configurations, configuration, configurations};
+use crate::common::Sure;
+use crate::common::cores::{configuration, configurations, pipelines};
+use crate::common::files::json;
+use crate::common::json::Json;
 use crate::common::sample::sampled_alone;
 use glint::core::Core;
 use glint::cosim::exhaustive::Record;
@@ -23,21 +25,19 @@ fn make(path: &str, core: &Core) -> Datasheet {
     let subject = Subject {
         core,
         path,
-        backing: core
-            .backing(Path::new("proofs"))
-            .unwrap_or_else(|error| panic!("{path}: {error:?}")),
-        proof: proof.unwrap_or_else(|error| panic!("{path}: {error:?}")),
+        backing: core.backing(Path::new("proofs")).sure_of(path),
+        proof: proof.sure_of(path),
         figures: synth::Record::find(Path::new(synth::DIRECTORY), &core.core_digest())
-            .unwrap_or_else(|error| panic!("{path}: {error:?}")),
+            .sure_of(path),
         synthesis: None,
     };
-    datasheet(&subject, &|| ()).unwrap_or_else(|error| panic!("{path}: {error:?}"))
+    datasheet(&subject, &|| ()).sure_of(path)
 }
 
 /// Returns the pages are XML as well.
 fn parse(page: &str) -> Document<'_> {
     let options = ParsingOptions { allow_dtd: true, ..ParsingOptions::default() };
-    Document::parse_with_options(page, options).unwrap_or_else(|error| panic!("{error}"))
+    Document::parse_with_options(page, options).sure()
 }
 
 fn elements<'a>(document: &'a Document, name: &'a str) -> impl Iterator<Item = Node<'a, 'a>> {
@@ -318,21 +318,15 @@ fn has_the_arrows_of_the_blocks(path: &str, document: &Document, design: &Design
 }
 
 /// Finds the wave of a signal.
-fn waves(path: &str, wavedrom: &str) -> impl Fn(&str) -> String {
+fn waves(wavedrom: &str) -> impl Fn(&str) -> String {
     let waves: Value = serde_json::from_str(wavedrom).expect("JSON");
-    move |signal| {
-        let lanes = waves["signal"].as_array().expect("signals");
-        let lane = lanes.iter().find(|lane| lane["name"] == signal);
-        let lane = lane.unwrap_or_else(|| panic!("{path}: no lane `{signal}`"));
-        lane["wave"].as_str().expect("a wave").to_owned()
-    }
+    move |signal| waves["signal"].of("name", signal)["wave"].text().to_owned()
 }
 
 fn has_the_clocks_of_the_manifest(path: &str, wavedrom: &str, core: &Core) {
     let name = &core.config.name;
-    let manifest = fs::read_to_string(format!("rtl_out/{name}/{name}.json")).expect("a manifest");
-    let manifest: Value = serde_json::from_str(&manifest).expect("JSON");
-    let wave = waves(path, wavedrom);
+    let manifest = json(format!("rtl_out/{name}/{name}.json"));
+    let wave = waves(wavedrom);
     assert!(wave("start").starts_with("10"), "{path}: {}", wave("start"));
     assert!(wave("busy").starts_with("01"), "{path}: {}", wave("busy"));
     for (signal, event) in [("valid", "start_to_valid"), ("done", "start_to_done")] {
@@ -373,27 +367,24 @@ fn area_and_speed_are_those_of_the_record() {
     let document = parse(&page);
     let rows = rows(&document, "Area and speed");
     let row = rows.iter().find(|row| row[0].starts_with("ECP5")).expect("ECP5");
-    let record = fs::read_to_string("synthesis/cosine_power.json").expect("a record");
-    let record: Value = serde_json::from_str(&record).expect("JSON");
-    let targets = record["targets"].as_array().expect("targets");
-    let ecp5 = targets.iter().find(|it| it["target"] == "ecp5").expect("ECP5");
+    let record = json("synthesis/cosine_power.json");
+    let ecp5 = record["targets"].of("target", "ecp5");
     let counts =
         ["luts", "dsps", "block_rams", "flip_flops"].map(|it| ecp5["area"][it].to_string());
     assert_eq!(row[1..5], counts);
-    let median = ecp5["frequency"]["median"].as_f64().expect("a frequency");
+    let median = ecp5["frequency"]["median"].number();
     assert!(row[6].starts_with(&format!("{median:.1} (")), "{row:?}");
     let points = median / 8.0;
-    let luts = ecp5["area"]["luts"].as_f64().expect("a count");
+    let luts = ecp5["area"]["luts"].number();
     assert_eq!(row[7..9], [format!("{points:.1}"), format!("{:.1}", 1000.0 * points / luts)]);
-    for step in ecp5["critical_path"].as_array().expect("a path") {
-        assert!(page.contains(step["name"].as_str().expect("a name")), "{step}");
+    for step in ecp5["critical_path"].list() {
+        assert!(page.contains(step["name"].text()), "{step}");
     }
 }
 
 #[test]
 fn every_pipeline_has_its_page() {
-    let all = all_configurations().into_iter();
-    for (path, core) in all.filter(|(_, core)| core.design.pipeline.is_some()) {
+    for (path, core) in pipelines() {
         let made = make(&path, &core);
         let document = parse(&made.page);
         needs_nothing_else(&path, &made.page, &document);
@@ -450,7 +441,7 @@ fn has_the_latency_of_the_header(path: &str, wavedrom: &str, verilog: &str) {
     let (before, _) = header.split_once(" clocks later").expect("the latency");
     let latency: usize =
         before.rsplit(' ').next().and_then(|it| it.parse().ok()).expect("a number");
-    let wave = waves(path, wavedrom);
+    let wave = waves(wavedrom);
     // Two points, a bubble and a point; nothing after them.
     assert!(wave("in_valid").starts_with("1.010"), "{path}: {}", wave("in_valid"));
     assert_eq!(wave("out_valid").find('1'), Some(latency), "{path}");

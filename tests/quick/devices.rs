@@ -1,31 +1,24 @@
 //! Devices that are no highlights: unit vectors, their cosines, and the colours that are made of both.
 
 use std::ops::ControlFlow;
-use std::path::Path;
-use std::time::Duration;
 
-use glint::config::{Config, Problems, Schema, parse, sample};
+use glint::config::{Config, Schema};
 use glint::core::Core;
 use glint::cosim::exhaustive::{Clocks, Peak, Places, Proof, Shard, State};
-use glint::cosim::{search, trial};
+use glint::cosim::{Random, search, trial};
 use glint::dsl::{Designer, end, step, valid};
 use glint::fixed::Format;
 use glint::golden::device::{self, Formula};
 use glint::golden::frame::{Frame, idle, step as execute};
-use glint::golden::{Bound, Contract, Term};
-use glint::registry::{Device, Registry};
-use glint::verify::{CHECKS, Effort, Subject, Verdict};
+use glint::golden::{Bound, Contract, Operand, Term};
+use glint::registry::Device;
+use glint::verify::Verdict;
+
+use crate::common::Sure;
+use crate::common::cores::{assert_agrees, default, device, random, with_keys};
+use crate::common::tools::{EFFORT, finding};
 
 const NAMES: [&str; 3] = ["dot-product", "normaliser", "shading"];
-
-fn named(name: &str) -> Device {
-    *Registry::shipped().device(name).expect("a device")
-}
-
-fn default(device: Device) -> Core {
-    let config = device.defaults();
-    Core::new(device, config).unwrap_or_else(|error| panic!("{error:#}"))
-}
 
 /// Returns the raw results and the error of each in last places, by the formula given.
 fn errors(contract: &dyn Contract, operands: &[i64], formula: impl Fn(&[f64]) -> Vec<f64>) -> f64 {
@@ -73,16 +66,11 @@ const HIGHLIGHTS: [OfHighlight; 5] = [
 /// Colours of several lights, from both sides, against formulas that are written out here.
 #[test]
 fn lights_add_up_on_both_sides() {
-    let shading = named("shading");
     for ((keys, f), (lights, two_sided)) in
         HIGHLIGHTS.into_iter().flat_map(|it| [(1, true), (3, false)].map(|of| (it, of)))
     {
-        let text = format!(
-            "device = \"shading\"\nname = \"s\"\nlights = {lights}\ntwo_sided = {two_sided}\n{keys}\n"
-        );
-        let config =
-            parse("s.toml", &text, &[(shading.schema)()]).unwrap_or_else(|it| panic!("{it}"));
-        let core = Core::new(shading, config).unwrap_or_else(|error| panic!("{text}: {error:#}"));
+        let text = format!("lights = {lights}\ntwo_sided = {two_sided}\n{keys}\n");
+        let core = with_keys(device("shading"), &text).sure_of(&text);
         let contract = core.contract.as_ref();
         let has_exponent = !keys.contains("function");
         let formula = |v: &[f64]| {
@@ -100,18 +88,13 @@ fn lights_add_up_on_both_sides() {
                 |at: usize| material[at] + material[3 + at] * facing + material[6 + at] * shine;
             (0..3).map(|at| colour(at).min(255.0)).collect()
         };
-        let mut at = 7u64;
-        let mut random = || {
-            at = at.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-            (at >> 11) as f64 / (1u64 << 53) as f64
-        };
-        let points = (0..20_000).filter_map(|_| contract.hint(&mut random));
+        let mut random = Random::new(7);
+        let mut part = || (random.bits() >> 11) as f64 / (1u64 << 53) as f64;
+        let points = (0..20_000).filter_map(|_| contract.hint(&mut part));
         let worst = points.map(|it| errors(contract, &it, formula)).fold(0.0, f64::max);
         let bound = contract.bound().units;
         assert!(worst <= bound + 1e-9 && worst > 0.49, "{text}: {worst}, {bound}");
-        let lockstep = core.lockstep(1).and_then(|it| it.run(300, &|_| ()));
-        let outcome = lockstep.unwrap_or_else(|error| panic!("{text}: {error:#}"));
-        assert!(outcome.mismatch.is_none(), "{text}: {:?}", outcome.mismatch);
+        assert_agrees(&core, 300, 1, &text);
     }
 }
 
@@ -122,7 +105,7 @@ fn unit(v: &[f64]) -> Vec<f64> {
 
 #[test]
 fn schemas_are_sound_and_defaults_are_proven() {
-    for device in NAMES.map(named) {
+    for device in NAMES.map(device) {
         assert_eq!((device.schema)().mistakes(), Vec::<String>::new());
         let core = default(device);
         assert!(core.contract.highlight().is_none());
@@ -133,18 +116,10 @@ fn schemas_are_sound_and_defaults_are_proven() {
 
 #[test]
 fn random_configurations_agree_on_every_clock() {
-    for device in NAMES.map(named) {
-        let schema = (device.schema)();
+    for device in NAMES.map(device) {
         for seed in 0..if device.name == "shading" { 6 } else { 24 } {
-            let config = sample(&schema, seed);
-            let what = config.to_toml(&schema);
-            let core =
-                Core::new(device, config).unwrap_or_else(|error| panic!("{what}: {error:#}"));
-            let outcome = core.lockstep(seed).and_then(|lockstep| lockstep.run(300, &|_| ()));
-            let outcome = outcome.unwrap_or_else(|error| panic!("{what}: {error:#}"));
-            assert!(outcome.mismatch.is_none(), "{what}: {:?}", outcome.mismatch);
-            let worst = outcome.worst.expect("results").units;
-            assert!(worst <= core.contract.bound().units + 1e-9, "{what}: {worst}");
+            let (what, core) = random(device, seed);
+            assert_agrees(&core, 300, seed, &what);
         }
     }
 }
@@ -152,7 +127,7 @@ fn random_configurations_agree_on_every_clock() {
 /// All vectors of a grid and of a fine corner, against the formulas written out here.
 #[test]
 fn the_bounds_hold() {
-    for device in NAMES.map(named) {
+    for device in NAMES.map(device) {
         let formula = match device.name {
             "dot-product" => dot,
             "normaliser" => unit,
@@ -162,19 +137,14 @@ fn the_bounds_hold() {
         let contract = core.contract.as_ref();
         let bound = contract.bound().units;
         let mut worst: f64 = 0.0;
-        let mut at = 1u64;
+        let mut random = Random::new(1);
         for _ in 0..200_000 {
-            let operands: Vec<i64> = contract
-                .operands()
-                .iter()
-                .map(|operand| {
-                    // A linear congruential generator, its magnitude by octaves.
-                    at = at.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-                    let (low, high) = operand.domain;
-                    (((at >> 40) as i64 % (high - low + 1) + low) >> (at >> 33 & 7))
-                        .clamp(low, high)
-                })
-                .collect();
+            let drawn = |operand: &Operand| {
+                // Its magnitude by octaves.
+                let (low, high) = operand.domain;
+                (random.within(low, high) >> random.below(8)).clamp(low, high)
+            };
+            let operands: Vec<i64> = contract.operands().iter().map(drawn).collect();
             worst = worst.max(errors(contract, &operands, formula));
         }
         assert!(worst <= bound + 1e-9, "{}: {worst} > {bound}", device.name);
@@ -185,11 +155,8 @@ fn the_bounds_hold() {
 /// Every vector of a narrow normaliser at every clock, and its contract for every sum of squares.
 #[test]
 fn a_narrow_normaliser_is_proved() {
-    let normaliser = named("normaliser");
     let keys = "[vector]\nfraction = 2\n[table]\naddress = 3\n[inverse]\nfraction = 6\n[output]\nfraction = 2\n";
-    let text = format!("device = \"normaliser\"\nname = \"narrow\"\n{keys}");
-    let config = parse("narrow.toml", &text, &[(normaliser.schema)()]).expect("a configuration");
-    let core = Core::new(normaliser, config).unwrap_or_else(|error| panic!("{error:#}"));
+    let core = with_keys(device("normaliser"), keys).sure();
     let contract = core.contract.as_ref();
     let job = core.job().expect("model and design fit");
     let mut state = State::new("", Shard::WHOLE);
@@ -211,7 +178,7 @@ fn a_narrow_normaliser_is_proved() {
 /// The worked example shows something, and hints lie within the domain.
 #[test]
 fn examples_come_from_hints() {
-    for device in NAMES.map(named) {
+    for device in NAMES.map(device) {
         let core = default(device);
         let example = trial::example(&core.design, core.contract.as_ref()).expect("an example");
         for output in &example.outputs {
@@ -228,7 +195,7 @@ fn examples_come_from_hints() {
 
 #[test]
 fn vectors_by_hand() {
-    let core = default(named("normaliser"));
+    let core = default(device("normaliser"));
     let mut raw = Vec::new();
     // (0.6, 0, −0.8) has length 1; in 2^-14: 9830.4 and −13107.2. The zero vector stays.
     for (operands, expected) in [
@@ -241,7 +208,7 @@ fn vectors_by_hand() {
         core.contract.results(&operands, 0, &mut raw);
         assert_eq!(raw, expected, "{operands:?}");
     }
-    let core = default(named("dot-product"));
+    let core = default(device("dot-product"));
     for (operands, expected) in [
         // (3, 0, 4)/5·(1, 0, 0) = 0.6, of any length, in 2^-14 9830.4; the other way round it is 0; beyond 1 it is 1.
         ([3, 0, 4, 16384, 0, 0], 9830),
@@ -254,6 +221,10 @@ fn vectors_by_hand() {
         core.contract.results(&operands, 0, &mut raw);
         assert_eq!(raw, [expected], "{operands:?}");
     }
+}
+
+fn without_keys(device: &'static str) -> Schema {
+    Schema { device, keys: vec![], check: |_, _| {} }
 }
 
 /// A sum of two points, this and the one before.
@@ -285,7 +256,7 @@ fn results_that_depend_on_the_past_and_results_that_never_come_are_refused() {
     let sum = Device {
         name: "sum",
         summary: "",
-        schema: || Schema { device: "sum", keys: vec![], check: |_: &Config, _: &mut Problems| {} },
+        schema: || without_keys("sum"),
         describe: |d: &Designer, _| {
             let x = d.operand("x", Format::unsigned(8, 0)).q();
             let before = d.register("earlier", Format::unsigned(8, 0));
@@ -348,11 +319,7 @@ fn a_reference_without_a_value_is_a_failure_everywhere() {
     let of_nan = Device {
         name: "copy",
         summary: "",
-        schema: || Schema {
-            device: "copy",
-            keys: vec![],
-            check: |_: &Config, _: &mut Problems| {},
-        },
+        schema: || without_keys("copy"),
         describe: |d: &Designer, _| {
             let x = d.operand("x", Format::unsigned(4, 0)).q();
             let copy = d.register("copy", Format::unsigned(4, 0));
@@ -392,12 +359,8 @@ fn a_reference_without_a_value_is_a_failure_everywhere() {
         let worst = search::worst(contract, 4, 1, &|| ()).expect("starts");
         assert_eq!((worst.units, worst.operands[0] >= 5), (f64::INFINITY, true));
 
-        let effort =
-            Effort { full: false, without_tools: true, time_limit: Duration::from_secs(60) };
-        let subject = Subject::new("copy.toml", &core, effort, Path::new("none"));
         for id in ["lockstep", "contract"] {
-            let check = CHECKS.iter().find(|it| it.id == id).expect("a check");
-            assert_eq!(check.run(&subject, &|_| ()).finding.verdict, Verdict::Failed, "{id}");
+            assert_eq!(finding(&core, id, EFFORT).verdict, Verdict::Failed, "{id}");
         }
     }
     let two = Device { contract: |_| copying().contract(Two), ..of_nan };

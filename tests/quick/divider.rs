@@ -6,6 +6,7 @@ use glint::fixed::Format;
 use glint::hdl::blocks::divider::Divider;
 use glint::hdl::netlist::Design;
 
+use crate::common::Sure;
 use crate::common::host::Host;
 
 /// Returns a device that divides two operands.
@@ -22,7 +23,7 @@ fn ratio(dividend: Format, divisor: Format, bits: i32) -> Design {
         step("bit", ratio.step().into_iter().chain([repeat])),
         step("result", [valid(), end()]),
     ]);
-    d.finish().unwrap_or_else(|mistakes| panic!("{mistakes}"))
+    d.finish().sure()
 }
 
 /// Quotient, remainder, and the clocks from `start` to `valid`; the rest of the division before is still there.

@@ -7,7 +7,7 @@ use glint::fixed::Format;
 use glint::package::Computation;
 use glint::registry::Registry;
 
-use crate::common::cores::{assert_agrees, computations, with_keys as core};
+use crate::common::cores::{assert_agrees, computations, device, with_keys as core};
 use crate::common::host::Host;
 
 /// Results that golden model and simulation are compared on.
@@ -27,7 +27,7 @@ fn every_device_computes_the_same_in_a_clock_less() {
         let less = before.start_to_start.map(|clocks| clocks - 1);
         assert_eq!(after.start_to_start, less, "{}", device.name);
         assert_eq!(computations(&buffered), computations(&plain), "{}", device.name);
-        assert_agrees(&buffered, POINTS, device.name);
+        assert_agrees(&buffered, POINTS, 1, device.name);
     }
 }
 
@@ -39,9 +39,8 @@ fn other_keys_go_with_it() {
         ("quad-cosine", "[line]\nstages = 7\n"),
         ("cosine-squared", "[line]\nstages = 5\n[output]\nregistered = true\n"),
     ] {
-        let device = *Registry::catalogue().device(name).expect("a device");
-        let core = core(device, &format!("{more}{BUFFERED}")).expect("a design");
-        assert_agrees(&core, POINTS, name);
+        let core = core(device(name), &format!("{more}{BUFFERED}")).expect("a design");
+        assert_agrees(&core, POINTS, 1, name);
     }
 }
 
@@ -50,9 +49,8 @@ fn other_keys_go_with_it() {
 #[test]
 fn a_host_that_writes_ahead_loses_no_clock() {
     for name in ["cosine-power", "schlick", "rough"] {
-        let device = *Registry::catalogue().device(name).expect("a device");
-        let wanted = computations(&core(device, "").expect("a design"));
-        let buffered = core(device, BUFFERED).expect("a design");
+        let wanted = computations(&core(device(name), "").expect("a design"));
+        let buffered = core(device(name), BUFFERED).expect("a design");
         let (design, contract) = (&buffered.design, buffered.contract.as_ref());
         let mut host = Host::new(design);
         let write = |host: &mut Host, of: &Computation, at: usize| {

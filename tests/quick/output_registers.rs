@@ -6,7 +6,7 @@ use glint::fixed::{Format, Overflow, Rounding};
 use glint::hdl::netlist::{Design, Driver, NetId, Op, Role};
 use glint::registry::Registry;
 
-use crate::common::cores::{assert_agrees, computations, with_keys as core};
+use crate::common::cores::{assert_agrees, computations, device, with_keys as core};
 
 /// Results that golden model and simulation are compared on.
 const POINTS: u64 = 2000;
@@ -43,17 +43,16 @@ fn every_device_has_its_results_in_registers_a_clock_later() {
             let outputs = one.results.iter().map(|it| &it.outputs);
             assert!(outputs.eq(other.results.iter().map(|it| &it.outputs)), "{}", device.name);
         }
-        assert_agrees(&registered, POINTS, device.name);
+        assert_agrees(&registered, POINTS, 1, device.name);
     }
 }
 
 /// Results that are registers already get no other, and no clock.
 #[test]
 fn registers_are_left_alone() {
-    let lyon = *Registry::catalogue().device("lyon").expect("lyon");
     let shared = "[colour]\nmultipliers = 1\n";
     let [one, other] = [shared.to_owned(), format!("{shared}{REGISTERED}")]
-        .map(|more| core(lyon, &more).expect("a design"));
+        .map(|more| core(device("lyon"), &more).expect("a design"));
     let clocks = |core: &Core| core.design.control.microprogram.len();
     assert_eq!(clocks(&one), clocks(&other));
     assert_eq!(one.design.registers.len(), other.design.registers.len());
@@ -63,12 +62,11 @@ fn registers_are_left_alone() {
 #[test]
 fn lines_with_stages_have_them_too() {
     for (name, stages) in [("quad-cosine", 7), ("cosine-squared", 5)] {
-        let device = *Registry::catalogue().device(name).expect("a device");
-        let core =
-            core(device, &format!("[line]\nstages = {stages}\n{REGISTERED}")).expect("a design");
+        let keys = format!("[line]\nstages = {stages}\n{REGISTERED}");
+        let core = core(device(name), &keys).expect("a design");
         let mut results = core.design.ports.iter().filter(|port| port.role == Role::Result);
         assert!(results.all(|port| shows_register(&core.design, port.net)), "{name}");
-        assert_agrees(&core, POINTS, name);
+        assert_agrees(&core, POINTS, 1, name);
     }
 }
 

@@ -5,13 +5,11 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
+use crate::common::Sure;
 use crate::common::cores::{configuration, configurations};
+use crate::common::files::{paths, read};
 use glint::cosim::exhaustive::PROOFS;
 use glint::registry::Registry;
-
-fn read(path: &str) -> String {
-    fs::read_to_string(path).unwrap_or_else(|error| panic!("{path}: {error}"))
-}
 
 /// Returns the default configurations and their pipelines, each with the name of its module.
 fn names() -> Vec<(String, String)> {
@@ -39,8 +37,8 @@ fn every_device_has_its_page() {
     let readme = read("README.md");
     for (name, config) in names() {
         let file = format!("docs/devices/{name}.md");
-        let today = glint::pages::of(&configuration(&config), &config, Path::new(PROOFS))
-            .unwrap_or_else(|error| panic!("{config}: {error:?}"));
+        let today =
+            glint::pages::of(&configuration(&config), &config, Path::new(PROOFS)).sure_of(&config);
         let found = fs::read_to_string(&file).unwrap_or_default();
         assert!(
             found == today,
@@ -52,14 +50,9 @@ fn every_device_has_its_page() {
 
 #[test]
 fn there_are_no_other_pages() {
-    let found: BTreeSet<String> = fs::read_dir("docs/devices")
-        .expect("docs/devices/")
-        .map(|entry| entry.expect("an entry").file_name())
-        .map(|name| name.to_string_lossy().into_owned())
-        .collect();
     let wanted: BTreeSet<String> =
-        names().into_iter().map(|(name, _)| format!("{name}.md")).collect();
-    assert_eq!(found, wanted);
+        names().into_iter().map(|(name, _)| format!("docs/devices/{name}.md")).collect();
+    assert_eq!(BTreeSet::from_iter(paths("docs/devices", "")), wanted);
 }
 
 /// Returns the cells of the rows of a page's table that begin with a number, from the heading on.
@@ -136,10 +129,8 @@ fn links_lead_somewhere() {
         };
         headings.map(anchor).collect()
     };
-    let docs = fs::read_dir("docs").expect("docs/").map(|entry| entry.expect("an entry").path());
-    let docs = docs.filter(|path| path.extension().is_some_and(|it| it == "md"));
-    let docs = docs.map(|path| path.display().to_string());
-    for page in ["README.md", "CONTRIBUTING.md"].map(String::from).into_iter().chain(docs) {
+    let pages = ["README.md", "CONTRIBUTING.md"].map(String::from);
+    for page in pages.into_iter().chain(paths("docs", ".md")) {
         let text = read(&page);
         for link in text.split("](").skip(1) {
             let link = link.split(')').next().unwrap_or_default();

@@ -8,6 +8,8 @@ use serde_json::Value;
 
 use evidence::{benchmark, page};
 
+use crate::common::json::Json;
+
 #[test]
 fn the_report_is_the_same_twice_and_self_contained() {
     let made = || {
@@ -28,15 +30,14 @@ fn the_report_is_the_same_twice_and_self_contained() {
     // √(7/16), and √(1000/16).
     for (n, root) in [(7, 0.661_437_827_766_147_7), (1000, 7.905_694_150_420_948)] {
         let word = &figures["rom_9"][n - 1]["root"];
-        assert!((word.as_f64().expect("a number") - root).abs() < 1e-15);
+        assert!((word.number() - root).abs() < 1e-15);
     }
-    let devices = figures["devices"].as_array().expect("devices");
+    let devices = figures["devices"].list();
     assert!(devices.iter().any(|device| device["device"] == "rough"));
     // All ten in each chart of all.
-    let overview = figures["overview"].as_array().expect("charts");
-    let lines: Vec<usize> =
-        overview.iter().filter_map(|chart| Some(chart["series"].as_array()?.len())).collect();
-    assert_eq!(lines, [10, 10]);
+    let overview = figures["overview"].list();
+    let lines = overview.iter().map(|chart| chart["series"].list().len());
+    assert_eq!(lines.collect::<Vec<_>>(), [10, 10]);
     assert_eq!(figures["hardware"], Value::Null);
 }
 
@@ -49,10 +50,10 @@ fn timings_stand_apart() {
     let timings = serde_json::to_value(&timed).expect("JSON");
     assert_eq!(timings["claimed"], 2.3);
     // m = 2, 4, 8, 16; two precisions; one by one and many at once.
-    let pairs = timings["pairs"].as_array().expect("pairs");
+    let pairs = timings["pairs"].list();
     assert_eq!(pairs.len(), 16);
     for pair in pairs {
-        let ratio = pair["ratio"].as_array().expect("quartiles");
+        let ratio = pair["ratio"].list();
         let ratio: Vec<f64> = ratio.iter().filter_map(Value::as_f64).collect();
         assert!(ratio[0] > 0.0 && ratio.is_sorted(), "{pair}");
     }

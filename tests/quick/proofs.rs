@@ -6,10 +6,11 @@
 //! a part of the places that is spread evenly over them.
 
 use std::collections::BTreeSet;
-use std::fs;
 use std::path::Path;
 
 use crate::common::cores::{configuration, configurations};
+use crate::common::files::{json, paths, put, read, replaced};
+use crate::common::json::Json;
 use crate::common::sample::sampled_alone;
 use glint::core::Core;
 use glint::cosim::exhaustive::{Backing, Places, Proof, Record};
@@ -22,27 +23,16 @@ const AGAIN: u64 = 20_000_000;
 
 /// Returns the records, by configuration.
 fn records() -> Vec<Value> {
-    let mut paths: Vec<_> = fs::read_dir("proofs")
-        .expect("proofs/")
-        .map(|entry| entry.expect("a directory entry").path())
-        .filter(|path| path.is_file())
-        .collect();
-    paths.sort();
-    let mut records = Vec::new();
-    for path in paths {
-        let text = fs::read_to_string(&path).expect("a record");
-        let value: Value = serde_json::from_str(&text).expect("JSON");
-        records.extend(value["configurations"].as_array().expect("a list").clone());
-    }
-    records
+    let records = paths("proofs", ".json").into_iter().map(json);
+    records.flat_map(|record| record["configurations"].list().clone()).collect()
 }
 
 #[test]
 fn the_default_of_every_device_is_proven_below_one_unit() {
     let proven: BTreeSet<String> = records()
         .iter()
-        .filter(|record| record["together"].as_f64().expect("a number") < 1.0)
-        .map(|record| record["config"].as_str().expect("a path").to_owned())
+        .filter(|record| record["together"].number() < 1.0)
+        .map(|record| record["config"].text().to_owned())
         .collect();
     for device in Registry::catalogue().devices() {
         let path = format!("configs/{}.toml", device.name.replace('-', "_"));
@@ -60,7 +50,7 @@ fn the_default_of_every_device_is_proven_below_one_unit() {
 #[test]
 fn the_records_hold_today() {
     for record in sampled_alone("records of proofs", records(), 8) {
-        let path = record["config"].as_str().expect("a path");
+        let path = record["config"].text();
         let unit = configuration(path);
         let contract = unit.contract.as_ref();
         let found = Record::find(Path::new("proofs"), &unit.contract_digest(), contract);
@@ -69,14 +59,11 @@ fn the_records_hold_today() {
         let stale = format!("the record of {path} is not of today's program");
         assert_eq!(record["configuration"], json!(unit.contract_digest()), "{stale}");
         assert_eq!(record["evaluations"], json!(places.count()), "{stale}");
-        assert!(
-            record["together"].as_f64().expect("a number") <= contract.bound().units,
-            "{stale}"
-        );
+        assert!(record["together"].number() <= contract.bound().units, "{stale}");
         assert_eq!(record["holds"], json!(true));
 
-        let largest = record["f"]["error"].as_f64().expect("a number");
-        let place = record["f"]["place"].as_u64().expect("a number");
+        let largest = record["f"]["error"].number();
+        let place = record["f"]["place"].count();
         assert_eq!(places.error(place), largest, "{stale}");
         let stride = (places.count() / AGAIN).max(1);
         let peak = places.check(every(&places, stride), &|_| ());
@@ -155,10 +142,9 @@ fn a_bound_is_proven_where_somebody_proved_it() {
     );
 
     let proofs = tempfile::tempdir().expect("a directory");
-    let certificates = proofs.path().join("certificates");
-    fs::create_dir(&certificates).expect("a directory");
-    let text = fs::read_to_string("proofs/certificates/cosine_power.json").expect("a certificate");
-    fs::write(certificates.join("mine.json"), &text).expect("written");
+    let certificate = proofs.path().join("certificates/mine.json");
+    let text = read("proofs/certificates/cosine_power.json");
+    put(&certificate, &text);
     let certified = backing(&honest, proofs.path());
     assert!(
         matches!(&certified, Backing::Certificate(path) if path.ends_with("mine.json")),
@@ -166,10 +152,10 @@ fn a_bound_is_proven_where_somebody_proved_it() {
     );
     assert_eq!(backing(&wrong, proofs.path()), Backing::Author);
     // Not all statements were accepted; half a file.
-    let open = text.replace("\"certified\": true", "\"certified\": false");
-    fs::write(certificates.join("mine.json"), open).expect("written");
+    let open = replaced(&text, "\"certified\": true", "\"certified\": false");
+    put(&certificate, open);
     assert_eq!(backing(&honest, proofs.path()), Backing::Author);
-    fs::write(certificates.join("mine.json"), &text[..text.len() / 2]).expect("written");
+    put(&certificate, &text[..text.len() / 2]);
     let damaged = format!("{:#}", honest.backing(proofs.path()).expect_err("half a file"));
     assert!(damaged.contains("mine.json` is damaged: restore it"), "{damaged}");
 }

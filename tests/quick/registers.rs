@@ -8,7 +8,7 @@ use glint::hdl::netlist::Design;
 use glint::package::{EmitInputs, Surroundings, Unfit, emit};
 use glint::registry::{Device, Registry};
 
-use crate::common::cores::with_keys;
+use crate::common::cores::{self, with_keys};
 
 const BYTE: Format = Format::unsigned(0, 8);
 
@@ -82,11 +82,10 @@ impl Model for ByHand {
 
 #[test]
 fn a_model_that_does_not_know_the_registers_is_refused() {
-    let threshold = *Registry::catalogue().device("threshold").expect("threshold");
-    let device = Device { model: |_| Box::new(ByHand), ..threshold };
-    assert!(with_keys(device, "").is_ok());
+    let by_hand = Device { model: |_| Box::new(ByHand), ..cores::device("threshold") };
+    assert!(with_keys(by_hand, "").is_ok());
     for (key, toml) in KEYS {
-        let error = with_keys(device, toml).err().expect("no model").to_string();
+        let error = with_keys(by_hand, toml).err().expect("no model").to_string();
         let remedy = format!("leave {key} out");
         assert!(error.contains("`threshold`") && error.contains(&remedy), "{error}");
     }

@@ -1,9 +1,9 @@
 //! The rooms of the source: which may import which, no circles, and where devices are known by name.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
+use crate::common::files::{below, read};
 use glint::registry::Registry;
 use regex::Regex;
 
@@ -121,23 +121,13 @@ fn devices_are_known_by_name_where_they_are_described_predicted_and_weighed() {
 
 /// Returns every file of the library by its path in `generator/`, without comments and tests.
 fn sources() -> Vec<(String, String)> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("generator");
-    let mut files = Vec::new();
-    let mut folders: Vec<PathBuf> = vec![root.clone()];
-    while let Some(folder) = folders.pop() {
-        for entry in fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                folders.push(path);
-            } else if path.extension().is_some_and(|it| it == "rs") {
-                files.push(path);
-            }
-        }
-    }
+    let root = Path::new("generator");
+    let files = below(root).into_iter();
+    let files = files.filter(|path| path.extension().is_some_and(|it| it == "rs"));
     let comment = Regex::new(r"(?m)^\s*//.*$|\s// .*$").unwrap();
-    let files = files.into_iter().map(|path| {
-        let name = path.strip_prefix(&root).unwrap().to_str().unwrap().replace('\\', "/");
-        let text = fs::read_to_string(&path).unwrap();
+    let files = files.map(|path| {
+        let name = path.strip_prefix(root).unwrap().to_str().unwrap().replace('\\', "/");
+        let text = read(&path);
         let code = text.split("#[cfg(test)]\nmod tests {").next().unwrap_or("");
         (name, comment.replace_all(code, "").into_owned())
     });

@@ -1,9 +1,11 @@
 //! The control ROM of `rough` is table 1 of UA 60139, bit for bit, whatever the configuration.
 
-use glint::config::{Config, parse, sample};
+use glint::config::{parse, sample};
 use glint::hdl::netlist::{Design, Field};
 use glint::package::{EmitInputs, emit};
-use glint::registry::{Device, Registry};
+
+use crate::common::Sure;
+use crate::common::cores::device;
 
 /// The patent's table 1 (figure 4), typed from it. Columns V1 … V9, rows by address.
 const TABLE: [[u64; 9]; 10] = [
@@ -22,17 +24,11 @@ const TABLE: [[u64; 9]; 10] = [
 /// The lines of the block of control that V1 … V9 are, in the table's header.
 const LINES: [u16; 9] = [45, 46, 47, 48, 49, 50, 51, 43, 44];
 
-fn rough() -> Device {
-    *Registry::catalogue().device("rough").expect("the device")
-}
-
-fn configuration(toml: &str) -> Config {
-    let schemas = Registry::catalogue().schemas();
-    parse("rough.toml", toml, &schemas).unwrap_or_else(|problems| panic!("{problems}\n{toml}"))
-}
-
-fn design(config: &Config) -> Design {
-    rough().design(config).unwrap_or_else(|error| panic!("{error}"))
+/// Returns the design of the device with these keys.
+fn design(toml: &str) -> Design {
+    let schema = (device("rough").schema)();
+    let config = parse("rough.toml", toml, &[schema]).sure_of(toml);
+    device("rough").design(&config).sure_of(toml)
 }
 
 fn assert_is_the_table(design: &Design, what: &str) {
@@ -46,8 +42,7 @@ fn assert_is_the_table(design: &Design, what: &str) {
         design.control.fields.iter().flat_map(|field| field.lines.clone()).collect();
     assert_eq!(lines, LINES, "{what}");
 
-    let files =
-        emit(design, &EmitInputs::default()).unwrap_or_else(|error| panic!("{error:#}\n{what}"));
+    let files = emit(design, &EmitInputs::default()).sure_of(what);
     let name = format!("rtl_out/{0}/{0}_control.mem", design.name);
     let memory = files.iter().find(|file| file.path == name).expect("the control ROM");
     let words: Vec<String> = memory
@@ -111,16 +106,17 @@ fn every_option_has_the_words_of_the_patent() {
     texts.extend(product(&exact, product(&common, start("exact"))));
     assert_eq!(texts.len(), 8 + 128);
     for toml in texts {
-        assert_is_the_table(&design(&configuration(&toml)), &toml);
+        assert_is_the_table(&design(&toml), &toml);
     }
 }
 
 #[test]
 fn random_configurations_have_the_words_of_the_patent() {
-    let schema = (rough().schema)();
+    let schema = (device("rough").schema)();
     for seed in 0..200 {
         let config = sample(&schema, seed);
-        let (design, toml) = (design(&config), config.to_toml(&schema));
+        let toml = config.to_toml(&schema);
+        let design = device("rough").design(&config).sure_of(&toml);
         if config.choice("colour.multipliers") == "3" {
             assert_is_the_table(&design, &toml);
         }
@@ -135,7 +131,7 @@ fn keys_that_add_microinstructions_leave_the_lines_of_the_patent() {
     for (more, added) in [("[colour]\nmultipliers = 1\n", 3), ("[output]\nregistered = true\n", 1)]
     {
         let toml = format!("device = \"rough\"\n{more}");
-        let design = design(&configuration(&toml));
+        let design = design(&toml);
         assert_eq!(design.control.microprogram.len(), TABLE.len() + added, "{toml}");
         assert_has_the_lines(&design, &toml);
     }

@@ -5,6 +5,7 @@ use glint::dsl::{Designer, end, hold, step, valid};
 use glint::fixed::Format;
 use glint::hdl::netlist::Design;
 
+use crate::common::Sure;
 use crate::common::host::Host;
 
 const SIGNED: Format = Format::signed(3, 2);
@@ -41,7 +42,7 @@ fn device(a_first: bool, held: bool) -> Design {
         step("take c, e", [hold(), of_unsigned.load()]),
         step("end", [valid(), end()]),
     ]);
-    d.finish().unwrap_or_else(|mistakes| panic!("{mistakes}"))
+    d.finish().sure()
 }
 
 /// Runs a design, and returns the contents of its two registers.

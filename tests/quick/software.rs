@@ -1,23 +1,15 @@
 //! The model in C is written for every core, pipelines among them; `tests/tools` compiles and runs some.
 
-use std::fs;
-
 use rayon::prelude::*;
 use serde_json::Value;
 
 use crate::common::cores::{Emitted, configuration_with};
+use crate::common::files::paths;
 
 #[test]
 fn every_core_becomes_a_model_in_c() {
-    let mut paths = Vec::new();
-    for directory in ["configs", "configs/studies", "configs/reduced"] {
-        for entry in fs::read_dir(directory).expect("a directory") {
-            let path = entry.expect("an entry").path();
-            if path.extension().is_some_and(|it| it == "toml") {
-                paths.push(path.display().to_string());
-            }
-        }
-    }
+    let directories = ["configs", "configs/studies", "configs/reduced"];
+    let paths = directories.map(|directory| paths(directory, ".toml")).concat();
     assert!(paths.len() >= 38, "{paths:?}");
     paths.into_par_iter().for_each(|path| {
         let core = configuration_with(&path, "\n[package]\nsoftware = true\n");

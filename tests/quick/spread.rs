@@ -1,6 +1,6 @@
 //! The points of tests lie where the function does.
 
-use crate::common::cores::configurations;
+use crate::common::cores::{configurations, run};
 use glint::cosim::{Points, Random};
 use rayon::prelude::*;
 
@@ -18,9 +18,7 @@ fn most_points_have_f_between_0_and_1() {
     let highlights = configurations().into_par_iter();
     let highlights = highlights.filter(|(_, unit)| unit.contract.highlight().is_some());
     let looked_at = highlights.map(|(path, unit)| {
-        let lockstep = unit.lockstep(3).unwrap_or_else(|error| panic!("{path}: {error:?}"));
-        let outcome =
-            lockstep.run(POINTS, &|_| ()).unwrap_or_else(|error| panic!("{path}: {error:?}"));
+        let outcome = run(&unit, POINTS, 3, &path);
         let histogram = outcome.histogram;
         assert_eq!(histogram.counts().iter().sum::<u64>(), outcome.points, "{path}");
         assert!(histogram.share_inside() >= SHARE, "{path}: {histogram:?}");

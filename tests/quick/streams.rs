@@ -2,22 +2,15 @@
 //! differs can be had again, with a waveform.
 
 use std::fs::File;
-use std::io::BufReader;
 
-use crate::common::cores::configurations;
+use crate::common::cores::configuration;
+use crate::common::waveform::waveform;
 use glint::core::Core;
 use glint::cosim::{Lockstep, Outcome};
 use glint::hdl::netlist::Design;
 
 /// Enough for streams of many lanes and several simulators.
 const POINTS: u64 = 70_000;
-
-fn core(name: &str) -> Core {
-    let found = configurations().into_iter();
-    let found = found.map(|(_, core)| core);
-    let named = |core: &Core| core.config.name == name;
-    found.into_iter().find(named).expect("a configuration")
-}
 
 fn lockstep<'a>(core: &'a Core, design: &'a Design, seed: u64) -> Lockstep<'a> {
     let model = core.device.golden(&core.config);
@@ -42,7 +35,7 @@ fn rarely_wrong(core: &Core) -> Design {
 
 #[test]
 fn threads_have_no_influence() {
-    let core = core("rough");
+    let core = configuration("configs/rough.toml");
     let one = run(&core, &core.design, POINTS, 1);
     let three = run(&core, &core.design, POINTS, 3);
     assert_eq!((one.points, one.mismatch.is_none()), (POINTS, true));
@@ -60,7 +53,7 @@ fn threads_have_no_influence() {
 
 #[test]
 fn every_point_is_counted() {
-    let core = core("rough");
+    let core = configuration("configs/rough.toml");
     // One stream, a few lanes, lanes that do not fill two simulators, and many.
     for points in [1, 511, 515, 3_000, 4_096, 5_001] {
         assert_eq!(run(&core, &core.design, points, 2).points, points);
@@ -69,7 +62,7 @@ fn every_point_is_counted() {
 
 #[test]
 fn what_differs_can_be_had_again_with_its_waveform() {
-    let core = core("rough");
+    let core = configuration("configs/rough.toml");
     let wrong = rarely_wrong(&core);
     let found = run(&core, &wrong, POINTS, 2).mismatch.expect("it differs");
     let dir = tempfile::tempdir().expect("a directory");
@@ -82,17 +75,13 @@ fn what_differs_can_be_had_again_with_its_waveform() {
     assert_eq!(again.clocks, found.clock);
 
     // The signal ends with what was simulated, and ten clocks of two edges were written.
-    let mut parser = vcd::Parser::new(BufReader::new(File::open(&path).expect("a file")));
-    let header = parser.parse_header().expect("a header");
-    let scope = header.items.iter().find_map(|item| match item {
-        vcd::ScopeItem::Scope(scope) => Some(scope),
-        _ => None,
-    });
-    let signal = code(scope.expect("the design"), &found.signal).expect("the signal");
+    let (variables, values) = waveform(&path);
+    let signal = format!(".{}", found.signal);
+    let signal = variables.iter().find(|(name, _)| name.ends_with(&signal)).expect("the signal");
     let (mut last, mut times) = (None, 0);
-    for command in parser {
+    for command in values {
         match command.expect("a command") {
-            vcd::Command::ChangeVector(id, bits) if id == signal => {
+            vcd::Command::ChangeVector(id, bits) if id == signal.1.code => {
                 let bit = |all: u64, bit: &vcd::Value| all << 1 | u64::from(*bit == vcd::Value::V1);
                 last = Some(bits.iter().fold(0, bit));
             }
@@ -107,7 +96,7 @@ fn what_differs_can_be_had_again_with_its_waveform() {
 /// For people: no structures of Rust.
 #[test]
 fn what_differs_is_told_in_words() {
-    let core = core("rough");
+    let core = configuration("configs/rough.toml");
     let mut wrong = core.design.clone();
     let sine = wrong.roms.iter_mut().find(|rom| rom.name.contains("sine"));
     sine.expect("a sine").words.reverse();
@@ -117,12 +106,4 @@ fn what_differs_is_told_in_words() {
         assert!(told.contains(part), "{told}");
     }
     assert!(!told.contains('{') && !told.contains("Some("), "{told}");
-}
-
-fn code(scope: &vcd::Scope, name: &str) -> Option<vcd::IdCode> {
-    scope.children.iter().find_map(|item| match item {
-        vcd::ScopeItem::Var(var) if var.reference == name => Some(var.code),
-        vcd::ScopeItem::Scope(inner) => code(inner, name),
-        _ => None,
-    })
 }

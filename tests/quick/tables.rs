@@ -23,7 +23,10 @@ use rayon::prelude::*;
 use serde::Deserialize;
 use serde_json::Value;
 
-use crate::common::cores::{all_configurations, configuration};
+use crate::common::Sure;
+use crate::common::cores::{all_configurations, configuration, parsed};
+use crate::common::files::{json, read};
+use crate::common::json::Json;
 
 /// The cells of a row.
 type Row = Vec<String>;
@@ -57,14 +60,6 @@ const TABLES: [(&str, &str, Make); 17] = [
     (VERIFICATION, "faults_in_verilog", |rows| *rows = faults_in_verilog()),
     (VERIFICATION, "shipped_benches", |rows| *rows = shipped_benches()),
 ];
-
-fn read(path: &str) -> String {
-    fs::read_to_string(path).unwrap_or_else(|error| panic!("{path}: {error}"))
-}
-
-fn json(path: &str) -> Value {
-    serde_json::from_str(&read(path)).unwrap_or_else(|error| panic!("{path}: {error}"))
-}
 
 /// Returns the text of a page before the rows of its table of that name, the rows, and the text after them.
 fn divided<'a>(page: &str, text: &'a str, name: &str) -> (&'a str, Vec<Row>, &'a str) {
@@ -166,10 +161,6 @@ fn put<const COUNT: usize>(row: &mut Row, column: usize, cells: [String; COUNT])
     row.splice(column..column + COUNT, cells);
 }
 
-fn number(value: &Value) -> u64 {
-    value.as_u64().unwrap_or_else(|| panic!("{value} is no number"))
-}
-
 /// Returns the core of a configuration, a study or not.
 fn core(name: &str) -> Core {
     let studies = format!("configs/studies/{name}.toml");
@@ -211,8 +202,8 @@ fn device(row: &mut Row) {
 fn choice(row: &mut Row) {
     let name = key(row).to_owned();
     let core = core(&name);
-    let error = |value: &Value| format!("{:.3}", value.as_f64().expect("an error"));
-    let worst = &json(&format!("proofs/worst/{name}.json"))["units"];
+    let error = |value: &Value| format!("{:.3}", value.number());
+    let worst = &json(format!("proofs/worst/{name}.json"))["units"];
     let record = format!("proofs/{name}.json");
     let together = match fs::exists(&record).expect("readable") {
         true => error(&json(&record)["configurations"][0]["together"]),
@@ -254,12 +245,10 @@ fn area_and_speed(rows: &mut Vec<Row>) {
 
 /// Returns the pipeline of a configuration in which the line of the clock is another, or the same.
 fn pipeline(name: &str, clock: Option<&str>) -> Pipeline {
-    let text = read(&format!("configs/{name}_pipelined.toml"));
+    let text = read(format!("configs/{name}_pipelined.toml"));
     let line = text.lines().find(|line| line.starts_with("clock_mhz")).expect("a clock");
-    let dir = tempfile::tempdir().expect("a directory");
-    let path = dir.path().join(format!("{name}.toml"));
-    fs::write(&path, text.replace(line, clock.unwrap_or(line))).expect("written");
-    configuration(path.to_str().expect("a path")).design.pipeline.expect("a pipeline")
+    let text = text.replace(line, clock.unwrap_or(line));
+    parsed(&format!("{name}.toml"), &text).design.pipeline.expect("a pipeline")
 }
 
 fn register_bits(pipeline: &Pipeline) -> String {
@@ -325,7 +314,7 @@ struct Recorded {
 
 fn record(name: &str) -> Record {
     let path = format!("{}/{name}.json", synth::DIRECTORY);
-    serde_json::from_str(&read(&path)).unwrap_or_else(|error| panic!("{path}: {error}"))
+    serde_json::from_value(json(&path)).sure_of(path)
 }
 
 /// Returns the core of a record, which is of today's configuration.
@@ -391,7 +380,7 @@ fn literature(rows: &mut [Row]) {
 fn verify(rows: &mut [Row]) {
     let proof = &json("proofs/cosine_power.json")["configurations"][0];
     let [evaluations, products] =
-        ["evaluations", "colour_products"].map(|key| grouped(number(&proof[key])));
+        ["evaluations", "colour_products"].map(|key| grouped(proof[key].count()));
     let Faults { planted, caught, equivalent, undecided } =
         Faults::new(&json("mutation/cosine_power.json")["netlist"]["all"]);
     let (planted, caught) = (grouped(planted), caught.values().sum::<u64>());
@@ -425,14 +414,14 @@ struct Faults {
 impl Faults {
     fn new(all: &Value) -> Self {
         let each = |value: &Value| -> BTreeMap<String, u64> {
-            let counts = value.as_object().expect("an object").iter();
-            counts.map(|(name, count)| (name.clone(), number(count))).collect()
+            let counts = value.object().iter();
+            counts.map(|(name, count)| (name.clone(), count.count())).collect()
         };
         Self {
-            planted: number(&all["planted"]),
+            planted: all["planted"].count(),
             caught: each(&all["caught"]),
             equivalent: each(&all["equivalent"]).values().sum(),
-            undecided: number(&all["undecided"]),
+            undecided: all["undecided"].count(),
         }
     }
 }
@@ -484,9 +473,9 @@ fn faults_in_verilog() -> Vec<Row> {
     let counts = |record: &Value| {
         let Faults { planted: netlist, undecided, .. } = Faults::new(&record["netlist"]["all"]);
         let verilog = &record["verilog"];
-        let [planted, lint, bench] = ["planted", "lint", "bench"].map(|key| number(&verilog[key]));
-        let [equivalent, left] = ["equivalent", "undecided"]
-            .map(|key| verilog[key].as_array().expect("a list").len() as u64);
+        let [planted, lint, bench] = ["planted", "lint", "bench"].map(|key| verilog[key].count());
+        let [equivalent, left] =
+            ["equivalent", "undecided"].map(|key| verilog[key].list().len() as u64);
         [planted, lint, bench, equivalent, left, planted + netlist, left + undecided]
     };
     summed(false, counts, |[planted, lint, bench, equivalent, left, all, undecided]| {
@@ -508,7 +497,7 @@ fn noticed_by_shipped_bench(record: &Value) -> [Option<[u64; 2]>; 3] {
     [
         tally(&netlist["all"]),
         tally(&netlist["kinds"]["rom-high-bit"]),
-        Some(["noticed", "of"].map(|count| number(&verilog[count]))),
+        Some(["noticed", "of"].map(|count| verilog[count].count())),
     ]
 }
 

@@ -4,20 +4,11 @@ use std::path::Path;
 
 use glint::base::input;
 use glint::config::{Config, Value};
-use glint::registry::{Device, Registry};
 use glint::synth::{self, Record, Target};
-use glint::tune::{Candidate, Cost, ErrorUnit, Goal, Objective, exhaustive, tune};
+use glint::tune::{Answer, Candidate, Cost, ErrorUnit, Goal, Objective, exhaustive, tune};
 
-use crate::common::cores::configuration;
+use crate::common::cores::{configuration, device};
 use crate::common::sample::sampled_alone;
-
-fn device(name: &str) -> Device {
-    *Registry::catalogue().device(name).expect("a device of the catalogue")
-}
-
-fn defaults(device: &Device) -> Config {
-    device.defaults()
-}
 
 fn integers(range: std::ops::RangeInclusive<i64>) -> Vec<Value> {
     range.map(Value::Integer).collect()
@@ -68,11 +59,16 @@ fn goal(error: f64, target: Target) -> Goal {
     }
 }
 
+/// Returns the best of a device from its defaults on, of which every key is free.
+fn tuned(name: &str, goal: &Goal) -> anyhow::Result<Answer> {
+    tune(&device(name), &device(name).defaults(), &[], goal, &|_| ())
+}
+
 #[test]
 fn the_answer_is_within_a_tenth_of_the_best_there_is() {
     for (name, error, values) in sampled_alone("spaces of tune", spaces(), 2) {
         let device = device(name);
-        let base = defaults(&device);
+        let base = device.defaults();
         let inside: Vec<&str> = values.iter().map(|(key, _)| *key).collect();
         let fixed: Vec<&str> =
             base.values().map(|(key, _)| key).filter(|key| !inside.contains(key)).collect();
@@ -96,12 +92,9 @@ fn the_answer_is_within_a_tenth_of_the_best_there_is() {
 /// and 1 of them: 31 ulp in all, so that half the error takes a bit more.
 #[test]
 fn half_the_error_takes_a_bit_more() {
-    let device = device("cosine-power");
-    let base = defaults(&device);
     let bits = |error: f64| {
         let goal = Goal { unit: ErrorUnit::F, ..goal(error, Target::Ecp5) };
-        let answer = tune(&device, &base, &[], &goal, &|_| ()).expect("an answer");
-        answer.best.config.integer("intensity.fraction")
+        tuned("cosine-power", &goal).expect("an answer").best.config.integer("intensity.fraction")
     };
     // 31 · 2⁻¹⁶ = 0.000473.
     assert_eq!(bits(0.000_474), 16);
@@ -111,9 +104,8 @@ fn half_the_error_takes_a_bit_more() {
 
 #[test]
 fn ports_and_formula_stay() {
-    let device = device("lyon");
-    let base = defaults(&device);
-    let answer = tune(&device, &base, &[], &goal(0.9, Target::Ecp5), &|_| ()).expect("an answer");
+    let base = device("lyon").defaults();
+    let answer = tuned("lyon", &goal(0.9, Target::Ecp5)).expect("an answer");
     for key in ["power", "scale", "vector.fraction", "colour.bits"] {
         assert!(!answer.free.contains(&key), "{key} is free");
         assert_eq!(answer.best.config.value(key), base.value(key), "{key}");
@@ -126,8 +118,8 @@ fn ports_and_formula_stay() {
 #[test]
 fn the_formula_is_compared_where_it_lives() {
     let device = device("quadratic");
-    let base = defaults(&device);
-    let answer = tune(&device, &base, &[], &goal(0.85, Target::Ecp5), &|_| ()).expect("an answer");
+    let base = device.defaults();
+    let answer = tuned("quadratic", &goal(0.85, Target::Ecp5)).expect("an answer");
     assert!(!answer.free.contains(&"coefficient.scheme"), "{:?}", answer.free);
     let reference = |config: &Config| {
         let contract = (device.contract)(config);
@@ -146,34 +138,28 @@ fn the_formula_is_compared_where_it_lives() {
 /// Bits of a ROM that fit the same block RAM, and of products that fit the same DSP blocks, cost nothing.
 #[test]
 fn of_equal_cost_the_least_error_is_taken() {
-    let device = device("cosine-squared");
-    let answer = tune(&device, &defaults(&device), &[], &goal(0.82, Target::Ecp5), &|_| ());
-    let best = answer.expect("an answer").best;
+    let best = tuned("cosine-squared", &goal(0.82, Target::Ecp5)).expect("an answer").best;
     assert!(best.bound.units < 0.711, "{best:?}");
 }
 
 /// An iCE40 UP5K has 8 DSP blocks: `lyon` takes 13 with a multiplier for each product, and fits with shared ones.
 #[test]
 fn configurations_that_fit_the_chip_are_preferred() {
-    let device = device("lyon");
-    let answer = tune(&device, &defaults(&device), &[], &goal(0.9, Target::Ice40), &|_| ());
-    let best = answer.expect("an answer").best;
+    let best = tuned("lyon", &goal(0.9, Target::Ice40)).expect("an answer").best;
     assert!(best.cost.dsps <= 8 && best.cost.excess(Target::Ice40).is_empty(), "{best:?}");
     assert_eq!(best.config.choice("colour.multipliers"), "1");
 }
 
 #[test]
 fn the_front_falls_and_has_the_answer() {
-    let device = device("cosine-power");
-    let base = defaults(&device);
-    let run = || tune(&device, &base, &[], &goal(0.75, Target::Ecp5), &|_| ()).expect("an answer");
+    let run = || tuned("cosine-power", &goal(0.75, Target::Ecp5)).expect("an answer");
     let (answer, again) = (run(), run());
     for pair in answer.front.windows(2) {
         assert!(pair[0].bound.units <= pair[1].bound.units, "{:?}", answer.front);
         assert!(pair[0].cost.area(Target::Ecp5) > pair[1].cost.area(Target::Ecp5));
     }
     assert!(answer.front.iter().any(|it| it.config == answer.best.config));
-    let texts = |answer: &glint::tune::Answer| {
+    let texts = |answer: &Answer| {
         answer.front.iter().map(|it| format!("{:?}", it.config)).collect::<Vec<_>>()
     };
     assert_eq!(texts(&answer), texts(&again));
@@ -181,37 +167,30 @@ fn the_front_falls_and_has_the_answer() {
 
 #[test]
 fn a_goal_out_of_reach_says_what_is_in_the_way() {
-    let device = device("cosine-power");
-    // Rounding to eight bits costs half a unit, whatever f is.
-    let refused = tune(&device, &defaults(&device), &[], &goal(0.1, Target::Ecp5), &|_| ());
-    let refused = format!("{:#}", refused.expect_err("out of reach"));
-    assert!(refused.contains("no configuration keeps 0.1 output units"), "{refused}");
-    assert!(
-        refused.contains("rounding of the colour outputs (`output.rounding`), 0.500000"),
-        "{refused}"
-    );
-    let fast = Goal { clock: Some(5000.0), ..goal(0.9, Target::Ecp5) };
-    let refused = tune(&device, &defaults(&device), &[], &fast, &|_| ());
-    let refused = format!("{:#}", refused.expect_err("out of reach"));
-    assert!(refused.contains("5000.0 MHz are wanted"), "{refused}");
-    let many = Goal { rate: Some(500.0), ..goal(0.9, Target::Ecp5) };
-    let refused = tune(&device, &defaults(&device), &[], &many, &|_| ());
-    let refused = format!("{:#}", refused.expect_err("out of reach"));
-    let wanted = "4000.0 MHz are wanted for 500 million points a second at 8 clocks a point";
-    assert!(refused.contains(wanted), "{refused}");
+    let goal = |error| goal(error, Target::Ecp5);
+    let fast = Goal { clock: Some(5000.0), ..goal(0.9) };
+    let many = Goal { rate: Some(500.0), ..goal(0.9) };
+    for (goal, said) in [
+        // Rounding to eight bits costs half a unit, whatever f is.
+        (goal(0.1), "no configuration keeps 0.1 output units"),
+        (goal(0.1), "rounding of the colour outputs (`output.rounding`), 0.500000"),
+        (fast, "5000.0 MHz are wanted"),
+        (many, "4000.0 MHz are wanted for 500 million points a second at 8 clocks a point"),
+    ] {
+        let refused = tuned("cosine-power", &goal).expect_err("out of reach");
+        assert!(format!("{refused:#}").contains(said), "{refused:#}");
+    }
 }
 
 /// Clocks of a point as README.md has them: `cosine-power` takes 8, a pipeline 1; a rate is the clock divided by them.
 #[test]
 fn a_rate_asks_for_the_clock_that_the_clocks_of_a_point_need() {
-    let device = device("cosine-power");
-    let slow = tune(&device, &defaults(&device), &[], &goal(0.9, Target::Ecp5), &|_| ());
-    let slow = slow.expect("an answer").best;
+    let slow = tuned("cosine-power", &goal(0.9, Target::Ecp5)).expect("an answer").best;
     assert_eq!(slow.clocks, Some(8.0));
     assert_eq!(slow.rate(), Some(slow.cost.mhz / 8.0));
     let wanted = slow.rate().expect("a rate") * 0.99;
     let kept = Goal { rate: Some(wanted), ..goal(0.9, Target::Ecp5) };
-    let kept = tune(&device, &defaults(&device), &[], &kept, &|_| ()).expect("an answer").best;
+    let kept = tuned("cosine-power", &kept).expect("an answer").best;
     assert!(kept.cost.mhz >= 8.0 * wanted, "{} MHz", kept.cost.mhz);
 }
 
@@ -226,9 +205,9 @@ fn median(mut values: Vec<f64>) -> f64 {
 #[test]
 fn a_rate_chooses_architecture_and_interval() {
     let device = device("cosine-power");
-    let mut pipelined = defaults(&device);
+    let mut pipelined = device.defaults();
     pipelined.set("architecture", Value::Text("pipelined".to_owned()));
-    let plain = defaults(&device);
+    let plain = device.defaults();
     let architecture = ["architecture"];
     for (base, fixed, rate, interval, multipliers) in [
         (&plain, &[][..], 30.0, "4", 2),

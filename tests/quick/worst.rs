@@ -1,54 +1,43 @@
 //! The largest errors that are known where a proof does not cover all operands, `proofs/worst/<name>.json`, and the search
 //! that finds them.
 
-use std::fs;
-
 use crate::common::cores::configuration;
+use crate::common::files::{json, paths};
+use crate::common::json::Json;
 use glint::cosim::search;
-use serde_json::Value;
-
-fn record(name: &str) -> Value {
-    let path = format!("proofs/worst/{name}.json");
-    let text = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
-    serde_json::from_str(&text).unwrap_or_else(|error| panic!("{path}: {error}"))
-}
 
 /// By the formula of the claim, in f64, and by hand: the square of n/2·(cos(γ − dγ) − 1) + 1.
 #[test]
 fn the_worst_known_error_of_rough_is_what_its_record_says() {
-    let record = record("rough");
+    let record = json("proofs/worst/rough.json");
     let unit = configuration("configs/rough.toml");
-    let raw = |name: &str| record["operands"][name].as_i64().expect("a raw operand");
+    let raw = |name: &str| record["operands"][name].integer();
     let control = ["cos_gamma", "cos_dgamma", "exponent", "dgamma_negative"].map(raw);
     assert_eq!(control[3], 1, "the formula below is that of γ − dγ");
-    let name = record["output"].as_str().expect("an output").trim_end_matches("_out").to_owned();
-    let (colour, output) = (raw(&name), record["raw"].as_i64().expect("a raw output"));
+    let name = record["output"].text().trim_end_matches("_out").to_owned();
+    let (colour, output) = (raw(&name), record["raw"].integer());
     let [cos_gamma, cos_dgamma] = [control[0], control[1]].map(|raw| raw as f64 / 1_048_576.0);
     let sines = ((1.0 - cos_gamma * cos_gamma) * (1.0 - cos_dgamma * cos_dgamma)).sqrt();
     let base = control[2] as f64 / 2.0 * (cos_gamma * cos_dgamma + sines - 1.0) + 1.0;
     let units = (output as f64 - colour as f64 * base * base).abs();
     let highlight = unit.contract.highlight().expect("a highlight");
     assert_eq!(highlight.colour(highlight.f(&control), colour), output);
-    assert!((record["units"].as_f64().expect("a number") - units).abs() < 1e-9, "{units}");
+    assert!((record["units"].number() - units).abs() < 1e-9, "{units}");
     assert!(units > 0.9428 && units <= unit.contract.bound().units, "{units}");
 }
 
 /// A record that `glint worst --out proofs/worst` would not take for another configuration's.
 #[test]
 fn records_are_of_todays_contracts() {
-    let files = fs::read_dir("proofs/worst").expect("records");
-    let files: Vec<_> = files.map(|file| file.expect("a file").path()).collect();
-    assert!(!files.is_empty());
-    for file in files {
-        let record = record(file.file_stem().and_then(|stem| stem.to_str()).expect("a name"));
-        let core = configuration(record["config"].as_str().expect("a configuration"));
-        assert_eq!(record["contract"], core.contract_digest(), "{}", file.display());
+    for file in paths("proofs/worst", ".json") {
+        let record = json(&file);
+        let core = configuration(record["config"].text());
+        assert_eq!(record["contract"], core.contract_digest(), "{file}");
         let operands = core.contract.operands().iter();
-        let operands: Vec<i64> = operands
-            .map(|operand| record["operands"][&operand.name].as_i64().expect("a raw operand"))
-            .collect();
+        let operands: Vec<i64> =
+            operands.map(|operand| record["operands"][&operand.name].integer()).collect();
         let units = core.contract.largest_error(&operands);
-        assert_eq!(record["units"].as_f64(), Some(units), "{}", file.display());
+        assert_eq!(record["units"].as_f64(), Some(units), "{file}");
     }
 }
 

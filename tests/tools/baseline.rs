@@ -2,10 +2,11 @@
 //! circuit that computes something else would be no measure.
 
 use std::fmt::Write;
-use std::fs;
 use std::path::Path;
 
+use crate::common::files::read;
 use crate::common::tools;
+use glint::cosim::Random;
 use glint::tools::Simulator;
 
 const COSINE: u32 = 17;
@@ -49,15 +50,9 @@ fn expected(point: &Point) -> [u64; 3] {
     point.colours.map(|colour| (f * colour + (1 << (INTENSITY - 1))) >> INTENSITY)
 }
 
-/// Numerical Recipes' 64-bit generator: the same points everywhere.
-fn random(state: &mut u64) -> u64 {
-    *state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-    *state >> 33
-}
-
 fn points() -> Vec<Point> {
     let corners = [0, 1, 127, 128, ONE / 2, ONE - 129, ONE - 1, ONE, ONE + 1, 2 * ONE - 1];
-    let mut state = 1;
+    let mut random = Random::new(1);
     let mut points = Vec::new();
     for cos_gamma in corners {
         for cos_dgamma in corners {
@@ -77,25 +72,24 @@ fn points() -> Vec<Point> {
     }
     while points.len() < POINTS {
         // Highlights live near 1.0: half of the points have an angle of a few degrees there.
-        let mut near_one = |bits: u32| ONE - (random(&mut state) % (1 << bits)).min(ONE);
+        let mut near_one = |bits: u32| ONE - random.below(1 << bits).min(ONE);
         let (cos_gamma, cos_dgamma) = match points.len() % 4 {
             0 => (near_one(18), near_one(18)),
             1 => (near_one(13), near_one(14)),
             2 => (near_one(9), near_one(9)),
             _ => (near_one(17), ONE),
         };
-        let exponent = random(&mut state) % (1 << (1 + random(&mut state) % 10));
-        let dgamma_negative = random(&mut state) & 1 == 1;
-        let colours = [0; 3].map(|_| random(&mut state) % 256);
+        let exponent_bits = 1 + random.below(10);
+        let exponent = random.below(1 << exponent_bits);
+        let dgamma_negative = random.once_in(2);
+        let colours = [0; 3].map(|_| random.below(256));
         points.push(Point { cos_gamma, cos_dgamma, exponent, dgamma_negative, colours });
     }
     points
 }
 
 fn baseline(name: &str) -> (String, String) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/baseline").join(name);
-    let text = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path:?}: {error}"));
-    (name.to_owned(), text)
+    (name.to_owned(), read(Path::new("benches/baseline").join(name)))
 }
 
 #[test]
@@ -143,10 +137,6 @@ fn its_sine_table_is_the_sine() {
 
 #[test]
 fn it_is_clean() {
-    let dir = tempfile::tempdir().unwrap();
-    for name in ["rough_hand.v", "rough_hand_sine.mem"] {
-        let (name, text) = baseline(name);
-        fs::write(dir.path().join(name), text).unwrap();
-    }
-    tools::assert_lint_clean(dir.path(), "rough_hand");
+    let files = ["rough_hand.v", "rough_hand_sine.mem"].map(baseline);
+    tools::assert_files_are_clean(&files.to_vec(), "rough_hand");
 }

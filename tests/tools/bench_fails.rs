@@ -1,11 +1,12 @@
 //! The emitted bench: what differs makes it fail, in every simulator, and it says where.
 
-use crate::common::tools::LIMIT;
+use crate::common::Sure;
+use crate::common::tools::{LIMIT, benched};
 use glint::dsl::{Designer, end, step, valid};
 use glint::fixed::{Format, Overflow, Rounding};
 use glint::hdl::netlist::Design;
 use glint::package::{EmitInputs, Vectors, emit, sources};
-use glint::tools::{BenchDifference, BenchOutcome, Simulator, bench_waveform, run_bench};
+use glint::tools::{BenchDifference, BenchOutcome, Simulator, bench_waveform};
 
 /// y = x², of an operand of four bits, to four bits.
 fn squarer() -> Design {
@@ -20,7 +21,7 @@ fn squarer() -> Design {
         step("say \"square\"", [y.load()]),
         step("result", [valid(), end()]),
     ]);
-    d.finish().unwrap_or_else(|error| panic!("{error}"))
+    d.finish().sure()
 }
 
 /// Returns a reset, one point with x = 12/16, and what comes of it: floor(144/16) = 9.
@@ -43,12 +44,11 @@ fn vectors() -> Vectors {
 
 fn files(vectors: Vectors) -> Vec<(String, String)> {
     let inputs = EmitInputs { vectors: Some(vectors), ..EmitInputs::default() };
-    sources(emit(&squarer(), &inputs).unwrap_or_else(|error| panic!("{error:?}")))
+    sources(emit(&squarer(), &inputs).sure())
 }
 
 fn run(simulator: Simulator, vectors: Vectors) -> BenchOutcome {
-    run_bench(simulator, &files(vectors), "squarer_tb", LIMIT)
-        .unwrap_or_else(|error| panic!("{error:?}"))
+    benched(simulator, &files(vectors), "squarer_tb")
 }
 
 #[test]
@@ -63,8 +63,7 @@ fn the_clocks_before_a_difference_can_be_seen_in_both_simulators() {
         let values = (found.signal.as_str(), found.simulated.as_str(), found.expected.as_str());
         assert_eq!(values, ("y_out", "9", "8"));
         let files = files(wrong.clone());
-        let waveform = bench_waveform(simulator, &files, "squarer_tb", (3, 5), LIMIT)
-            .unwrap_or_else(|error| panic!("{error:?}"));
+        let waveform = bench_waveform(simulator, &files, "squarer_tb", (3, 5), LIMIT).sure();
         let text = String::from_utf8(waveform).expect("a VCD is text");
         assert!(text.contains(" y_out "), "{simulator}:\n{text}");
         let times = text.lines().filter_map(|line| line.strip_prefix('#')?.parse::<u64>().ok());

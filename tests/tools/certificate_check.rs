@@ -1,19 +1,17 @@
 //! The check of `glint verify` that has Gappa prove the bound of a contract.
 
-use std::path::Path;
 use std::time::Duration;
 
 use glint::core::Core;
 use glint::hdl::netlist::{Driver, Op};
-use glint::verify::{CHECKS, Effort, Finding, Subject, Verdict};
+use glint::verify::{Effort, Finding, Verdict};
 
 use crate::common::cores::configuration;
+use crate::common::tools::{EFFORT, finding};
 
 fn found(core: &Core) -> Finding {
-    let check = CHECKS.iter().find(|check| check.id == "certificate").expect("the check");
-    let effort = Effort { full: true, without_tools: false, time_limit: Duration::from_secs(300) };
-    let subject = Subject::new("core.toml", core, effort, Path::new("proofs"));
-    check.run(&subject, &|_| ()).finding
+    let effort = Effort { full: true, time_limit: Duration::from_secs(300), ..EFFORT };
+    finding(core, "certificate", effort)
 }
 
 #[test]

@@ -5,7 +5,6 @@
 mod smoothstep;
 
 use std::path::Path;
-use std::process::Command;
 use std::time::Duration;
 
 use glint::certify::{self, Outcome, Statement, prove, questions, statements};
@@ -14,10 +13,11 @@ use glint::core::Core;
 use glint::golden::Contract;
 use glint::hdl::netlist::{Design, Driver, Op};
 use glint::registry::Device;
-use glint::tools::Tool;
 use rayon::prelude::*;
 
 use crate::common::cores::{configuration, parsed};
+use crate::common::files::{paths, put, read};
+use crate::common::tools::{cargo_example, succeeded, tool};
 use crate::example::fresnel;
 
 /// The time limit of a proof; Gappa takes a second where it finds one.
@@ -45,9 +45,9 @@ fn stated(name: &str, keys: &str) -> Vec<Statement> {
 }
 
 fn accepted(script: &str) -> bool {
-    let gappa = Tool::find("gappa").unwrap_or_else(|error| panic!("{error}"));
+    let gappa = tool("gappa");
     let dir = tempfile::tempdir().expect("a directory");
-    std::fs::write(dir.path().join("statement.g"), script).expect("a script");
+    put(dir.path().join("statement.g"), script);
     let run = gappa.run(["statement.g"], dir.path(), LIMIT);
     run.is_ok_and(|run| run.status.success() && !run.output.contains("trivially equal"))
 }
@@ -109,7 +109,7 @@ fn a_device_without_records_is_certified() {
 
 /// Returns the bound that Gappa finds.
 fn found(design: &Design, contract: &dyn Contract) -> (f64, Vec<Statement>) {
-    let gappa = Tool::find("gappa").unwrap_or_else(|error| panic!("{error}"));
+    let gappa = tool("gappa");
     let asked = questions(design, contract, Duration::MAX).expect("questions");
     (certify::bound(&gappa, &asked, LIMIT).expect("Gappa").expect("a bound"), asked)
 }
@@ -133,16 +133,9 @@ fn a_bound_is_found_where_none_is_stated() {
 #[test]
 fn the_bound_of_a_device_of_a_user_is_printed() {
     let dir = tempfile::tempdir().expect("a directory");
-    std::fs::write(dir.path().join("s.toml"), "device = \"smoothstep\"\n").expect("a file");
-    let mut cargo = Command::new(env!("CARGO"));
-    cargo.args(["run", "--quiet", "--features", "outside-tools", "--example", "smoothstep"]);
-    if !cfg!(debug_assertions) {
-        cargo.arg("--release");
-    }
+    put(dir.path().join("s.toml"), "device = \"smoothstep\"\n");
     let file = dir.path().join("s.toml");
-    let output = cargo.args(["--", "certify"]).arg(&file).output().expect("the example runs");
-    let text = String::from_utf8_lossy(&output.stdout);
-    assert!(output.status.success(), "{output:?}");
+    let text = succeeded(cargo_example("smoothstep").arg("certify").arg(&file));
     assert!(text.contains("certified: |output - formula| <= 0.6"), "{text}");
     assert!(text.contains("a bound that is found, as the contract states none"), "{text}");
 }
@@ -283,14 +276,13 @@ fn what_cannot_be_stated_says_which_step() {
 
 /// Returns the certificates of a configuration, with the statements of today.
 fn committed(name: &str) -> Vec<(String, Statement)> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let Core { design, contract, .. } = configuration(&format!("configs/{name}.toml"));
     let stated = statements(&design, contract.as_ref(), Duration::MAX).expect("statements");
-    let directory = root.join("proofs/certificates").join(name);
-    assert_eq!(std::fs::read_dir(&directory).expect("certificates").count(), stated.len());
+    let directory = Path::new("proofs/certificates").join(name);
+    assert_eq!(paths(&directory, "").len(), stated.len());
     let read = |statement: Statement| {
         let file = directory.join(format!("{}_{}.g", statement.output, statement.number));
-        (std::fs::read_to_string(file).expect("a certificate"), statement)
+        (read(file), statement)
     };
     stated.into_iter().map(read).collect()
 }
@@ -313,8 +305,7 @@ fn committed_certificates_are_those_of_today_and_proved() {
 #[ignore = "on request: Coq is no tool that tools/install brings, and takes seconds to minutes a statement"]
 fn coq_accepts_certificates() {
     let wanted = CERTIFIED.into_iter().take(BY_COQ);
-    let [gappa, coq] =
-        ["gappa", "coqc"].map(|tool| Tool::find(tool).unwrap_or_else(|error| panic!("{error}")));
+    let [gappa, coq] = ["gappa", "coqc"].map(tool);
     let all = wanted.flat_map(|it| committed(it).into_iter().map(move |of| (it, of)));
     let all: Vec<_> = all.collect();
     all.par_iter().for_each(|(name, (_, statement))| {

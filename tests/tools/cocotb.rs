@@ -2,11 +2,12 @@
 //!
 //! cocotb 2.1 refuses Verilator 5.006, so that they run under Icarus Verilog.
 
-use std::fs;
 use std::path::Path;
 
+use crate::common::Sure;
 use crate::common::bench::with_flipped_bit;
 use crate::common::cores::{Emitted, all_configurations, configuration, configuration_with};
+use crate::common::files::{put, read};
 use crate::common::tools::{LIMIT, tool};
 use crate::faults::faults;
 use glint::core::Core;
@@ -110,8 +111,8 @@ fn memory_is_noticed(name: &str, rom: &str, wrong: impl Fn(&str) -> String) {
     let core = configuration(&format!("configs/{name}.toml"));
     let dir = dir(&core);
     let file = format!("rtl_out/{name}/{name}_{rom}.mem");
-    let text = fs::read_to_string(dir.path().join(&file)).expect("a memory");
-    fs::write(dir.path().join(&file), wrong(&text)).expect("written");
+    let path = dir.path().join(&file);
+    put(&path, wrong(&read(&path)));
     assert_noticed(dir.path(), &core, "computations_are_exact", &file);
 }
 
@@ -145,9 +146,9 @@ fn dir(core: &Core) -> tempfile::TempDir {
 /// Runs the command that the head of the bench of a module gives, in the directory of its core.
 fn run(dir: &Path, module: &str, name: &str) -> Run {
     let bench = format!("testbench/{name}/test_{module}.py");
-    let text = fs::read_to_string(dir.join(&bench)).expect("a bench");
+    let text = read(dir.join(&bench));
     assert!(text.contains(&format!("    $ python {bench}\n")), "{text}");
-    tool("python").run([bench], dir, LIMIT).unwrap_or_else(|error| panic!("{error:#}"))
+    tool("python").run([bench], dir, LIMIT).sure()
 }
 
 fn assert_noticed(dir: &Path, core: &Core, test: &str, what: &str) {

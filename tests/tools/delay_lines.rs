@@ -1,10 +1,10 @@
 //! Delay lines of the emitted Verilog: memories in place of registers. A bench fails where one is too long or too short,
 //! or does not wait when points do.
 
-use glint::tools::{Simulator, run_bench};
+use glint::tools::Simulator;
 
 use crate::common::cores::{Emitted, Files, configuration, configuration_with};
-use crate::common::tools::LIMIT;
+use crate::common::tools::benched;
 
 /// Points with pauses and stalls.
 const POINTS: u64 = 60;
@@ -12,8 +12,7 @@ const POINTS: u64 = 60;
 const CONFIG: &str = "configs/threshold_pipelined.toml";
 
 fn passes(simulator: Simulator, files: &Files, bench: &str) -> bool {
-    let outcome = run_bench(simulator, files, bench, LIMIT);
-    outcome.unwrap_or_else(|error| panic!("{error:?}")).passed
+    benched(simulator, files, bench).passed
 }
 
 /// Returns the files with a change in the text of the module, which the change must find.

@@ -7,23 +7,19 @@ pub mod fresnel;
 
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 
 use fresnel::FRESNEL;
 use glint::config::{Config, sample};
-use glint::core::Core;
+
+use crate::common::cores::{assert_agrees, random};
+use crate::common::files::read;
+use crate::common::json::Json;
+use crate::common::tools::cargo_example;
 
 /// Runs the example as its user does.
 fn run(directory: &Path, arguments: &[&str]) -> Output {
-    let mut cargo = Command::new(env!("CARGO"));
-    // The features of the test, so that the library is not built once more.
-    cargo.args(["run", "--quiet", "--features", "outside-tools", "--example", "fresnel"]);
-    cargo.arg("--manifest-path");
-    cargo.arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("Cargo.toml"));
-    if !cfg!(debug_assertions) {
-        cargo.arg("--release");
-    }
-    let output = cargo.arg("--").args(arguments).current_dir(directory).output();
+    let output = cargo_example("fresnel").args(arguments).current_dir(directory).output();
     output.expect("cargo runs")
 }
 
@@ -48,8 +44,7 @@ fn every_command_works() {
     for file in ["rtl_out/fresnel/fresnel.v", "testbench/fresnel/fresnel_tb.v"] {
         assert!(directory.join("out").join(file).is_file(), "{file}");
     }
-    let core =
-        fs::read_to_string(directory.join("out/rtl_out/fresnel/fresnel.v")).expect("written");
+    let core = read(directory.join("out/rtl_out/fresnel/fresnel.v"));
     assert!(core.contains("To regenerate: fresnel generate f.toml\n"), "{core}");
     succeed(directory, &[&generate[..], &["--check"]].concat());
     assert!(succeed(directory, &["--help"]).contains("\n  fresnel generate my_core.toml"));
@@ -83,13 +78,7 @@ fn the_catalogue_is_not_there() {
     let directory = tempfile::tempdir().expect("a directory");
     let list = succeed(directory.path(), &["list", "--json"]);
     let list: serde_json::Value = serde_json::from_str(&list).expect("JSON");
-    let names: Vec<&str> = list["devices"]
-        .as_array()
-        .expect("a list")
-        .iter()
-        .filter_map(|device| device["name"].as_str())
-        .collect();
-    assert_eq!(names, ["fresnel"]);
+    assert_eq!(list["devices"].each("name"), ["fresnel"]);
     let rough = run(directory.path(), &["new", "rough"]);
     assert_eq!(rough.status.code(), Some(2));
 }
@@ -149,16 +138,8 @@ fn the_bound_holds_everywhere() {
 
 #[test]
 fn random_configurations_agree_on_every_clock() {
-    let schema = (FRESNEL.schema)();
     for seed in 0..40 {
-        let config = sample(&schema, seed);
-        let core = Core::new(FRESNEL, config).unwrap_or_else(|error| panic!("{error:#}"));
-        let outcome = core
-            .lockstep(seed)
-            .and_then(|lockstep| lockstep.run(500, &|_| ()))
-            .unwrap_or_else(|error| panic!("{error:#}"));
-        assert!(outcome.mismatch.is_none(), "{seed}: {:?}", outcome.mismatch);
-        let worst = outcome.worst.expect("results").units;
-        assert!(worst <= core.contract.bound().units, "{seed}: {worst}");
+        let (toml, core) = random(FRESNEL, seed);
+        assert_agrees(&core, 500, seed, &toml);
     }
 }

@@ -3,6 +3,7 @@
 use std::fs;
 use std::time::Duration;
 
+use crate::common::Sure;
 use crate::common::tools;
 use glint::tools::{Simulator, run_bench};
 
@@ -82,7 +83,7 @@ fn yosys_synthesises_and_refuses_latches() {
 #[test]
 fn every_tool_of_the_install_script_answers() {
     for name in ["iverilog", "vvp", "verilator", "yosys", "nextpnr-ice40", "fusesoc"] {
-        let version = tools::tool(name).version().unwrap_or_else(|error| panic!("{error:#}"));
+        let version = tools::tool(name).version().sure();
         assert!(version.contains(|c: char| c.is_ascii_digit()), "{name}: {version}");
     }
 }

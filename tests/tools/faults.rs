@@ -1,10 +1,10 @@
 //! Faults that are planted in emitted files.
 
-use std::fs;
 use std::path::Path;
 
 use glint::tools::prove;
 
+use crate::common::files::{put, read, replaced};
 use crate::common::tools::LIMIT;
 
 /// A fault of `faults.txt`.
@@ -46,8 +46,7 @@ impl Fault {
     /// # Panics
     /// It can be nowhere.
     pub fn in_text(&self, text: &str) -> String {
-        assert!(text.contains(&self.right), "`{}` is not there, of {}", self.right, self.of);
-        text.replace(&self.right, &self.wrong)
+        replaced(text, &self.right, &self.wrong)
     }
 
     /// Plants it in a file.
@@ -55,8 +54,7 @@ impl Fault {
     /// # Panics
     /// It can be nowhere in it.
     pub fn plant(&self, path: &Path) {
-        let text = fs::read_to_string(path).expect("a file");
-        fs::write(path, self.in_text(&text)).expect("written");
+        put(path, self.in_text(&read(path)));
     }
 
     /// # Panics

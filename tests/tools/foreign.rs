@@ -1,12 +1,11 @@
 //! Crates outside the workspace that use Glint: by a path to the checkout, and by the packages as they would be published.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::Command;
 
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
+use crate::common::files::{put, read, root};
+use crate::common::tools::succeeded;
 
 /// Returns the directory that all builds here share, beside that of the tests.
 fn target() -> PathBuf {
@@ -34,37 +33,29 @@ impl Foreign {
 
     /// The program of `tests/tools/foreign`, with the device of the example beside it.
     fn with_devices(dependencies: &str) -> Self {
-        let text = |file: &str| fs::read_to_string(root().join(file)).expect(file);
-        let foreign = Self::new("foreign", dependencies, &text("tests/tools/foreign/program.rs"));
+        let foreign = Self::new("foreign", dependencies, &read("tests/tools/foreign/program.rs"));
         for file in ["main", "description", "golden"] {
             let name = format!("fresnel/{file}.rs");
-            foreign.write(&format!("src/{name}"), &text(&format!("examples/{name}")));
+            foreign.write(&format!("src/{name}"), &read(format!("examples/{name}")));
         }
         foreign
     }
 
     fn write(&self, name: &str, text: &str) {
-        let path = self.0.path().join(name);
-        fs::create_dir_all(path.parent().expect("a directory")).expect("made");
-        fs::write(path, text).expect("written");
+        put(self.0.path().join(name), text);
     }
 
     /// Runs a subcommand of Cargo, and returns what it prints.
     fn cargo(&self, arguments: &[&str]) -> String {
         let mut cargo = Command::new(env!("CARGO"));
         cargo.args(arguments).current_dir(&self.0).env("CARGO_TARGET_DIR", target());
-        let output = cargo.output().expect("cargo runs");
-        let errors = String::from_utf8_lossy(&output.stderr);
-        assert!(output.status.success(), "{arguments:?}: {errors}");
-        String::from_utf8(output.stdout).expect("UTF-8")
+        succeeded(&mut cargo)
     }
 }
 
 /// Returns the packages, unpacked, each in place of the one in the registry.
 fn packages() -> String {
-    let said = Command::new("bash").arg(root().join("tools/package")).output().expect("bash runs");
-    assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
-    let unpacked = String::from_utf8(said.stdout).expect("UTF-8");
+    let unpacked = succeeded(Command::new("bash").arg(root().join("tools/package")));
     let crates = unpacked.lines().map(|path| {
         let name =
             path.rsplit('/').next().and_then(|name| name.rsplit_once('-')).expect("a name").0;
@@ -78,7 +69,7 @@ fn a_program_made_of_the_packages_generates_and_simulates() {
     let packages = packages();
     assert_eq!(packages.lines().count(), published(), "{packages}");
     let foreign = Foreign::with_devices("glint-hdl = \"0.1\"");
-    let manifest = fs::read_to_string(foreign.0.path().join("Cargo.toml")).expect("read");
+    let manifest = read(foreign.0.path().join("Cargo.toml"));
     foreign.write("Cargo.toml", &format!("{manifest}[patch.crates-io]\n{packages}"));
     for (device, name) in [("fresnel", "fresnel"), ("function", "my_function"), ("root", "root")] {
         let run =
@@ -86,7 +77,7 @@ fn a_program_made_of_the_packages_generates_and_simulates() {
         foreign.write("core.toml", &run(&["new", device]));
         run(&["generate", "core.toml", "--out", "out", "--quiet"]);
         let core = foreign.0.path().join("out/rtl_out").join(name).join(format!("{name}.v"));
-        let core = fs::read_to_string(core).expect("a core");
+        let core = read(core);
         assert!(core.contains(&format!("module {name}")), "{core}");
         let cosim = run(&["cosim", "core.toml", "--points", "200", "--quiet", "--json"]);
         let cosim: serde_json::Value = serde_json::from_str(&cosim).expect("JSON");
@@ -96,8 +87,7 @@ fn a_program_made_of_the_packages_generates_and_simulates() {
 
 /// Returns how many crates the workspace publishes: all but those that are built for Python and for a page.
 fn published() -> usize {
-    let manifest = fs::read_to_string(root().join("Cargo.toml")).expect("a manifest");
-    let manifest: toml::Table = manifest.parse().expect("TOML");
+    let manifest: toml::Table = read("Cargo.toml").parse().expect("TOML");
     manifest["workspace"]["default-members"].as_array().expect("a list").len()
 }
 
@@ -115,7 +105,7 @@ fn a_crate_by_a_path_compiles_without_the_command_line_too() {
 /// The example at the head of `glint-rtl`.
 #[test]
 fn a_program_of_the_hardware_crate_alone_runs() {
-    let head = fs::read_to_string(root().join("generator/hdl/lib.rs")).expect("a crate");
+    let head = read("generator/hdl/lib.rs");
     let lines = head.lines().skip_while(|line| *line != "//! ```").skip(1);
     let lines = lines.take_while(|line| *line != "//! ```");
     let code = lines.map(|line| line.trim_start_matches("//!").trim_start_matches(" # "));

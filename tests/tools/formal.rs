@@ -3,25 +3,22 @@
 //!
 //! The tasks for SymbiYosys have the same commands and the same depth; it is no part of the tools here.
 
-use std::fs;
-use std::path::Path;
 use std::time::Duration;
 
+use crate::common::Sure;
 use crate::common::bench::with_flipped_bit;
 use crate::common::cores::{Emitted, all_configurations, configuration, parsed};
-use crate::common::tools::LIMIT;
+use crate::common::files::{put, read};
+use crate::common::tools::{EFFORT, LIMIT, finding};
 use crate::faults::{Fault, faults};
 use glint::core::Core;
 use glint::tools::{LimitReached, Limits, PROOF_LIMITS, prove};
-use glint::verify::{CHECKS, Effort, Subject, Verdict};
+use glint::verify::Verdict;
 use rayon::prelude::*;
 
 #[test]
 fn every_configuration_is_proved() {
-    all_configurations().par_iter().for_each(|(path, core)| {
-        let (dir, name) = emitted(core);
-        prove(dir.path(), &name, LIMIT).unwrap_or_else(|error| panic!("{path}: {error:#}"));
-    });
+    all_configurations().par_iter().for_each(|(path, core)| assert_proved(core, path));
 }
 
 #[test]
@@ -29,18 +26,14 @@ fn pipelines_with_and_without_stalls_and_a_side_channel_are_proved() {
     for more in
         ["side = 8", "stall = \"none\"", "stall = \"none\"\nside = 3", "stages = 1\nside = 2"]
     {
-        let core = pipeline(more);
-        let (dir, name) = emitted(&core);
-        prove(dir.path(), &name, LIMIT).unwrap_or_else(|error| panic!("{more}: {error:#}"));
+        assert_proved(&pipeline(more), more);
     }
 }
 
 #[test]
 fn starts_in_the_last_clock_are_proved() {
-    ["lyon", "quad-cosine"].par_iter().for_each(|device| {
-        let (dir, name) = emitted(&buffered(device));
-        prove(dir.path(), &name, LIMIT).unwrap_or_else(|error| panic!("{device}: {error:#}"));
-    });
+    let devices = ["lyon", "quad-cosine"];
+    devices.par_iter().for_each(|device| assert_proved(&buffered(device), device));
     let core = buffered("quad-cosine");
     faults("buffered").par_iter().for_each(|fault| assert_breaks(&core, fault));
 }
@@ -76,6 +69,11 @@ fn faults_break_the_proof() {
     }
 }
 
+fn assert_proved(core: &Core, what: &str) {
+    let (dir, name) = emitted(core);
+    prove(dir.path(), &name, LIMIT).sure_of(what);
+}
+
 fn assert_breaks(core: &Core, fault: &Fault) {
     let (dir, name) = emitted(core);
     fault.assert_breaks(dir.path(), &name, &format!("{name}{}", fault.of));
@@ -90,8 +88,7 @@ fn a_wrong_bit_of_sequencing_breaks_the_proof() {
         (0..core.design.control.microprogram.len()).into_par_iter().for_each(|word| {
             let (dir, name) = emitted(&core);
             let path = dir.path().join(format!("{name}_control.mem"));
-            let text = fs::read_to_string(&path).expect("a file");
-            fs::write(&path, with_flipped_bit(&text, word, bit)).expect("written");
+            put(&path, with_flipped_bit(&read(&path), word, bit));
             let proof = prove(dir.path(), &name, LIMIT);
             assert!(proof.is_err(), "{name}: word {word} without bit {bit}");
         });
@@ -105,7 +102,7 @@ fn a_domain_narrower_than_its_port_is_proved() {
     let text = "device = \"lyon\"\n[domain]\nexponent_min = 100\nexponent_max = 150\n";
     let core = parsed("test.toml", text);
     let (dir, name) = emitted(&core);
-    prove(dir.path(), &name, PROOF_LIMITS).unwrap_or_else(|error| panic!("{error:#}"));
+    prove(dir.path(), &name, PROOF_LIMITS).sure();
 }
 
 #[test]
@@ -130,20 +127,14 @@ fn emitted(core: &Core) -> (tempfile::TempDir, String) {
 #[test]
 fn verify_covers_the_wrappers() {
     let core = configuration("configs/cosine_power.toml");
-    let effort = Effort { full: false, without_tools: false, time_limit: LIMIT };
-    let subject = Subject::new("core.toml", &core, effort, Path::new("proofs"));
-    let run = |id: &str| {
-        let check = CHECKS.iter().find(|check| check.id == id).expect("the check");
-        check.run(&subject, &|_| ()).finding
-    };
-    let finding = run("formal");
-    assert_eq!(finding.verdict, Verdict::Proved, "{}", finding.words);
+    let found = finding(&core, "formal", EFFORT);
+    assert_eq!(found.verdict, Verdict::Proved, "{}", found.words);
     for wrapper in ["axis", "registers", "wb"] {
         let file = format!("cosine_power_{wrapper}_formal.sv");
-        assert!(finding.words.contains(&file), "{}", finding.words);
+        assert!(found.words.contains(&file), "{}", found.words);
     }
     for id in ["lint", "icarus", "verilator"] {
-        let finding = run(id);
-        assert_eq!(finding.verdict, Verdict::Passed, "{id}: {:?}", finding.failures);
+        let found = finding(&core, id, EFFORT);
+        assert_eq!(found.verdict, Verdict::Passed, "{id}: {:?}", found.failures);
     }
 }

@@ -1,26 +1,20 @@
 //! The bench notices faults in a synthesised netlist: that it passes means something, and so do the models
 //! of its cells. That every netlist passes is in `tests/tools/synthesis.rs`.
 
-use std::fs;
-
+use crate::common::Sure;
 use crate::common::cores::{Emitted, configuration, configuration_with};
+use crate::common::files::replaced;
 use crate::common::netlist::{self, POINTS, synthesise};
-use crate::common::tools::{LIMIT, tool};
+use crate::common::tools::{LIMIT, benched, tool};
 use glint::target::{ECP5, FAMILIES, Family};
+use glint::tools::Simulator;
 use glint::tools::gates;
 use glint::tools::gates::cells::{self, Start};
-use glint::tools::{Simulator, run_bench};
 use rayon::prelude::*;
 
 fn families() -> impl ParallelIterator<Item = &'static Family> {
     let simulated = |family: &&Family| gates::is_simulated(family);
     FAMILIES.par_iter().filter(simulated)
-}
-
-fn netlist(emitted: &Emitted, family: &Family) -> String {
-    let place = tempfile::tempdir().expect("a directory");
-    synthesise(place.path(), emitted, family);
-    fs::read_to_string(place.path().join("netlist.v")).expect("a netlist")
 }
 
 /// One bit of a block RAM's initial values: in ROM(n) of `quadratic`, the top bit of a(1), which is often
@@ -30,7 +24,7 @@ fn a_bit_of_a_block_ram_is_noticed() {
     const PARAMETER: &str = ".INITVAL_00(320'h";
     const BIT: usize = 20 + 17;
     let emitted = Emitted::new(&configuration("configs/quadratic.toml"), POINTS, 1);
-    let netlist = netlist(&emitted, &ECP5);
+    let netlist = synthesise(&emitted, &ECP5).verilog;
     let at = netlist.find(PARAMETER).expect(PARAMETER) + PARAMETER.len();
     let digits = netlist[at..].find(')').expect("the end of the number");
     let wrong = with_digit(&netlist, at + digits - 1 - BIT / 4, |digit| digit ^ 1 << (BIT % 4));
@@ -44,7 +38,7 @@ fn bits_of_look_up_tables_are_noticed() {
     const TABLES: usize = 12;
     families().for_each(|family| {
         let emitted = Emitted::new(&configuration("configs/schlick.toml"), POINTS, 1);
-        let netlist = netlist(&emitted, family);
+        let netlist = synthesise(&emitted, family).verilog;
         let (cell, parameter) = match family.name() {
             "ice40" => ("SB_LUT4 #(", ".LUT_INIT(16'h"),
             _ => ("LUT4 #(", ".INIT(16'h"),
@@ -78,15 +72,13 @@ fn bits_of_look_up_tables_are_noticed() {
 #[test]
 fn an_unknown_mode_is_refused() {
     let emitted = Emitted::new(&configuration("configs/quadratic.toml"), 1, 1);
-    let netlist = netlist(&emitted, &ECP5);
+    let netlist = synthesise(&emitted, &ECP5).verilog;
     for (right, wrong) in [
         (".REGMODE_A(\"NOREG\")", ".REGMODE_A(\"OUTREG\")"),
         (".DATA_WIDTH_A(32'd18)", ".DATA_WIDTH_A(32'd36)"),
         (".SOURCEA(1'h0)", ".SOURCEA(1'h1)"),
     ] {
-        assert!(netlist.contains(right), "{right}");
-        let wrong_netlist = netlist.replace(right, wrong);
-        netlist::bench(&emitted, wrong_netlist, &ECP5).assert_fails(wrong);
+        netlist::bench(&emitted, replaced(&netlist, right, wrong), &ECP5).assert_fails(wrong);
     }
 }
 
@@ -108,14 +100,12 @@ fn netlists_of_cells_pass_and_wrong_gates_fail() {
     cores.par_iter().for_each(|core| {
         let emitted = Emitted::new(core, POINTS, 1);
         let rtl = emitted.rtl();
-        let netlist = cells::netlist(&tool("yosys"), &rtl, &emitted.name, LIMIT)
-            .unwrap_or_else(|error| panic!("{error:#}"));
+        let netlist = cells::netlist(&tool("yosys"), &rtl, &emitted.name, LIMIT).sure();
         let names: Vec<String> = rtl.into_iter().map(|(name, _)| name).collect();
         let passes = |netlist: &str, start: Start| {
             let models = cells::models(start).expect("models");
             let files = gates::around(emitted.simulated(), &names, netlist.to_owned(), models);
-            let run = run_bench(Simulator::Icarus, &files, &emitted.bench(), LIMIT);
-            run.unwrap_or_else(|error| panic!("{error:?}")).passed
+            benched(Simulator::Icarus, &files, &emitted.bench()).passed
         };
         let starts = Start::of(core.design.pipeline.is_some());
         for &start in starts {

@@ -8,15 +8,16 @@ use std::path::Path;
 use glint::core::Core;
 use glint::fixed::Format;
 use glint::hdl::netlist::{Design, Role};
-use glint::tools::{Simulator, run_bench};
+use glint::tools::Simulator;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 use rayon::prelude::*;
 use serde_json::Value;
 
-use crate::common::Sure;
 use crate::common::cores::{Emitted, configuration_between, parsed};
-use crate::common::tools::{LIMIT, ran, tool, yosys};
+use crate::common::files::{json, read};
+use crate::common::json::Json;
+use crate::common::tools::{benched, ran, yosys};
 
 /// Numbers with a sign, of more than 32 bits, and of one; both architectures; all wrappers.
 const CORES: [(&str, &str); 5] = [
@@ -47,12 +48,7 @@ fn the_entity_in_vhdl_is_the_core() {
         let dir = emitted.beside("rtl_out/");
         let top = format!("{name}_fixed");
         ran("ghdl", ["-a", "--std=08", &format!("{name}.vhd")], dir.path());
-        let made = tool("ghdl").run_to_success(
-            ["synth", "--std=08", "--out=verilog", &top],
-            dir.path(),
-            LIMIT,
-        );
-        let made = made.sure();
+        let made = ran("ghdl", ["synth", "--std=08", "--out=verilog", &top], dir.path());
         // Of the component GHDL makes a module without contents.
         let (stand_in, entity) = made.split_once("endmodule\n").expect("two modules");
         assert!(stand_in.contains(&format!("module {name}\n")), "{stand_in}");
@@ -68,7 +64,7 @@ fn the_entity_in_vhdl_is_the_core() {
             }
         }
         files.push((format!("{top}.v"), format!("module {entity}")));
-        let outcome = run_bench(Simulator::Icarus, &files, &emitted.bench(), LIMIT).sure();
+        let outcome = benched(Simulator::Icarus, &files, &emitted.bench());
         assert!(outcome.passed, "{name}:\n{}\n{}", outcome.build, outcome.transcript);
     });
 }
@@ -106,7 +102,7 @@ fn a_sign_alone_is_a_type_of_systemverilog() {
                 [operand]\nfraction = 0\n[result]\nfraction = 0\n[package]\nsystemverilog = true\n";
     let dir = Emitted::new(&parsed("core.toml", text), 1, 1).beside("rtl_out/");
     let check = "module check;\n    import f_pkg::*;\n    initial $display(\"%0d %0d\", y_from(-3.0), y_from(2.0));\nendmodule\n";
-    let package = fs::read_to_string(dir.path().join("f_pkg.sv")).expect("a package");
+    let package = read(dir.path().join("f_pkg.sv"));
     let result = package.split("function automatic real ").nth(2).expect("the result");
     let result = result.split("_value").next().expect("its name");
     fs::write(dir.path().join("check.sv"), check.replace("y_from", &format!("{result}_from")))
@@ -124,12 +120,11 @@ fn ports_of_verilog(dir: &Path, name: &str, top: &str) -> Ports {
         dir,
         &format!("read_verilog {name}*.v; hierarchy -top {top}; proc; write_json {top}.json"),
     );
-    let text = fs::read_to_string(dir.join(format!("{top}.json"))).expect("ports");
-    let netlist: Value = serde_json::from_str(&text).expect("JSON");
-    let ports = netlist["modules"][top]["ports"].as_object().expect("ports").iter();
+    let netlist = json(dir.join(format!("{top}.json")));
+    let ports = netlist["modules"][top]["ports"].object().iter();
     let port = |(name, port): (&String, &Value)| {
-        let width = port["bits"].as_array().expect("bits").len() as u64;
-        (name.clone(), (port["direction"].as_str().expect("a direction").to_owned(), width))
+        let width = port["bits"].list().len() as u64;
+        (name.clone(), (port["direction"].text().to_owned(), width))
     };
     ports.map(port).collect()
 }
@@ -161,7 +156,7 @@ fn components_of_vhdl_have_the_ports_of_the_verilog() {
         .map(|(name, core)| {
             let emitted = Emitted::new(&core, 1, 1);
             let dir = emitted.beside("rtl_out/");
-            let text = fs::read_to_string(dir.path().join(format!("{name}.vhd"))).expect("VHDL");
+            let text = read(dir.path().join(format!("{name}.vhd")));
             let components = ports_of_components(&text);
             for (top, ports) in &components {
                 assert_eq!(*ports, ports_of_verilog(dir.path(), &name, top), "{top}");
@@ -275,14 +270,18 @@ fn transfers_are_packed_and_unpacked() {
         writeln!(c, "uint8_t sent[{upper}_SENT_BYTES];").expect("text");
         let mut python = format!("import numpy as np\nimport {name}_stream as s\n");
         let mut wanted = String::new();
-        for _ in 0..50 {
-            let values: Vec<i128> =
-                operands.iter().map(|(_, format)| drawn(*format, &mut random)).collect();
+        let mut transferred = |numbers: &[(String, Format)]| {
+            let values = numbers.iter().map(|(_, format)| drawn(*format, &mut random));
+            let values: Vec<i128> = values.collect();
             let mut word = Vec::new();
-            for (value, (_, format)) in values.iter().zip(&operands) {
+            for (value, (_, format)) in values.iter().zip(numbers) {
                 word.extend(&value.to_le_bytes()[..bytes(*format)]);
             }
-            word.resize(transfer(&core, &operands), 0);
+            word.resize(transfer(&core, numbers), 0);
+            (values, word)
+        };
+        for _ in 0..50 {
+            let (values, word) = transferred(&operands);
             let arguments: Vec<String> = values.iter().map(|value| format!("{value}ll")).collect();
             writeln!(
                 c,
@@ -294,13 +293,7 @@ fn transfers_are_packed_and_unpacked() {
             writeln!(python, "print(s.pack({{{}}}).tobytes().hex())", named.collect::<Vec<_>>().join(", ")).expect("text");
             writeln!(wanted, "{}", word.iter().map(|byte| format!("{byte:02x}")).collect::<String>()).expect("text");
 
-            let values: Vec<i128> =
-                results.iter().map(|(_, format)| drawn(*format, &mut random)).collect();
-            let mut word = Vec::new();
-            for (value, (_, format)) in values.iter().zip(&results) {
-                word.extend(&value.to_le_bytes()[..bytes(*format)]);
-            }
-            word.resize(transfer(&core, &results), 0);
+            let (values, word) = transferred(&results);
             let list: Vec<String> = word.iter().map(u8::to_string).collect();
             writeln!(c, "{{ const uint8_t got[{upper}_RECEIVED_BYTES] = {{{}}};", list.join(", ")).expect("text");
             writeln!(python, "got = s.unpack(bytes([{}]))", list.join(", ")).expect("text");

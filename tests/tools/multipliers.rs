@@ -3,12 +3,10 @@
 //! Both stand side by side at all widths, and whole netlists pass the bench of their source. That a difference is
 //! noticed is shown by planting some.
 
-use std::fs;
-
 use crate::common::bench::Bench;
 use crate::common::cores::{Emitted, Files, configuration, configuration_with};
 use crate::common::netlist::{self, POINTS, synthesise};
-use crate::common::tools::{LIMIT, tool};
+use crate::common::tools::{ran, tool};
 use crate::faults::faults;
 use glint::target::{ECP5, ICE40};
 use glint::tools::{Simulator, gates};
@@ -56,9 +54,7 @@ fn both_forms_are_one_at_all_widths_and_a_difference_is_noticed() {
 fn a_netlist_has_a_register_in_every_multiplier_and_passes_its_bench() {
     let core = configuration(CONFIGURATION);
     let (emitted, _) = emitted();
-    let place = tempfile::tempdir().expect("a directory");
-    synthesise(place.path(), &emitted, &ECP5);
-    let text = fs::read_to_string(place.path().join("netlist.v")).expect("a netlist");
+    let text = synthesise(&emitted, &ECP5).verilog;
     let pipeline = core.design.pipeline.as_ref().expect("a pipeline");
     assert_eq!(text.matches("MULT18X18D #(").count(), pipeline.registered.len());
     assert_eq!(text.matches(".REG_OUTPUT_CLK(\"CLK0\")").count(), pipeline.registered.len());
@@ -73,9 +69,7 @@ fn another_family_takes_the_portable_form() {
     // It has no memories for delay lines either.
     let core = configuration_with(CONFIGURATION, "[pipeline]\ndelays = \"registers\"\n");
     let emitted = Emitted::new(&core, POINTS, 1);
-    let place = tempfile::tempdir().expect("a directory");
-    synthesise(place.path(), &emitted, &ICE40);
-    let text = fs::read_to_string(place.path().join("netlist.v")).expect("a netlist");
+    let text = synthesise(&emitted, &ICE40).verilog;
     netlist::bench(&emitted, text, &ICE40).assert_passes();
 }
 
@@ -88,8 +82,7 @@ fn fusesoc_takes_the_file_of_the_target() {
     for (target, own) in [("ecp5", true), ("sim", false)] {
         let arguments = ["--cores-root", ".", "run", "--setup", "--build-root", target];
         let arguments = arguments.iter().copied().chain(["--target", target, &core]);
-        let run = tool("fusesoc").run_to_success(arguments, place.path(), LIMIT);
-        run.unwrap_or_else(|error| panic!("{error:#}"));
+        ran("fusesoc", arguments, place.path());
         let full = format!("glint_device_{}_0.1.0", emitted.name);
         let core = place.path().join(target).join(&full).join(target).join("src").join(&full);
         let file = format!("{}_multiplier.v", emitted.name);

@@ -4,9 +4,11 @@
 //! them is planted again.
 
 use std::collections::BTreeSet;
-use std::fs;
 
-use crate::common::cores::{all_configurations, configuration, configurations};
+use crate::common::Sure;
+use crate::common::cores::{all_configurations, configuration, configurations, run};
+use crate::common::files::json;
+use crate::common::json::Json;
 use crate::common::sample::sampled;
 use crate::common::tools::LIMIT;
 use glint::core::{Core, TEST_POINTS};
@@ -45,9 +47,7 @@ fn pipelines() -> Vec<(String, Core)> {
 }
 
 fn record(core: &Core) -> Value {
-    let path = format!("mutation/{}.json", core.config.name);
-    let text = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
-    serde_json::from_str(&text).unwrap_or_else(|error| panic!("{path}: {error}"))
+    json(format!("mutation/{}.json", core.config.name))
 }
 
 /// Returns a record's verdict on the fault of an id: faults that the default test notices are not named.
@@ -80,7 +80,7 @@ impl From<&Verdict> for Said {
             Verdict::Caught(check, _) => Self::Caught(*check),
             Verdict::Equivalent(how) => {
                 let how = serde_json::to_value(how).expect("JSON");
-                Self::Equivalent(how.as_str().expect("a name").to_owned())
+                Self::Equivalent(how.text().to_owned())
             }
             Verdict::Undecided => Self::Undecided,
         }
@@ -97,7 +97,7 @@ fn assert_unnoticed(path: &str, core: &Core, found: &[Found]) {
         let model = core.device.golden(&core.config);
         let outcome = Lockstep::new(&mutant, model, core.contract.as_ref(), SEED)
             .and_then(|lockstep| lockstep.run(TEST_POINTS / 5, &|_| ()))
-            .unwrap_or_else(|error| panic!("{path}: {}: {error:?}", one.fault.id));
+            .sure_of(format_args!("{path}: {}", one.fault.id));
         assert_eq!(outcome.mismatch, None, "{path}: {}", one.fault.id);
     }
 }
@@ -114,12 +114,11 @@ fn the_records_hold_today() {
         let faults = Faults::of(&core.design);
         let all = &netlist["all"];
         assert_eq!(all["planted"], faults.len(), "{stale}");
-        let undecided = netlist["undecided"].as_array().expect("a list").len();
+        let undecided = netlist["undecided"].list().len();
         assert_eq!(all["undecided"], undecided, "{stale}");
         assert!(undecided * 100 <= faults.len(), "{path}: {undecided} are undecided");
         let planted = sampled(&path, faults.iter(), count);
-        let found =
-            mutate::run(&core, planted, &|| ()).unwrap_or_else(|error| panic!("{path}: {error:?}"));
+        let found = mutate::run(&core, planted, &|| ()).sure_of(&path);
         for Found { fault, verdict, .. } in &found {
             let expected = recorded(netlist, &fault.id);
             assert_eq!(Said::from(verdict), expected, "{}: {stale}", fault.id);
@@ -137,7 +136,7 @@ fn faults_have_names_of_their_own() {
         assert!(faults.len() > 500, "{path}: a kind of fault is missing");
     }
     for (path, core) in defaults() {
-        let faults = Text::of(&core).unwrap_or_else(|error| panic!("{path}: {error:?}")).faults();
+        let faults = Text::of(&core).sure_of(&path).faults();
         let ids: BTreeSet<&str> = faults.iter().map(|fault| fault.id.as_str()).collect();
         assert_eq!(ids.len(), faults.len(), "{path}: the Verilog");
     }
@@ -146,10 +145,7 @@ fn faults_have_names_of_their_own() {
 #[test]
 fn without_a_fault_nothing_is_noticed() {
     for (path, core) in configurations() {
-        let outcome = core
-            .lockstep(3)
-            .and_then(|lockstep| lockstep.run(TEST_POINTS, &|_| ()))
-            .unwrap_or_else(|error| panic!("{path}: {error:?}"));
+        let outcome = run(&core, TEST_POINTS, 3, &path);
         assert_eq!(outcome.mismatch, None, "{path}");
     }
 }
@@ -166,7 +162,7 @@ fn faults_of_the_verilog_are_noticed() {
             ids.iter().filter_map(Value::as_str).collect()
         };
         let [undecided, equivalent, missed] = ["undecided", "equivalent", "missed"].map(named);
-        let text = Text::of(&core).unwrap_or_else(|error| panic!("{path}: {error:?}"));
+        let text = Text::of(&core).sure_of(&path);
         let all = text.faults();
         assert_eq!(verilog["planted"], all.len(), "{stale}");
         let ids: BTreeSet<&str> = all.iter().map(|fault| fault.id.as_str()).collect();
@@ -175,8 +171,7 @@ fn faults_of_the_verilog_are_noticed() {
         }
         let decided = all.into_iter().filter(|fault| !undecided.contains(fault.id.as_str()));
         let faults = sampled(&path, decided, TEXT_FAULTS);
-        let found =
-            text.run(&faults, LIMIT, &|| ()).unwrap_or_else(|error| panic!("{path}: {error:?}"));
+        let found = text.run(&faults, LIMIT, &|| ()).sure_of(&path);
         for (fault, found) in faults.iter().zip(found) {
             let id = fault.id.as_str();
             let noticed = matches!(found.verdict, TextVerdict::Lint | TextVerdict::Bench);

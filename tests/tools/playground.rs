@@ -1,14 +1,12 @@
 //! The page with Glint as WebAssembly: built, and used in headless Chromium.
 
-use std::path::Path;
-
+use crate::common::files::root;
 use crate::common::tools::ran;
 
 #[test]
 fn the_page_does_what_the_program_does() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    ran("bash", ["tools/playground", "--build"], root);
+    ran("bash", ["tools/playground", "--build"], root());
     let glint = env!("CARGO_BIN_EXE_glint");
-    let said = ran("python", ["playground/test.py", "target/playground", glint], root);
+    let said = ran("python", ["playground/test.py", "target/playground", glint], root());
     assert!(said.contains("bytes gzipped"), "{said}");
 }

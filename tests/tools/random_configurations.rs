@@ -4,9 +4,9 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 
-use crate::common::cores::{Emitted, parsed, random, write};
+use crate::common::cores::{Emitted, assert_agrees, parsed, random};
 use crate::common::sample::sampled;
-use crate::common::tools::{assert_bench_passes, assert_lint_clean};
+use crate::common::tools::{assert_bench_passes, assert_files_are_clean};
 use glint::core::Core;
 use glint::keys::presets::DEVICE as FUNCTION;
 use glint::registry::{Device, Registry};
@@ -46,7 +46,7 @@ fn golden_model_and_simulation_agree_and_the_bound_holds() {
     for (device, drawn) in devices(SIMULATED_DRAWN) {
         sampled(device.name, SIMULATED, drawn).into_par_iter().for_each(|seed| {
             let (toml, core) = random(device, seed);
-            agrees_within_its_bound(&toml, &core);
+            assert_agrees(&core, POINTS, 7, &toml);
         });
     }
 }
@@ -74,23 +74,8 @@ const ONCE_WRONG: [&str; 2] = [
 fn what_was_wrong_once_is_right() {
     for (at, text) in ONCE_WRONG.into_iter().enumerate() {
         let core = parsed(&format!("once_wrong_{at}.toml"), text);
-        let toml = text.to_owned();
-        agrees_within_its_bound(&toml, &core);
-        passes_outside(&toml, &core, 1);
-    }
-}
-
-/// Golden model and built-in simulator agree on every clock, and no error is beyond the bound.
-fn agrees_within_its_bound(toml: &str, core: &Core) {
-    let bound = core.contract.bound();
-    let outcome = core
-        .lockstep(7)
-        .and_then(|lockstep| lockstep.run(POINTS, &|_| ()))
-        .unwrap_or_else(|error| panic!("{error:?}\n{toml}"));
-    assert!(outcome.mismatch.is_none(), "{:?}\n{toml}", outcome.mismatch);
-    assert_eq!(outcome.points, POINTS);
-    if let Some(worst) = outcome.worst {
-        assert!(worst.units <= bound.units, "{worst:?} is beyond {bound:?}\n{toml}");
+        assert_agrees(&core, POINTS, 7, text);
+        passes_outside(text, &core, 1);
     }
 }
 
@@ -98,9 +83,7 @@ fn agrees_within_its_bound(toml: &str, core: &Core) {
 fn passes_outside(toml: &str, core: &Core, seed: u64) {
     let check = || {
         let emitted = Emitted::new(core, BENCH_POINTS, seed);
-        let dir = tempfile::tempdir().expect("a directory");
-        write(dir.path(), &emitted.rtl());
-        assert_lint_clean(dir.path(), &emitted.name);
+        assert_files_are_clean(&emitted.rtl(), &emitted.name);
         assert_bench_passes(Simulator::Icarus, &emitted.simulated(), &emitted.bench());
     };
     if let Err(panic) = catch_unwind(AssertUnwindSafe(check)) {

@@ -5,8 +5,9 @@
 //! [`glint::hdl::netlist::Op`] predicts the outputs, Icarus Verilog simulates the text, and both linters
 //! must have nothing to say.
 
+use crate::common::cores::Emitted;
 use crate::common::random_netlist::{Random, SMALL, design};
-use crate::common::tools::{assert_bench_passes, assert_lint_clean};
+use crate::common::tools::{assert_bench_passes, assert_files_are_clean};
 use glint::hdl::netlist::{Design, Interpreter, Role};
 use glint::package::{EmitInputs, Vectors, emit};
 use glint::tools::Simulator;
@@ -27,19 +28,10 @@ fn emitted_verilog_means_what_the_netlist_means() {
             ..EmitInputs::default()
         };
         let files = emit(&design, &inputs).unwrap_or_else(|error| panic!("{error:?}\n{design}"));
-        let directory = tempfile::tempdir().expect("a directory");
-        let mut texts = Vec::new();
-        for file in files {
-            let name = file.name().to_owned();
-            if file.path.starts_with("rtl_out/") {
-                std::fs::write(directory.path().join(&name), &file.contents).expect("a file");
-            }
-            check_text(&name, &file.contents);
-            texts.push((name, file.contents));
-        }
-        assert_lint_clean(directory.path(), &design.name);
-        texts.retain(|(name, _)| name.ends_with(".v") || name.ends_with(".mem"));
-        assert_bench_passes(Simulator::Icarus, &texts, &format!("{}_tb", design.name));
+        files.iter().for_each(|file| check_text(file.name(), &file.contents));
+        let emitted = Emitted { files, name: design.name };
+        assert_files_are_clean(&emitted.rtl(), &emitted.name);
+        assert_bench_passes(Simulator::Icarus, &emitted.simulated(), &emitted.bench());
     }
 }
 

@@ -1,15 +1,15 @@
 //! The program that recomputes every operand with MPFR: it finds the bound that Glint proved, and notices what is wrong.
 
-use std::fs;
 use std::path::Path;
 
 use glint::core::Core;
 use glint::tools::transient::Directory;
-use glint::verify::{CHECKS, Effort, Finding, Subject, Verdict};
+use glint::verify::Verdict;
 use rayon::prelude::*;
 
 use crate::common::cores::{configuration, parsed};
-use crate::common::tools::{LIMIT, ran, tool};
+use crate::common::files::{put, read};
+use crate::common::tools::{EFFORT, LIMIT, finding, ran, tool};
 
 /// Formula, ends of the domain, fraction bits of operand and result: every function and operation that a formula can have.
 const FUNCTIONS: [(&str, &str, &str, u32, u32); 12] = [
@@ -39,9 +39,7 @@ fn core((formula, from, to, operand, result): (&str, &str, &str, u32, u32), more
 fn compiled(core: &Core) -> Directory {
     let dir = Directory::new().expect("a directory");
     for file in core.recomputation().expect("a formula of one operand") {
-        let path = dir.path().join(&file.path);
-        fs::create_dir_all(path.parent().expect("a directory")).expect("made");
-        fs::write(path, &file.contents).expect("written");
+        put(dir.path().join(&file.path), &file.contents);
     }
     compile(dir.path());
     dir
@@ -57,13 +55,6 @@ fn compile(dir: &Path) {
 fn said(dir: &Path) -> (bool, String) {
     let shell = tool("sh").run(["-c", "./recompute rtl_out/f"], dir, LIMIT).expect("a program");
     (shell.status.success(), shell.output.lines().last().unwrap_or_default().to_owned())
-}
-
-fn found(core: &Core) -> Finding {
-    let check = CHECKS.iter().find(|check| check.id == "recomputation").expect("the check");
-    let effort = Effort { full: false, without_tools: false, time_limit: LIMIT };
-    let subject = Subject::new("f.toml", core, effort, Path::new("proofs"));
-    check.run(&subject, &|_| ()).finding
 }
 
 #[test]
@@ -87,12 +78,12 @@ fn every_operand_is_recomputed_with_the_error_that_was_proved() {
 fn a_wrong_word_is_noticed() {
     let dir = compiled(&core(FUNCTIONS[10], ""));
     let memory = dir.path().join("rtl_out/f/f_coefficients.mem");
-    let text = fs::read_to_string(&memory).expect("a memory");
+    let text = read(&memory);
     // The first digit has the highest bits of the constant coefficient.
     let at = text.match_indices('\n').nth(2).expect("words").0 + 1;
     let digit = text[at..].chars().next().and_then(|it| it.to_digit(16)).expect("a digit");
     let wrong = format!("{}{:x}{}", &text[..at], digit ^ 1, &text[at + 1..]);
-    fs::write(&memory, &wrong).expect("written");
+    put(&memory, &wrong);
     let (accepts, words) = said(dir.path());
     assert!(!accepts && words.ends_with("word 1 is not that of the model"), "{words}");
 
@@ -101,12 +92,11 @@ fn a_wrong_word_is_noticed() {
     let word = |text: &str| {
         text.lines().nth(3).expect("a word").split(' ').next().map(str::to_owned).expect("digits")
     };
-    let code = fs::read_to_string(&model).expect("the model");
+    let code = read(&model);
     let [right, planted] =
         [word(&text), word(&wrong)].map(|it| it.trim_start_matches('0').to_owned());
     assert_eq!(code.matches(&format!("0x{right}u")).count(), 1, "{code}");
-    fs::write(&model, code.replace(&format!("0x{right}u"), &format!("0x{planted}u")))
-        .expect("written");
+    put(&model, code.replace(&format!("0x{right}u"), &format!("0x{planted}u")));
     compile(dir.path());
     let (accepts, words) = said(dir.path());
     assert!(!accepts && words.ends_with("DOES NOT HOLD"), "{words}");
@@ -114,9 +104,9 @@ fn a_wrong_word_is_noticed() {
 
 #[test]
 fn the_check_proves_functions_and_asks_nothing_of_highlights() {
-    let finding = found(&core(FUNCTIONS[0], ""));
-    assert_eq!(finding.verdict, Verdict::Proved, "{finding:?}");
-    assert!(finding.words.ends_with(" holds."), "{finding:?}");
-    let finding = found(&configuration("configs/cosine_power.toml"));
-    assert_eq!(finding.verdict, Verdict::NotApplicable, "{finding:?}");
+    let found = finding(&core(FUNCTIONS[0], ""), "recomputation", EFFORT);
+    assert_eq!(found.verdict, Verdict::Proved, "{found:?}");
+    assert!(found.words.ends_with(" holds."), "{found:?}");
+    let found = finding(&configuration("configs/cosine_power.toml"), "recomputation", EFFORT);
+    assert_eq!(found.verdict, Verdict::NotApplicable, "{found:?}");
 }

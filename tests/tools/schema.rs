@@ -1,20 +1,18 @@
 //! The JSON Schema of the keys, by validators of others: what Glint accepts, they accept, and what is beside a range or
 //! unknown, they refuse.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 
+use crate::common::Sure;
+use crate::common::files::{paths, put, root};
 use crate::common::tools::{LIMIT, tool};
 
 /// Returns every configuration of the repository.
-fn configurations() -> Vec<PathBuf> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let mut found = vec![root.join("examples/soc/shade.toml")];
+fn configurations() -> Vec<String> {
+    let mut found = vec![root().join("examples/soc/shade.toml").display().to_string()];
     for directory in ["configs", "configs/studies", "configs/reduced"] {
-        let entries = root.join(directory).read_dir().expect("a directory");
-        let paths = entries.map(|entry| entry.expect("an entry").path());
-        found.extend(paths.filter(|path| path.extension().is_some_and(|it| it == "toml")));
+        found.extend(paths(root().join(directory), ".toml"));
     }
     assert!(found.len() > 20, "{found:?}");
     found
@@ -25,20 +23,19 @@ fn with_schema() -> tempfile::TempDir {
     let dir = tempfile::tempdir().expect("a directory");
     let glint = Command::new(env!("CARGO_BIN_EXE_glint")).arg("schema").output().expect("glint");
     assert!(glint.status.success() && glint.stderr.is_empty(), "{glint:?}");
-    fs::write(dir.path().join("schema.json"), glint.stdout).expect("written");
+    put(dir.path().join("schema.json"), glint.stdout);
     dir
 }
 
 /// Returns each validator's verdict on some files: whether they are valid.
-fn verdicts(dir: &Path, files: &[PathBuf]) -> [(bool, String); 2] {
-    let files = || files.iter().map(|file| file.display().to_string());
+fn verdicts(dir: &Path, files: &[String]) -> [(bool, String); 2] {
     let options = |all: &[&str]| all.iter().map(|&it| it.to_owned()).collect::<Vec<_>>();
     let schema = format!("file://{}", dir.join("schema.json").display());
     let check = options(&["--schemafile", "schema.json", "--default-filetype", "toml"]);
     let taplo = options(&["lint", "--no-auto-config", "--schema", &schema]);
     [("check-jsonschema", check), ("taplo", taplo)].map(|(name, arguments)| {
-        let run = tool(name).run(arguments.into_iter().chain(files()), dir, LIMIT);
-        let run = run.unwrap_or_else(|error| panic!("{name}: {error:#}"));
+        let run = tool(name).run(arguments.iter().chain(files), dir, LIMIT);
+        let run = run.sure_of(name);
         (run.status.success(), run.output)
     })
 }
@@ -67,8 +64,8 @@ fn mistakes_are_found() {
     ];
     for (at, mistake) in mistakes.iter().enumerate() {
         let file = dir.path().join(format!("mistake_{at}.toml"));
-        fs::write(&file, mistake).expect("written");
-        for (valid, output) in verdicts(dir.path(), &[file]) {
+        put(&file, mistake);
+        for (valid, output) in verdicts(dir.path(), &[file.display().to_string()]) {
             assert!(!valid, "{mistake} is valid: {output}");
         }
     }

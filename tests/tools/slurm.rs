@@ -3,9 +3,12 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Command;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
+
+use crate::common::files::{put, read, root};
+use crate::common::tools::succeeded;
 
 /// 18 operand bits: long enough that a task can be met in its middle, short enough for a test.
 const CONFIG: &str = "device = \"cosine-power\"\ncosine.fraction = 8\nexponent.bits = 6\ncolour.bits = 1\nintensity.fraction = 8\n";
@@ -14,25 +17,10 @@ const PARTS: usize = 3;
 
 const LIMIT: Duration = Duration::from_secs(300);
 
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
-
-/// Runs a command to its good end; its output.
-fn run(command: &mut Command) -> String {
-    let output: Output =
-        command.current_dir(root()).output().unwrap_or_else(|error| panic!("{command:?}: {error}"));
-    let text =
-        [output.stdout, output.stderr].map(|text| String::from_utf8_lossy(&text).into_owned());
-    assert!(output.status.success(), "{command:?}: {}", text.concat());
-    text[0].clone()
-}
-
 /// Returns the configuration, written into a directory.
 fn config(dir: &Path) -> String {
     let path = dir.join("core.toml");
-    fs::create_dir_all(dir).expect("a directory");
-    fs::write(&path, CONFIG).expect("a configuration");
+    put(&path, CONFIG);
     path.to_str().expect("a plain name").to_owned()
 }
 
@@ -49,7 +37,7 @@ fn submit_with(dir: &Path, program: &str) -> Command {
 
 /// Returns the record of one process, without an engine.
 fn whole(dir: &Path) -> String {
-    run(Command::new(env!("CARGO_BIN_EXE_glint")).args([
+    succeeded(Command::new(env!("CARGO_BIN_EXE_glint")).args([
         "--quiet",
         "cosim",
         &config(dir),
@@ -63,7 +51,7 @@ struct Loopback(PathBuf);
 
 impl Loopback {
     fn start(dir: PathBuf) -> Self {
-        run(Command::new("bash").args(["tools/slurm/loopback", "start"]).arg(&dir));
+        succeeded(Command::new("bash").args(["tools/slurm/loopback", "start"]).arg(&dir));
         Self(dir)
     }
 
@@ -75,14 +63,14 @@ impl Loopback {
 
     /// Submits what `command` says; the number of its array.
     fn submit(&self, command: &mut Command) -> String {
-        let said = run(command.env("SLURM_CONF", self.0.join("slurm.conf")));
+        let said = succeeded(command.env("SLURM_CONF", self.0.join("slurm.conf")));
         let array = said.split("job array ").nth(1).and_then(|rest| rest.split(',').next());
         array.unwrap_or_else(|| panic!("{said}")).to_owned()
     }
 
     /// Waits until no job is left.
     fn wait(&self) {
-        wait("the last job", || run(self.command("squeue").arg("-h")).trim().is_empty());
+        wait("the last job", || succeeded(self.command("squeue").arg("-h")).trim().is_empty());
     }
 }
 
@@ -99,7 +87,7 @@ impl Drop for Loopback {
 /// Writes a program of the shell.
 fn program(path: &Path, script: &str) {
     fs::write(path, format!("#!/bin/sh\n{script}")).expect("a program");
-    run(Command::new("chmod").arg("755").arg(path));
+    succeeded(Command::new("chmod").arg("755").arg(path));
 }
 
 /// Waits until `done` is true.
@@ -125,8 +113,9 @@ fn a_job_array_with_tasks_put_back_and_killed_gives_the_record_of_one_process() 
     let array = slurm.submit(&mut submit_with(&results, path));
     // The first task has begun: its state is there, and not complete.
     wait("the first part", || results.join("part-1.json").exists());
-    run(slurm.command("scontrol").args(["requeue", &format!("{array}_1")]));
-    let restarts = || run(slurm.command("scontrol").args(["show", "job", &format!("{array}_1")]));
+    succeeded(slurm.command("scontrol").args(["requeue", &format!("{array}_1")]));
+    let restarts =
+        || succeeded(slurm.command("scontrol").args(["show", "job", &format!("{array}_1")]));
     assert!(restarts().contains("Restarts=1"), "{}", restarts());
     slurm.wait();
     let log = |name: &str| fs::read_to_string(results.join(name)).unwrap_or_default();
@@ -141,9 +130,9 @@ fn a_job_array_with_tasks_put_back_and_killed_gives_the_record_of_one_process() 
     program(&path, "case \"$*\" in *part-2*) exit 1;; *) sleep 2;; esac\n");
     let path = path.to_str().expect("a plain name");
     let array = slurm.submit(submit_with(&results, path).args(["-x", "--exclusive"]));
-    run(slurm.command("scancel").arg(format!("{array}_3")));
+    succeeded(slurm.command("scancel").arg(format!("{array}_3")));
     slurm.wait();
-    let missing = fs::read_to_string(results.join("missing")).expect("the names of tasks");
+    let missing = read(results.join("missing"));
     assert!(missing.starts_with("these tasks did not end well: 2 3;"), "{missing}");
     assert!(!results.join("merged.json").exists());
 }
@@ -151,16 +140,14 @@ fn a_job_array_with_tasks_put_back_and_killed_gives_the_record_of_one_process() 
 #[test]
 fn gnu_parallel_gives_the_record_of_one_process() {
     let dir = tempfile::tempdir().expect("a directory");
-    run(submit(dir.path()).args(["-j", "2"]));
-    let merged = || fs::read_to_string(dir.path().join("merged.json")).expect("a record");
-    assert_eq!(merged(), whole(dir.path()));
+    succeeded(submit(dir.path()).args(["-j", "2"]));
+    assert_eq!(read(dir.path().join("merged.json")), whole(dir.path()));
     // Submitted again, nothing is left to do.
-    let before =
-        fs::metadata(dir.path().join("part-1.json")).and_then(|it| it.modified()).expect("a part");
-    run(submit(dir.path()).args(["-j", "2"]));
-    let after =
-        fs::metadata(dir.path().join("part-1.json")).and_then(|it| it.modified()).expect("a part");
-    assert_eq!(before, after);
+    let part = dir.path().join("part-1.json");
+    let changed = || fs::metadata(&part).and_then(|it| it.modified()).expect("a part");
+    let before = changed();
+    succeeded(submit(dir.path()).args(["-j", "2"]));
+    assert_eq!(before, changed());
 }
 
 #[test]

@@ -1,30 +1,21 @@
 //! The system of `examples/soc`: its pictures are those of `glint render`, the cores are worth their place, and the span engine is
 //! proved.
 
-use std::fs;
 use std::path::Path;
-use std::time::Duration;
 
 use anyhow::Result;
 use glint::tools::prove;
 use rayon::prelude::*;
 
-use crate::common::tools::{LIMIT, tool};
+use crate::common::Sure;
+use crate::common::files::{put, read};
+use crate::common::tools::{LIMIT, example};
 use crate::faults::faults;
-
-/// Verilator builds a processor, and simulates 132 million clocks of it: more than other tools need.
-const RUN_LIMIT: Duration = Duration::from_secs(900);
 
 #[test]
 fn a_processor_renders_through_its_cores() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let dir = tempfile::tempdir().expect("a directory");
-    let glint = format!("GLINT={}", env!("CARGO_BIN_EXE_glint"));
-    let script = root.join("examples/soc/run");
-    let arguments = [glint.as_ref(), script.as_os_str(), dir.path().as_os_str()];
-    let output = tool("env")
-        .run_to_success(arguments, root, RUN_LIMIT)
-        .unwrap_or_else(|error| panic!("{error:#}"));
+    let output = example("soc/run", &[dir.path().as_os_str()]);
     for core in ["shade", "grain"] {
         let equal = format!("{core}: the pictures are equal, 6912 bytes");
         assert!(output.contains(&equal), "{output}");
@@ -44,7 +35,7 @@ fn a_processor_renders_through_its_cores() {
 #[test]
 fn the_span_engine_is_proved() {
     for words in [1, 2] {
-        proof(words, |engine| engine).unwrap_or_else(|error| panic!("{words} words: {error:#}"));
+        proof(words, |engine| engine).sure_of(format_args!("{words} words"));
     }
 }
 
@@ -58,13 +49,12 @@ fn faults_of_the_span_engine_break_its_proof() {
 
 /// Proves the engine for so many words of operands a pixel, with what is made of its Verilog.
 fn proof(words: u32, change: impl Fn(String) -> String) -> Result<()> {
-    let soc = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/soc");
     let dir = tempfile::tempdir()?;
-    let read = |name: &str| fs::read_to_string(soc.join(name)).expect("a file");
+    let read = |name: &str| read(Path::new("examples/soc").join(name));
     let problem = read("span_formal.sv")
         .replace("parameter WORDS = 1", &format!("parameter WORDS = {words}"));
-    fs::write(dir.path().join("span_formal.sv"), problem)?;
-    fs::write(dir.path().join("span_formal.ys"), read("span_formal.ys"))?;
-    fs::write(dir.path().join("span.v"), change(read("span.v")))?;
+    put(dir.path().join("span_formal.sv"), problem);
+    put(dir.path().join("span_formal.ys"), read("span_formal.ys"));
+    put(dir.path().join("span.v"), change(read("span.v")));
     prove(dir.path(), "span", LIMIT)
 }

@@ -14,6 +14,7 @@ use rand_chacha::rand_core::{RngCore, SeedableRng};
 use rayon::prelude::*;
 
 use crate::common::cores::{Emitted, configuration_with};
+use crate::common::files::{put, read, replaced};
 use crate::common::sample::sampled;
 use crate::common::tools::ran;
 
@@ -85,10 +86,7 @@ fn the_model_is_the_golden_model_at_every_combination() {
 fn a_faulty_model_is_noticed() {
     let model = Model::new("configs/reduced/cosine_power.toml");
     let path = model.dir.path().join("cosine_power_reduced_model.c");
-    let text = fs::read_to_string(&path).expect("the model");
-    let wrong = text.replacen("results.red_out = ", "results.red_out = 1u ^ ", 1);
-    assert_ne!(text, wrong);
-    fs::write(path, wrong).expect("written");
+    put(&path, replaced(&read(&path), "results.red_out = ", "results.red_out = 1u ^ "));
     model.compile();
     let operands = vec![vec![40, 3, 1, 0, 1], vec![60, 2, 1, 1, 1], vec![55, 5, 1, 1, 0]];
     assert_ne!(model.run(&operands), model.expected(&operands));
@@ -127,7 +125,7 @@ fn the_example_in_python_computes_the_manifests_example() {
     ["quad_cosine", "rough"].par_iter().for_each(|name| {
         let model = Model::new(&format!("configs/{name}.toml"));
         let dir = model.dir.path();
-        let text = fs::read_to_string(dir.join(format!("{name}_model.py"))).expect("the example");
+        let text = read(dir.join(format!("{name}_model.py")));
         let library = format!("{name}_model.so");
         let source = format!("{name}_model.c");
         let compile = ["-std=c99", "-O2", "-shared", "-fPIC", "-o", &library, &source];
@@ -303,9 +301,8 @@ fn lines_are_set_up_in_c_and_python_as_by_glint() {
         fs::write(dir.join("lines"), lines.iter().map(|it| words(it) + "\n").collect::<String>())
             .expect("written");
         for program in ["lines.c", "lines.py"] {
-            let text = fs::read_to_string(Path::new("tests/tools/software").join(program));
-            let text = text.expect("a program").replace("NAME", name);
-            fs::write(dir.join(program), text).expect("written");
+            let text = read(Path::new("tests/tools/software").join(program));
+            put(dir.join(program), text.replace("NAME", name));
         }
         let setup = format!("{name}_setup.c");
         let arguments = FLAGS.split(' ').chain(["-fno-sanitize-recover=all", "-o", "set_up"]);
@@ -313,8 +310,7 @@ fn lines_are_set_up_in_c_and_python_as_by_glint() {
         assert_eq!(ran("cc", &arguments, dir), "", "{name}");
         run_program(&dir.join("set_up"), dir);
         ran("python", ["lines.py"], dir);
-        let [in_c, in_python] =
-            ["in_c", "in_python"].map(|file| fs::read_to_string(dir.join(file)).expect("written"));
+        let [in_c, in_python] = ["in_c", "in_python"].map(|file| read(dir.join(file)));
 
         let contract = model.core.contract.as_ref();
         let feed = Feed::new(model.core.device.name, contract).expect("operands of a line");

@@ -11,7 +11,9 @@ use glint::hdl::netlist::Design;
 use glint::package::{self, EmitInputs};
 use glint::synth::{self, Area, Figures, Flow, Record, Subject, Target};
 
+use crate::common::Sure;
 use crate::common::cores::configuration;
+use crate::common::files::root;
 use crate::common::sample::sampled;
 use crate::common::tools::LIMIT;
 
@@ -23,19 +25,19 @@ const RUNS: usize = 1;
 
 /// Returns the flow of a target, its tools from the Python environment that `tools/install` makes, or from `PATH`.
 fn flow(target: Target) -> Flow {
-    let venv = Path::new(env!("CARGO_MANIFEST_DIR")).join("target/tools/venv/bin");
+    let venv = root().join("target/tools/venv/bin");
     let path = env::var_os("PATH").unwrap_or_default();
     let dirs = env::split_paths(&path).chain([venv]);
     let search: OsString = env::join_paths(dirs).expect("a search path");
     let liberty = Path::new("/usr/share/qflow/tech/osu018/osu018_stdcells.lib");
-    Flow::find(target, &search, liberty).unwrap_or_else(|error| panic!("{error:#}"))
+    Flow::find(target, &search, liberty).sure()
 }
 
 fn measured(target: Target, design: &Design, seeds: u32) -> Figures {
     let files = package::emit(design, &EmitInputs::default()).expect("Verilog");
     let files = package::sources_for(files, target.name());
     let subject = Subject { design, files: &files, seeds, limit: LIMIT };
-    flow(target).measure(&subject, &|| ()).unwrap_or_else(|error| panic!("{error:#}"))
+    flow(target).measure(&subject, &|| ()).sure()
 }
 
 /// Returns a register, a product of 16 by 16 bits, a register.
@@ -51,7 +53,7 @@ fn square() -> Design {
         step("square", [y.load()]),
         step("result", [valid(), end()]),
     ]);
-    d.finish().unwrap_or_else(|mistakes| panic!("{mistakes}"))
+    d.finish().sure()
 }
 
 /// The multipliers' delays stand in the tools' tables: 16 by 16 bits take at least 6.6 ns in UP5K (`icetime`, to the
@@ -127,7 +129,7 @@ fn frequencies_are_those_of_the_record() {
 
 /// Returns every configuration with a record, and its figures for each target.
 fn recorded() -> Vec<(String, Figures)> {
-    let directory = Path::new(env!("CARGO_MANIFEST_DIR")).join(synth::DIRECTORY);
+    let directory = root().join(synth::DIRECTORY);
     let records = input::records::<Record>(&directory).expect("records");
     let pairs = records.into_iter().flat_map(|(_, record)| {
         let config = record.config.clone();

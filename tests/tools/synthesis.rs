@@ -9,7 +9,10 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
+use crate::common::Sure;
 use crate::common::cores::{Emitted, configuration, configuration_with, configurations};
+use crate::common::files::read;
+use crate::common::json::Json;
 use crate::common::netlist::{self, POINTS, synthesise};
 use crate::common::sample::sampled;
 use crate::common::tools::{LIMIT, tool};
@@ -39,11 +42,8 @@ fn configurations_are_synthesised_whole() {
     let pairs = configurations.iter().flat_map(|one| FAMILIES.iter().map(move |it| (one, it)));
     sampled("synthesis", pairs, PAIRS).into_par_iter().for_each(|((path, unit), family)| {
         let emitted = Emitted::new(unit, POINTS, 1);
-        let dir = tempfile::tempdir().expect("a directory");
-        synthesise(dir.path(), &emitted, family);
-        let netlist = fs::read_to_string(dir.path().join("netlist.json")).expect("a netlist");
-        let netlist = serde_json::from_str(&netlist).expect("a netlist");
-        let cells = Cells::new(&netlist, &emitted.name);
+        let netlist = synthesise(&emitted, family);
+        let cells = Cells::new(&netlist.json, &emitted.name);
         let what = format!("{path}, {}", family.command);
         memories_are_whole(&unit.design, &cells, family, &what);
         let products = products(&unit.design);
@@ -55,8 +55,7 @@ fn configurations_are_synthesised_whole() {
             cells.0.len()
         );
         if gates::is_simulated(family) {
-            let netlist = fs::read_to_string(dir.path().join("netlist.v")).expect("a netlist");
-            netlist::bench(&emitted, netlist, family).assert_passes();
+            netlist::bench(&emitted, netlist.verilog, family).assert_passes();
         }
     });
 }
@@ -84,7 +83,7 @@ fn every_flow_takes_the_delay_lines_of_pipelines() {
     assert_eq!(pipelines.len(), 10);
     pipelines.par_iter().for_each(|name| {
         let directory = Path::new("rtl_out").join(name);
-        let text = fs::read_to_string(directory.join(format!("{name}.v"))).expect("the core");
+        let text = read(directory.join(format!("{name}.v")));
         // That of a short function has no value to hold for long.
         let delays = text.contains(&format!("{name}_delay #("));
         assert!(delays || name == "rsqrt_pipelined", "{name} has delay lines");
@@ -103,9 +102,7 @@ fn every_flow_takes_the_delay_lines_of_pipelines() {
             "read_verilog {name}.v {multiplier}; hierarchy -top {name}; design -save core; {}",
             flows.collect::<String>()
         );
-        tool("yosys")
-            .run_to_success(["-q", "-p", &commands], &directory, LIMIT)
-            .unwrap_or_else(|error| panic!("{name}: {error:#}"));
+        tool("yosys").run_to_success(["-q", "-p", &commands], &directory, LIMIT).sure_of(name);
     });
 }
 
@@ -117,11 +114,8 @@ fn usage_is_that_of_the_netlist() {
     FAMILIES.par_iter().for_each(|family| {
         let told =
             synthesis::synthesise(&tool("yosys"), &emitted.rtl(), &emitted.name, family, LIMIT)
-                .unwrap_or_else(|error| panic!("{error:#}"));
-        let dir = tempfile::tempdir().expect("a directory");
-        synthesise(dir.path(), &emitted, family);
-        let netlist = fs::read_to_string(dir.path().join("netlist.json")).expect("a netlist");
-        let netlist = serde_json::from_str(&netlist).expect("a netlist");
+                .sure();
+        let netlist = synthesise(&emitted, family).json;
         let cells = Cells::new(&netlist, &emitted.name);
         let wanted = Usage {
             luts: cells.count_all(family.luts),
@@ -144,7 +138,7 @@ fn memories_are_where_the_key_wants_them() {
         let emitted = Emitted::new(&core, POINTS, 1);
         let used =
             synthesis::synthesise(&tool("yosys"), &emitted.rtl(), &emitted.name, &ECP5, LIMIT);
-        used.unwrap_or_else(|error| panic!("{style}: {error:#}"))
+        used.sure_of(style)
     };
     let [auto, distributed] = ["auto", "distributed"].map(|style| used("quadratic", style));
     assert!(auto.block_rams > 0 && distributed.block_rams == 0, "{auto:?}, {distributed:?}");
@@ -159,7 +153,7 @@ struct Cells<'a>(Vec<&'a serde_json::Value>);
 
 impl<'a> Cells<'a> {
     fn new(netlist: &'a serde_json::Value, top: &str) -> Self {
-        let cells = netlist["modules"][top]["cells"].as_object().expect("cells");
+        let cells = netlist["modules"][top]["cells"].object();
         let all: Vec<_> = cells.values().collect();
         let cells = Self(all);
         for cell in &cells.0 {
@@ -171,7 +165,7 @@ impl<'a> Cells<'a> {
     }
 
     fn kind(cell: &serde_json::Value) -> &str {
-        cell["type"].as_str().expect("a type")
+        cell["type"].text()
     }
 
     fn of<'b>(&'b self, kind: &'b str) -> impl Iterator<Item = &'a serde_json::Value> + 'b {
@@ -231,9 +225,9 @@ fn ones(cell: &serde_json::Value, (prefixes, digits): (&[&str], usize)) -> u64 {
         |rest: &str| rest.len() == digits && rest.chars().all(|c| c.is_ascii_hexdigit());
     let is_contents =
         |name: &str| prefixes.iter().any(|prefix| name.strip_prefix(prefix).is_some_and(is_number));
-    let parameters = cell["parameters"].as_object().expect("parameters");
+    let parameters = cell["parameters"].object();
     let contents = parameters.iter().filter(|(name, _)| is_contents(name));
-    let ones = contents.map(|(_, bits)| bits.as_str().expect("bits").matches('1').count() as u64);
+    let ones = contents.map(|(_, bits)| bits.text().matches('1').count() as u64);
     ones.sum()
 }
 

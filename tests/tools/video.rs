@@ -1,33 +1,17 @@
 //! The video signal of `examples/video`: what a screen would show is the picture of the model, and boards keep its clocks.
 
-use std::ffi::OsStr;
-use std::path::Path;
-use std::time::Duration;
-
+use crate::common::Sure;
+use crate::common::files::root;
 use crate::common::sample::sampled;
-use crate::common::tools::tool;
-
-/// Verilator's C++ has to be compiled, which takes minutes where the machine is loaded.
-const LIMIT: Duration = Duration::from_secs(900);
-
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
-
-/// Runs a script of the example, and returns its output.
-fn script(name: &str, arguments: &[&OsStr]) -> String {
-    let glint = format!("GLINT={}", env!("CARGO_BIN_EXE_glint"));
-    let script = root().join("examples/video").join(name);
-    let all = [glint.as_ref(), script.as_os_str()].into_iter().chain(arguments.iter().copied());
-    tool("env").run_to_success(all, root(), LIMIT).unwrap_or_else(|error| panic!("{error:#}"))
-}
+use crate::common::tools::{LIMIT, example, tool};
 
 #[test]
 fn cores_shade_under_the_beam() {
     let signals = ["icebreaker-ball", "ulx3s-ball", "ulx3s-mesh"];
     for signal in sampled("signals of examples/video", signals, 1) {
         let dir = tempfile::tempdir().expect("a directory");
-        let output = script("run", &[dir.path().as_os_str(), "2".as_ref(), signal.as_ref()]);
+        let arguments = [dir.path().as_os_str(), "2".as_ref(), signal.as_ref()];
+        let output = example("video/run", &arguments);
         let frames = [1, 2].map(|frame| {
             let equal = format!("{signal}, frame {frame}: the pictures are equal, 921600 bytes");
             assert!(output.contains(&equal), "{output}");
@@ -40,9 +24,9 @@ fn cores_shade_under_the_beam() {
             let shown = root().join("docs/images/video.png");
             let compare = root().join("examples/soc/compare.py");
             let seen = dir.path().join("ulx3s-ball/frame1.ppm");
-            tool("python3").run_to_success([compare, shown, seen], root(), LIMIT).unwrap_or_else(
-                |error| panic!("docs/images/video.png is of another time: {error:#}"),
-            );
+            tool("python3")
+                .run_to_success([compare, shown, seen], root(), LIMIT)
+                .sure_of("docs/images/video.png is of another time");
         }
     }
 }
@@ -52,7 +36,8 @@ fn boards_keep_the_clocks() {
     let signals = [("icebreaker", "ball"), ("ulx3s", "ball"), ("ulx3s", "mesh")];
     for (board, scene) in sampled("bitstreams of examples/video", signals, 1) {
         let dir = tempfile::tempdir().expect("a directory");
-        let output = script("bitstream", &[board.as_ref(), scene.as_ref(), dir.path().as_os_str()]);
+        let output =
+            example("video/bitstream", &[board.as_ref(), scene.as_ref(), dir.path().as_os_str()]);
         assert!(output.contains("PASS") && !output.contains("FAIL"), "{output}");
         let file = if board == "icebreaker" { "icebreaker.bin" } else { "ulx3s.bit" };
         let path = dir.path().join(format!("{board}-{scene}")).join(file);

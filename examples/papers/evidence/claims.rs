@@ -139,6 +139,11 @@ pub fn percent(value: f64) -> String {
     }
 }
 
+/// Returns the verdict on a claim that either holds or fails.
+fn holds_if(holds: bool) -> Verdict {
+    if holds { Verdict::Holds } else { Verdict::Fails }
+}
+
 /// Returns a figure that is not an error.
 fn plain(key: &str, definition: &str, value: f64, text: String) -> Measured {
     Measured { key: key.to_owned(), definition: definition.to_owned(), value, text, n: None }

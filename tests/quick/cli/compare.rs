@@ -2,6 +2,8 @@
 
 use serde_json::{Value, json};
 
+use crate::common::files::{json, root};
+use crate::common::json::Json;
 use crate::workspace::{COSINE_POWER, Run, Workspace};
 
 /// Returns a comparison without synthesis.
@@ -17,9 +19,7 @@ fn compared(arguments: &[&str]) -> Value {
 }
 
 fn entry<'a>(value: &'a Value, name: &str) -> &'a Value {
-    let entries = value["entries"].as_array().expect("entries");
-    let found = entries.iter().find(|entry| entry["name"] == name);
-    found.unwrap_or_else(|| panic!("no {name} in {value}"))
+    value["entries"].of("name", name)
 }
 
 /// Returns the cosines of the grid, from 0 to 90 degrees by a hundredth, as 20 fraction bits hold them; and unrounded.
@@ -40,7 +40,7 @@ fn spread(errors: impl Iterator<Item = f64>) -> (f64, f64) {
 #[track_caller]
 fn assert_spread(told: &Value, (largest, mean): (f64, f64)) {
     for (name, wanted) in [("largest", largest), ("mean", mean)] {
-        let told = told[name].as_f64().expect("a number");
+        let told = told[name].number();
         assert!((told - wanted).abs() < 1e-12, "{name}: {told}, not {wanted}");
     }
 }
@@ -85,25 +85,14 @@ fn errors_of_schlick_at_20_agree_with_integers() {
 fn every_device_is_there_and_configurations_as_they_are() {
     let dir = Workspace::new();
     let devices = dir.glint(["list", "--json"]).json()["devices"].clone();
-    let mut names: Vec<&str> = devices
-        .as_array()
-        .expect("a list")
-        .iter()
-        .map(|device| device["name"].as_str().expect("a name"))
-        // These are no highlights.
-        .filter(|name| !["function", "normaliser", "dot-product", "shading"].contains(name))
-        .collect();
+    let mut names = devices.each("name");
+    // These are no highlights.
+    names.retain(|name| !["function", "normaliser", "dot-product", "shading"].contains(name));
     let value = compared(&["core.toml", "--bits", "10"]);
-    let told: Vec<&str> = value["entries"]
-        .as_array()
-        .expect("entries")
-        .iter()
-        .map(|entry| entry["name"].as_str().expect("a name"))
-        .collect();
     names.push("core.toml");
-    assert_eq!(told, names);
+    assert_eq!(value["entries"].each("name"), names);
     // The width is of the devices; the configuration has its own.
-    let toml = |name| entry(&value, name)["toml"].as_str().expect("TOML").to_owned();
+    let toml = |name| entry(&value, name)["toml"].text().to_owned();
     assert!(toml("cosine-power").contains("bits = 10\n"), "{}", toml("cosine-power"));
     assert!(toml("core.toml").contains("[colour]\nbits = 8\n"), "{}", toml("core.toml"));
     let bits = |name| entry(&value, name)["multipliers"][1].clone();
@@ -113,19 +102,17 @@ fn every_device_is_there_and_configurations_as_they_are() {
 /// The record of a device in `synthesis/`; frequency over clocks a point, eight of `cosine-power`, are points a second.
 #[test]
 fn figures_of_a_record_stand_beside_its_device() {
-    let directory = format!("{}/synthesis", env!("CARGO_MANIFEST_DIR"));
-    let record = std::fs::read_to_string(format!("{directory}/cosine_power.json")).expect("it");
-    let record: Value = serde_json::from_str(&record).expect("JSON");
-    let targets = record["targets"].as_array().expect("targets");
-    let ecp5 = targets.iter().find(|it| it["target"] == "ecp5").expect("figures for ECP5");
+    let directory = root().join("synthesis").display().to_string();
+    let record = json(format!("{directory}/cosine_power.json"));
+    let ecp5 = record["targets"].of("target", "ecp5");
     let value = compared(&["core.toml", "--figures", &directory]);
     let speed = &entry(&value, "cosine-power")["speed"]["ecp5"];
     assert_eq!(speed["mhz"], ecp5["frequency"]);
-    let points = ecp5["frequency"]["median"].as_f64().expect("a frequency") / 8.0;
-    let told = |key: &str| speed[key].as_f64().expect("a number");
+    let points = ecp5["frequency"]["median"].number() / 8.0;
+    let told = |key: &str| speed[key].number();
     assert!((told("million_points_per_second") - points).abs() < 1e-9, "{speed}");
     for (key, count) in [("lut", "luts"), ("dsp", "dsps")] {
-        let share = points / ecp5["area"][count].as_f64().expect("a count");
+        let share = points / ecp5["area"][count].number();
         let told = told(&format!("million_points_per_second_per_{key}"));
         assert!((told - share).abs() < 1e-9, "{speed}");
     }

@@ -1,12 +1,12 @@
 //! `cosim`: the three simulators, the waveform, and exhaustive checks in parts.
 
 use std::collections::BTreeSet;
-use std::fs;
-use std::io::BufReader;
 
 use serde_json::Value;
-use vcd::{Command, Parser, ScopeItem, Var, VarType};
+use vcd::{Command, VarType};
 
+use crate::common::json::Json;
+use crate::common::waveform::waveform;
 use crate::workspace::Workspace;
 #[cfg(feature = "outside-tools")]
 use crate::workspace::{COSINE_POWER, Run};
@@ -24,20 +24,8 @@ fn emitted_verilog_holds_in_both_simulators() {
     let run = dir.glint(["cosim", "core.toml", "--points", "3", "--simulator", "icarus", "--json"]);
     let one = &run.json()["configurations"][0];
     assert_eq!((&one["simulator"], &one["passed"]), (&"icarus".into(), &true.into()), "{run:?}");
-    assert!(one["transcript"].as_str().unwrap().contains("PASS"), "{one}");
+    assert!(one["transcript"].text().contains("PASS"), "{one}");
     assert_eq!(dir.files().len(), 1, "something is left");
-}
-
-/// All variables with the path of their scopes, joined by dots.
-fn variables(items: &[ScopeItem], path: &str, found: &mut Vec<(String, Var)>) {
-    for item in items {
-        match item {
-            ScopeItem::Scope(scope) => {
-                variables(&scope.children, &format!("{path}{}.", scope.identifier), found)
-            }
-            ScopeItem::Var(var) => found.push((format!("{path}{}", var.reference), var.clone())),
-        }
-    }
 }
 
 #[test]
@@ -46,16 +34,12 @@ fn a_waveform_has_ports_and_microinstructions() {
     dir.done(["generate", "core.toml"]);
     let manifest = dir.json("rtl_out/core/core.json");
     dir.done(["cosim", "core.toml", "--points", "20", "--vcd", "wave.vcd"]);
-    let file = BufReader::new(fs::File::open(dir.at("wave.vcd")).unwrap());
-    let mut parser = Parser::new(file);
-    let header = parser.parse_header().unwrap();
-    let mut found = Vec::new();
-    variables(&header.items, "", &mut found);
+    let (found, values) = waveform(&dir.at("wave.vcd"));
     let size = |name: &str| {
         found.iter().find(|(path, _)| path == name).map(|(_, var)| u64::from(var.size))
     };
-    for port in manifest["ports"].as_array().unwrap() {
-        let name = port["name"].as_str().unwrap();
+    for port in manifest["ports"].list() {
+        let name = port["name"].text();
         assert_eq!(size(&format!("core.{name}")), port["width"].as_u64(), "{name}");
     }
     // By the defaults of the configuration, and by the ten microinstructions of the patent.
@@ -66,7 +50,7 @@ fn a_waveform_has_ports_and_microinstructions() {
     let (_, executed) =
         found.iter().find(|(path, _)| path == "core.control.microinstruction").expect("a name");
     let mut seen = BTreeSet::new();
-    for command in parser {
+    for command in values {
         if let Command::ChangeString(code, text) = command.unwrap()
             && code == executed.code
         {
@@ -85,8 +69,7 @@ fn a_waveform_has_ports_and_microinstructions() {
     assert_eq!(adds.map(str::to_owned).collect::<BTreeSet<_>>(), there);
     let fraction = |port: &Value| format!("[fpshift_count] {}\ncore.", port["fraction_bits"]);
     for name in ["cos_gamma", "exponent"] {
-        let ports = manifest["ports"].as_array().unwrap();
-        let port = ports.iter().find(|port| port["name"] == name).unwrap();
+        let port = manifest["ports"].of("name", name);
         let pointed = view.contains(&format!("{}{name}[", fraction(port)));
         assert_eq!(pointed, name == "cos_gamma", "{view}");
     }
@@ -95,10 +78,10 @@ fn a_waveform_has_ports_and_microinstructions() {
     dir.done(["cosim", "core.toml", "--points", "20", "--vcd", "wave.vcd", "--force"]);
     assert_eq!(dir.read("wave.gtkw"), "mine");
 
-    let words = manifest["control"]["words"].as_array().unwrap();
+    let words = manifest["control"]["words"].list();
     assert_eq!((executed.var_type, executed.size), (VarType::String, 1));
     // A VCD string has no spaces.
-    let names = words.iter().map(|word| word["name"].as_str().unwrap().replace(' ', "_"));
+    let names = words.iter().map(|word| word["name"].text().replace(' ', "_"));
     let unseen: Vec<String> = names.filter(|name| !seen.contains(name)).collect();
     assert!(unseen.is_empty(), "{unseen:?} not in {seen:?}");
 }
@@ -109,12 +92,9 @@ fn a_waveform_of_a_pipeline_has_its_stages() {
     let dir = Workspace::with("core.toml", ROUGH);
     dir.write("core.toml", format!("architecture = \"pipelined\"\n{ROUGH}"));
     dir.done(["cosim", "core.toml", "--points", "20", "--vcd", "wave.vcd"]);
-    let file = BufReader::new(fs::File::open(dir.at("wave.vcd")).unwrap());
-    let mut found = Vec::new();
-    variables(&Parser::new(file).parse_header().unwrap().items, "", &mut found);
-    let schedule = dir.done(["schedule", "core.toml", "--json"]);
-    let schedule: Value = serde_json::from_str(&schedule).expect("JSON");
-    let stages = schedule["schedules"][0]["stages"].as_array().expect("stages").len();
+    let (found, _) = waveform(&dir.at("wave.vcd"));
+    let schedule = dir.glint(["schedule", "core.toml", "--json"]).good().json();
+    let stages = schedule["schedules"][0]["stages"].list().len();
     for stage in 0..=stages {
         let scope = format!("core.stage_{stage}.");
         let nets: Vec<&str> = found.iter().filter_map(|it| it.0.strip_prefix(&scope)).collect();
@@ -153,12 +133,12 @@ fn a_difference_in_verilog_is_told_with_its_place() {
     assert_eq!(one["vcd"], "core_mismatch.vcd");
     assert_ne!(one["golden"], one["simulated"]);
     assert!(dir.read("core_mismatch.vcd").contains("red_out"));
-    let (clock, during) = (&one["clock"], one["during"].as_str().unwrap());
+    let (clock, during) = (&one["clock"], one["during"].text());
     let told = format!("FAILS: seed 1, clock {clock}, {during}: `red_out` is ");
     let text = run(&[]);
     assert_eq!(text.code, 1, "{text:?}");
     assert!(text.out.contains(&told), "{told}\n{}", text.out);
-    let again = one["reproduce"].as_str().unwrap();
+    let again = one["reproduce"].text();
     assert_eq!(again, "glint cosim core.toml --simulator icarus --seed 1 --points 9");
 }
 

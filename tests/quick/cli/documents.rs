@@ -1,10 +1,9 @@
 //! The commands of pages run, with the configurations that stand before them; the book has every page.
 
 use std::collections::BTreeSet;
-use std::fs;
-use std::path::Path;
 
 use super::workspace::Workspace;
+use crate::common::files::{paths, read};
 
 /// Returns the blocks of a page: language and text.
 fn blocks(page: &str) -> Vec<(&str, &str)> {
@@ -14,7 +13,7 @@ fn blocks(page: &str) -> Vec<(&str, &str)> {
 
 /// Runs the commands of a page; a configuration begins with its name, `# core.toml`.
 fn run_all(page: &str) {
-    let text = fs::read_to_string(page).expect("the page");
+    let text = read(page);
     let mut dir: Option<Workspace> = None;
     let mut run = 0;
     for (language, block) in blocks(&text) {
@@ -56,14 +55,11 @@ fn commands_of_the_tutorial_run() {
 
 #[test]
 fn every_page_is_in_the_book() {
-    let summary = fs::read_to_string("docs/SUMMARY.md").expect("a summary");
+    let summary = read("docs/SUMMARY.md");
     let links = summary.split("](").skip(1).filter_map(|rest| rest.split_once(')'));
     let listed: BTreeSet<String> =
-        links.map(|it| it.0.to_owned()).filter(|it| !it.is_empty()).collect();
-    let pages = ["", "devices/"].into_iter().flat_map(|folder| {
-        let entries = fs::read_dir(Path::new("docs").join(folder)).expect("pages");
-        entries.map(move |it| format!("{folder}{}", it.expect("an entry").file_name().display()))
-    });
-    let pages = pages.filter(|it| it.ends_with(".md") && it != "SUMMARY.md");
+        links.map(|it| format!("docs/{}", it.0)).filter(|it| it != "docs/").collect();
+    let pages = ["docs", "docs/devices"].map(|folder| paths(folder, ".md")).concat();
+    let pages = pages.into_iter().filter(|it| it != "docs/SUMMARY.md");
     assert_eq!(listed, pages.collect());
 }

@@ -1,5 +1,6 @@
 //! `generate` and the main job, when all is well and when foreign files stand in the way.
 
+use crate::common::json::Json;
 use crate::workspace::{COSINE_POWER, Workspace};
 
 const FILES: [&str; 2] = ["rtl_out/core/core.v", "testbench/core/core_tb.v"];
@@ -38,11 +39,11 @@ fn json_lists_the_files_in_another_directory() {
         (&one["config"], &one["name"], &one["written"]),
         (&"core.toml".into(), &"core".into(), &true.into())
     );
-    let files = |list: &serde_json::Value| list.as_array().unwrap().clone();
+    let files = |list: &serde_json::Value| list.list().clone();
     let listed: Vec<String> = files(&one["files"])
         .iter()
         .chain(&files(&value["shared"]))
-        .map(|file| format!("a/b/{}", file.as_str().unwrap()))
+        .map(|file| format!("a/b/{}", file.text()))
         .collect();
     let mut sorted = listed.clone();
     sorted.sort();
@@ -190,20 +191,18 @@ fn computations_name_their_columns_in_the_order_of_the_ports() {
         dir.done(["generate", "core.toml"]);
         let manifest: serde_json::Value = dir.json("rtl_out/core/core.json");
         let ports = |role: &str| -> Vec<&str> {
-            let ports = manifest["ports"].as_array().expect("a list").iter();
+            let ports = manifest["ports"].list().iter();
             let ports = ports.filter(|port| port["role"] == role);
-            ports.map(|port| port["name"].as_str().expect("a name")).collect()
+            ports.map(|port| port["name"].text()).collect()
         };
         let computations = &manifest["computations"];
-        let names = |key: &str| -> Vec<&str> {
-            let names = computations[key].as_array().expect("a list").iter();
-            names.map(|name| name.as_str().expect("a name")).collect()
-        };
+        let names =
+            |key: &str| -> Vec<&str> { computations[key].list().iter().map(Json::text).collect() };
         assert_eq!(names("operands"), ports("operand"), "{device}");
         assert_eq!(names("results"), ports("result"), "{device}");
-        for point in computations["points"].as_array().expect("a list") {
+        for point in computations["points"].list() {
             // Each number is of its column's domain.
-            let operands = point["operands"].as_array().expect("a list").iter();
+            let operands = point["operands"].list().iter();
             for (name, raw) in names("operands").into_iter().zip(operands) {
                 let domain = &manifest["accuracy"]["domain"][name];
                 let within = domain["low"].as_i64()..=domain["high"].as_i64();

@@ -1,5 +1,6 @@
 //! `mutate`: the names of faults, scores and records.
 
+use crate::common::json::Json;
 use crate::workspace::{COSINE_POWER, Workspace};
 
 /// A fault that every computation shows.
@@ -34,12 +35,12 @@ fn scores_are_recorded_and_nothing_else_is_overwritten() {
     let record = dir.json("scores/core.json");
     assert_eq!(printed["configurations"][0], record);
     let all = &record["netlist"]["all"];
-    let undecided = record["netlist"]["undecided"].as_array().expect("a list").len();
+    let undecided = record["netlist"]["undecided"].list().len();
     assert_eq!(all["undecided"], undecided);
     // What the shipped bench notices and what it misses are all that is caught, and perhaps some that are undecided.
-    let missed = record["netlist"]["missed"].as_array().expect("missed").len();
-    let number = |value: &serde_json::Value| value.as_u64().expect("a number") as usize;
-    let caught: usize = all["caught"].as_object().expect("checks").values().map(number).sum();
+    let missed = record["netlist"]["missed"].list().len();
+    let number = |value: &serde_json::Value| value.count() as usize;
+    let caught: usize = all["caught"].object().values().map(number).sum();
     let shipped = number(&all["shipped"]);
     assert_eq!(all["missed"], missed);
     assert!((caught..=caught + undecided).contains(&(shipped + missed)), "{all}");

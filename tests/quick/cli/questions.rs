@@ -1,16 +1,15 @@
 //! `eval`, `list`, `-V`: every device of the catalogue.
 
 use glint::registry::Registry;
-use serde_json::Value;
 
+use crate::common::json::Json;
 use crate::workspace::Workspace;
 
 /// Whatever is left out, the point is lit and its error is in the bound.
 #[test]
 fn a_point_of_the_evaluators_choice_is_lit() {
-    let registry = Registry::catalogue();
-    let names: Vec<&str> = registry.devices().iter().map(|device| device.name).collect();
-    for name in names {
+    for device in Registry::catalogue().devices() {
+        let name = device.name;
         let dir = Workspace::with("core.toml", format!("device = \"{name}\"\n"));
         let value = dir.glint(["eval", "core.toml", "--json"]).quiet().json();
         let formula = &value["formula"];
@@ -18,8 +17,8 @@ fn a_point_of_the_evaluators_choice_is_lit() {
         assert_eq!(formula["f"].is_null(), name == "function", "{name}: {formula}");
         assert!(formula["f"].as_f64().is_none_or(|f| (0.1..0.9).contains(&f)), "{name}: {formula}");
         assert!(value["inside_the_domain"] == true, "{name}: {formula}");
-        let errors = formula["errors"].as_array().expect("errors").iter();
-        let errors: Vec<f64> = errors.map(|error| error.as_f64().expect("a number")).collect();
+        let errors = formula["errors"].list().iter();
+        let errors: Vec<f64> = errors.map(|error| error.number()).collect();
         assert!(!errors.is_empty() && errors.iter().all(|it| *it < 1.0), "{name}: {errors:?}");
     }
 }
@@ -27,11 +26,9 @@ fn a_point_of_the_evaluators_choice_is_lit() {
 #[test]
 fn every_device_is_listed() {
     let value = Workspace::new().glint(["list", "--json"]).json();
-    let names: Vec<&Value> =
-        value["devices"].as_array().unwrap().iter().map(|device| &device["name"]).collect();
     let registry = Registry::shipped();
     let all: Vec<&str> = registry.devices().iter().map(|device| device.name).collect();
-    assert_eq!(names, all);
+    assert_eq!(value["devices"].each("name"), all);
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! `glint schedule`: the clock of a target, and constraints.
 
+use crate::common::json::Json;
 use crate::workspace::Workspace;
 
 /// The clock follows the target where the file leaves it out, and only there.
@@ -8,7 +9,7 @@ fn a_clock_that_is_left_out_follows_the_target() {
     let text = "device = \"schlick\"\narchitecture = \"pipelined\"\npipeline.target = \"ice40\"\n";
     let dir = Workspace::with("core.toml", text);
     let value = dir.glint(["schedule", "core.toml", "--json"]).quiet().json();
-    let clock = value["schedules"][0]["clock_mhz"].as_f64().expect("a clock");
+    let clock = value["schedules"][0]["clock_mhz"].number();
     dir.write("core.toml", format!("{text}pipeline.clock_mhz = 130\n"));
     let refused = dir.glint(["schedule", "core.toml"]);
     refused.refused(1, &[&format!("set pipeline.clock_mhz to {clock} or less"), "core.toml:4:"]);
@@ -27,7 +28,7 @@ fn constraints_have_the_clock_of_the_schedule() {
         );
         let dir = Workspace::with("core.toml", &text);
         let schedule = dir.glint(["schedule", "core.toml", "--json"]).json();
-        let stated = schedule["schedules"][0]["clock_mhz"].as_f64().expect("a clock");
+        let stated = schedule["schedules"][0]["clock_mhz"].number();
         dir.done(["generate", "core.toml"]);
         let constraints = dir.read("rtl_out/core/core.sdc");
         let period = constraints.split("-period ").nth(1).expect("a period");

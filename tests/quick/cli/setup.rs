@@ -5,6 +5,7 @@ use std::fs::{self, File};
 use serde_json::{Value, json};
 
 use super::render::pixels;
+use crate::common::json::Json;
 use crate::workspace::{Run, Workspace};
 
 fn setup(config: &str, inputs: &[&str]) -> Run {
@@ -17,7 +18,7 @@ fn a_difference_by_hand() {
     // The square of the difference is 2(1 − cos γ), from vectors as from the angle.
     let of = |run: &Run| -> f64 {
         let told = run.json();
-        let part = |at: usize| told["operands"][at]["value"].as_f64().expect("a number");
+        let part = |at: usize| told["operands"][at]["value"].number();
         (0..3).map(|at| part(at) * part(at)).sum()
     };
     let lyon = "device = \"lyon\"\n";
@@ -80,7 +81,7 @@ fn set_up_and_evaluated_it_is_the_line_of_the_picture() {
             eval.args(["eval", "core.toml", "--batch", "-", "--json"]).stdin(input).output(),
         );
         let told = run.good().json();
-        let points = told["points"].as_array().expect("points");
+        let points = told["points"].list();
         let computed: Vec<&Value> =
             points.iter().map(|it| &it["outputs"]["intensity_out"]).collect();
         let shown: Vec<Value> = drawn.iter().map(|pixel| json!(pixel[0])).collect();

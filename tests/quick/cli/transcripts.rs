@@ -9,6 +9,8 @@ use rayon::prelude::*;
 use regex::Regex;
 use serde_json::Value;
 
+use crate::common::files::{paths, read};
+use crate::common::json::Json;
 use crate::workspace::{COSINE_POWER, Run, Workspace};
 
 /// Directory of the transcripts.
@@ -25,12 +27,8 @@ struct Step<'t> {
 
 #[test]
 fn commands_do_as_their_transcripts_say() {
-    let entries = fs::read_dir(TRANSCRIPTS).expect(TRANSCRIPTS);
-    let paths = entries.map(|entry| entry.expect("an entry").path());
-    let texts: Vec<(String, String)> = paths
-        .filter(|path| path.extension().is_some_and(|it| it == "txt"))
-        .map(|path| (path.display().to_string(), fs::read_to_string(path).expect("a transcript")))
-        .collect();
+    let paths = paths(TRANSCRIPTS, ".txt").into_iter();
+    let texts: Vec<(String, String)> = paths.map(|path| (path.clone(), read(path))).collect();
     let cases = texts.iter().flat_map(|(path, text)| {
         let cases = text.split("\n## ").skip(1);
         cases.map(move |case| (path, case.split_once('\n').expect("a title and steps")))
@@ -210,8 +208,8 @@ impl<'t> Step<'t> {
         arguments.insert(at, json);
         let run = self.glint(dir, &arguments);
         let value: Value = run.json();
-        let found = value["problems"].as_array().expect("problems").iter();
-        let mut found = found.flat_map(|problem| problem.as_object().expect("a problem").values());
+        let found = value["problems"].list().iter();
+        let mut found = found.flat_map(|problem| problem.object().values());
         let is_told = found.any(|text| text.as_str().is_some_and(|text| text.contains(told)));
         let is_right = run.code == self.code && run.err.is_empty() && value["ok"] == false;
         (!is_right || !is_told).then(|| format!("no `{told}` in {run:?}"))

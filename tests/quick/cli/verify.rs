@@ -1,7 +1,6 @@
 //! `verify`: page and record, the same whenever they are made.
 
-use serde_json::Value;
-
+use crate::common::json::Json;
 use crate::workspace::Workspace;
 
 const WITHOUT_TOOLS: [&str; 3] = ["verify", "core.toml", "--without-tools"];
@@ -10,18 +9,6 @@ const WITHOUT_TOOLS: [&str; 3] = ["verify", "core.toml", "--without-tools"];
 fn dir() -> Workspace {
     let narrow = include_str!("../../../configs/reduced/schlick.toml");
     Workspace::with("core.toml", narrow.replace("schlick_reduced", "core"))
-}
-
-/// Returns the verdicts of a record, by check.
-fn verdicts(record: &Value) -> Vec<(&str, &str)> {
-    let checks = record["checks"].as_array().expect("checks");
-    checks
-        .iter()
-        .map(|check| {
-            let name = check["check"].as_str().expect("a check");
-            (name, check["verdict"].as_str().expect("a verdict"))
-        })
-        .collect()
 }
 
 #[test]
@@ -54,31 +41,30 @@ fn page_and_record_are_the_same_every_time_but_for_the_timings() {
     assert_eq!(found["full"], false);
     // The digests are those of the files that `generate` writes.
     dir.glint(["generate", "core.toml"]).good();
-    let files = found["files"].as_array().expect("files");
+    let files = found["files"].list();
     assert!(files.iter().any(|file| file["path"] == "rtl_out/core/core.v"), "{files:?}");
     for file in files {
-        let [path, digest] = ["path", "sha256"].map(|it| file[it].as_str().expect("text"));
+        let [path, digest] = ["path", "sha256"].map(|it| file[it].text());
         assert_eq!(glint::package::digest(dir.read(path).as_bytes()), digest, "{path}");
         assert!(page.contains(digest), "{path}");
     }
-    let checks = found["checks"].as_array().map_or(0, Vec::len) as u64;
-    let counts = found["counts"].as_object().expect("counts");
-    assert_eq!(counts.values().filter_map(Value::as_u64).sum::<u64>(), checks);
+    let checks = &found["checks"];
+    let counts = found["counts"].object();
+    assert_eq!(counts.values().map(Json::count).sum::<u64>(), checks.list().len() as u64);
     assert_eq!(counts["left-out"], 11);
-    let verdicts = verdicts(&found);
-    for expected in [
+    for (check, verdict) in [
         ("design", "proved"),
         ("lockstep", "passed"),
         ("clocks", "proved"),
         ("contract", "proved"),
         ("mutation", "passed"),
+        ("icarus", "left-out"),
     ] {
-        assert!(verdicts.contains(&expected), "{verdicts:?}");
+        assert_eq!(checks.of("check", check)["verdict"], verdict, "{check}");
     }
-    assert!(verdicts.contains(&("icarus", "left-out")), "{verdicts:?}");
     assert!(page.contains("--without-tools leaves it out."));
     assert_eq!(again.json()["configurations"][0]["record"], found);
     let timings = dir.json("made/core.timings.json");
-    assert_eq!(timings["seconds"].as_array().map(Vec::len), Some(verdicts.len()));
+    assert_eq!(timings["seconds"].list().len(), checks.list().len());
     assert_eq!(dir.files().keys().filter(|it| it.starts_with("made")).count(), 3);
 }

@@ -9,6 +9,8 @@ use std::process::{Command, Output};
 use serde_json::Value;
 use tempfile::TempDir;
 
+use crate::common::files::{below, json, put, read};
+
 /// The least configuration: all defaults.
 pub const COSINE_POWER: &str = "device = \"cosine-power\"\n";
 
@@ -48,9 +50,7 @@ impl Workspace {
 
     /// Writes a file, with the directories that it needs.
     pub fn write(&self, name: &str, text: impl AsRef<[u8]>) {
-        let path = self.at(name);
-        fs::create_dir_all(path.parent().expect("a parent")).expect("a directory");
-        fs::write(path, text).expect("a file");
+        put(self.at(name), text);
     }
 
     /// Writes an executable shell script, with the directories that it needs.
@@ -62,12 +62,12 @@ impl Workspace {
     }
 
     pub fn read(&self, name: &str) -> String {
-        fs::read_to_string(self.at(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+        read(self.at(name))
     }
 
     /// Returns a file that is JSON.
     pub fn json(&self, name: &str) -> Value {
-        serde_json::from_str(&self.read(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+        json(self.at(name))
     }
 
     /// Returns the program, to be run here.
@@ -90,21 +90,11 @@ impl Workspace {
 
     /// Returns every file below this directory, with its contents.
     pub fn files(&self) -> BTreeMap<String, Vec<u8>> {
-        let mut found = BTreeMap::new();
-        let mut directories = vec![self.path().to_owned()];
-        while let Some(directory) = directories.pop() {
-            for entry in fs::read_dir(&directory).expect("a directory") {
-                let path = entry.expect("an entry").path();
-                if path.is_dir() {
-                    directories.push(path);
-                    continue;
-                }
-                let name = path.strip_prefix(self.path()).expect("a path below");
-                let name = name.to_str().expect("UTF-8").to_owned();
-                found.insert(name, fs::read(&path).expect("a file"));
-            }
-        }
-        found
+        let file = |path: PathBuf| {
+            let name = path.strip_prefix(self.path()).expect("a path below");
+            (name.to_str().expect("UTF-8").to_owned(), fs::read(&path).expect("a file"))
+        };
+        below(self.path()).into_iter().map(file).collect()
     }
 
     /// Nothing that Glint makes on the way is left.

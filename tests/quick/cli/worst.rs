@@ -2,6 +2,7 @@
 
 use serde_json::Value;
 
+use crate::common::json::Json;
 use crate::workspace::{COSINE_POWER, Workspace};
 
 #[test]
@@ -12,15 +13,15 @@ fn an_error_is_found_within_the_bound_and_eval_shows_it() {
     let run = dir.glint(["worst", "core.toml", "--starts", "3", "--json"]);
     let json = &run.json()["configurations"][0];
     assert_eq!((&json["holds"], &json["recorded"]), (&Value::Bool(true), &Value::Null));
-    let units = json["units"].as_f64().expect("a number");
+    let units = json["units"].number();
     // Rounding alone makes half a unit.
-    assert!(units > 0.5 && units <= json["bound"].as_f64().expect("a number"), "{json}");
+    assert!(units > 0.5 && units <= json["bound"].number(), "{json}");
     let (_, operands) = text.split_once(" at ").expect("operands");
     let mut arguments = vec!["eval", "core.toml", "--json"];
     arguments.extend(operands.split_whitespace());
     let point = dir.glint(arguments).json();
-    let output = json["output"].as_str().expect("a name");
-    let shown = point["signals"].as_array().expect("signals");
+    let output = json["output"].text();
+    let shown = point["signals"].list();
     let shown = shown.iter().find(|it| it["name"] == output).expect("the output");
     assert_eq!(shown["raw"], json["raw"], "{point}");
 }

@@ -1,6 +1,6 @@
 //! Mistakes in microprograms: order and ends of microinstructions, selections, `valid`, jumps and loops.
 
-use glint::dsl::{Designer, Setting, end, jump_if, loop_while, next, step, valid};
+use glint::dsl::{Designer, Setting, Signal, end, jump_if, loop_while, next, step, valid};
 use glint::fixed::{Format, Overflow, Rounding};
 
 use super::{BYTE, Found, finish, mistakes, program};
@@ -212,13 +212,28 @@ fn results_need_valid_and_muxes_need_a_choice() {
 
 /// Returns a loop around the load of `y`, as long as `condition` says.
 #[track_caller]
-fn looped(condition: impl for<'d> FnOnce(&'d Designer) -> glint::dsl::Signal<'d>) -> Found {
+fn looped(condition: impl for<'d> FnOnce(&'d Designer) -> Signal<'d>) -> Found {
     program(|d, load| {
         let condition = condition(d);
         vec![
             step("idle", []),
             step("begin", [load.clone()]),
             step("again", [load, loop_while(condition, "begin")]),
+            step("result", [valid(), end()]),
+        ]
+    })
+}
+
+/// Returns a microinstruction that counts down from a signal, as often as that says.
+#[track_caller]
+fn counted(from: impl for<'d> FnOnce(&'d Designer) -> Signal<'d>) -> Found {
+    program(|d, load| {
+        let count = d.down_counter("count", from(d));
+        let more = d.any("more", count.q());
+        vec![
+            step("idle", []),
+            step("begin", [load, count.load()]),
+            step("again", [count.count(), loop_while(more, "again")]),
             step("result", [valid(), end()]),
         ]
     })
@@ -236,17 +251,7 @@ fn a_loop_must_end() {
         .are(["microinstruction `again` goes back to `begin` while `steady` is 1, which is \
              constant: it never ends, or is no loop"]);
     // What the loop loads may end it.
-    program(|d, load| {
-        let count = d.down_counter("count", d.raw_constant("three", 3, Format::unsigned(2, 0)));
-        let more = d.any("more", count.q());
-        vec![
-            step("idle", []),
-            step("begin", [load, count.load()]),
-            step("again", [count.count(), loop_while(more, "again")]),
-            step("result", [valid(), end()]),
-        ]
-    })
-    .are([]);
+    counted(|d| d.raw_constant("three", 3, Format::unsigned(2, 0))).are([]);
     // A loop without an end of its own may have a way out.
     program(|d, load| {
         let steady = d.raw_constant("steady", 1, Format::BIT);
@@ -277,15 +282,5 @@ fn every_operand_must_be_used() {
     })
     .are(["operand `spare` is not used: no output depends on it"]);
     // How long a loop runs shows.
-    program(|d, load| {
-        let count = d.down_counter("count", d.operand("n", Format::unsigned(4, 0)).q());
-        let more = d.any("more", count.q());
-        vec![
-            step("idle", []),
-            step("begin", [load, count.load()]),
-            step("again", [count.count(), loop_while(more, "again")]),
-            step("result", [valid(), end()]),
-        ]
-    })
-    .are([]);
+    counted(|d| d.operand("n", Format::unsigned(4, 0)).q()).are([]);
 }

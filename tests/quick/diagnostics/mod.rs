@@ -3,15 +3,16 @@
 mod instances;
 mod microprogram;
 
-use std::fs;
 use std::panic::Location;
-use std::path::PathBuf;
 
 use glint::config::Config;
 use glint::dsl::{Designer, Setting, end, loop_while, step, valid};
 use glint::fixed::{Format, Overflow, Rounding};
 use glint::hdl::blocks::divider::Divider;
 use glint::registry::Registry;
+
+use crate::common::Sure;
+use crate::common::files::{below, read};
 
 const BYTE: Format = Format::unsigned(0, 8);
 
@@ -61,7 +62,7 @@ fn mistakes(wrong: impl FnOnce(&Designer)) -> Found {
 /// Each code has its page and is reported somewhere; no page is left over.
 #[test]
 fn every_code_has_its_page() {
-    let declared = fs::read_to_string("generator/base/codes.rs").expect("the codes");
+    let declared = read("generator/base/codes.rs");
     let codes = declared.lines().filter_map(|line| {
         let (name, number) = line.strip_prefix("pub const ")?.split_once(": Code = Code(")?;
         Some((name, format!("G{:0>4}", number.strip_suffix(");")?)))
@@ -71,21 +72,10 @@ fn every_code_has_its_page() {
     let paged: Vec<&str> = pages.iter().map(|page| page.0).collect();
     assert_eq!(codes.iter().map(|it| it.1.as_str()).collect::<Vec<_>>(), paged);
     assert!(pages.len() > 20 && pages.iter().all(|page| page.2.len() > 100), "{pages:?}");
-    let sources = sources("generator/hdl");
+    let sources: String = below("generator/hdl".as_ref()).into_iter().map(read).collect();
     for (name, code) in codes {
         assert!(sources.contains(&format!("codes::{name},")), "{code} is never reported");
     }
-}
-
-/// Returns the Rust below a directory, one file behind the other.
-fn sources(directory: &str) -> String {
-    let entries = fs::read_dir(directory).expect("a directory");
-    let paths = entries.map(|entry| entry.expect("an entry").path());
-    let text = |path: PathBuf| match path.is_dir() {
-        true => sources(&path.display().to_string()),
-        false => fs::read_to_string(path).unwrap_or_default(),
-    };
-    paths.map(text).collect()
 }
 
 #[test]
@@ -305,7 +295,7 @@ fn warnings(more: impl FnOnce(&Designer) -> Vec<Setting>) -> Found {
     d.output("y_out", y.q());
     let load = more(&d).into_iter().chain([y.load()]);
     d.microprogram([step("idle", []), step("load", load), step("result", [valid(), end()])]);
-    let design = d.finish().unwrap_or_else(|mistakes| panic!("{mistakes}"));
+    let design = d.finish().sure();
     for warning in &design.warnings {
         assert_eq!(warning.location.file(), file!(), "{warning}");
     }
@@ -356,7 +346,7 @@ fn constant_muxes_have_a_warning() {
 fn the_catalogue_has_no_warnings() {
     for device in Registry::catalogue().devices() {
         let config = Config::defaults(&(device.schema)(), "core");
-        let design = device.design(&config).unwrap_or_else(|mistakes| panic!("{mistakes}"));
+        let design = device.design(&config).sure();
         assert!(design.warnings.is_empty(), "{}: {:?}", device.name, design.warnings);
     }
 }

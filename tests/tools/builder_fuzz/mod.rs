@@ -5,12 +5,13 @@ mod build;
 
 use std::panic::Location;
 
+use crate::common::Sure;
 use crate::common::cores::{Files, write};
 use crate::common::tools::{assert_lint_clean, yosys};
 use build::{Call, build, calls};
 use glint::hdl::netlist::Design;
 use glint::hdl::sim::Simulator;
-use glint::package::{EmitInputs, emit};
+use glint::package::{EmitInputs, emit, sources};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
@@ -32,12 +33,7 @@ fn answer(design: &Design) -> Result<Files, TestCaseError> {
         let settles = simulator.clock();
         prop_assert!(settles.is_ok(), "{design}");
     }
-    let plain = files.into_iter().filter_map(|file| {
-        let name = file.path.rsplit('/').next()?.to_owned();
-        let needed = name.ends_with(".v") || name.ends_with(".mem");
-        needed.then_some((name, file.contents))
-    });
-    Ok(plain.collect())
+    Ok(sources(files))
 }
 
 proptest! {
@@ -81,8 +77,8 @@ fn what_is_accepted_the_tools_accept() {
     for _ in 0..OUTSIDE {
         let mut drawn: Vec<Call> = calls(false).new_tree(&mut runner).expect("calls").current();
         drawn.retain(|call| !call.may_be_known());
-        let design = build(&drawn).unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
-        let files = answer(&design).unwrap_or_else(|error| panic!("{error}"));
+        let design = build(&drawn).sure();
+        let files = answer(&design).sure();
         let dir = tempfile::tempdir().expect("a directory");
         write(dir.path(), &files);
         assert_lint_clean(dir.path(), &design.name);

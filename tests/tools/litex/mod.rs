@@ -1,11 +1,11 @@
 //! The module for LiteX in systems that LiteX builds, with the Verilog simulated.
 
-use std::fs;
 use std::path::Path;
 
 use crate::common::cores::{Emitted, configuration_between, write};
-use crate::common::tools::{LIMIT, ran, tool};
-use glint::tools::{Simulator, run_bench};
+use crate::common::files::{read, replaced, root};
+use crate::common::tools::{benched, ran};
+use glint::tools::Simulator;
 use rayon::prelude::*;
 
 const PACKAGE: &str = "[package]\nmemories = \"inline\"\nlitex = true\n";
@@ -15,15 +15,12 @@ fn system(name: &str, keys: &str, face: &str) -> Vec<(String, String)> {
     let keys = format!("{keys}{PACKAGE}");
     let core = configuration_between(&format!("configs/{name}.toml"), &keys);
     let dir = Emitted::new(&core, 1, 1).tree();
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/tools/litex/system.py");
-    let script = script.display().to_string();
-    let run = tool("python").run_to_success([&script, ".", name, face], dir.path(), LIMIT);
-    run.unwrap_or_else(|error| panic!("{name}, {face}: {error:#}"));
-    let text = |path: &Path| fs::read_to_string(path).expect("text");
-    let sources = text(&dir.path().join("sources.txt"));
+    let script = root().join("tests/tools/litex/system.py").display().to_string();
+    ran("python", [&script, ".", name, face], dir.path());
+    let sources = read(dir.path().join("sources.txt"));
     let file = |path: &Path| {
         let name = path.file_name().expect("a name").to_string_lossy().into_owned();
-        (name, text(path))
+        (name, read(path))
     };
     let own = ["soc.v", "tb.v"].map(|name| dir.path().join(name));
     own.iter()
@@ -44,8 +41,7 @@ fn litex_builds_systems_that_compute() {
     .into_par_iter()
     .for_each(|(name, keys, face)| {
         let files = system(name, keys, face);
-        let outcome = run_bench(Simulator::Icarus, &files, "tb", LIMIT);
-        let outcome = outcome.unwrap_or_else(|error| panic!("{name}, {face}: {error:#}"));
+        let outcome = benched(Simulator::Icarus, &files, "tb");
         assert!(outcome.passed, "{name}, {face}: {}", outcome.transcript);
         // Before it Icarus warns of the processor's memory, which the program does not fill.
         assert!(outcome.transcript.contains("PASS: 12 points"), "{}", outcome.transcript);
@@ -72,9 +68,7 @@ fn a_faulty_core_is_noticed_in_litex() {
     let mut files = system("threshold_levels", "", "core");
     let datapath = files.iter_mut().find(|(name, _)| name.ends_with("_datapath.v"));
     let (_, text) = datapath.expect("a datapath");
-    let wrong = text.replacen("assign red_out = ", "assign red_out = 1 ^ ", 1);
-    assert_ne!(*text, wrong);
-    *text = wrong;
-    let outcome = run_bench(Simulator::Icarus, &files, "tb", LIMIT).expect("it runs");
+    *text = replaced(text, "assign red_out = ", "assign red_out = 1 ^ ");
+    let outcome = benched(Simulator::Icarus, &files, "tb");
     assert!(!outcome.passed, "{}", outcome.transcript);
 }

@@ -5,9 +5,12 @@ use std::fs;
 use std::path::Path;
 
 use crate::common::Sure;
-use crate::common::cores::{Emitted, configuration_between, configuration_with, write};
+use crate::common::cores::{Emitted, configuration_between, configuration_with};
+use crate::common::files::{below, read, root};
 use crate::common::sample::sampled;
-use crate::common::tools::{LIMIT, assert_bench_passes, assert_lint_clean, ran, tool, yosys};
+use crate::common::tools::{
+    LIMIT, assert_bench_passes, assert_files_are_clean, benched, ran, tool, yosys,
+};
 use glint::core::Core;
 use glint::tools::Simulator;
 use rayon::prelude::*;
@@ -31,7 +34,7 @@ fn cosine_power() -> tempfile::TempDir {
 
 /// Returns the calls of a script, with the slack that Vivado's stand-in tells of, and whether it ends well. Paths are relative.
 fn calls(dir: &Path, script: &str, arguments: &[&str], slack: &str) -> (bool, String) {
-    let stubs = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/tools/vendor/stubs.tcl");
+    let stubs = root().join("tests/tools/vendor/stubs.tcl");
     let (stubs, slack) = (stubs.display().to_string(), format!("SLACK={slack}"));
     let dir = dir.canonicalize().expect("a directory");
     let script = dir.join(script).display().to_string();
@@ -116,7 +119,7 @@ fn components_follow_their_schema_and_the_verilog() {
             ("</ipxact:ports>", "<ipxact:port/></ipxact:ports>"),
         ] {
             let path = dir.path().join(&files[0]);
-            let text = fs::read_to_string(&path).expect("a component");
+            let text = read(&path);
             let faulty = text.replacen(right, wrong, 1);
             if faulty != text {
                 fs::write(&path, faulty).expect("written");
@@ -128,7 +131,7 @@ fn components_follow_their_schema_and_the_verilog() {
 }
 
 fn validate(dir: &Path, files: &[String]) -> anyhow::Result<String> {
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/tools/vendor/ip_xact.py");
+    let script = root().join("tests/tools/vendor/ip_xact.py");
     let arguments = std::iter::once(script.display().to_string()).chain(files.iter().cloned());
     tool("python").run_to_success(arguments, dir, LIMIT)
 }
@@ -184,16 +187,12 @@ fn rom_contents_in_the_verilog_are_those_of_the_files() {
             let files: Vec<_> = rtl.iter().chain(&bench).cloned().collect();
             assert_bench_passes(simulator, &files, &with_files.bench());
         }
-        let dir = tempfile::tempdir().expect("a directory");
-        write(dir.path(), &rtl);
-        assert_lint_clean(dir.path(), &emitted.name);
+        assert_files_are_clean(&rtl, &emitted.name);
         // A wrong word is noticed.
         let wrong = wrong_word(&rtl);
         let files: Vec<_> = wrong.into_iter().chain(bench).collect();
-        let limit = LIMIT;
-        let outcome =
-            glint::tools::run_bench(Simulator::Icarus, &files, &with_files.bench(), limit);
-        assert!(!outcome.expect("it runs").passed, "{name}");
+        let outcome = benched(Simulator::Icarus, &files, &with_files.bench());
+        assert!(!outcome.passed, "{name}");
     });
 }
 
@@ -218,7 +217,7 @@ fn synthesis_makes_block_ram_of_rom_contents_in_the_verilog() {
         let dir = emitted(&configuration_with("configs/rough.toml", more));
         let script = "read_verilog rough*.v; synth_ice40 -dsp -top rough; tee -o stat.txt stat";
         yosys(dir.path(), script);
-        let figures = fs::read_to_string(dir.path().join("stat.txt")).expect("figures");
+        let figures = read(dir.path().join("stat.txt"));
         // Small ROMs are logic, which comes out a little different where names do.
         let same = |line: &&str| ["SB_RAM", "SB_MAC", "SB_DFF"].iter().any(|it| line.contains(it));
         figures.lines().filter(same).collect::<Vec<_>>().join("\n")
@@ -231,8 +230,8 @@ fn synthesis_makes_block_ram_of_rom_contents_in_the_verilog() {
 #[test]
 fn fusesoc_sets_up_the_vendors_projects() {
     let dir = tempfile::tempdir().expect("a directory");
-    let root = env!("CARGO_MANIFEST_DIR");
-    let (rtl, benches) = (format!("{root}/rtl_out"), format!("{root}/testbench"));
+    let [rtl, benches] =
+        ["rtl_out", "testbench"].map(|name| root().join(name).display().to_string());
     let run = |arguments: &[&str]| {
         let common = ["--cores-root", &rtl, "--cores-root", &benches, "run"];
         let core = ["glint:device:cosine_power"];
@@ -240,19 +239,10 @@ fn fusesoc_sets_up_the_vendors_projects() {
         ran("fusesoc", all, dir.path())
     };
     let text_below = |target: &str, ending: &str| {
-        let mut found = String::new();
-        let mut directories = vec![dir.path().join("build")];
-        while let Some(directory) = directories.pop() {
-            for entry in fs::read_dir(directory).expect("a directory") {
-                let path = entry.expect("an entry").path();
-                let name = path.display().to_string();
-                if path.is_dir() {
-                    directories.push(path);
-                } else if name.contains(target) && name.ends_with(ending) {
-                    found += &fs::read_to_string(path).expect("text");
-                }
-            }
-        }
+        let files = below(&dir.path().join("build")).into_iter();
+        let names = files.map(|path| path.display().to_string());
+        let names = names.filter(|name| name.contains(target) && name.ends_with(ending));
+        let found: String = names.map(read).collect();
         assert!(!found.is_empty(), "{target}: no {ending}");
         found
     };

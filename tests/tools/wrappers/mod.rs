@@ -6,6 +6,7 @@ use std::fs;
 
 use crate::common::Sure;
 use crate::common::cores::{Emitted, all_configurations, configuration_between, parsed};
+use crate::common::files::read;
 use crate::common::tools::{LIMIT, assert_bench_passes, assert_lint_clean, ran, tool};
 use crate::faults::{Fault, faults};
 use glint::core::Core;
@@ -58,7 +59,7 @@ fn with_interface(keys: &str) -> Vec<(String, Core)> {
 
 /// Returns a pipeline that takes a point every so many clocks, with these keys in its table `interface`.
 fn slower(clocks: u32, keys: &str) -> Core {
-    let text = fs::read_to_string("configs/cosine_power_pipelined.toml").expect("a configuration");
+    let text = read("configs/cosine_power_pipelined.toml");
     let own = text.split("\n[interface]\n").next().expect("its keys");
     let interval = format!("[pipeline]\ninterval = {clocks}\n");
     let own = own.replacen("[pipeline]\n", &interval, 1);
@@ -82,13 +83,12 @@ fn streams_are_clean_verilog() {
 fn streams_are_proved() {
     PROVED.par_iter().for_each(|(name, keys)| {
         let dir = proof(name, keys);
-        prove(dir.path(), &format!("{name}_axis"), LIMIT)
-            .unwrap_or_else(|error| panic!("{name}, {keys}: {error:#}"));
+        prove(dir.path(), &format!("{name}_axis"), LIMIT).sure_of(format_args!("{name}, {keys}"));
     });
     for clocks in [2, 4] {
         let dir = Emitted::new(&slower(clocks, STREAM), 1, 1).beside("");
         prove(dir.path(), "cosine_power_pipelined_axis", LIMIT)
-            .unwrap_or_else(|error| panic!("every {clocks} clocks: {error:#}"));
+            .sure_of(format_args!("every {clocks} clocks"));
     }
 }
 
@@ -116,12 +116,17 @@ fn proof(name: &str, keys: &str) -> tempfile::TempDir {
 #[test]
 fn streams_carry_every_point() {
     with_streams().par_iter().for_each(|(path, core)| {
-        let dir = Emitted::new(core, 1, 1).tree();
         let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/tools/wrappers/stream.py");
-        let run = tool("python").run([script, &core.config.name], dir.path(), LIMIT).sure();
-        let says = format!("PASS {}: 6 tests, 0 failed", core.config.name);
-        assert!(run.status.success() && run.output.contains(&says), "{path}:\n{}", run.output);
+        assert_all_pass(path, core, &[script, &core.config.name], 6);
     });
+}
+
+/// Asserts that a script in Python passes so many tests in the directory of a core.
+fn assert_all_pass(path: &str, core: &Core, arguments: &[&str], tests: usize) {
+    let dir = Emitted::new(core, 1, 1).tree();
+    let run = tool("python").run(arguments, dir.path(), LIMIT).sure();
+    let says = format!("PASS {}: {tests} tests, 0 failed", core.config.name);
+    assert!(run.status.success() && run.output.contains(&says), "{path}:\n{}", run.output);
 }
 
 /// The benches that go with streams as DMA engines want them.
@@ -186,7 +191,7 @@ fn registers_are_proved() {
             let dir = proof(name, keys);
             for wrapper in [bus, "registers"] {
                 prove(dir.path(), &format!("{name}_{wrapper}"), LIMIT)
-                    .unwrap_or_else(|error| panic!("{name}_{wrapper}: {error:#}"));
+                    .sure_of(format_args!("{name}_{wrapper}"));
             }
         }
     });
@@ -206,11 +211,8 @@ fn faults_break_the_proofs_of_registers() {
 #[test]
 fn registers_start_cores_and_give_their_results() {
     on_buses().par_iter().for_each(|(path, core, bus)| {
-        let dir = Emitted::new(core, 1, 1).tree();
         let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/tools/wrappers/registers.py");
-        let run = tool("python").run([script, &core.config.name, bus], dir.path(), LIMIT).sure();
-        let says = format!("PASS {}: 8 tests, 0 failed", core.config.name);
-        assert!(run.status.success() && run.output.contains(&says), "{path}:\n{}", run.output);
+        assert_all_pass(path, core, &[script, &core.config.name, bus], 8);
     });
 }
 
@@ -243,11 +245,7 @@ fn registers_for_software() {
     fs::write(dir.join("main.rs"), RUST_CONVERSIONS).expect("written");
     let strict = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror"];
     let sanitized = ["-fsanitize=undefined", "-fno-sanitize-recover", "main.c", "-o", "main_c"];
-    let run = |name: &str, arguments: &[&str]| {
-        tool(name)
-            .run_to_success(arguments.iter().copied(), dir, LIMIT)
-            .unwrap_or_else(|error| panic!("{name}: {error:#}"))
-    };
+    let run = |name: &str, arguments: &[&str]| ran(name, arguments, dir);
     run("cc", &[&strict[..], &sanitized].concat());
     run("rustc", &["--edition=2021", "main.rs", "-o", "main_rs"]);
     for program in ["./main_c", "./main_rs"] {
@@ -262,7 +260,7 @@ fn registers_for_software() {
     for (kind, to) in made {
         run("peakrdl", &[kind, "cosine_power.rdl", "-o", to]);
     }
-    let xml = fs::read_to_string(dir.join("peak.xml")).expect("IP-XACT");
+    let xml = read(dir.join("peak.xml"));
     for (register, offset) in [("control", "'h14"), ("cos_gamma", "'h20"), ("results", "'h34")] {
         let says = format!("<ipxact:name>{register}</ipxact:name>");
         let at = xml.find(&says).unwrap_or_else(|| panic!("no {register} in {xml}"));

@@ -5,6 +5,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use super::{BUSES, STREAM};
+use crate::common::Sure;
 use crate::common::cores::{Files, configuration_between, write};
 use crate::common::sample::sampled;
 use crate::common::tools::{LIMIT, tool, verilog_files};
@@ -31,7 +32,7 @@ fn planted_faults_are_noticed() {
         ("quad_cosine", STREAM.to_owned()),
     ] {
         let core = configuration_between(&format!("configs/{name}.toml"), &keys);
-        let text = Text::of_wrappers(&core).unwrap_or_else(|error| panic!("{name}: {error:?}"));
+        let text = Text::of_wrappers(&core).sure_of(name);
         let is_harmless = |fault: &TextFault| {
             HARMLESS.lines().any(|line| line.split(' ').next() == Some(fault.id.as_str()))
         };
@@ -92,7 +93,7 @@ fn benches_pass_without_a_fault() {
         ("quad_cosine", STREAM.to_owned()),
     ] {
         let core = configuration_between(&format!("configs/{name}.toml"), &keys);
-        let text = Text::of_wrappers(&core).unwrap_or_else(|error| panic!("{name}: {error:?}"));
+        let text = Text::of_wrappers(&core).sure_of(name);
         let files: Files =
             text.files().iter().filter(|(file, _)| !file.ends_with(".sv")).cloned().collect();
         for top in ["_axis", "_axil", "_wb"] {

@@ -4,8 +4,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::super::measure::{self, Function, Region};
 use super::{
-    Claim, EPICENTRE, Measured, Verdict, claim, error, exceeding, found, instance, key, plain,
-    runs, schlick, to_inflection, upper, w,
+    Claim, EPICENTRE, Measured, Verdict, claim, error, exceeding, found, holds_if, instance, key,
+    plain, runs, schlick, to_inflection, upper, w,
 };
 
 /// The exponents over which the paper's figures come out.
@@ -67,25 +67,26 @@ fn unclamped(gamma: f64, n: u32, m: u32) -> f64 {
     (0..m.ilog2()).fold(base, |power, _| power * power)
 }
 
+/// Returns a figure that may be next to nothing.
+fn tiny(key: &str, definition: &str, value: f64) -> Measured {
+    plain(key, definition, value, format!("{value:.1e}"))
+}
+
 fn not_negative() -> Claim {
     let least = |powers: &[u32], end: f64| {
         let powers = powers.iter().flat_map(|&m| ALL.map(move |n| (m, n)));
         let values = powers.flat_map(|(m, n)| angles(end).map(move |gamma| unclamped(gamma, n, m)));
         values.fold(f64::INFINITY, f64::min)
     };
-    let of = |key: &str, definition: &str, value: f64| {
-        plain(key, definition, value, format!("{value:.1e}"))
-    };
     let ours = vec![
-        of(
+        tiny(
             "m-2",
             "the least W, m = 2, \u{3b3} = 0\u{2026}180\u{b0}, n = 1\u{2026}1000",
             least(&[2], PI),
         ),
-        of("all-m", "the same, m = 2, 4, 8, 16", least(&POWERS, PI)),
+        tiny("all-m", "the same, m = 2, 4, 8, 16", least(&POWERS, PI)),
     ];
-    let holds = ours.iter().all(|one| one.value >= 0.0);
-    let verdict = if holds { Verdict::Holds } else { Verdict::Fails };
+    let verdict = holds_if(ours.iter().all(|one| one.value >= 0.0));
     claim("not-negative", ours, verdict, &[])
 }
 
@@ -116,17 +117,14 @@ fn falling() -> Claim {
         });
         rises.fold(f64::NEG_INFINITY, f64::max)
     };
-    let of = |key: &str, definition: &str, value: f64| {
-        plain(key, definition, value, format!("{value:.1e}"))
-    };
     let behind = unclamped(FRAC_PI_2, 100, 2);
     let ours = vec![
-        of(
+        tiny(
             "m-2",
             "the largest rise from an angle to the next up to the zero, m = 2, n = 1\u{2026}1000",
             steepest(&[2]),
         ),
-        of("all-m", "the same, m = 2, 4, 8, 16, each up to its own zero", steepest(&POWERS)),
+        tiny("all-m", "the same, m = 2, 4, 8, 16, each up to its own zero", steepest(&POWERS)),
         plain(
             "behind",
             "W at 90\u{b0}, n = 100, m = 2, without a clamp",
@@ -134,8 +132,7 @@ fn falling() -> Claim {
             format!("{behind:.0}"),
         ),
     ];
-    let holds = ours[..2].iter().all(|one| one.value <= 0.0);
-    let verdict = if holds { Verdict::Holds } else { Verdict::Fails };
+    let verdict = holds_if(ours[..2].iter().all(|one| one.value <= 0.0));
     claim("falling", ours, verdict, &[])
 }
 
@@ -291,9 +288,8 @@ fn one_per_cent() -> Claim {
         to_inflection(&function, FROM_TWO, "from-2", "m = 16"),
         to_inflection(&function, after..=250, "holding", "m = 16"),
     ]);
-    let verdict = if failing.is_empty() { Verdict::Holds } else { Verdict::Fails };
     let values = [("failing", runs(&failing)), ("after", after.to_string())];
-    claim("w16-one-per-cent", ours, verdict, &values)
+    claim("w16-one-per-cent", ours, holds_if(failing.is_empty()), &values)
 }
 
 fn multiplications() -> Claim {

@@ -1,6 +1,6 @@
 //! The claims of seed 001, the patent of `rough`.
 
-use super::{Claim, Measured, Verdict, claim, found, plain};
+use super::{Claim, Measured, Verdict, claim, found, holds_if, plain};
 use glint::core::Core;
 use glint::registry::Registry;
 use glint_config::Config;
@@ -95,6 +95,5 @@ fn ten_clocks() -> Claim {
         ),
     ]);
     let ten = ours.iter().take(2).filter(|one| one.value == 10.0).count();
-    let verdict = if ten == 2 { Verdict::Holds } else { Verdict::Fails };
-    claim("ten-clocks", ours, verdict, &[])
+    claim("ten-clocks", ours, holds_if(ten == 2), &[])
 }
