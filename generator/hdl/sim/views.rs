@@ -5,7 +5,6 @@ use std::fmt::Write;
 
 use super::circuit::scopes;
 use crate::netlist::{Design, Net};
-use crate::verilog::text::range;
 
 /// Flags of a trace in GTKWave (`TR_…_B` in its `analyzer.h`): right-justified binary, unsigned and signed decimal, a
 /// binary point, and a line of text alone.
@@ -49,7 +48,11 @@ pub fn gtkwave(design: &Design) -> String {
             if let Some(fraction) = fraction {
                 let _ = writeln!(text, "[fpshift_count] {fraction}");
             }
-            let _ = writeln!(text, "{scope}.{}{}", net.name, range(format.width()));
+            let range = match format.width() {
+                1 => String::new(),
+                width => format!("[{}:0]", width - 1),
+            };
+            let _ = writeln!(text, "{scope}.{}{range}", net.name);
         }
     }
     text
