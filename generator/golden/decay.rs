@@ -48,9 +48,9 @@ impl Arithmetic {
         let kept = keys.f.fraction + u32::from(keys.f.rounding == Rounding::Nearest);
         let truncate =
             |fraction: u32, format: Format| Narrow::new(fraction, format, Rounding::Truncate);
-        let product = keys.operands.cosine.fraction + keys.ratio_fraction;
+        let product_fraction = keys.operands.cosine.fraction + keys.ratio_fraction;
         Self {
-            to_decay: truncate(product, keys.decay_format()),
+            to_decay: truncate(product_fraction, keys.decay_format()),
             from_fine: truncate(keys.decay_fraction, halvings),
             from_coarse: truncate(keys.coarse_fraction, halvings),
             to_kept: truncate(keys.fraction, Format::unsigned(1, kept as i32)),

@@ -90,7 +90,8 @@ impl Arithmetic {
     fn new(keys: Keys) -> Self {
         let (f, squarings) = (keys.f.fraction, keys.squarings());
         let (distance, rounding) = (keys.distance_fraction, keys.f.rounding);
-        let (squares, whole) = (2 * keys.vector_fraction, Format::unsigned(4, distance as i32));
+        let squares_fraction = 2 * keys.vector_fraction;
+        let distance_format = Format::unsigned(4, distance as i32);
         // n/2^(s+1) is the integer n with s + 1 fraction bits; the shift register has one more.
         let beta_fraction = match keys.scale {
             Scale::Multiplier => squarings + 1,
@@ -100,7 +101,7 @@ impl Arithmetic {
             squarings,
             one: 1 << f,
             shifted_most: (2 << (distance + squarings + 2)) - 1,
-            distance: Narrow::new(squares, whole, keys.distance_rounding),
+            distance: Narrow::new(squares_fraction, distance_format, keys.distance_rounding),
             scaled: Narrow::new(distance + beta_fraction, Format::unsigned(1, f as i32), rounding),
             square: Narrow::new(2 * f, keys.f.format(), rounding),
             keys,

@@ -142,9 +142,9 @@ impl Reflectance for Arithmetic {
             rounded = rounded.max((exact - word).abs() * reach);
             largest = largest.max(word);
         }
-        let (square, fraction) =
-            (2 * self.keys.operands.cosine.fraction, self.keys.difference_fraction);
-        let difference = rounding_error(square, fraction, self.keys.difference_rounding);
+        let square_fraction = 2 * self.keys.operands.cosine.fraction;
+        let (fraction, rounding) = (self.keys.difference_fraction, self.keys.difference_rounding);
+        let difference = rounding_error(square_fraction, fraction, rounding);
         vec![
             ("coefficient.fraction", "rounding of a(n)", rounded),
             ("difference.fraction", "rounding of c² − c, times a(n)", difference * largest),

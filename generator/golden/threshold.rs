@@ -33,10 +33,10 @@ impl Arithmetic {
     fn new(keys: Keys) -> Self {
         let (f, rounding) = (keys.f.fraction, keys.f.rounding);
         // n/2 has one fraction bit.
-        let product = keys.operands.cosine.fraction + 1;
+        let product_fraction = keys.operands.cosine.fraction + 1;
         let mut it = Self {
             base_one: 1 << f,
-            scaled: Narrow::new(product, Format::signed(0, f as i32), rounding),
+            scaled: Narrow::new(product_fraction, Format::signed(0, f as i32), rounding),
             square: Narrow::new(2 * f, keys.f.format(), rounding),
             thresholds: Self::thresholds(&keys),
             margin: 0.0,

@@ -43,7 +43,7 @@ pub fn put(path: impl AsRef<Path>, contents: impl AsRef<[u8]>) {
     fs::write(path, contents).sure_of(path.display());
 }
 
-/// Returns the paths in a directory that end so, sorted.
+/// Returns the paths in a directory that end so, sorted, with `/`.
 ///
 /// # Panics
 /// There are none.
@@ -51,7 +51,8 @@ pub fn put(path: impl AsRef<Path>, contents: impl AsRef<[u8]>) {
 pub fn paths(directory: impl AsRef<Path>, ending: &str) -> Vec<String> {
     let directory = directory.as_ref();
     let entries = fs::read_dir(directory).sure_of(directory.display());
-    let paths = entries.map(|entry| entry.expect("an entry").path().display().to_string());
+    let shown = |path: PathBuf| path.display().to_string().replace('\\', "/");
+    let paths = entries.map(|entry| shown(entry.expect("an entry").path()));
     let mut paths: Vec<String> = paths.filter(|path| path.ends_with(ending)).collect();
     assert!(!paths.is_empty(), "no {ending} in {}", directory.display());
     paths.sort();

@@ -167,13 +167,13 @@ fn the_front_falls_and_has_the_answer() {
 
 #[test]
 fn a_goal_out_of_reach_says_what_is_in_the_way() {
-    let goal = |error| goal(error, Target::Ecp5);
-    let fast = Goal { clock: Some(5000.0), ..goal(0.9) };
-    let many = Goal { rate: Some(500.0), ..goal(0.9) };
+    let within = |error| goal(error, Target::Ecp5);
+    let fast = Goal { clock: Some(5000.0), ..within(0.9) };
+    let many = Goal { rate: Some(500.0), ..within(0.9) };
     for (goal, said) in [
         // Rounding to eight bits costs half a unit, whatever f is.
-        (goal(0.1), "no configuration keeps 0.1 output units"),
-        (goal(0.1), "rounding of the colour outputs (`output.rounding`), 0.500000"),
+        (within(0.1), "no configuration keeps 0.1 output units"),
+        (within(0.1), "rounding of the colour outputs (`output.rounding`), 0.500000"),
         (fast, "5000.0 MHz are wanted"),
         (many, "4000.0 MHz are wanted for 500 million points a second at 8 clocks a point"),
     ] {

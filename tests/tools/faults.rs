@@ -4,7 +4,7 @@ use std::path::Path;
 
 use glint::tools::prove;
 
-use crate::common::files::{put, read, replaced};
+use crate::common::files::{put, read};
 use crate::common::tools::LIMIT;
 
 /// A fault of `faults.txt`.
@@ -46,7 +46,8 @@ impl Fault {
     /// # Panics
     /// It can be nowhere.
     pub fn in_text(&self, text: &str) -> String {
-        replaced(text, &self.right, &self.wrong)
+        assert!(text.contains(&self.right), "`{}` is not there, of {}", self.right, self.of);
+        text.replace(&self.right, &self.wrong)
     }
 
     /// Plants it in a file.

@@ -145,7 +145,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     Ok(output.concluded(holds, scores))
 }
 
-/// Prints the names of all faults.
+/// Prints the names of all faults, which always succeeds.
 fn list(output: Output, loaded: &[Loaded], faults: &[Faults]) -> bool {
     let mut list = Vec::new();
     for (one, faults) in loaded.iter().zip(faults) {

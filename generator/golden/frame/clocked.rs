@@ -25,6 +25,7 @@ pub(super) struct Fixed {
     pub(super) taken: Vec<(Slot, Slot)>,
     /// What takes the writes of each operand: its register, or a buffer in front of it.
     written: Vec<Slot>,
+    /// Whether there are buffers in front of the operand registers.
     buffered: bool,
     flags: Vec<Slot>,
     pub(super) valid_delay: u32,
@@ -209,10 +210,9 @@ impl Model for Clocked {
         let mut taken = (it.buffered || !self.run) && it.write(state, &inputs[2..]);
         if it.buffered && starts {
             taken = true;
-            it.operands
-                .iter()
-                .zip(&it.written)
-                .for_each(|(to, from)| state[to.slot] = state[*from]);
+            for (operand, &buffer) in it.operands.iter().zip(&it.written) {
+                state[operand.slot] = state[buffer];
+            }
         }
         // Registers and outputs change by loads alone where no edge and no flag changes them.
         let still = here.does.is_none()

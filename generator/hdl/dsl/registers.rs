@@ -24,8 +24,8 @@ impl Designer {
             let (from, to) = format.range();
             let mut value = port;
             let limit = |suffix: &str, raw: i128| {
-                let own = Format::holding(raw, raw, format.frac);
-                self.raw_constant(&format!("{name}_{suffix}"), raw, own)
+                let exact = Format::holding(raw, raw, format.frac);
+                self.raw_constant(&format!("{name}_{suffix}"), raw, exact)
             };
             if from < least {
                 let least = limit("least", least);

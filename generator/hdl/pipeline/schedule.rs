@@ -446,11 +446,11 @@ impl<'a> Problems<'a> {
         Ok(())
     }
 
-    /// Returns the schedule with the fewest register bits for a period, in no fewer than `stages`.
-    fn solve(&self, period: f64, stages: usize) -> Result<Schedule, Refusal> {
+    /// Returns the schedule with the fewest register bits for a period, in no fewer stages than `least`.
+    fn solve(&self, period: f64, least: usize) -> Result<Schedule, Refusal> {
         let differences = self.differences(period);
         let taken = self.taken(&differences);
-        let latency = stages.max(self.latency(&differences, &taken));
+        let latency = least.max(self.latency(&differences, &taken));
         let mut problem = Problem::new(OptimizationDirection::Minimize);
         let last = latency as f64;
         let nodes = 0..self.graph.nodes.len();

@@ -151,9 +151,11 @@ impl Compiler<'_> {
         if of_a == a || of_b == b {
             return self.emit(&[a, b], |to| Instruction::Add { to, a, b, drop });
         }
-        let [a, b] = [of_a, of_b];
-        let add = |to| Instruction::AddSlices { to, a, b, low_a, drop_a, low_b, drop_b, drop };
-        self.emit(&[a, b], add)
+        let add = |to| {
+            let (a, b) = (of_a, of_b);
+            Instruction::AddSlices { to, a, b, low_a, drop_a, low_b, drop_b, drop }
+        };
+        self.emit(&[of_a, of_b], add)
     }
 
     /// Returns a mux of two inputs, together with what only prepares its operands: chains of such muxes tell in

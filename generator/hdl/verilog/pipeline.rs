@@ -131,10 +131,10 @@ fn handshake(plan: &Plan, naming: &Naming, pipeline: &Pipeline) -> Vec<String> {
         }
         Some((slot, bits)) => {
             let [begin, one] = [0, 1].map(|number| literal(number, bits));
-            let last =
+            let end =
                 in_slot(pipeline.interval - 1).filter(|_| !pipeline.interval.is_power_of_two());
-            let after = match last {
-                Some(last) => format!("{last} ? {begin} : {slot} + {one}"),
+            let after = match end {
+                Some(end) => format!("{end} ? {begin} : {slot} + {one}"),
                 None => format!("{slot} + {one}"),
             };
             lines.push(format!("    if (!{reset}) begin"));

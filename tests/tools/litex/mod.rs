@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
+use crate::common::Sure;
 use crate::common::cores::{Emitted, configuration_between, write};
 use crate::common::files::{read, replaced, root};
-use crate::common::tools::{benched, ran};
+use crate::common::tools::{LIMIT, benched, ran, tool};
 use glint::tools::Simulator;
 use rayon::prelude::*;
 
@@ -16,7 +17,8 @@ fn system(name: &str, keys: &str, face: &str) -> Vec<(String, String)> {
     let core = configuration_between(&format!("configs/{name}.toml"), &keys);
     let dir = Emitted::new(&core, 1, 1).tree();
     let script = root().join("tests/tools/litex/system.py").display().to_string();
-    ran("python", [&script, ".", name, face], dir.path());
+    let run = tool("python").run_to_success([&script, ".", name, face], dir.path(), LIMIT);
+    run.sure_of(format_args!("{name}, {face}"));
     let sources = read(dir.path().join("sources.txt"));
     let file = |path: &Path| {
         let name = path.file_name().expect("a name").to_string_lossy().into_owned();

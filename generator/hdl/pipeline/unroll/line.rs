@@ -220,11 +220,10 @@ impl Points<'_> {
     }
 
     fn cannot(&self, address: usize, why: &str) -> Diagnostic {
-        let design = self.executor.design;
-        let (microinstruction, name) = (&design.control.microprogram[address], &design.name);
-        let own = &microinstruction.name;
+        let microinstruction = &self.executor.design.control.microprogram[address];
+        let (design, own) = (&self.executor.design.name, &microinstruction.name);
         let message =
-            format!("the points of `{name}` are not alike: the microinstruction `{own}` {why}");
+            format!("the points of `{design}` are not alike: the microinstruction `{own}` {why}");
         Diagnostic::new(codes::UNROLL, message, microinstruction.location)
     }
 }
