@@ -1,5 +1,5 @@
-//! What simulation and contract add to the netlist of a design: worked examples, computations with their results, the
-//! clocks of a line, the vectors of a bench.
+//! Holds the facts that simulation and contract add to a netlist: worked examples, computations with their results,
+//! the clocks of a line, the vectors of a bench.
 
 use std::iter::repeat;
 

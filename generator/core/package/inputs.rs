@@ -1,4 +1,4 @@
-//! What emission takes beside the design: clocks, contract, stimulus and surroundings.
+//! The inputs of emission beside the design: clocks, contract, stimulus and surroundings.
 
 use super::surroundings::Surroundings;
 use crate::observation::{Computation, ContractFacts, Vectors, WorkedExample};

@@ -23,7 +23,7 @@ pub(super) struct Fixed {
     pub(super) edges: Vec<Does>,
     /// Results with the registers that take them.
     pub(super) taken: Vec<(Slot, Slot)>,
-    /// What takes the writes of each operand: its register, or a buffer in front of it.
+    /// The slots that take the writes of the operands: their registers, or the buffers in front of them.
     written: Vec<Slot>,
     /// Whether there are buffers in front of the operand registers.
     buffered: bool,

@@ -99,7 +99,7 @@ struct Builder<'a> {
     problems: &'a Problems<'a>,
     schedule: &'a Schedule,
     design: Design,
-    /// What is known of the pipeline so far: all but its stages and checkpoints in the end.
+    /// The pipeline as far as it is built; stages and checkpoints come last.
     pipeline: Pipeline,
     /// 1 when every point moves on by a stage; none if they always do.
     advance: Option<NetId>,

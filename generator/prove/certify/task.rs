@@ -14,7 +14,7 @@ const SPLIT: i64 = 1024;
 /// A table of at most this number of different words, one after the other, is gone through word by word.
 const RUNS: usize = 16;
 
-/// What is to be proved of a design.
+/// The task of a proof: a design, its contract, and the computation as a graph.
 pub(super) struct Task<'a> {
     pub(super) design: &'a Design,
     pub(super) contract: &'a dyn Contract,
