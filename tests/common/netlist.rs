@@ -14,7 +14,7 @@ use super::tools::{tool, verilog_files, yosys};
 /// Points of the bench that a netlist runs.
 pub const POINTS: u64 = 40;
 
-/// What synthesis makes, in two forms.
+/// A synthesised netlist, in two forms.
 pub struct Netlist {
     /// As Yosys describes it.
     pub json: Value,

@@ -295,7 +295,7 @@ impl<'a> Problems<'a> {
     }
 
     /// Returns the nanoseconds until a register behind `user` has the value, of which the operand `from` is there after so many.
-    /// What is not the select of a reset goes past it.
+    /// A mux that becomes a reset delays its select alone.
     fn until_register(&self, from: NodeId, user: NodeId, after: f64) -> f64 {
         match self.reset_by[user.index()] {
             Some(select) if select != from => after,
