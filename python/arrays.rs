@@ -15,12 +15,14 @@ use glint::golden::{Contract, nearer};
 const PIECE: usize = 1 << 12;
 
 /// An operand of many points: one number for all of them, or a number each.
+///
+/// Arrays come first: before NumPy 2.4, an array of one integer is an integer to Python as well.
 #[derive(FromPyObject)]
 pub enum Column<'py> {
-    Integer(i64),
-    Value(f64),
     Integers(PyReadonlyArray1<'py, i64>),
     Values(PyReadonlyArray1<'py, f64>),
+    Integer(i64),
+    Value(f64),
 }
 
 /// The raw operands of many points.
@@ -63,10 +65,7 @@ impl<'a> Operands<'a> {
             // Of 64 bits without a sign, what an array of integers can hold.
             let [first, last] = limits.map(|it| it.clamp(i64::MIN.into(), i64::MAX.into()) as i64);
             let holds = |integer: i64| (first..=last).contains(&integer);
-            // Half a place beyond the last is rounded to it.
-            let [least, most] = limits.map(|it| format.to_f64(it));
-            let half = format.to_f64(1) / 2.0;
-            let near = |value: f64| value >= least - half && value < most + half;
+            let near = |value: f64| format.nearest_raw(value).is_some();
             let column = match column {
                 Column::Integer(it) if raw && holds(*it) => Raw::All(*it),
                 Column::Integer(it) if !raw && near(*it as f64) => {
@@ -210,12 +209,13 @@ impl Computed {
     }
 }
 
-/// Returns the nearest integer, ties upward, as of [`Format::quantise`]; without a call of `floor`, which processors without SSE4.1 need.
+/// Returns the nearest integer, ties upward, as [`Format::quantise`] does; without a call of `floor`, which processors without
+/// SSE4.1 need.
 #[inline]
 fn nearest(value: f64) -> i64 {
-    let above = value + 0.5;
-    let whole = above as i64;
-    whole - i64::from(whole as f64 > above)
+    let towards_zero = value as i64;
+    let rest = value - towards_zero as f64;
+    towards_zero + i64::from(rest >= 0.5) - i64::from(rest < -0.5)
 }
 
 /// Returns the values of the last places of the outputs.

@@ -7,7 +7,7 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, bail, ensure};
 use numpy::{PyArray1, PyArray3, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -49,11 +49,32 @@ fn toml(value: &Bound<'_, PyAny>) -> Result<String> {
     if value.is_instance_of::<PyInt>() || value.is_instance_of::<PyFloat>() {
         return Ok(value.str()?.to_string());
     }
+    if value.get_type().name()? == "Decimal" {
+        return decimal(&value.str()?.to_string());
+    }
     bail!("`{value}` is no value of a key: a number, a text, True, False or a list is wanted")
+}
+
+/// Returns the digits of a `decimal.Decimal` as a number of TOML, which has digits on both sides of its point.
+fn decimal(digits: &str) -> Result<String> {
+    let parsed: f64 = digits.parse().with_context(|| format!("`{digits}` is no number"))?;
+    ensure!(parsed.is_finite(), "`{digits}` is no finite number");
+    let has_point = digits.contains(['.', 'e', 'E']);
+    Ok(if has_point { digits.to_owned() } else { format!("{digits}.0") })
 }
 
 #[pymethods]
 impl PyCore {
+    /// Reads the text of a TOML file.
+    #[staticmethod]
+    fn from_toml(text: &str) -> PyResult<Self> {
+        let made = || {
+            let registry = Registry::shipped();
+            Self::of_config(&registry, config::parse("glint.Core", text, &registry.schemas())?)
+        };
+        made().map_err(wrong)
+    }
+
     /// Reads a TOML file, or takes a device with keys.
     #[new]
     #[pyo3(signature = (path, device, keys))]
@@ -285,6 +306,10 @@ impl PyCore {
                 "give a TOML file, or device=… with keys: Core(\"core.toml\"), Core(device=\"lyon\")"
             ),
         };
+        Self::of_config(&registry, config)
+    }
+
+    fn of_config(registry: &Registry, config: Config) -> Result<Self> {
         let device = registry.device(&config.device).context("no such device")?;
         Ok(Self { core: Core::new(*device, config)? })
     }

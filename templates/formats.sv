@@ -21,8 +21,10 @@ ${ line }$
 
     // The raw integer nearest to a value, ties upward, within the limits of the type.
     function automatic ${ number.kind }$ ${ number.name }$_from(real value);
-        real scaled;
-        scaled = $floor(value * ${ number.scale() }$ + 0.5);
+        real exact, scaled;
+        exact = value * ${ number.scale() }$;
+        scaled = $floor(exact);
+        if (exact - scaled >= 0.5) scaled = scaled + 1.0;
         if (!(scaled > ${ number.limits().0 }$)) return ${ number.least() }$;
         if (scaled >= ${ number.limits().1 }$) return ${ number.most() }$;
         return ${ number.whole() }$;

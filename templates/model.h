@@ -59,7 +59,7 @@ void ${ name }$_model_points(const ${ name }$_operands *operands, ${ name }$_res
 /* The raw integer nearest to a value, ties upward, within the limits of the port. */
 static inline ${ field.kind }$ ${ name }$_${ field.name }$_from(double value)
 {
-    const double scaled = value * ${ field.scale() }$ + 0.5;
+    const double scaled = value * ${ field.scale() }$;
     if (!(scaled > ${ field.limits().0 }$)) {
         return ${ field.constant }$_MIN; /* not a number, too */
     }
@@ -67,10 +67,11 @@ static inline ${ field.kind }$ ${ name }$_${ field.name }$_from(double value)
         return ${ field.constant }$_MAX;
     }
     const ${ field.kind }$ whole = (${ field.kind }$)scaled;
+    const double rest = scaled - (double)whole;
 <%- if field.format.signed %>
-    return (double)whole > scaled ? whole - 1 : whole;
+    return rest >= 0.5 ? whole + 1 : rest < -0.5 ? whole - 1 : whole;
 <%- else %>
-    return whole;
+    return rest >= 0.5 ? whole + 1 : whole;
 <%- endif %>
 }
 <%- endfor %>

@@ -74,7 +74,11 @@ static void turned(const double normal_1[3], const double normal_2[3], const dou
 static ${ angle.kind }$ ${ angle.name }$_raw(double right_angles)
 {
     const double turn = ${ line.turn(angle) }$;
-    double scaled = floor(right_angles * ${ angle.scale() }$ + 0.5);
+    const double exact = right_angles * ${ angle.scale() }$;
+    double scaled = floor(exact);
+    if (exact - scaled >= 0.5) {
+        scaled += 1.0;
+    }
     while (scaled >= turn / 2.0) {
         scaled -= turn;
     }

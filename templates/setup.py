@@ -64,9 +64,15 @@ def _turned(normal_1, normal_2, half_2):
     return tuple(h - o + t * by for h, o, t in zip(half_2, once, _cross(v, once)))
 
 
+def _nearest(exact):
+    # The nearest integer, ties upward.
+    below = math.floor(exact)
+    return below + 1 if exact - below >= 0.5 else below
+
+
 def _raw(right_angles, scale, turn):
     # The nearest raw angle, modulo a turn.
-    raw = math.floor(right_angles * scale + 0.5)
+    raw = _nearest(right_angles * scale)
     return (raw + turn // 2) % turn - turn // 2
 
 
@@ -144,5 +150,5 @@ def _operands(gamma, cosine_1, rise, points, exponent, intensity):
         "exponent": exponent,
 <%- endif %>
         "length": length,
-        "amplitude": math.floor(amplitude * ${ line.amplitude_scale }$ + 0.5),
+        "amplitude": _nearest(amplitude * ${ line.amplitude_scale }$),
     }

@@ -24,7 +24,7 @@ use std::sync::{Arc, LazyLock, Mutex};
 use rayon::prelude::*;
 
 use glint_base::fixed::{Format, exp2};
-use glint_formula::{Enclosure, Fault, Formula};
+use glint_formula::{Enclosure, Fault, Formula, RBig};
 
 pub use reduction::{Identity, Reduction, Restore, Rule};
 pub use samples::Samples;
@@ -149,20 +149,37 @@ pub struct Piecewise {
 }
 
 impl Function {
-    /// Returns the limits of the value of a raw operand, in units of the last place of the result.
+    /// Returns an interval that contains the value at a raw operand, in units of the last place of the result.
+    ///
+    /// A formula is evaluated in `f64`. Where that leaves a step or a sign undecided, is beyond the range of `f64`, or is not exact
+    /// enough for the allowed error, the formula is evaluated once more with as many bits as it takes.
     ///
     /// # Errors
-    /// The part of the formula that has no value there.
+    /// Fails at the part of the formula that has no value there.
     pub fn limits(&self, raw: i64) -> Result<Enclosure, Fault> {
         let unit = exp2(self.fraction as i32);
         let Enclosure { low, high } = match &self.curve {
             Curve::Formula(formula) => {
                 let x = Enclosure::exactly(self.operand.to_f64(raw.into()));
-                formula.enclose(&[("x", x)])?
+                match formula.enclose(&[("x", x)]) {
+                    Ok(value) if (value.high - value.low) * unit <= self.tolerance() => value,
+                    _ => formula.evaluate_exactly(&[("x", self.operand_value(raw))])?,
+                }
             }
             Curve::Samples(samples) => samples.limits(raw),
         };
         Ok(Enclosure::between(low * unit, high * unit))
+    }
+
+    /// Returns the widest interval of a value, in units of the result, that is exact enough for the allowed error.
+    fn tolerance(&self) -> f64 {
+        ((self.error - 0.5) / 8.0).max(1.0 / 1024.0)
+    }
+
+    /// Returns the value of a raw operand.
+    fn operand_value(&self, raw: i64) -> RBig {
+        let scale = RBig::from(2).pow(-self.operand.frac as isize);
+        RBig::from(raw) * scale
     }
 
     /// Finds neighbouring operands between which the formula has a pole, or comes so near to one that intervals do not tell.
@@ -321,8 +338,9 @@ impl Piecewise {
         }
         let limits = function.limits(raw).map_err(|fault| function.refusal(raw, &fault))?;
         let result = result as f64;
-        // A difference may be rounded down.
-        let error = (result - limits.low).abs().max((result - limits.high).abs()).next_up();
+        let difference = (result - limits.low).abs().max((result - limits.high).abs());
+        // A difference of 0 is exact; any other may have been rounded down.
+        let error = if difference == 0.0 { 0.0 } else { difference.next_up() };
         if error >= function.error {
             let message = format!("at the operand {raw} the result is {error:.4} units off");
             return Err(Refusal::new("result.error", message, "allow a larger error"));

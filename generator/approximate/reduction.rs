@@ -6,7 +6,8 @@
 
 use super::{Curve, Function, Outside, Refusal};
 use glint_base::fixed::{Format, exp2};
-use glint_formula::{Enclosure, Formula, parse};
+use glint_formula::Function::Log2;
+use glint_formula::{Enclosure, Formula, Kind, RBig, parse};
 
 glint_config::choices! {
     /// The identity by which values elsewhere follow from those of a short domain.
@@ -250,8 +251,21 @@ struct Whole<'f> {
 
 impl Whole<'_> {
     fn at(&self, x: f64) -> Result<f64, Refusal> {
-        let value = self.formula.enclose(&[("x", Enclosure::exactly(x))]);
+        self.value_of(self.formula, x)
+    }
+
+    /// Returns the binary logarithm of the formula's value, which may be beyond the range of `f64` itself.
+    fn logarithm_at(&self, x: f64) -> Result<f64, Refusal> {
+        let kind = Kind::Unary(Log2, Box::new(self.formula.clone()));
+        self.value_of(&Formula { kind, span: self.formula.span.clone() }, x)
+    }
+
+    fn value_of(&self, formula: &Formula, x: f64) -> Result<f64, Refusal> {
         let raw = (x * exp2(self.function.operand.frac)) as i64;
+        let value = match RBig::try_from(x) {
+            Ok(exact) => formula.evaluate_exactly(&[("x", exact)]),
+            Err(_) => formula.enclose(&[("x", Enclosure::exactly(x))]),
+        };
         value.map(Enclosure::middle).map_err(|fault| self.function.refusal(raw, &fault))
     }
 
@@ -372,12 +386,11 @@ impl Whole<'_> {
         let Function { domain: (first, last), operand: Format { frac, .. }, .. } = *self.function;
         let value = |raw: f64| raw * exp2(-frac);
         let (from, to) = (value(first as f64), value(last as f64));
-        let logarithm = |x: f64| self.at(x).map(libm::log2);
-        let slope = (logarithm(to)? - logarithm(from)?) / (to - from);
+        let slope = (self.logarithm_at(to)? - self.logarithm_at(from)?) / (to - from);
         for part in [0.25, 0.5, 0.875] {
             let x = from + (to - from) * part;
-            let wanted = logarithm(from)? + slope * (x - from);
-            if !slope.is_normal() || !near(logarithm(x)?, wanted) {
+            let wanted = self.logarithm_at(from)? + slope * (x - from);
+            if !slope.is_normal() || !near(self.logarithm_at(x)?, wanted) {
                 return unlike("its logarithm is no straight line");
             }
         }

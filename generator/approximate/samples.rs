@@ -26,23 +26,23 @@ impl Samples {
         let refused = |message: String, remedy: &str| Err(Refusal::new(KEY, message, remedy));
         let mut points: Vec<(i64, Enclosure)> = Vec::new();
         for point in text.split(' ').filter(|point| !point.is_empty()) {
-            let numbers = point.split_once(',').map(|(x, y)| [x, y].map(number));
-            let Some([Some(x), Some(y)]) = numbers else {
+            let numbers =
+                point.split_once(',').and_then(|(x, y)| Some((parse(x).ok()?, number(y)?)));
+            let Some((x, y)) = numbers.filter(|(x, _)| x.enclose(&[]).is_ok()) else {
                 let remedy = "a number for x, a comma and a number for y";
                 return refused(format!("the sample `{point}` is no pair of numbers"), remedy);
             };
-            let raw = x.low * exp2(fraction as i32);
-            if x.low != x.high || raw.fract() != 0.0 {
+            let Ok((raw, true)) = x.ceiling(fraction) else {
                 let message =
                     format!("the sample `{point}` is at no operand with {fraction} fraction bits");
                 let remedy = "more operand.fraction bits, or number the samples: 0, 1, 2 …";
                 return refused(message, remedy);
-            }
-            let raw = raw as i64;
-            if raw < domain.0 || raw > domain.1 {
+            };
+            let inside = i64::try_from(raw).ok().filter(|raw| (domain.0..=domain.1).contains(raw));
+            let Some(raw) = inside else {
                 let message = format!("the sample `{point}` is outside the domain");
                 return refused(message, "change function.from or function.to, or leave it out");
-            }
+            };
             points.push((raw, y));
         }
         points.sort_by_key(|point| point.0);

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::{Function, Reduction, Refusal};
-use glint_base::fixed::{Format, exp2};
+use glint_base::fixed::{Format, exp2, nearest};
 
 /// The most operands that the search looks at; of more, these are taken evenly.
 const HELD: u64 = 1 << 25;
@@ -67,10 +67,10 @@ impl Function {
             return Err(Refusal::new("result.fraction", message, remedy));
         }
         let error = self.error - stricter;
-        let nearest = (limits.middle() + 0.5).floor() as i64;
-        // Nearer than the error, whatever the exact value is.
-        let low = (limits.high - error).floor() as i64 + 1;
-        let high = (limits.low + error).ceil() as i64 - 1;
+        let nearest = nearest(limits.middle()) as i64;
+        // Nearer than the error, whatever the exact value is, and whatever the proof's own rounding of the difference adds.
+        let low = (limits.high - error).next_up().next_up().floor() as i64 + 1;
+        let high = (limits.low + error).next_down().next_down().ceil() as i64 - 1;
         Ok((nearest, low, high))
     }
 }

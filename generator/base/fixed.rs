@@ -28,6 +28,14 @@ pub struct Format {
     pub frac: i32,
 }
 
+/// Returns the integer nearest to `x`, ties upward.
+///
+/// `(x + 0.5).floor()` is not it: the sum is rounded, and 0.49999999999999994 becomes 1.
+pub fn nearest(x: f64) -> f64 {
+    let below = x.floor();
+    if x - below >= 0.5 { below + 1.0 } else { below }
+}
+
 impl Format {
     /// Makes the unsigned format `uI.F`.
     pub const fn unsigned(int: i32, frac: i32) -> Self {
@@ -88,9 +96,19 @@ impl Format {
         value * exp2(-self.frac)
     }
 
+    /// Returns the raw value nearest to `x`, ties upward; `None` if `x` is not a number or is more than half a place beyond
+    /// the values of the format.
+    ///
+    /// For example, `u0.8` holds 0 to 255/256: 0.998 is rounded to 255/256, and 0.999 is refused.
+    pub fn nearest_raw(self, x: f64) -> Option<i128> {
+        let raw = nearest(x * exp2(self.frac));
+        let (low, high) = (self.min_raw() as f64, self.max_raw() as f64);
+        (low..=high).contains(&raw).then(|| self.quantise(x))
+    }
+
     /// Returns the raw value nearest to `x`, ties upward, saturated to the format.
     pub fn quantise(self, x: f64) -> i128 {
-        let scaled = (x * exp2(self.frac) + 0.5).floor();
+        let scaled = nearest(x * exp2(self.frac));
         let (low, high) = (self.min_raw(), self.max_raw());
         if scaled.is_nan() || scaled <= low as f64 {
             low

@@ -10,11 +10,18 @@ use serde::de::DeserializeOwned;
 /// The path that stands for standard input.
 pub const STDIN: &str = "-";
 
-/// Returns the name by which written files know the file `path`: without directories, so that they are the same wherever their
-/// user stands. What could end a comment or a string is `%` with the byte in hexadecimal, as in a URL.
+/// Returns the name by which written files know the file `path`: without directories, so that they are the same on every machine.
+///
+/// A name with blanks is in single quotes, as a shell takes it: `'my core.toml'`. A character that could end a comment or a string of
+/// an emitted file becomes `%` with its bytes in hexadecimal, as in a URL.
 pub fn label(path: &str) -> String {
     let name = path.rsplit('/').next().unwrap_or(path);
     let plain = |sign: char| sign.is_alphanumeric() || "._+-".contains(sign);
+    // A shell takes a name between quotes as it is.
+    let quotable = |sign: char| plain(sign) || " ()[]{},;=@#%&~!?^".contains(sign);
+    if !name.chars().all(plain) && name.chars().all(quotable) {
+        return format!("'{name}'");
+    }
     let escaped =
         |sign: char| sign.to_string().bytes().map(|byte| format!("%{byte:02X}")).collect();
     name.chars().map(|sign| if plain(sign) { sign.to_string() } else { escaped(sign) }).collect()
@@ -101,7 +108,9 @@ mod tests {
             ("configs/lyon.toml", "lyon.toml"),
             ("/designs/glänzend-2.toml", "glänzend-2.toml"),
             ("a\nendmodule.toml", "a%0Aendmodule.toml"),
-            ("a */ b", "%20b"),
+            ("a */ b", "' b'"),
+            ("c d (2).toml", "'c d (2).toml'"),
+            ("it's.toml", "it%27s.toml"),
             ("\"\"\" # \\", "%22%22%22%20%23%20%5C"),
             ("\u{202e}", "%E2%80%AE"),
             (STDIN, "-"),

@@ -47,6 +47,9 @@ impl fmt::Display for Written {
 /// Files of Glint's that were edited, or others that would be overwritten, unless `force` (which still keeps
 /// those that are not in the way); a directory that cannot be written. Nothing of the user's is changed then.
 pub fn write(out: &Path, name: &str, files: &[OutputFile], force: bool) -> Result<Written> {
+    // Of two runs into one directory the second waits: between its first file and its manifest the first one's files look foreign.
+    create_directory(out)?;
+    let _lock = locked(out);
     let found = Survey::new(out, name, files)?;
     if found.different.is_empty() {
         return Ok(Written::Unchanged);
@@ -60,9 +63,16 @@ pub fn write(out: &Path, name: &str, files: &[OutputFile], force: bool) -> Resul
             list.join("\n")
         );
     }
-    create_directory(out)?;
     Staging::new(out, files)?.place(out, &found.stale)?;
     Ok(Written::Replaced)
+}
+
+/// Waits until no other run writes below a directory, and keeps others waiting until the result is dropped. Returns `None` on a
+/// system that locks no directories.
+fn locked(directory: &Path) -> Option<fs::File> {
+    let opened = fs::File::open(directory).ok()?;
+    opened.lock().ok()?;
+    Some(opened)
 }
 
 /// Returns the files below `out` that differ from `files` or are missing, and those of Glint's that are none of `files`

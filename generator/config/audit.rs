@@ -1,7 +1,7 @@
 //! Finds mistakes in a schema itself, for the tests of devices.
 
 use super::problems::Problems;
-use super::schema::{Key, Kind, Schema};
+use super::schema::{Condition, Key, Kind, Schema};
 use super::shared::shared_keys;
 use super::values::Config;
 
@@ -33,7 +33,7 @@ impl Schema {
             for violation in key.violations_of(&key.default) {
                 mistakes.push(format!("default of `{name}`: {}", violation.message));
             }
-            if let Some((other, value)) = key.only_when {
+            if let Some(Condition { key: other, value, .. }) = key.condition {
                 // Only an earlier key, so that chains of conditions end.
                 match self.keys[..index].iter().find(|key| key.name == other) {
                     None => mistakes.push(format!(

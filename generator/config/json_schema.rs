@@ -95,7 +95,10 @@ fn of_key(key: &Key) -> Json {
         Value::Text(value) => choice(key, value),
         other => json!(other),
     };
-    let condition = key.only_when.map(|(other, value)| format!(" Only with {other} = {value}."));
+    let condition = key.condition.map(|condition| {
+        let relation = if condition.is_equal { "=" } else { "other than" };
+        format!(" Only with {} {relation} {}.", condition.key, condition.value)
+    });
     entry["description"] = json!(format!("{}{}", key.doc, condition.unwrap_or_default()));
     entry
 }

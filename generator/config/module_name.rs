@@ -51,8 +51,10 @@ fn legalised(name: &str) -> String {
     let file = name.rsplit(['/', '\\']).find(|part| !part.is_empty()).unwrap_or("");
     let stem = file.split('.').find(|part| !part.is_empty()).unwrap_or("");
     let keep = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
-    let words: String = stem.chars().map(keep).collect();
-    let words = words.trim_matches('_');
+    let kept: String = stem.chars().map(keep).collect();
+    // Two underscores in a row are for the names that a tool makes of its own: Verilator refuses them beside these.
+    let words: Vec<&str> = kept.split('_').filter(|word| !word.is_empty()).collect();
+    let words = words.join("_");
     let words = &words[..words.len().min(LONGEST - "glint_".len())];
     let illegal =
         words.is_empty() || words.starts_with(|c: char| c.is_ascii_digit()) || is_keyword(words);

@@ -38,6 +38,8 @@ pub struct Problem {
     pub message: String,
     /// The remedy.
     pub remedy: String,
+    /// The bytes of the key's text that it is about, if it is about a part of a text.
+    pub place: Option<Range<usize>>,
     /// The bytes of the file that it is about, if the file has any such.
     span: Option<Range<usize>>,
 }
@@ -52,7 +54,13 @@ impl Problems {
     /// then with the file's name alone.
     pub fn push(&mut self, key: &str, message: impl Into<String>, remedy: impl Into<String>) {
         let span = self.locations.get(key).cloned();
-        self.insert(key, message.into(), remedy.into(), span);
+        self.insert(Problem {
+            key: key.to_owned(),
+            message: message.into(),
+            remedy: remedy.into(),
+            place: None,
+            span,
+        });
     }
 
     /// Adds a problem of some bytes of a key's text: it is shown under them where the file gives the text as it is.
@@ -64,7 +72,7 @@ impl Problems {
         remedy: impl Into<String>,
     ) {
         let whole = self.locations.get(key).cloned();
-        let within = whole.clone().zip(bytes).and_then(|(whole, bytes)| {
+        let within = whole.clone().zip(bytes.clone()).and_then(|(whole, bytes)| {
             // Between quotes, without an escape; what is missing at the end is missing at the closing quote.
             let text = self.text.get(whole.clone())?;
             let plain = text.starts_with(['"', '\''])
@@ -73,7 +81,13 @@ impl Problems {
             let from = whole.start + 1 + bytes.start;
             plain.then_some(from..(whole.start + 1 + bytes.end).max(from + 1))
         });
-        self.insert(key, message.into(), remedy.into(), within.or(whole));
+        self.insert(Problem {
+            key: key.to_owned(),
+            message: message.into(),
+            remedy: remedy.into(),
+            place: bytes,
+            span: within.or(whole),
+        });
     }
 
     /// Adds a problem at a location in the text.
@@ -87,7 +101,13 @@ impl Problems {
         // What is missing at the end of the text is missing in its last line, not below it.
         let end = self.text.trim_end_matches(['\r', '\n']).len();
         let span = span.start.min(end)..span.end.min(end);
-        self.insert(key, message.into(), remedy.into(), Some(span));
+        self.insert(Problem {
+            key: key.to_owned(),
+            message: message.into(),
+            remedy: remedy.into(),
+            place: None,
+            span: Some(span),
+        });
     }
 
     /// Notes where the file gives a key.
@@ -113,13 +133,12 @@ impl Problems {
     /// Adds problems found elsewhere, as they are.
     pub(super) fn extend(&mut self, problems: impl IntoIterator<Item = Problem>) {
         for problem in problems {
-            self.insert(&problem.key, problem.message, problem.remedy, problem.span);
+            self.insert(problem);
         }
     }
 
     /// Keeps the list sorted by location, those without one last, and free of repetitions.
-    fn insert(&mut self, key: &str, message: String, remedy: String, span: Option<Range<usize>>) {
-        let problem = Problem { key: key.to_owned(), message, remedy, span };
+    fn insert(&mut self, problem: Problem) {
         if self.list.len() == LIMIT {
             self.further += 1;
         } else if !self.list.contains(&problem) {

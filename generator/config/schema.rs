@@ -40,14 +40,42 @@ pub struct Key {
     pub default: Value,
     /// The meaning, in one or two sentences.
     pub doc: &'static str,
-    /// The key applies only when another key (the first) has a value (the second, written without
-    /// quotes). Elsewhere it may not be given, and it keeps its default.
-    pub only_when: Option<(&'static str, &'static str)>,
+    /// The key applies only where this holds. Elsewhere it must have its default, if it is given at all.
+    pub condition: Option<Condition>,
     /// At its default it is not written, as a shared key: digests of configurations from before there was the key hold.
     pub joined_later: bool,
     /// Random configurations draw an integer from this range rather than from the whole one, and it follows no other key: elsewhere
     /// a configuration is costly.
     pub drawn: Option<(i64, i64)>,
+}
+
+/// What another key must be for a key to apply.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Condition {
+    /// The name of the other key.
+    pub key: &'static str,
+    /// A value of it, without quotes.
+    pub value: &'static str,
+    /// Whether the other key must have this value, or any other than this.
+    pub is_equal: bool,
+}
+
+impl Condition {
+    /// Returns whether the condition holds where the other key has a value.
+    pub fn holds(&self, value: &Value) -> bool {
+        (value.bare() == self.value) == self.is_equal
+    }
+
+    /// Returns the condition in words, as in `architecture = "pipelined"`. `value` is any value of the other key: it tells whether the
+    /// values have quotes.
+    pub fn words(&self, value: &Value) -> String {
+        let needed = match value {
+            Value::Text(_) => Value::Text(self.value.to_owned()).toml(),
+            _ => self.value.to_owned(),
+        };
+        let relation = if self.is_equal { "=" } else { "other than" };
+        format!("{} {relation} {needed}", self.key)
+    }
 }
 
 /// The type of a key, and which of its values are accepted.
@@ -69,7 +97,7 @@ pub enum Kind {
 
 impl Key {
     fn new(name: &'static str, kind: Kind, default: Value, doc: &'static str) -> Self {
-        Key { name, kind, default, doc, only_when: None, joined_later: false, drawn: None }
+        Key { name, kind, default, doc, condition: None, joined_later: false, drawn: None }
     }
 
     /// Makes a key of an integer in a range.
@@ -149,7 +177,13 @@ impl Key {
     ///
     /// `value` is written as [`Value`] displays it without quotes: `direct`, `true`, `16`.
     pub fn only_when(mut self, other: &'static str, value: &'static str) -> Self {
-        self.only_when = Some((other, value));
+        self.condition = Some(Condition { key: other, value, is_equal: true });
+        self
+    }
+
+    /// Restricts the key to configurations in which the key `other` has another value than this.
+    pub fn unless(mut self, other: &'static str, value: &'static str) -> Self {
+        self.condition = Some(Condition { key: other, value, is_equal: false });
         self
     }
 

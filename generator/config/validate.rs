@@ -6,7 +6,7 @@ use super::follow::follow;
 use super::module_name;
 use super::nearest::nearest;
 use super::problems::{Problem, Problems, Violation, out_of_range, quoted, shown};
-use super::schema::{Key, Kind, Schema};
+use super::schema::{Condition, Key, Kind, Schema};
 use super::shared::Shared;
 use super::values::{Config, Value, is_integer};
 use super::write::tables;
@@ -17,14 +17,14 @@ impl Key {
         let name = self.name;
         match (&self.kind, value) {
             (Kind::Integer { min, max }, Value::Integer(given)) => {
-                self.unless((min..=max).contains(&given), || out_of_range(name, given))
+                self.required((min..=max).contains(&given), || out_of_range(name, given))
             }
             (Kind::Number { min, max, or_zero }, Value::Number(given)) => {
                 let good = (min..=max).contains(&given) || *or_zero && *given == 0.0;
-                self.unless(good, || out_of_range(name, value.bare()))
+                self.required(good, || out_of_range(name, value.bare()))
             }
             (Kind::Choice(options), Value::Text(given)) => self
-                .unless(options.contains(&given.as_str()), || {
+                .required(options.contains(&given.as_str()), || {
                     if is_integer(given) {
                         format!("`{name}` cannot be {}", shown(given))
                     } else {
@@ -35,18 +35,17 @@ impl Key {
                 .map(|violation| self.with_suggestion(violation, given))
                 .collect(),
             (Kind::Flag, Value::Flag(_)) => Vec::new(),
-            (Kind::Text(pattern), Value::Text(given)) => {
-                self.unless(pattern.fits(given), || format!("`{name}` cannot be {}", quoted(given)))
-            }
+            (Kind::Text(pattern), Value::Text(given)) => self
+                .required(pattern.fits(given), || format!("`{name}` cannot be {}", quoted(given))),
             (Kind::Integers { min, max, len_min, len_max }, Value::Integers(given)) => {
-                let mut all = self.unless((len_min..=len_max).contains(&&given.len()), || {
+                let mut all = self.required((len_min..=len_max).contains(&&given.len()), || {
                     let plural = if given.len() == 1 { "y" } else { "ies" };
                     format!("`{name}` has {} entr{plural}", given.len())
                 });
                 for (index, entry) in given.iter().enumerate() {
                     let inside = (min..=max).contains(&entry);
                     let named = format!("{name}[{index}]");
-                    let found = self.unless(inside, || out_of_range(&named, entry));
+                    let found = self.required(inside, || out_of_range(&named, entry));
                     all.extend(found.into_iter().map(|it| Violation { entry: Some(index), ..it }));
                 }
                 all
@@ -80,7 +79,7 @@ impl Key {
         }
     }
 
-    fn unless(&self, good: bool, message: impl FnOnce() -> String) -> Vec<Violation> {
+    fn required(&self, good: bool, message: impl FnOnce() -> String) -> Vec<Violation> {
         if good { Vec::new() } else { vec![self.violation(message())] }
     }
 
@@ -188,24 +187,21 @@ pub(super) struct Draft<'a> {
 fn check(schema: &Schema, draft: &Draft, problems: &mut Problems) {
     for key in schema.all_keys() {
         let governors = chain(schema, key);
-        let doubtful = governors.iter().any(|(k, _)| draft.doubtful.contains(k));
-        if !draft.given.contains(key.name) || doubtful {
+        let doubtful = governors.iter().any(|it| draft.doubtful.contains(it.key));
+        // A key at its default asks for nothing that would be missing.
+        let is_default = *draft.config.value(key.name) == key.default;
+        if !draft.given.contains(key.name) || doubtful || is_default {
             continue;
         }
-        let blocking = governors
-            .iter()
-            .rev()
-            .find(|(other, value)| draft.config.value(other).bare() != *value);
-        if let Some((other, needed)) = blocking {
-            let needed = match draft.config.value(other) {
-                Value::Text(_) => Value::Text((*needed).to_owned()).toml(),
-                _ => (*needed).to_owned(),
-            };
+        let is_unmet = |condition: &&Condition| !condition.holds(draft.config.value(condition.key));
+        if let Some(condition) = governors.iter().rev().find(is_unmet) {
+            let other = condition.key;
             let actual = draft.config.value(other).toml();
+            let needed = condition.words(draft.config.value(other));
             problems.push(
                 key.name,
                 format!("`{}` has no effect with {other} = {actual}", key.name),
-                format!("remove it, or set {other} = {needed}"),
+                format!("remove it, or set {needed}"),
             );
         }
     }
@@ -273,16 +269,16 @@ fn of_default(key: &Key, draft: &Draft, message: &str) -> String {
 }
 
 /// Returns the keys that decide whether `key` applies, nearest first, with the values that it needs.
-fn chain(schema: &Schema, key: &Key) -> Vec<(&'static str, &'static str)> {
+fn chain(schema: &Schema, key: &Key) -> Vec<Condition> {
     let mut conditions = Vec::new();
-    let mut condition = key.only_when;
+    let mut condition = key.condition;
     while let Some(next) = condition {
         // A schema with a cycle is faulty; do not hang on it.
         if conditions.contains(&next) {
             break;
         }
         conditions.push(next);
-        condition = schema.key(next.0).and_then(|key| key.only_when);
+        condition = schema.key(next.key).and_then(|key| key.condition);
     }
     conditions
 }
@@ -348,10 +344,10 @@ impl Config {
 
     /// Returns whether the key of this name has an effect with the other values as they are.
     pub fn applies(&self, schema: &Schema, key: &str) -> bool {
-        match schema.key(key).and_then(|key| key.only_when) {
+        match schema.key(key).and_then(|key| key.condition) {
             None => true,
-            Some((other, value)) => {
-                self.value(other).bare() == value && self.applies(schema, other)
+            Some(condition) => {
+                condition.holds(self.value(condition.key)) && self.applies(schema, condition.key)
             }
         }
     }

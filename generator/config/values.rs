@@ -19,7 +19,7 @@ pub enum Value {
 }
 
 impl Value {
-    /// Returns the text that [`super::Key::only_when`] compares with: the value without quotes.
+    /// Returns the text that [`super::Key::condition`] compares with: the value without quotes.
     pub fn bare(&self) -> String {
         match self {
             Value::Integer(value) => value.to_string(),
@@ -45,7 +45,7 @@ impl Value {
 
 /// A configuration whose every value is in range and whose combination the device accepts.
 ///
-/// Keys that do not apply (see [`super::Key::only_when`]) hold their defaults.
+/// Keys that do not apply (see [`super::Key::condition`]) hold their defaults.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Config {
     /// The name of the Verilog module and of its files: a legal identifier.

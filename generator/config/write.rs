@@ -2,7 +2,7 @@
 
 use super::schema::{Key, Schema};
 use super::shared::shared_keys;
-use super::values::{Config, Value};
+use super::values::Config;
 
 /// The widest line of a comment.
 const WIDTH: usize = 90;
@@ -38,12 +38,8 @@ pub fn commented_values(schema: &Schema, config: &Config) -> String {
             let value = config.value(key.name).toml();
             text += &comment(&sentence(key.doc));
             let mut rule = format!("{}, default {}", key.accepts(), key.default.toml());
-            if let Some((other, needed)) = key.only_when {
-                let needed = match config.value(other) {
-                    Value::Text(_) => Value::Text(needed.to_owned()).toml(),
-                    _ => needed.to_owned(),
-                };
-                rule += &format!("; only with {other} = {needed}");
+            if let Some(condition) = key.condition {
+                rule += &format!("; only with {}", condition.words(config.value(condition.key)));
             }
             text += &comment(&sentence(&rule));
             // No samples are no path.

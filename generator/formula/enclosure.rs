@@ -7,6 +7,9 @@ const MARGIN: f64 = 1.0 / (1u64 << 50) as f64;
 /// Below this, products lose bits that a remainder cannot show.
 const SMALL: f64 = 1e-280;
 
+/// A little less than π.
+const HALF_TURN: f64 = 3.141_592_653_589_79;
+
 /// A lower and an upper limit of a real number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Enclosure {
@@ -51,6 +54,8 @@ impl Enclosure {
     /// Makes the enclosure of a number that was computed up to an error of [`MARGIN`], relative to it.
     fn near(low: f64, high: f64) -> Self {
         let margin = |value: f64| value.abs() * MARGIN + f64::MIN_POSITIVE;
+        // A value beyond the range of f64 is above the largest f64, or below the smallest.
+        let (low, high) = (low.min(f64::MAX), high.max(f64::MIN));
         Self { low: low - margin(low), high: high + margin(high) }
     }
 
@@ -65,17 +70,50 @@ impl Enclosure {
         a.hull(b).hull(c.hull(d))
     }
 
+    /// Returns the enclosure limited to the values that a function can have.
+    fn within(self, least: f64, most: f64) -> Self {
+        Self { low: self.low.clamp(least, most), high: self.high.clamp(least, most) }
+    }
+
     /// Returns the values of a function of `libm` that never falls.
-    pub(super) fn rising(self, of: fn(f64) -> f64) -> Self {
-        let low = of(self.low);
-        Self::near(low, if self.low == self.high { low } else { of(self.high) })
+    pub(super) fn rising(self, function: fn(f64) -> f64) -> Self {
+        let low = function(self.low);
+        Self::near(low, if self.low == self.high { low } else { function(self.high) })
+    }
+
+    /// Returns the values of an exponential function, which are never below 0. Beyond the range of `f64` the value is
+    /// somewhere between the largest `f64` and infinity.
+    pub(super) fn exponential(self, function: fn(f64) -> f64) -> Self {
+        let Self { low, high } = self.rising(function);
+        Self { low: low.clamp(0.0, f64::MAX), high }
+    }
+
+    /// Returns the values of a logarithm, which has the sign of the distance from 1.
+    pub(super) fn logarithm(self, function: fn(f64) -> f64) -> Self {
+        let least = if self.low >= 1.0 { 0.0 } else { f64::NEG_INFINITY };
+        let most = if self.high <= 1.0 { 0.0 } else { f64::INFINITY };
+        self.rising(function).within(least, most)
+    }
+
+    /// Returns the values of an odd function that never falls and is never beyond `largest`: they have the sign of the argument.
+    pub(super) fn odd_and_rising(self, function: fn(f64) -> f64, largest: f64) -> Self {
+        let least = if self.low >= 0.0 { 0.0 } else { -largest };
+        let most = if self.high <= 0.0 { 0.0 } else { largest };
+        self.rising(function).within(least, most)
+    }
+
+    /// Returns the values of a sine. From −3.14 to 3.14 it has the sign of the angle.
+    pub(super) fn sine(self) -> Self {
+        let least = if self.low >= 0.0 && self.high <= HALF_TURN { 0.0 } else { -1.0 };
+        let most = if self.high <= 0.0 && self.low >= -HALF_TURN { 0.0 } else { 1.0 };
+        self.wave(libm::sin).within(least, most)
     }
 
     /// Returns the values of a sine or a cosine, which is never steeper than 1.
-    pub(super) fn wave(self, of: fn(f64) -> f64) -> Self {
+    pub(super) fn wave(self, function: fn(f64) -> f64) -> Self {
         let middle = self.middle();
         let reach = ((self.high - middle).max(middle - self.low)).next_up();
-        let value = of(middle);
+        let value = function(middle);
         let Self { low, high } = Self::near(value, value);
         Self { low: (low - reach).next_down().max(-1.0), high: (high + reach).next_up().min(1.0) }
     }
@@ -101,7 +139,7 @@ impl Enclosure {
     }
 
     /// Returns a power with an exponent that is a whole number above 0.
-    pub(super) fn times_itself(self, exponent: u32) -> Self {
+    pub(super) fn repeated_product(self, exponent: u32) -> Self {
         let base = if exponent.is_multiple_of(2) { self.abs() } else { self };
         let power = |value: f64| {
             let value = Self::exactly(value);
@@ -115,7 +153,10 @@ impl Enclosure {
     pub(super) fn power(self, exponent: Self) -> Self {
         self.corners(exponent, |base, exponent| {
             let power = libm::pow(base, exponent);
-            Self::near(power, power)
+            let Self { low, high } = Self::near(power, power);
+            // Beyond the range of f64 the power is somewhere above the largest.
+            let least = if base == 0.0 { power } else { low.clamp(0.0, f64::MAX) };
+            Self { low: least, high: if base == 0.0 { power } else { high } }
         })
     }
 }
@@ -181,7 +222,12 @@ impl std::ops::Div for Enclosure {
     fn div(self, other: Self) -> Self {
         self.corners(other, |a, b| {
             if b.is_infinite() {
-                return Self { low: -f64::MIN_POSITIVE, high: f64::MIN_POSITIVE };
+                // The divisor is larger than any f64, with its sign; without another sign the quotient is near 0.
+                let tiny = f64::MIN_POSITIVE.copysign(a) * b.signum();
+                return match a.is_infinite() {
+                    true => Self { low: f64::NAN, high: f64::NAN },
+                    false => Self { low: tiny.min(0.0), high: tiny.max(0.0) },
+                };
             }
             let quotient = a / b;
             let rest = (-quotient).mul_add(b, a);

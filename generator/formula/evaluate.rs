@@ -1,133 +1,271 @@
-//! Evaluates a formula: computes limits that certainly hold its value.
+//! Evaluates a formula to an interval that is guaranteed to contain its exact value.
 
+use std::cmp::Ordering;
+
+use dashu_ratio::RBig;
+
+use super::arithmetic::{Arithmetic, Double};
+use super::precise::{Precise, PreciseValue};
 use super::{Comparison, Enclosure, Fault, Formula, Function, Kind, Operator};
 
-/// Exponents up to this are products; larger ones are powers of `libm`.
-const PRODUCTS: f64 = 64.0;
+/// Integer exponents up to this are repeated products, which may have a negative base; larger ones are computed with logarithms.
+const LARGEST_PRODUCT: u32 = 64;
+
+/// The precisions, in bits, that are tried one after the other until every comparison and every step is decided.
+const PRECISIONS: [usize; 3] = [128, 320, 1024];
 
 impl Formula {
-    /// Returns the limits of the value where operands are within theirs. What errors of f64 and of `libm` may be is in them.
+    /// Evaluates the formula in `f64` for operands within intervals. Errors of rounding are inside the returned interval.
+    ///
+    /// Where a comparison or a step is undecided, the interval contains the values on both sides.
     ///
     /// # Errors
-    /// A part that has no value: a pole, a root of a negative number, an operand without limits, a word of a ROM.
+    /// Fails at a part that may have no value: a pole, the root of a number that may be negative, an operand that is not
+    /// listed, a word of a ROM.
     pub fn enclose(&self, operands: &[(&str, Enclosure)]) -> Result<Enclosure, Fault> {
-        let fault = |message: String| Err(Fault::new(self.span.clone(), message));
+        self.evaluate(&Double, operands)
+    }
+
+    /// Evaluates the formula for exact operands, with as much precision as its comparisons and steps need, and in any case so
+    /// much that the `f64` limits of the result are neighbours or equal.
+    ///
+    /// For example, `floor(x * 0.1)` is 3 for x = 30, although 0.1 is no `f64`. It is about a thousand times slower than
+    /// [`Formula::enclose`].
+    ///
+    /// # Errors
+    /// Fails as [`Formula::enclose`] does, and where 1024 bits do not decide a comparison or a step.
+    pub fn evaluate_exactly(&self, operands: &[(&str, RBig)]) -> Result<Enclosure, Fault> {
+        let is_narrow = |precise: &Precise, value: &PreciseValue| {
+            let Enclosure { low, high } = precise.enclosure(value);
+            low.next_up().next_up() >= high
+        };
+        let (precise, value) = self.decided(operands, is_narrow)?;
+        Ok(precise.enclosure(&value))
+    }
+
+    /// Returns the smallest integer that is not below the formula, which has no operands, times 2 to the power `fraction`; and
+    /// whether that integer is the value.
+    ///
+    /// For example, `0.3` with two fraction bits gives (2, false), and `log2(16)` with none gives (4, true).
+    ///
+    /// # Errors
+    /// Fails as [`Formula::evaluate_exactly`] does, and where 1024 bits do not tell the value from an integer.
+    pub fn ceiling(&self, fraction: u32) -> Result<(i128, bool), Fault> {
+        let (precise, value) =
+            self.decided(&[], |precise, value| precise.ceiling(value, fraction).is_some())?;
+        precise.ceiling(&value, fraction).ok_or_else(|| {
+            let message = "this is so near to a number that an operand can have that 1024 bits do not \
+                           tell the two apart";
+            Fault::new(self.span.clone(), message)
+        })
+    }
+
+    /// Returns the value of the formula, which has no operands, if it is a rational number and known to be one.
+    pub fn rational(&self) -> Option<RBig> {
+        let (_, value) = self.decided(&[], |_, _| true).ok()?;
+        value.rational().cloned()
+    }
+
+    /// Evaluates with one precision after the other until the formula has a value that is `enough`, and returns the last.
+    fn decided(
+        &self,
+        operands: &[(&str, RBig)],
+        enough: impl Fn(&Precise, &PreciseValue) -> bool,
+    ) -> Result<(Precise, PreciseValue), Fault> {
+        let mut last = None;
+        for bits in PRECISIONS {
+            let precise = Precise::new(bits);
+            let exact: Vec<(&str, PreciseValue)> =
+                operands.iter().map(|(name, value)| (*name, precise.rational(value))).collect();
+            let value = self.evaluate(&precise, &exact);
+            let is_enough = value.as_ref().is_ok_and(|value| enough(&precise, value));
+            last = Some(value.map(|value| (precise, value)));
+            if is_enough {
+                break;
+            }
+        }
+        last.expect("there is at least one precision")
+    }
+
+    fn evaluate<A: Arithmetic>(
+        &self,
+        arithmetic: &A,
+        operands: &[(&str, A::Value)],
+    ) -> Result<A::Value, Fault> {
+        let fault = |message: String| Fault::new(self.span.clone(), message);
         let value = match &self.kind {
-            Kind::Number(value, true) => Enclosure::exactly(*value),
-            Kind::Number(value, false) => Enclosure::between(value.next_down(), value.next_up()),
-            Kind::Constant(_, value) => Enclosure::between(*value, value.next_up()),
+            Kind::Number(literal) => arithmetic.literal(literal),
+            Kind::Constant(name, below) => arithmetic.constant(name, *below),
             Kind::Operand(name) => match operands.iter().find(|(own, _)| own == name) {
-                Some((_, limits)) => *limits,
-                None => return fault(format!("nothing is known of `{name}`")),
+                Some((_, value)) => value.clone(),
+                None => return Err(fault(format!("nothing is known of `{name}`"))),
             },
             Kind::Word(name, _) => {
-                return fault(format!("nothing is known of the words of `{name}`"));
+                return Err(fault(format!("nothing is known of the words of `{name}`")));
             }
             Kind::Unary(function, a) => {
-                let a = a.enclose(operands)?;
-                unary(*function, a).or_else(fault)?
+                let a = a.evaluate(arithmetic, operands)?;
+                unary(arithmetic, *function, &a).map_err(fault)?
             }
             Kind::Binary(operator, a, b) => {
-                let (a, b) = (a.enclose(operands)?, b.enclose(operands)?);
-                binary(*operator, a, b).or_else(fault)?
+                let a = a.evaluate(arithmetic, operands)?;
+                let b = b.evaluate(arithmetic, operands)?;
+                binary(arithmetic, *operator, &a, &b).map_err(fault)?
             }
-            Kind::If(Comparison { left, right, or_equal }, yes, no) => {
-                let difference = left.enclose(operands)? - right.enclose(operands)?;
-                if difference.low > 0.0 || *or_equal && difference.low == 0.0 {
-                    yes.enclose(operands)?
-                } else if difference.high < 0.0 || !*or_equal && difference.high == 0.0 {
-                    no.enclose(operands)?
-                } else {
-                    yes.enclose(operands)?.hull(no.enclose(operands)?)
+            Kind::If(comparison, yes, no) => {
+                let left = comparison.left.evaluate(arithmetic, operands)?;
+                let right = comparison.right.evaluate(arithmetic, operands)?;
+                match comparison.decided(arithmetic, &left, &right).map_err(fault)? {
+                    Some(true) => yes.evaluate(arithmetic, operands)?,
+                    Some(false) => no.evaluate(arithmetic, operands)?,
+                    None => {
+                        let yes = yes.evaluate(arithmetic, operands)?;
+                        let no = no.evaluate(arithmetic, operands)?;
+                        let doubt =
+                            "1024 bits do not tell which of the two compared values is larger";
+                        arithmetic.either(yes, no, doubt).map_err(fault)?
+                    }
                 }
             }
         };
-        if value.low.is_nan() || value.high.is_nan() {
-            return fault("this is no number".to_owned());
+        let Enclosure { low, high } = arithmetic.enclosure(&value);
+        if low.is_nan() || high.is_nan() {
+            return Err(fault("this is no number".to_owned()));
         }
         Ok(value)
     }
 }
 
-pub(super) fn unary(function: Function, a: Enclosure) -> Result<Enclosure, String> {
-    let at = || words(a);
-    Ok(match function {
-        Function::Negate => -a,
-        Function::Abs => a.abs(),
-        Function::Sqrt if a.low < 0.0 => {
-            return Err(format!("the root of a negative number, {}", at()));
+impl Comparison {
+    /// Returns whether the comparison holds; `None` where the intervals of both sides do not tell.
+    pub(super) fn decided<A: Arithmetic>(
+        &self,
+        arithmetic: &A,
+        left: &A::Value,
+        right: &A::Value,
+    ) -> Result<Option<bool>, String> {
+        let difference = arithmetic.subtract(left, right)?;
+        let (low, high) = arithmetic.signs(&difference);
+        let holds = low == Ordering::Greater || self.or_equal && low == Ordering::Equal;
+        let fails = high == Ordering::Less || !self.or_equal && high == Ordering::Equal;
+        Ok(match (holds, fails) {
+            (true, _) => Some(true),
+            (_, true) => Some(false),
+            _ => None,
+        })
+    }
+}
+
+/// Computes a function of one number, after checking that the number is in its domain.
+pub(super) fn unary<A: Arithmetic>(
+    arithmetic: &A,
+    function: Function,
+    a: &A::Value,
+) -> Result<A::Value, String> {
+    let (low, _) = arithmetic.signs(a);
+    match function {
+        Function::Sqrt if low == Ordering::Less => {
+            let value = words(arithmetic.enclosure(a));
+            return Err(format!("the root of a negative number, {value}"));
         }
-        Function::Sqrt => a.sqrt(),
-        Function::Ln | Function::Log2 if a.low <= 0.0 => {
-            return Err(format!("the logarithm of {}, which is not above 0", at()));
+        Function::Ln | Function::Log2 if low != Ordering::Greater => {
+            let value = words(arithmetic.enclosure(a));
+            return Err(format!("the logarithm of {value}, which is not above 0"));
         }
-        Function::Ln => a.rising(libm::log),
-        Function::Log2 => a.rising(libm::log2),
-        Function::Exp => a.rising(libm::exp),
-        Function::Exp2 => a.rising(libm::exp2),
-        Function::Atan => a.rising(libm::atan),
-        Function::Tanh => a.rising(libm::tanh),
-        Function::Erf => a.rising(libm::erf),
-        Function::Sin => a.wave(libm::sin),
-        Function::Cos => a.wave(libm::cos),
         Function::Tan => {
-            // Between its poles it rises; a cosine that is not 0 is of one branch.
-            let cosine = a.wave(libm::cos);
-            if cosine.holds(0.0) || a.high - a.low > 1.0 {
-                return Err(format!("a pole of the tangent near {}", at()));
+            // Between two poles the tangent rises, and the cosine has one sign.
+            let cosine = arithmetic.function(Function::Cos, a)?;
+            let Enclosure { low, high } = arithmetic.enclosure(a);
+            if holds_zero(arithmetic, &cosine) || high - low > 1.0 {
+                return Err(format!(
+                    "a pole of the tangent near {}",
+                    words(arithmetic.enclosure(a))
+                ));
             }
-            a.rising(libm::tan)
         }
-    })
+        _ => {}
+    }
+    arithmetic.function(function, a)
 }
 
-pub(super) fn binary(operator: Operator, a: Enclosure, b: Enclosure) -> Result<Enclosure, String> {
-    Ok(match operator {
-        Operator::Add => a + b,
-        Operator::Sub => a - b,
-        Operator::Mul => a * b,
-        Operator::Div if b.holds(0.0) => {
-            return Err(format!("a pole: the divisor is {}", words(b)));
+/// Computes a function of two numbers, after checking that they are in its domain.
+pub(super) fn binary<A: Arithmetic>(
+    arithmetic: &A,
+    operator: Operator,
+    a: &A::Value,
+    b: &A::Value,
+) -> Result<A::Value, String> {
+    match operator {
+        Operator::Add => arithmetic.add(a, b),
+        Operator::Sub => arithmetic.subtract(a, b),
+        Operator::Mul => arithmetic.multiply(a, b),
+        Operator::Div if holds_zero(arithmetic, b) => {
+            Err(format!("a pole: the divisor is {}", words(arithmetic.enclosure(b))))
         }
-        Operator::Div => a / b,
-        Operator::Min => Enclosure { low: a.low.min(b.low), high: a.high.min(b.high) },
-        Operator::Max => Enclosure { low: a.low.max(b.low), high: a.high.max(b.high) },
-        Operator::Mod => {
-            if b.holds(0.0) {
-                return Err("a remainder by 0".to_owned());
-            }
-            let times = a / b;
-            if times.low.floor() != times.high.floor() {
-                // It jumps in between, and is anything up to the divisor.
-                return Ok(Enclosure::exactly(0.0).hull(b));
-            }
-            a - Enclosure::exactly(times.low.floor()) * b
-        }
-        Operator::Power => {
-            let whole = b.low == b.high && b.low.fract() == 0.0 && b.low.abs() <= PRODUCTS;
-            if whole && b.low > 0.0 {
-                a.times_itself(b.low as u32)
-            } else if whole && b.low == 0.0 {
-                Enclosure::exactly(1.0)
-            } else if a.holds(0.0) && b.low <= 0.0 {
-                return Err("a pole: a power of 0 that is not above 0".to_owned());
-            } else if whole {
-                Enclosure::exactly(1.0) / a.times_itself(-b.low as u32)
-            } else if a.low < 0.0 {
-                return Err(format!("a power of a negative number, {}", words(a)));
-            } else {
-                a.power(b)
-            }
-        }
-    })
+        Operator::Div => arithmetic.divide(a, b),
+        Operator::Min => Ok(arithmetic.minimum(a, b)),
+        Operator::Max => Ok(arithmetic.maximum(a, b)),
+        Operator::Mod => remainder(arithmetic, a, b),
+        Operator::Power => power(arithmetic, a, b),
+    }
 }
 
-/// Returns a number, or between which two it is.
+/// Computes the remainder of a division, which is between 0 and the divisor.
+fn remainder<A: Arithmetic>(
+    arithmetic: &A,
+    a: &A::Value,
+    b: &A::Value,
+) -> Result<A::Value, String> {
+    if holds_zero(arithmetic, b) {
+        return Err("a remainder by 0".to_owned());
+    }
+    let quotient = arithmetic.divide(a, b)?;
+    let Some(floor) = arithmetic.floor(&quotient) else {
+        // The remainder jumps somewhere in the interval: it is anything up to the divisor.
+        let doubt = "1024 bits do not tell on which side of a step this is";
+        return arithmetic.either(arithmetic.integer(0), b.clone(), doubt);
+    };
+    arithmetic.subtract(a, &arithmetic.multiply(&floor, b)?)
+}
+
+fn power<A: Arithmetic>(arithmetic: &A, a: &A::Value, b: &A::Value) -> Result<A::Value, String> {
+    match arithmetic.known_integer(b, LARGEST_PRODUCT) {
+        Some(0) => return Ok(arithmetic.integer(1)),
+        Some(exponent @ 1..) => return arithmetic.repeated_product(a, exponent as u32),
+        _ => {}
+    }
+    let (exponent_low, _) = arithmetic.signs(b);
+    if holds_zero(arithmetic, a) && exponent_low != Ordering::Greater {
+        return Err("a pole: a power of 0 that is not above 0".to_owned());
+    }
+    if let Some(exponent) = arithmetic.known_integer(b, LARGEST_PRODUCT) {
+        let product = arithmetic.repeated_product(a, exponent.unsigned_abs() as u32)?;
+        return arithmetic.divide(&arithmetic.integer(1), &product);
+    }
+    if arithmetic.signs(a).0 == Ordering::Less {
+        let value = words(arithmetic.enclosure(a));
+        return Err(format!("a power of a negative number, {value}"));
+    }
+    arithmetic.power(a, b)
+}
+
+fn holds_zero<A: Arithmetic>(arithmetic: &A, a: &A::Value) -> bool {
+    let (low, high) = arithmetic.signs(a);
+    low != Ordering::Greater && high != Ordering::Less
+}
+
+/// Returns a number in words, or the two numbers that it is between.
 fn words(a: Enclosure) -> String {
     let middle = a.middle();
     if (a.high - a.low).abs() <= middle.abs() * 1e-12 {
-        format!("{middle}")
+        digits(middle)
     } else {
-        format!("from {} to {}", a.low, a.high)
+        format!("from {} to {}", digits(a.low), digits(a.high))
     }
+}
+
+/// Returns a number in few digits: with a power of ten where it is very large or very small.
+fn digits(value: f64) -> String {
+    let is_moderate = value == 0.0 || (1e-6..1e9).contains(&value.abs());
+    if is_moderate { format!("{value}") } else { format!("{value:e}") }
 }

@@ -1,18 +1,25 @@
-//! Parses formulas from text to a tree, evaluates the tree to enclosures of its value, and prints it as Python and C.
+//! Parses formulas from text to a tree, evaluates the tree to intervals that contain its value, and prints it as Python
+//! and C.
 //!
 //! The text is what a configuration or a contract states, `1 / sqrt(x)` or `max(x, 0) if x > 1 else 2 ** -x`. Every part
 //! of the tree knows the bytes of the text that it came from, so that a mistake is shown under its place.
 
+mod arithmetic;
 mod enclosure;
 mod evaluate;
+mod exact;
+mod literal;
 mod parse;
+mod precise;
 mod print;
 mod slope;
 
 use std::fmt;
 use std::ops::Range;
 
+pub use dashu_ratio::RBig;
 pub use enclosure::Enclosure;
+pub use literal::Literal;
 pub use parse::{FUNCTIONS, parse};
 
 /// A part of a formula. Two are equal whose kinds are, wherever they come from.
@@ -27,8 +34,8 @@ pub struct Formula {
 /// The kinds of parts of a formula.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Kind {
-    /// A number, and whether it is the number that the text states or the nearest to it.
-    Number(f64, bool),
+    /// A number, exactly as the text states it.
+    Number(Literal),
     /// A constant by its name, and the number below it.
     Constant(&'static str, f64),
     /// An operand, as a value and not raw.
@@ -145,6 +152,13 @@ impl Formula {
     pub fn walk<'f>(&'f self, visit: &mut dyn FnMut(&'f Self)) {
         self.parts().into_iter().for_each(|part| part.walk(visit));
         visit(self);
+    }
+
+    /// Returns the number of parts, the formula itself included, that satisfy the predicate.
+    pub fn count(&self, is: &dyn Fn(&Self) -> bool) -> usize {
+        let mut count = 0;
+        self.walk(&mut |part| count += usize::from(is(part)));
+        count
     }
 
     /// Refuses names other than `operand`, and words of ROMs.

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::{Comparison, Fault, Formula, Function, Kind, Operator};
+use super::{Comparison, Fault, Formula, Function, Kind, Literal, Operator};
 
 /// The functions of one number, by the names that a formula may use.
 pub const FUNCTIONS: [(&str, Function); 13] = [
@@ -61,6 +61,10 @@ const PI: &str = "π";
 /// The most parts within each other: as many calls of the parser stand on the stack.
 const DEEPEST: usize = 200;
 
+/// The most parts of a formula once its functions are written out. For example, `silu(x)` has 6 parts more than x, and names x
+/// twice, so that each `silu` around another doubles the parts.
+const MOST_PARTS: usize = 4096;
+
 /// Reads a formula: sums, products, powers (`^` or `**`), parentheses, numbers, pi, e, operands by their names,
 /// functions, `if(a < b, x, y)`, and `x if a < b else y` as Python writes it.
 ///
@@ -99,19 +103,39 @@ fn tokens(text: &str) -> Result<Vec<Range<usize>>, Fault> {
                 continue;
             }
             _ => {
-                let span = at..at + first.len_utf8();
-                let remedy = if matches!(first, '=' | '!') {
-                    ": `<`, `>`, `<=` and `>=` compare"
-                } else {
-                    ""
-                };
-                return Err(Fault::new(span, format!("`{first}` is no part of a formula{remedy}")));
+                let remedy =
+                    instead_of_sign(first).map_or(String::new(), |text| format!(": {text}"));
+                let message = format!("`{first}` is no part of a formula{remedy}");
+                return Err(Fault::new(at..at + first.len_utf8(), message));
             }
         };
         tokens.push(at..at + length);
         at += length;
     }
     Ok(tokens)
+}
+
+/// Returns how a formula states the meaning of a sign that it cannot have.
+fn instead_of_sign(sign: char) -> Option<&'static str> {
+    Some(match sign {
+        '=' | '!' => "`<`, `>`, `<=` and `>=` compare",
+        '²' => "a square is written `x^2`",
+        '³' => "a cube is written `x^3`",
+        '⁰' | '¹' | '⁴'..='⁹' | '⁻' | 'ⁿ' => "a power is written `x^4`",
+        '√' => "a root is written `sqrt(x)`",
+        '∛' => "a cube root is written `cbrt(x)`",
+        '÷' | '∕' | '⁄' => "a quotient is written `a / b`",
+        '∗' | '⋅' | '∙' => "a product is written `a * b`",
+        '|' => "an absolute value is written `abs(x)`",
+        '≤' => "write `<=`",
+        '≥' => "write `>=`",
+        '–' | '—' | '‐' | '‑' => "a minus sign is written `-`",
+        '½' => "write `1/2`",
+        '¼' => "write `1/4`",
+        '∞' => "a formula has finite numbers",
+        '{' | '}' => "parts are put together with `(` and `)`",
+        _ => return None,
+    })
 }
 
 /// Returns the length of the number at the beginning of a text: digits with a point, and a power of ten.
@@ -124,7 +148,10 @@ fn number(text: &str) -> usize {
     if !text[end..].starts_with(['e', 'E']) {
         return end;
     }
-    let sign = usize::from(text[end + 1..].starts_with(['+', '-']));
+    let sign = match text[end + 1..].chars().next() {
+        Some(sign @ ('+' | '-' | '−')) => sign.len_utf8(),
+        _ => 0,
+    };
     let power = digits(end + 1 + sign, '0');
     // The constant e behind a number is a mistake that the parser tells.
     if power > end + 1 + sign { power } else { end }
@@ -225,10 +252,15 @@ impl Parser<'_> {
     /// Returns a power with a sign before it, which is weaker.
     fn signed(&mut self) -> Result<Formula, Fault> {
         let from = self.at;
-        let mut signs = 0;
-        while self.taken(&["-", "−"]) {
-            signs += 1;
+        let mut negations = 0;
+        loop {
+            if self.taken(&["-", "−"]) {
+                negations += 1;
+            } else if !self.taken(&["+"]) {
+                break;
+            }
         }
+        let base = self.at;
         let mut part = self.atom()?;
         if self.taken(&["^", "**"]) {
             if self.depth == DEEPEST {
@@ -237,9 +269,9 @@ impl Parser<'_> {
             self.depth += 1;
             let kind = Kind::Binary(Operator::Power, Box::new(part), Box::new(self.signed()?));
             self.depth -= 1;
-            part = self.made(from + signs, kind);
+            part = self.made(base, kind);
         }
-        if signs % 2 == 1 {
+        if negations % 2 == 1 {
             part = self.made(from, Kind::Unary(Function::Negate, Box::new(part)));
         }
         Ok(part)
@@ -257,11 +289,11 @@ impl Parser<'_> {
             return Ok(inner);
         }
         if token.starts_with(|c: char| c.is_ascii_digit() || c == '.') {
-            let Ok(value) = token.parse::<f64>() else {
+            let Some(literal) = Literal::read(&token) else {
                 return self.fault("this is no number");
             };
             self.at += 1;
-            return Ok(self.made(from, Kind::Number(value, is_exact(&token, value))));
+            return Ok(self.made(from, Kind::Number(literal)));
         }
         if self.taken(&[PI]) {
             return Ok(self.made(from, Kind::Constant(CONSTANTS[0].0, CONSTANTS[0].1)));
@@ -324,23 +356,18 @@ impl Parser<'_> {
                 self.expect(")")?;
                 let span = self.tokens[from].start..self.tokens[self.at - 1].end;
                 let body = parse(defined.unwrap_or("u"))?;
-                return Ok(body.substitute(&Formula::operand("u"), &first, &span));
+                let operand = Formula::operand("u");
+                let uses = body.count(&|part| *part == operand);
+                if body.count(&|_| true) + uses * first.count(&|_| true) > MOST_PARTS {
+                    let message = format!(
+                        "`{name}` here makes more than {MOST_PARTS} parts of the formula: it names its operand {uses} times"
+                    );
+                    return Err(Fault::new(span, message));
+                }
+                return Ok(body.substitute(&operand, &first, &span));
             }
         };
         self.expect(")")?;
         Ok(self.made(from, kind))
     }
-}
-
-/// Returns whether a number is that of its text, and not the nearest to it. Of a text with a power of ten nothing is claimed.
-fn is_exact(text: &str, value: f64) -> bool {
-    // All digits of a number that few binary places have; more digits of the text than these are not exact.
-    let trimmed = |text: &str| match text.split_once('.') {
-        Some((whole, part)) => (whole.to_owned(), part.trim_end_matches('0').to_owned()),
-        None => (text.to_owned(), String::new()),
-    };
-    let (whole, part) = trimmed(text);
-    let whole = whole.trim_start_matches('0').to_owned();
-    let (own, rest) = trimmed(&format!("{value:.60}"));
-    (whole, part) == (own.trim_start_matches('0').to_owned(), rest)
 }

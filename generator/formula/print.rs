@@ -24,7 +24,7 @@ impl Formula {
             format!("{name}({})", parts.join(", "))
         };
         match &self.kind {
-            Kind::Number(value, _) => format!("number(\"{value:?}\")"),
+            Kind::Number(literal) => format!("number(\"{}\")", literal.digits()),
             Kind::Constant("pi", _) => "constant(mpfr_const_pi)".to_owned(),
             Kind::Constant(..) => "rising(mpfr_exp, number(\"1\"))".to_owned(),
             Kind::Operand(name) | Kind::Word(name, _) => name.clone(),
@@ -68,7 +68,7 @@ fn python(formula: &Formula) -> (String, u8) {
         (format!("{name}({})", parts.join(", ")), ATOM)
     };
     match &formula.kind {
-        Kind::Number(value, _) => (format!("{value:?}"), ATOM),
+        Kind::Number(literal) => (literal.digits(), ATOM),
         Kind::Constant(name, _) => ((*name).to_owned(), ATOM),
         Kind::Operand(name) => (name.clone(), ATOM),
         Kind::Word(rom, at) => (format!("{rom}[int({})]", part(at, SUM)), ATOM),

@@ -1,7 +1,8 @@
 //! Differentiates a formula: computes limits that certainly hold its derivative.
 
+use super::arithmetic::Double;
 use super::evaluate::{binary, unary};
-use super::{Comparison, Enclosure, Fault, Formula, Function, Kind, Operator};
+use super::{Enclosure, Fault, Formula, Function, Kind, Operator};
 
 /// The limits of a value and of its derivative.
 #[derive(Clone, Copy)]
@@ -32,26 +33,24 @@ impl Formula {
             }
             Kind::Unary(function, a) => {
                 let a = a.pair(operand, limits)?;
-                let value = unary(*function, a.value).map_err(fault)?;
+                let value = unary(&Double, *function, &a.value).map_err(fault)?;
                 Pair { value, slope: of_unary(*function, a, value) }
             }
             Kind::Binary(operator, a, b) => {
                 let (a, b) = (a.pair(operand, limits)?, b.pair(operand, limits)?);
-                let value = binary(*operator, a.value, b.value).map_err(fault)?;
+                let value = binary(&Double, *operator, &a.value, &b.value).map_err(fault)?;
                 match of_binary(*operator, a, b, value) {
                     Some(slope) => Pair { value, slope },
                     None => return Err(fault("this may jump".to_owned())),
                 }
             }
-            Kind::If(Comparison { left, right, or_equal }, yes, no) => {
-                let [left, right] = [left, right].map(|it| it.enclose(&[(operand, limits)]));
-                let difference = left? - right?;
-                if difference.low > 0.0 || *or_equal && difference.low == 0.0 {
-                    yes.pair(operand, limits)?
-                } else if difference.high < 0.0 || !*or_equal && difference.high == 0.0 {
-                    no.pair(operand, limits)?
-                } else {
-                    return Err(fault("this may jump".to_owned()));
+            Kind::If(comparison, yes, no) => {
+                let left = comparison.left.enclose(&[(operand, limits)])?;
+                let right = comparison.right.enclose(&[(operand, limits)])?;
+                match comparison.decided(&Double, &left, &right).map_err(fault)? {
+                    Some(true) => yes.pair(operand, limits)?,
+                    Some(false) => no.pair(operand, limits)?,
+                    None => return Err(fault("this may jump".to_owned())),
                 }
             }
         };
@@ -82,11 +81,11 @@ fn of_unary(function: Function, a: Pair, value: Enclosure) -> Enclosure {
         Function::Log2 => slope / (at * about(std::f64::consts::LN_2)),
         Function::Sin => at.wave(libm::cos) * slope,
         Function::Cos => -(at.wave(libm::sin) * slope),
-        Function::Tan => (one + value.times_itself(2)) * slope,
-        Function::Atan => slope / (one + at.times_itself(2)),
-        Function::Tanh => (one - value.times_itself(2)) * slope,
+        Function::Tan => (one + value.repeated_product(2)) * slope,
+        Function::Atan => slope / (one + at.repeated_product(2)),
+        Function::Tanh => (one - value.repeated_product(2)) * slope,
         Function::Erf => {
-            let bell = (-at.times_itself(2)).rising(libm::exp);
+            let bell = (-at.repeated_product(2)).rising(libm::exp);
             about(std::f64::consts::FRAC_2_SQRT_PI) * bell * slope
         }
     }
@@ -114,7 +113,7 @@ fn of_binary(operator: Operator, a: Pair, b: Pair, value: Enclosure) -> Option<E
         }
         Operator::Power if b.slope == number(0.0) => {
             let less = b.value - number(1.0);
-            let below = binary(Operator::Power, a.value, less).ok()?;
+            let below = binary(&Double, Operator::Power, &a.value, &less).ok()?;
             b.value * below * a.slope
         }
         Operator::Power if a.value.low > 0.0 => {

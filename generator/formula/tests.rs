@@ -1,6 +1,6 @@
 //! Tests that formulas are parsed, evaluated and printed.
 
-use super::{Enclosure, parse};
+use super::{Enclosure, RBig, parse};
 
 fn value(text: &str, x: f64) -> Enclosure {
     let formula = parse(text).unwrap_or_else(|fault| panic!("{}", fault.under(text)));
@@ -133,4 +133,172 @@ fn python_is_read_again() {
     let python = formula.python();
     assert_eq!(python, "(sqrt(x) ** 2.0 if 2.0 > x else -(x - 1.0) / pi) * min(log(x), 3.0)");
     assert_eq!(parse(&python).unwrap(), formula);
+}
+
+fn ceiling(text: &str, fraction: u32) -> (i128, bool) {
+    let formula = parse(text).unwrap_or_else(|fault| panic!("{}", fault.under(text)));
+    formula.ceiling(fraction).unwrap_or_else(|fault| panic!("{}", fault.under(text)))
+}
+
+/// Formulas whose value is an operand, by hand: the operand is found, however the number is written.
+#[test]
+fn exact_values_are_known_to_be_exact() {
+    for (text, fraction, raw) in [
+        ("1e0", 4, 16),
+        ("2e0", 0, 2),
+        ("1e3", 0, 1000),
+        ("1E+3", 0, 1000),
+        ("1.52587890625e-05", 16, 1),
+        ("2**-14", 14, 1),
+        ("2^-4", 4, 1),
+        ("exp2(-2)", 2, 1),
+        ("16^(1/2)", 0, 4),
+        ("8 ^ (2 / 3)", 0, 4),
+        ("cbrt(-27)", 0, -3),
+        ("log2(16)", 0, 4),
+        ("log2(1/8)", 0, -3),
+        ("log10(1000)", 0, 3),
+        ("ln(8) / ln(2)", 0, 3),
+        ("exp(3 * ln(2))", 0, 8),
+        ("0.1*10", 0, 1),
+        ("1/3*3", 0, 1),
+        ("0.1 + 0.2 - 0.3", 0, 0),
+        ("sqrt(2.25)", 1, 3),
+        ("sin(pi / 6)", 1, 1),
+        ("cos(2 * pi / 3)", 1, -1),
+        ("tan(-3 * pi / 4)", 0, 1),
+        ("acos(0) / pi", 1, 1),
+        ("atan(1) * 4 / pi", 0, 1),
+        ("floor(0.7 * 10) + int(-2.5) + 7 % 0.1", 0, 5),
+        ("max(0.1 * 3, 0.3) * 10", 0, 3),
+        ("+3 - +1", 0, 2),
+        ("1e−3 * 1000", 0, 1),
+    ] {
+        assert_eq!(ceiling(text, fraction), (raw, true), "{text}");
+    }
+    // Just beside an operand, and not at one: π = 3.14…, 2^16·π = 205887.4…, e^700 is large.
+    for (text, fraction, raw) in [
+        ("pi", 16, 205_888),
+        ("-pi", 16, -205_887),
+        ("0.3", 2, 2),
+        ("1 + 1e-30", 0, 2),
+        ("1 - 1e-30", 0, 1),
+        ("sqrt(2)^2 + 1e-200", 0, 3),
+        ("exp(700) / exp(699)", 0, 3),
+        ("exp(-1000)", 0, 1),
+    ] {
+        assert_eq!(ceiling(text, fraction), (raw, false), "{text}");
+    }
+    let doubt = parse("sqrt(2)^2").unwrap().ceiling(0).unwrap_err();
+    assert!(doubt.message.contains("1024 bits do not tell"), "{doubt}");
+}
+
+/// Random decimals, with and without a power of ten, against integer arithmetic: digits · 10^(exponent − places) ≥ k / 2^fraction.
+#[test]
+fn random_decimals_are_read_exactly() {
+    let mut state = 1u64;
+    let mut below = |most: u64| {
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) % most
+    };
+    for _ in 0..20_000 {
+        let bits = below(31);
+        let digits = i128::from(below(1 << bits));
+        let places = below(7) as usize;
+        let exponent = below(13) as i32 - 6;
+        let fraction = below(21) as u32;
+        let padded = format!("{digits:0>width$}", width = places + 1);
+        let (whole, part) = padded.split_at(padded.len() - places);
+        let text = match below(3) {
+            0 => format!("{whole}.{part}"),
+            1 => format!("{whole}.{part}e{exponent}"),
+            _ => format!("-{whole}.{part}E{exponent:+}"),
+        };
+        let power = if text.contains(['e', 'E']) { exponent } else { 0 } - places as i32;
+        let digits = if text.starts_with('-') { -digits } else { digits };
+        let numerator = digits * 10i128.pow(power.max(0) as u32) << fraction;
+        let denominator = 10i128.pow((-power).max(0) as u32);
+        let expected = (numerator + denominator - 1).div_euclid(denominator);
+        let is_operand = numerator % denominator == 0;
+        assert_eq!(ceiling(&text, fraction), (expected, is_operand), "{text} with {fraction}");
+    }
+}
+
+/// Values at exact operands, by hand, where `f64` rounds to the wrong side of a step, is too small, or overflows.
+#[test]
+fn steps_signs_and_sizes_are_decided_at_exact_operands() {
+    for (text, operand, known) in [
+        ("floor(log2(x))", "8", 3.0),
+        ("floor(x * 0.1)", "30", 3.0),
+        ("floor(x * 0.1)", "29", 2.0),
+        ("floor(1.164 * (x - 16) + 0.5)", "141", 146.0),
+        ("x % 0.1 * 10", "0.3", 0.0),
+        ("if(log2(x) >= 3, 1, 0)", "8", 1.0),
+        ("sqrt(-2 * ln(x))", "1", 0.0),
+        ("sqrt(sin(pi * x))", "1", 0.0),
+        ("tanh(x) ^ 0.7", "0", 0.0),
+        ("(x ^ 2.2) ^ (1 / 2.4)", "0", 0.0),
+        ("sqrt(log2(x))", "1", 0.0),
+        ("x ^ 200 / (1 + x ^ 200)", "1e6", 1.0),
+        ("softplus(x)", "1000", 1000.0),
+        ("sigmoid(x)", "-710", 0.0),
+        ("erf(x)", "40", 1.0),
+        ("cbrt(sin(x))", "0", 0.0),
+        ("floor(erf(x) * 1000)", "0.5", 520.0),
+        ("floor(erf(-x) * 1000)", "0.5", -521.0),
+    ] {
+        let formula = parse(text).unwrap();
+        let operand = parse(operand).unwrap().rational().unwrap();
+        let value = formula
+            .evaluate_exactly(&[("x", operand.clone())])
+            .unwrap_or_else(|fault| panic!("{}", fault.under(text)));
+        let is_near = (value.low - known).abs() < 1e-300 || value.holds(known);
+        assert!(is_near && value.high - value.low <= 1e-12, "{text} at {operand}: {value:?}");
+    }
+    let undecided = "floor(sqrt(x)^2)";
+    let fault = parse(undecided).unwrap().evaluate_exactly(&[("x", RBig::from(2))]).unwrap_err();
+    assert_eq!(
+        fault.under(undecided),
+        "floor(sqrt(x)^2)\n^^^^^^^^^^^^^^^^ 1024 bits do not tell on which side of a step this is"
+    );
+}
+
+/// The two evaluations agree: the intervals of both contain the exact value, so that they overlap.
+#[test]
+fn both_evaluations_overlap() {
+    for text in [
+        "exp(x) - exp2(x) + ln(x + 4) * log2(x + 5)",
+        "sin(3 * x) / cos(x / 4) + tan(x / 3)",
+        "atan(x) * tanh(x) + erf(x) - abs(x) ^ 1.7",
+        "x^7 - x^-2 + sqrt(x + 9) % 2",
+        "if(x < 0.3, min(x, e), max(x, pi / 4))",
+    ] {
+        let formula = parse(text).unwrap();
+        for k in (-300..=300).filter(|k| *k != 0) {
+            let x = f64::from(k) / 128.0;
+            let fast = value(text, x);
+            let exact = RBig::try_from(x).unwrap();
+            let slow = formula.evaluate_exactly(&[("x", exact)]).unwrap();
+            assert!(slow.low <= fast.high && fast.low <= slow.high, "{text} at {x}");
+            assert!(slow.low.next_up().next_up() >= slow.high, "{text} at {x}: {slow:?}");
+        }
+    }
+}
+
+#[test]
+fn signs_of_other_alphabets_are_named() {
+    for (text, shown) in [
+        ("x²", " ^ `²` is no part of a formula: a square is written `x^2`"),
+        ("√x", "^ `√` is no part of a formula: a root is written `sqrt(x)`"),
+        ("x ÷ 2", "  ^ `÷` is no part of a formula: a quotient is written `a / b`"),
+        ("|x|", "^ `|` is no part of a formula: an absolute value is written `abs(x)`"),
+        ("x – 1", "  ^ `–` is no part of a formula: a minus sign is written `-`"),
+    ] {
+        let under = parse(text).unwrap_err().under(text);
+        assert_eq!(under, format!("{text}\n{shown}"));
+    }
+    let nested = format!("{}x{}", "silu(".repeat(24), ")".repeat(24));
+    assert!(parse(&nested).unwrap_err().message.contains("more than 4096 parts"));
+    assert!(parse("1e401").is_err() && parse("2e").is_err() && parse(".").is_err());
 }

@@ -5,9 +5,9 @@ use std::sync::Arc;
 use glint_approximate::{
     Curve, Function, Identity, Layout, Outside, Piecewise, Refusal, Samples, Wish, find,
 };
-use glint_base::fixed::{Format, MAX_WIDTH, exp2};
+use glint_base::fixed::{Format, MAX_WIDTH};
 use glint_config::{Config, Key, Problems, Schema, TextPattern};
-use glint_formula::{Enclosure, Fault, parse};
+use glint_formula::{Fault, parse};
 
 glint_config::keys! {
     /// The keys of a configuration.
@@ -89,15 +89,18 @@ pub fn found(config: &Config) -> Result<(Function, Arc<Piecewise>), Refusal> {
 fn function(keys: &Keys) -> Result<Function, Refusal> {
     let fraction = keys.operand as i32;
     let ends = [("function.from", &keys.from), ("function.to", &keys.to)];
-    let [from, to] = ends.map(|(key, text)| end(key, text));
-    let [from, to] = [from?, to?].map(|it| (it.low * exp2(fraction), it.high * exp2(fraction)));
-    let beyond = exp2(MAX_WIDTH as i32 - 2);
-    if [from, to].iter().any(|it| it.0.abs().max(it.1.abs()) >= beyond) {
+    let [from, to] = ends.map(|(key, text)| End::read(key, text, keys.operand));
+    let (from, to) = (from?, to?);
+    let beyond = 1i128 << (MAX_WIDTH - 2);
+    if [from, to].iter().any(|end| end.ceiling.abs() >= beyond) {
         let message = format!("an operand of the domain has more than {} bits", MAX_WIDTH - 2);
-        return Err(Refusal::new("operand.fraction", message, "fewer, or a smaller domain"));
+        return Err(Refusal::new("operand.fraction", message, too_wide(&from, &to, keys.operand)));
     }
-    let first = from.1.ceil() as i64;
-    let last = if keys.to_included { to.0.floor() } else { to.0.ceil() - 1.0 } as i64;
+    let first = from.ceiling as i64;
+    let last = match to.is_operand && keys.to_included {
+        true => to.ceiling as i64,
+        false => to.ceiling as i64 - 1,
+    };
     if last <= first {
         let message = format!(
             "the domain from {} to {} has no two operands with {fraction} fraction bits",
@@ -128,15 +131,34 @@ fn function(keys: &Keys) -> Result<Function, Refusal> {
     })
 }
 
-/// Returns an end of the domain.
-fn end(key: &'static str, text: &str) -> Result<Enclosure, Refusal> {
-    let value = parse(text).and_then(|formula| formula.enclose(&[]));
-    let value = value.map_err(|fault| misread(key, fault))?;
-    let remedy = "a number, or a formula of numbers";
-    if value.is_finite() {
-        Ok(value)
-    } else {
-        Err(Refusal::new(key, "this is no finite number".to_owned(), remedy))
+/// An end of the domain, in units of the operand's last place.
+#[derive(Clone, Copy)]
+struct End {
+    /// The smallest raw operand that is not below the end.
+    ceiling: i128,
+    /// Whether that raw operand is the end.
+    is_operand: bool,
+}
+
+impl End {
+    /// Evaluates the text of an end exactly: `0.1 * 10` is 1, and `log2(16)` is 4.
+    fn read(key: &'static str, text: &str, fraction: u32) -> Result<Self, Refusal> {
+        let formula = parse(text).map_err(|fault| misread(key, fault))?;
+        let (ceiling, is_operand) = formula.ceiling(fraction).map_err(|fault| {
+            let remedy = "write the end as a number, `2` or `1e-3`, or as a formula of numbers";
+            Refusal { place: Some(fault.span), ..Refusal::new(key, fault.message, remedy) }
+        })?;
+        Ok(Self { ceiling, is_operand })
+    }
+}
+
+/// Returns the remedy for a domain whose operands have too many bits.
+fn too_wide(from: &End, to: &End, fraction: u32) -> String {
+    let bits = |end: &End| i128::BITS - end.ceiling.unsigned_abs().leading_zeros();
+    let excess = bits(from).max(bits(to)) - (MAX_WIDTH - 2);
+    match fraction.checked_sub(excess) {
+        Some(fewer) => format!("at most {fewer}, or a smaller domain"),
+        None => "a smaller domain: change function.from or function.to".to_owned(),
     }
 }
 

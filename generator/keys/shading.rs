@@ -31,7 +31,7 @@ glint_config::keys! {
         highlight: Highlight = Key::choice("highlight", "cosine-power", Highlight::WORDS,
             "The device that makes the highlight of the cosine."),
         power: u32 = common::power().only_when("highlight", "cosine-power"),
-        formula: String = Key::text("function.formula", "x^32", TextPattern::Formula,
+        formula: String = Key::text(FORMULA, "x^32", TextPattern::Formula,
             "The highlight as a function of the cosine x, without an exponent.")
             .only_when("highlight", "function"),
         lights: u32 = Key::integer("lights", 1, 1..=4,
@@ -43,11 +43,12 @@ glint_config::keys! {
             "Fraction bits of a component of the light and the half vector, unit vectors, s1.F."),
         cosine: u32 = Key::integer("cosine.fraction", 18, 12..=20,
             "Fraction bits of the cosine between normal and half vector."),
-        exponent_bits: u32 = common::exponent_bits(),
+        exponent_bits: u32 = common::exponent_bits().unless("highlight", "function"),
         colour_bits: u32 = Key::integer("colour.bits", 8, 2..=10,
             "Bits of a coefficient of the material, and of a result."),
         most: i64 = Key::integer("domain.exponent_max", 128, 16..=4095,
-            "The largest n for which the accuracy contract is stated."),
+            "The largest n for which the accuracy contract is stated.")
+            .unless("highlight", "function"),
     }
 }
 
@@ -64,12 +65,34 @@ fn check(config: &Config, problems: &mut Problems) {
             format!("{} does not fit the {} bits of the exponent", keys.most, keys.exponent_bits);
         let remedy = format!("at most {most}, or a larger exponent.bits");
         problems.push("domain.exponent_max", message, remedy);
-    } else if let Err((part, why)) = keys.parts() {
-        let why = why.iter().map(|it| format!("{}: {}", it.key, it.message)).next();
-        let message = format!("its part `{part}` cannot be made: {}", why.unwrap_or_default());
-        problems.push("highlight", message, "other widths");
+        return;
+    }
+    // Making the parts can take seconds, which a file that is refused anyway is not worth.
+    if problems.is_refused() {
+        return;
+    }
+    let Err((part, why)) = keys.parts() else { return };
+    let Some(problem) = why.iter().next() else { return };
+    if part != function::schema().device {
+        let message =
+            format!("its part `{part}` cannot be made: {}: {}", problem.key, problem.message);
+        return problems.push("highlight", message, "other widths");
+    }
+    // The keys of the part are not those of this file: of them it has the formula alone, and makes the others of its own.
+    let message = problem.message.clone();
+    if problem.key == FORMULA {
+        let remedy = problem
+            .remedy
+            .replace("change function.from or function.to", "the cosine x is from 0 to 1");
+        problems.push_within(FORMULA, problem.place.clone(), message, remedy);
+    } else {
+        let remedy = "another formula, or fewer bits of cosine.fraction";
+        problems.push(FORMULA, message, remedy);
     }
 }
+
+/// The key with the formula of a highlight.
+const FORMULA: &str = "function.formula";
 
 /// The suffixes of the operands of each light.
 const SUFFIXES: [&str; 4] = ["", "2", "3", "4"];

@@ -12,9 +12,12 @@ A core is a configuration: a TOML file, as `glint new` writes it, or a device wi
 which the Verilog equals bit by bit, states the proved bound of its error, and gives the Verilog.
 """
 
+import numbers
 import os
 import sys
-from math import ldexp
+from decimal import Decimal
+from fractions import Fraction
+from math import isfinite, ldexp
 
 import numpy as np
 
@@ -52,14 +55,26 @@ class Core:
     """A configuration of a device.
 
     `Core("core.toml")` reads a file; `Core(device="lyon", **{"cosine.fraction": 16})` takes a device with keys, the others at
-    their defaults. Raises ValueError with what is wrong and the remedy.
+    their defaults. A key takes a number of Python, NumPy, `fractions` or `decimal`, exactly as it is, a text, a flag or a list.
+    Raises ValueError with what is wrong and the remedy.
+
+    A core can be copied and pickled: the copy is made of the same configuration.
     """
 
     def __init__(self, config=None, *, device=None, **keys):
         path = None if config is None else os.fspath(config)
-        self._core = _glint.Core(path, device, keys)
+        self._set(_glint.Core(path, device, {key: _plain(key, value) for key, value in keys.items()}))
+
+    def _set(self, core):
+        self._core = core
         self.operands = {facts["name"]: Port(facts) for facts in self._core.operands()}
         self.outputs = {facts["name"]: Port(facts) for facts in self._core.outputs()}
+
+    def __getstate__(self):
+        return self.toml()
+
+    def __setstate__(self, toml):
+        self._set(_glint.Core.from_toml(toml))
 
     @property
     def name(self):
@@ -96,7 +111,8 @@ class Core:
 
         An operand is a number or an array; what is not given is an error. Arrays are broadcast. They hold values, which are rounded to
         the format, or with `raw=True` raw integers, and so do the results: an array (of numbers alone, a number) of a core with one
-        output, or a dictionary by output. Of a device that walks lines (`core.length`) a call is one line.
+        output, or a dictionary by output. Where an element of an operand is masked (`numpy.ma`), so are the results.
+        Of a device that walks lines (`core.length`) a call is one line.
         """
         if self.length is not None:
             return self._line(self._columns(columns, operands, raw)[0], raw, False)
@@ -112,11 +128,11 @@ class Core:
 
     def simulate(self, *columns, raw=False, **operands):
         """Computes as a call does, but by simulation of the netlist, clock by clock."""
-        columns, shape = self._columns(columns, operands, raw)
+        columns, shape, mask = self._columns(columns, operands, raw)
         if self.length is not None:
             return self._line(columns, raw, True)
         results = self._core.run(columns, True, raw)
-        return self._shaped(results if raw else self._values(results), shape)
+        return self._shaped(results if raw else self._values(results), shape, mask)
 
     def cosim(self, points=10_000, seed=1):
         """Golden model against the simulated netlist on every clock of so many results; the first difference, or none."""
@@ -154,11 +170,11 @@ class Core:
     def _of_points(self, what, columns, operands, raw):
         if self.length is not None:
             raise TypeError(f"{self.device} walks lines: its formula is that of their points")
-        columns, shape = self._columns(columns, operands, raw)
-        return self._shaped(self._core.compute(columns, what, raw), shape)
+        columns, shape, mask = self._columns(columns, operands, raw)
+        return self._shaped(self._core.compute(columns, what, raw), shape, mask)
 
     def _columns(self, columns, operands, raw):
-        """A number or a contiguous array for each operand, and the shape of the results."""
+        """A number or a contiguous array for each operand, and the shape and the mask of the results."""
         names = list(self.operands)
         if len(columns) > len(names):
             raise TypeError(f"there are {len(columns)} operands; {self.name} has {', '.join(names)}")
@@ -173,29 +189,31 @@ class Core:
         if missing:
             raise TypeError(f"give {', '.join(missing)}: the operands are {', '.join(names)}")
         kind = np.int64 if raw else np.float64
-        arrays = {}
-        for name in names:
-            array = np.asarray(given[name])
-            if raw and array.dtype.kind not in "iub":
-                raise TypeError(f"operand {name!r}: raw integers are wanted, not {array.dtype}")
-            if array.dtype.kind not in "iubf":
-                raise TypeError(f"operand {name!r}: numbers are wanted, not {array.dtype}")
-            arrays[name] = array
+        arrays = {name: _array(name, given[name], raw) for name in names}
         shape = np.broadcast_shapes(*(array.shape for array in arrays.values()))
+        mask = None
+        for name, array in arrays.items():
+            if isinstance(array, np.ma.MaskedArray):
+                hidden = np.broadcast_to(np.ma.getmaskarray(array), shape)
+                mask = hidden if mask is None else mask | hidden
+                # What a masked element holds is of no account; 0 is a number of every format.
+                arrays[name] = array.filled(0)
 
         def column(array):
             if array.ndim == 0:
                 return kind(array).item()
             whole = np.broadcast_to(array, shape) if array.shape != shape else array
-            return np.ascontiguousarray(whole, kind).reshape(-1)
+            return np.require(whole, kind, ["C_CONTIGUOUS", "ALIGNED"]).reshape(-1)
 
-        return [column(arrays[name]) for name in names], shape
+        return [column(arrays[name]) for name in names], shape, mask
 
     def _values(self, results):
         return [np.ldexp(raw.astype(np.float64), -port.fraction) for raw, port in zip(results, self.outputs.values())]
 
-    def _shaped(self, results, shape):
+    def _shaped(self, results, shape, mask=None):
         results = [array.reshape(shape) if shape else array.item() for array in results]
+        if mask is not None:
+            results = [np.ma.array(array, mask=mask) for array in results]
         return results[0] if len(results) == 1 else dict(zip(self.outputs, results))
 
     def _line(self, columns, raw, simulated):
@@ -203,6 +221,57 @@ class Core:
             raise TypeError(f"{self.device} walks a line a call: give numbers")
         results = self._core.run(columns, simulated, raw)
         return self._shaped(results if raw else self._values(results), (-1,))
+
+
+def _array(name, operand, raw):
+    """An operand as an array of integers or of numbers that 64 bits hold."""
+    array = np.asanyarray(operand)
+    if array.dtype.kind == "O" and all(isinstance(number, numbers.Integral) for number in array.flat):
+        first = next((number for number in array.flat if not -(2**63) <= number < 2**63), None)
+        raise ValueError(f"operand {name!r}: {first} has more than 64 bits")
+    if raw and array.dtype.kind not in "iub":
+        raise TypeError(f"operand {name!r}: raw integers are wanted, not {array.dtype}")
+    if array.dtype.kind not in "iubf":
+        raise TypeError(f"operand {name!r}: numbers are wanted, not {array.dtype}")
+    if raw and array.dtype.kind == "u" and array.size and np.max(array) >= 2**63:
+        raise ValueError(f"operand {name!r}: {np.max(array)} has more than 63 bits")
+    return array
+
+
+#: The most fraction bits that an operand has: a float that is a multiple of their last place may be an operand.
+_FRACTION = 40
+
+
+def _plain(key, value):
+    """The value of a key as an integer, a float, a text, a flag or a list; a number that decimals state exactly as it is."""
+    if isinstance(value, np.ndarray):
+        value = value.tolist()
+    if isinstance(value, (list, tuple)):
+        return [_plain(key, each) for each in value]
+    if isinstance(value, os.PathLike):
+        return os.fspath(value)
+    if isinstance(value, (bool, np.bool_)):
+        return bool(value)
+    if isinstance(value, numbers.Integral):
+        return int(value)
+    if isinstance(value, (float, np.floating)):
+        if isfinite(value) and float(value) != value:
+            raise ValueError(f"key {key!r}: {value!r} has more than 53 bits; give a fractions.Fraction")
+        return _decimal(float(value)) if isfinite(value) else float(value)
+    if isinstance(value, Fraction):
+        exact = Decimal(value.numerator) / Decimal(value.denominator)
+        if Fraction(exact) == value:
+            return exact
+        # A quotient is a formula; a key that takes numbers alone says so.
+        return f"{value.numerator}/{value.denominator}"
+    return value
+
+
+def _decimal(value):
+    """A float, or where its shortest digits would miss an operand that it is, all its digits."""
+    exact = Decimal(value)
+    is_operand = ldexp(value, _FRACTION) == int(ldexp(value, _FRACTION)) if abs(value) < 2**53 else False
+    return exact if is_operand and Decimal(repr(value)) != exact else value
 
 
 def devices():

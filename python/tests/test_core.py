@@ -1,9 +1,13 @@
 """The module against the command line, formulas of NumPy, and the emitted Verilog in Verilator."""
 
+import copy
 import csv
 import io
+import pickle
 import subprocess
 import sys
+from decimal import Decimal
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -175,3 +179,89 @@ def test_what_is_wrong_is_said(call, error, words):
     with pytest.raises(error) as raised:
         call()
     assert words in str(raised.value)
+
+
+@pytest.mark.parametrize("dtype", ["i1", "i2", "i4", "i8", "u1", "u2", "u4", "u8", ">i4", ">u8", "?"])
+def test_raw_integers_of_every_type_are_those_of_python(dtype):
+    core = glint.Core(device="cosine-power")
+    exact = core(raw=True, cos_gamma=1 << 19, exponent=1, red=1, green=1, blue=0)
+    for numbers in [np.array([1], dtype), np.array([[0, 1], [1, 0]], dtype), np.dtype(dtype).type(1)]:
+        results = core(raw=True, cos_gamma=1 << 19, exponent=1, red=numbers, green=1, blue=0)
+        expected = core(raw=True, cos_gamma=1 << 19, exponent=1, red=np.asarray(numbers).tolist(), green=1, blue=0)
+        assert np.shape(results["red_out"]) == np.shape(numbers)
+        assert np.array_equal(results["red_out"], expected["red_out"])
+        assert np.all(results["green_out"] == exact["green_out"])
+
+
+@pytest.mark.parametrize("dtype", ["f2", "f4", "f8", ">f8", "i8"])
+def test_values_of_every_type_are_those_of_python(dtype):
+    core = glint.function("x * x", 0, 2, fraction=8)
+    x = np.array([0, 1, 0, 1], dtype)
+    for values in [x, x[1:2], x[::2], x.reshape(2, 2).T]:
+        assert core(values).tolist() == core(values.tolist()).tolist()
+        assert core(values).shape == values.shape
+
+
+def test_raw_integers_beyond_63_bits_are_refused():
+    core = glint.Core(device="cosine-power")
+    rest = {"cos_gamma": 0, "exponent": 1, "green": 0, "blue": 0}
+    for large in [2**63, 2**64 - 1, 2**64, -(2**63) - 1, np.array([1, 2**64 - 1], np.uint64)]:
+        with pytest.raises(ValueError, match="red"):
+            core(raw=True, red=large, **rest)
+
+
+def test_arrays_that_lie_across_words_are_read():
+    core = glint.function("x * x", 0, 2, fraction=8)
+    packed = np.zeros(4, np.dtype([("tag", "i1"), ("x", "f8")]))
+    packed["x"] = [0.25, 0.5, 1.0, 1.5]
+    assert not packed["x"].flags.aligned
+    assert core(packed["x"]).tolist() == core([0.25, 0.5, 1.0, 1.5]).tolist()
+
+
+def test_masked_elements_stay_masked():
+    core = glint.function("x * x", 0, 2, fraction=8)
+    x = np.ma.array([0.5, 1e9, 1.5], mask=[False, True, False])
+    results = core(x)
+    assert results.mask.tolist() == [False, True, False]
+    assert results.compressed().tolist() == core([0.5, 1.5]).tolist()
+    assert core.simulate(x).mask.tolist() == [False, True, False]
+    assert core.error(x).mask.tolist() == [False, True, False]
+    colours = glint.Core(device="cosine-power")
+    results = colours(cos_gamma=1.0, exponent=1, red=np.ma.array([1, 2], mask=[True, False]), green=[[1], [2]], blue=0)
+    assert results["green_out"].mask.tolist() == [[True, False], [True, False]]
+
+
+def test_cores_are_copied_and_pickled():
+    core = glint.function("log2(x)", 2**-16, 1, fraction=16)
+    for twin in [pickle.loads(pickle.dumps(core)), copy.copy(core), copy.deepcopy(core)]:
+        assert twin.toml() == core.toml() and twin(0.25) == core(0.25) == -2
+    for device in glint.devices():
+        core = glint.Core(device=device)
+        assert pickle.loads(pickle.dumps(core)).toml() == core.toml()
+
+
+def test_numbers_of_keys_are_taken_exactly():
+    for fraction in [8, np.int64(8), np.uint8(8)]:
+        assert glint.function("1/x", 1, 2, fraction=fraction).operands["x"].fraction == 8
+    for low in [0.25, np.float32(0.25), np.float64(0.25), Fraction(1, 4), Decimal("0.25"), Decimal("25e-2"), "1/4"]:
+        assert glint.function("1/x", low, 2, fraction=8).operands["x"].domain[0] == 64
+    assert glint.function("1/x", Fraction(1, 3), 2, fraction=8).operands["x"].domain[0] == 86
+    assert glint.Core(device="function", **{"function.to_included": np.bool_(True)}).operands["x"].domain[1] == 4 << 16
+    # The shortest digits of these floats are beside them: 2^-40 is 9.094947017729282379150390625e-13.
+    for power in range(1, 41):
+        core = glint.function("x", 2.0**-power, 2.0**-power * 8, fraction=power)
+        assert core.operands["x"].domain == (1, 7)
+    for wrong in [float("nan"), Decimal("NaN"), Decimal("Infinity"), 1 + 2j, None]:
+        with pytest.raises(ValueError, match="function.from"):
+            glint.function("1/x", wrong, 2)
+
+
+def test_a_value_half_a_place_beyond_the_format_is_refused():
+    core = glint.Core(device="cosine-power")
+    rest = {"cos_gamma": 0.5, "exponent": 1, "green": 0, "blue": 0}
+    assert core(red=255.4999, **rest)["red_out"] == core(red=255, **rest)["red_out"]
+    # The greatest number below a half is nearer to 0.
+    assert core(red=0.49999999999999994, **rest)["red_out"] == 0
+    for beyond in [255.5, -0.5000001, 1e300, float("nan")]:
+        with pytest.raises(ValueError, match="red"):
+            core(red=beyond, **rest)

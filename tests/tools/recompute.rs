@@ -12,7 +12,7 @@ use crate::common::files::{put, read};
 use crate::common::tools::{EFFORT, LIMIT, finding, ran, tool};
 
 /// Formula, ends of the domain, fraction bits of operand and result: every function and operation that a formula can have.
-const FUNCTIONS: [(&str, &str, &str, u32, u32); 12] = [
+const FUNCTIONS: [(&str, &str, &str, u32, u32); 15] = [
     ("1 / sqrt(x)", "1", "4", 10, 10),
     ("tan(x)", "-1", "1", 10, 12),
     ("x % 0.375", "0", "4", 8, 10),
@@ -25,6 +25,10 @@ const FUNCTIONS: [(&str, &str, &str, u32, u32); 12] = [
     ("x^-2 + min(1, pi * x)", "1", "2", 10, 10),
     ("erf(x) * e + tanh(x)", "0", "2", 10, 10),
     ("log2(x) - ln(x) + 2^x + exp(-x)", "1", "2", 10, 10),
+    // Steps at operands, at values that f64 has not.
+    ("floor(x * 0.1)", "0", "64", 2, 8),
+    ("floor(1.164 * (x - 16) + 0.5) / 16", "16", "64", 2, 8),
+    ("if(log2(x) >= 1.0e0, x % 0.2, x % 1e-1)", "1", "4", 8, 10),
 ];
 
 fn core((formula, from, to, operand, result): (&str, &str, &str, u32, u32), more: &str) -> Core {
@@ -109,4 +113,65 @@ fn the_check_proves_functions_and_asks_nothing_of_highlights() {
     assert!(found.words.ends_with(" holds."), "{found:?}");
     let found = finding(&configuration("configs/cosine_power.toml"), "recomputation", EFFORT);
     assert_eq!(found.verdict, Verdict::NotApplicable, "{found:?}");
+}
+
+#[test]
+fn a_damaged_word_is_no_number() {
+    let dir = compiled(&core(FUNCTIONS[10], ""));
+    let memory = dir.path().join("rtl_out/f/f_coefficients.mem");
+    let text = read(&memory);
+    let word = text.lines().nth(3).and_then(|it| it.split(' ').next()).expect("a word").to_owned();
+    for damaged in
+        [format!("{word}x"), format!("{word}_0"), format!("+{word}"), format!("0x{word}")]
+    {
+        put(&memory, text.replacen(&word, &damaged, 1));
+        let (accepts, words) = said(dir.path());
+        assert!(
+            !accepts && words.ends_with(&format!("is no hexadecimal number: {damaged}")),
+            "{words}"
+        );
+    }
+}
+
+#[test]
+fn a_core_without_memory_files_says_that_none_is_checked() {
+    for memories in ["inline", "case"] {
+        let more =
+            format!("[package]\nmemories = \"{memories}\"\nsoftware = true\nrecomputation = true");
+        let core = core(FUNCTIONS[10], &more);
+        let dir = Directory::new().expect("a directory");
+        for file in core.files("f.toml", None).expect("files") {
+            put(dir.path().join(&file.path), &file.contents);
+        }
+        compile(dir.path());
+        let run = |arguments: &str| {
+            tool("sh")
+                .run(["-c", &format!("./recompute {arguments}")], dir.path(), LIMIT)
+                .expect("a program")
+        };
+        let alone = run("");
+        assert!(alone.status.success(), "{}", alone.output);
+        assert!(
+            alone
+                .output
+                .starts_with("no memory is checked: the words of the tables are in the Verilog")
+        );
+        let with_directory = run("/nonexistent");
+        assert_eq!(with_directory.status.code(), Some(2), "{}", with_directory.output);
+    }
+}
+
+#[test]
+fn operands_that_no_precision_decides_are_counted() {
+    let core = core(("floor(sin(pi * x) * 2)", "0", "1", 4, 4), "");
+    let dir = compiled(&core);
+    let run = tool("sh")
+        .run(["-c", "./recompute rtl_out/f || ./recompute"], dir.path(), LIMIT)
+        .expect("a program");
+    assert_eq!(run.status.code(), Some(3), "{}", run.output);
+    assert!(
+        run.output.ends_with("operands are not decided, the first is the raw operand 0\n"),
+        "{}",
+        run.output
+    );
 }

@@ -40,13 +40,24 @@ pub fn check_clock(config: &Config, pipeline: &Pipeline) -> Result<(), Unfit> {
     ))
 }
 
-/// Checks that a style is asked for only where there are ROMs that can have it.
+/// Checks that `package.rom_style` is set only where the Verilog has a memory that can have the attribute.
 ///
 /// # Errors
-/// A style, and no ROM that is read on the clock.
+/// Fails if the core has no ROM that is read on the clock, or if `package.memories` writes ROMs as functions.
 pub fn check_rom_style(config: &Config, design: &Design) -> Result<(), Unfit> {
     let style = config.choice(ROM_STYLE);
-    if style == "auto" || design.roms.iter().any(|rom| rom.synchronous) {
+    if style == "auto" {
+        return Ok(());
+    }
+    if config.choice("package.memories") == "case" {
+        let message = format!(
+            "`{ROM_STYLE}` = \"{style}\" has no effect with package.memories = \"case\": a ROM is a function there, which has \
+             no attribute"
+        );
+        let remedy = "remove it, or set package.memories = \"files\" or \"inline\"";
+        return Err(Unfit::new(ROM_STYLE, message, remedy));
+    }
+    if design.roms.iter().any(|rom| rom.synchronous) {
         return Ok(());
     }
     Err(Unfit::new(

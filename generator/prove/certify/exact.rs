@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, HashMap};
 
 use super::terms::{Id, Term, Terms};
 use glint_base::fixed::exp2;
-use glint_formula::{Comparison, Formula, Function, Kind, Operator};
+use glint_formula::{Comparison, Formula, Function, Kind, Literal, Operator};
 use glint_golden::Operand;
 
 /// A formula's term under what it presupposes: these terms are not negative, those not positive.
@@ -112,8 +112,8 @@ pub fn divisors(formula: &Formula, found: &mut HashMap<String, Option<i32>>) {
 /// Returns the operand that is divided by a power of two, and that power.
 fn quotient(formula: &Formula) -> Option<(&str, i32)> {
     let Kind::Binary(Operator::Div, a, b) = &formula.kind else { return None };
-    let (Kind::Operand(name), Kind::Number(by, _)) = (&a.kind, &b.kind) else { return None };
-    Some((name, power_of_two(*by)?))
+    let (Kind::Operand(name), Kind::Number(by)) = (&a.kind, &b.kind) else { return None };
+    Some((name, power_of_two(by.nearest())?))
 }
 
 fn power_of_two(value: f64) -> Option<i32> {
@@ -158,12 +158,12 @@ pub fn branches(
         return Ok(plain(variable_of(name, variable, power, setting, terms)));
     }
     match &formula.kind {
-        Kind::Number(value, _) => Ok(plain(terms.number(*value))),
+        Kind::Number(literal) => Ok(plain(terms.number(literal.nearest()))),
         Kind::Operand(name) => Ok(plain(operand(name, setting, terms)?)),
         Kind::Word(rom, place) => Ok(plain(word(rom, place, setting, terms)?)),
         Kind::Constant(name, _) => Err(format!("the constant `{name}` has no translation")),
         Kind::Unary(Function::Negate, a) => {
-            let zero = Formula { kind: Kind::Number(0.0, true), span: formula.span.clone() };
+            let zero = Formula { kind: Kind::Number(Literal::zero()), span: formula.span.clone() };
             operation(terms, &zero, a, Term::Sub)
         }
         Kind::Unary(function, _) => Err(untranslated(*function)),
@@ -226,7 +226,7 @@ fn word(rom: &str, place: &Formula, setting: &Setting, terms: &mut Terms) -> Res
     let words = setting.words.get(rom).ok_or_else(|| format!("there is no table `{rom}`"))?;
     let (name, range) = match &place.kind {
         Kind::Operand(name) => (name.as_str(), setting.ranges.get(name).copied()),
-        Kind::Number(value, _) => ("", Some((*value, *value))),
+        Kind::Number(literal) => ("", Some((literal.nearest(), literal.nearest()))),
         _ => return Err(format!("`{rom}` is read at an address that is computed")),
     };
     let (low, high) = range.ok_or_else(|| format!("there is no operand `{name}`"))?;
@@ -270,7 +270,7 @@ fn variable_of(
 /// Returns the value of what does not vary in this case.
 fn constant(formula: &Formula, setting: &Setting) -> Option<f64> {
     match &formula.kind {
-        Kind::Number(value, _) => Some(*value),
+        Kind::Number(literal) => Some(literal.nearest()),
         Kind::Operand(name) => {
             setting.ranges.get(name).filter(|(low, high)| low == high).map(|range| range.0)
         }
@@ -281,7 +281,7 @@ fn constant(formula: &Formula, setting: &Setting) -> Option<f64> {
 /// Returns whether a comparison of an operand with a number holds for all values of this case, or for none.
 fn decided(comparison: &Comparison, setting: &Setting) -> Option<bool> {
     let range = |formula: &Formula| match &formula.kind {
-        Kind::Number(value, _) => Some((*value, *value)),
+        Kind::Number(literal) => Some((literal.nearest(), literal.nearest())),
         Kind::Operand(name) => setting.ranges.get(name).copied(),
         _ => None,
     };

@@ -86,10 +86,11 @@ pub fn statements(task: &Task, walk: &[WalkRegister]) -> Result<Vec<Statement>, 
 fn lobe(formula: &Formula) -> Option<(&Formula, u32)> {
     let Kind::Binary(Operator::Power, base, exponent) = &formula.kind else { return None };
     let Kind::Unary(Function::Cos, angle) = &base.kind else { return None };
-    let Kind::Number(power, true) = &exponent.kind else { return None };
+    let Kind::Number(literal) = &exponent.kind else { return None };
     let Kind::Binary(Operator::Mul, right, angle) = &angle.kind else { return None };
-    let is_whole = *power >= 1.0 && *power <= 64.0 && libm::floor(*power) == *power;
-    (is_whole && **right == parse("pi / 2").ok()?).then_some((&**angle, *power as u32))
+    let power = literal.nearest();
+    let is_whole = literal.is_exact() && (1.0..=64.0).contains(&power) && power.fract() == 0.0;
+    (is_whole && **right == parse("pi / 2").ok()?).then_some((&**angle, power as u32))
 }
 
 /// An angle that is walked along, by names of operands.

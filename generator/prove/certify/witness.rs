@@ -191,7 +191,7 @@ fn expression(text: &str, terms: &mut Terms, names: &HashMap<String, Id>) -> Opt
 
 fn term(formula: &Formula, terms: &mut Terms, names: &HashMap<String, Id>) -> Option<Id> {
     let (make, a, b): (fn(Id, Id) -> Term, _, _) = match &formula.kind {
-        Kind::Number(value, _) => return Some(terms.number(*value)),
+        Kind::Number(literal) => return Some(terms.number(literal.nearest())),
         // A script has names of its own alone.
         Kind::Operand(_) | Kind::Constant(..) => {
             let name = formula.python();

@@ -99,16 +99,14 @@ fn with(schema: &Schema, config: &Config, values: &[(&'static str, Value)]) -> O
         .values()
         .map(|(name, own)| (name.to_owned(), changed(name).unwrap_or(own).clone()))
         .collect();
-    let bare = |draft: &[(String, Value)], key: &str| {
-        draft.iter().find(|(name, _)| name == key).map(|(_, value)| value.bare())
-    };
     let applies = |draft: &[(String, Value)], name: &str| {
-        let mut condition = schema.key(name).and_then(|key| key.only_when);
-        while let Some((other, value)) = condition {
-            if bare(draft, other).as_deref() != Some(value) {
+        let mut condition = schema.key(name).and_then(|key| key.condition);
+        while let Some(needed) = condition {
+            let other = draft.iter().find(|(name, _)| name == needed.key);
+            if !other.is_some_and(|(_, value)| needed.holds(value)) {
                 return false;
             }
-            condition = schema.key(other).and_then(|key| key.only_when);
+            condition = schema.key(needed.key).and_then(|key| key.condition);
         }
         true
     };

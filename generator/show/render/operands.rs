@@ -8,7 +8,7 @@ use anyhow::{Result, bail, ensure};
 
 use super::setup::Line;
 use super::vector::Vector;
-use glint_base::fixed::{Format, Overflow, Rounding, exp2};
+use glint_base::fixed::{Format, Overflow, Rounding, exp2, nearest};
 use glint_base::program::Program;
 use glint_golden::{Contract, Operand};
 
@@ -402,7 +402,7 @@ fn number(value: f64, format: Format, (low, high): (i64, i64)) -> i64 {
 
 /// Returns the raw angle nearest to right angles, modulo a turn: what an angle without room for more means.
 fn raw_angle(right_angles: f64, format: Format) -> i64 {
-    let scaled = (right_angles * exp2(format.frac) + 0.5).floor() as i128;
+    let scaled = nearest(right_angles * exp2(format.frac)) as i128;
     format.narrow(scaled, format.frac, Rounding::Truncate, Overflow::Wrap) as i64
 }
 

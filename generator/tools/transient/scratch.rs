@@ -34,6 +34,15 @@ impl Directory {
     /// It cannot be made.
     pub fn new() -> io::Result<Self> {
         let place = std::env::temp_dir();
+        // The tools that work there, make and abc among them, take a path apart at blanks.
+        if place.to_string_lossy().contains(char::is_whitespace) {
+            let message = format!(
+                "the path of the directory for temporary files, `{}`, has a blank, which make and abc do not take: set TMPDIR to \
+                 another",
+                place.display()
+            );
+            return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
+        }
         SWEEP.call_once(|| sweep(&place, FOR_TOOLS));
         Self::made(&place, FOR_TOOLS)
     }

@@ -66,12 +66,10 @@ fn value(operand: &Operand, text: &str) -> Result<i64, String> {
         if !value.is_finite() {
             return Err(format!("`{text}` is not a finite number"));
         }
-        // It saturates: what is further off than a rounding does not fit.
-        let raw = format.quantise(value);
-        if (format.to_f64(raw) - value).abs() >= format.to_f64(1) {
+        let Some(raw) = format.nearest_raw(value) else {
             let (least, most) = (format.to_f64(format.min_raw()), format.to_f64(format.max_raw()));
             return Err(format!("{value} is beyond {format}: {least} to {most}"));
-        }
+        };
         // A fraction is rounded to the nearest that the format has; who writes one for an integer means another
         // operand, or another scale.
         if format.frac == 0 && value.fract() != 0.0 {

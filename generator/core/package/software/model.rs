@@ -206,6 +206,10 @@ fn of_point(design: &Design, tables: &[String]) -> Result<(Vec<String>, Vec<RomI
         }
         body.extend(statement(4, &text));
     }
+    if !body.iter().any(|line| line.contains("operands.")) {
+        // A constant reads no operand, of which a compiler warns.
+        body.push("    (void)operands;".to_owned());
+    }
     body.push(String::new());
     for (port, value) in results {
         let text = assigned(design, port, &printer.text(value));

@@ -56,6 +56,10 @@ pub fn file(job: &Job, read: &[RomId], files: &mut Artifacts) -> Result<()> {
         formula: Vec<String> = statement(4, &format!("return {};", formula.c())),
         values: usize = VALUES * (parts + 1),
         memories: Vec<(String, String, usize)> = read.iter().filter_map(memory).collect(),
+        without_memories: &'a str = match read.is_empty() {
+            true => "the core reads no table.",
+            false => "the words of the tables are in the Verilog itself, which this program does not read.",
+        },
         operand_exponent: i32 = -operand.format.frac,
         operand: String = operand.name,
         result_exponent: i32 = -result.format.frac,

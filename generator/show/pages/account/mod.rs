@@ -8,7 +8,7 @@ mod table;
 use crate::evidence::advice::Advice;
 use glint_base::fixed::Format;
 use glint_base::program::Program;
-use glint_config::{Config, Key, Schema, Value, shared_keys};
+use glint_config::{Config, Key, Schema, shared_keys};
 use glint_core::cosim::exhaustive::Backing;
 use glint_core::package::facts::{self, Sequence};
 use glint_core::package::{LineClocks, Linear, Quantity, Surroundings, Timing, WorkedExample};
@@ -349,12 +349,8 @@ pub fn keys(schema: &Schema, config: &Config) -> Table {
             true if now == default => code(&now),
             true => format!("{} (default {})", code(&now), code(&default)),
         };
-        let only = key.only_when.map_or_else(String::new, |(other, value)| {
-            let value = match config.value(other) {
-                Value::Text(_) => Value::Text(value.to_owned()).toml(),
-                _ => value.to_owned(),
-            };
-            format!(" Only with {}.", code(&format!("{other} = {value}")))
+        let only = key.condition.map_or_else(String::new, |condition| {
+            format!(" Only with {}.", code(&condition.words(config.value(condition.key))))
         });
         table.row([code(key.name), value, key.accepts(), format!("{}{only}", key.doc)]);
     }

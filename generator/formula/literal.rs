@@ -1,0 +1,84 @@
+//! Reads decimal numbers without rounding them: `1.25e-3` is the fraction 1/800.
+
+use dashu_int::{IBig, UBig};
+use dashu_ratio::RBig;
+
+/// The largest power of ten that a number may have, up or down. More digits than that are a mistake in every formula.
+const LARGEST_EXPONENT: i32 = 400;
+
+/// A number of a formula, exactly as its text states it.
+///
+/// For example, `0.1` is the fraction 1/10, which no `f64` is; the nearest `f64` is kept beside it.
+/// Two are equal that state the same number, as `1` and `1.0e0` do.
+#[derive(Clone, Debug)]
+pub struct Literal {
+    text: String,
+    value: RBig,
+    nearest: f64,
+}
+
+impl PartialEq for Literal {
+    fn eq(&self, other: &Self) -> bool {
+        self.value == other.value
+    }
+}
+
+impl Literal {
+    /// Reads digits with an optional decimal point and an optional power of ten: `3`, `.5`, `1.52587890625e-05`.
+    ///
+    /// Returns `None` if the text is no such number, or if its power of ten is beyond ±400.
+    pub fn read(text: &str) -> Option<Self> {
+        let text = text.replace('−', "-");
+        let (digits, exponent) = match text.split_once(['e', 'E']) {
+            Some((digits, exponent)) => (digits, exponent.parse::<i32>().ok()?),
+            None => (text.as_str(), 0),
+        };
+        let (whole, part) = digits.split_once('.').unwrap_or((digits, ""));
+        let all_digits = format!("{whole}{part}");
+        if all_digits.is_empty() || !all_digits.bytes().all(|byte| byte.is_ascii_digit()) {
+            return None;
+        }
+        if exponent.abs() > LARGEST_EXPONENT || part.len() > LARGEST_EXPONENT as usize {
+            return None;
+        }
+        let numerator: IBig = all_digits.parse().ok()?;
+        let power = exponent - part.len() as i32;
+        let ten_to_power = UBig::from(10u8).pow(power.unsigned_abs() as usize);
+        let value = if power < 0 {
+            RBig::from_parts(numerator, ten_to_power)
+        } else {
+            RBig::from(numerator * IBig::from(ten_to_power))
+        };
+        let nearest = text.parse().ok()?;
+        Some(Self { text, value, nearest })
+    }
+
+    /// Makes the number 0.
+    pub fn zero() -> Self {
+        Self { text: "0".to_owned(), value: RBig::ZERO, nearest: 0.0 }
+    }
+
+    /// Returns the number without any rounding.
+    pub fn value(&self) -> &RBig {
+        &self.value
+    }
+
+    /// Returns the `f64` that is nearest to the number.
+    pub fn nearest(&self) -> f64 {
+        self.nearest
+    }
+
+    /// Returns whether the nearest `f64` is the number itself.
+    pub fn is_exact(&self) -> bool {
+        RBig::try_from(self.nearest).is_ok_and(|nearest| nearest == self.value)
+    }
+
+    /// Returns decimal digits that state the number exactly, as C and Python read them.
+    pub fn digits(&self) -> String {
+        let shortest = format!("{:?}", self.nearest);
+        match Self::read(&shortest) {
+            Some(read) if read.value == self.value => shortest,
+            _ => self.text.clone(),
+        }
+    }
+}
