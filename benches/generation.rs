@@ -38,6 +38,7 @@ fn peak_memory() -> Option<String> {
 }
 
 fn all(criterion: &mut Criterion) {
+    glint_benches::enter_repository();
     let registry = Registry::catalogue();
     let texts = CONFIGS.map(|path| (path, fs::read_to_string(path).expect("a configuration")));
     let files = both(&registry, &texts).expect("files");

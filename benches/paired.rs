@@ -2,7 +2,7 @@
 //! ratios.
 //!
 //! ```text
-//! cargo bench --bench paired [-- CORE ...]
+//! cargo bench -p glint-benches --bench paired [-- CORE ...]
 //! ```
 //!
 //! For each device and each pipeline of `configs/`, or those that are named (`rough`, `rough_pipelined`), clocks
@@ -58,6 +58,7 @@ const ROUNDS: usize = 7;
 const LIMIT: Duration = Duration::from_secs(600);
 
 fn main() -> Result<()> {
+    glint_benches::enter_repository();
     println!(
         "million clocks per second of processor time and thread, and ratios: median of {ROUNDS}"
     );

@@ -12,7 +12,7 @@ use super::nearest::{listed, nearest};
 use super::points;
 use super::problems::{Problems, STANDARD_INPUT, Violation, out_of_range, quoted, shown};
 use super::schema::{Key, Kind, Schema};
-use super::text_pattern::TextPattern;
+use super::text_pattern::{TextPattern, is_path_of_points};
 use super::validate::{Draft, keys_of};
 use super::values::{Config, Value};
 use glint_base::program::Program;
@@ -271,7 +271,7 @@ impl Reader<'_> {
         self.problems.locate(key.name, span.clone());
         let found = match (&key.kind, value.get_ref()) {
             (Kind::Text(TextPattern::Samples), DeValue::String(path))
-                if path.is_empty() || path.ends_with(".csv") =>
+                if path.is_empty() || is_path_of_points(path) =>
             {
                 let points = points::read(&self.directory.join(&**path));
                 points.map(Value::Text).map_err(|(message, remedy)| {

@@ -3,8 +3,10 @@
 use std::path::Path;
 use std::{fs, io};
 
-/// Reads the points of a file as `x,y x,y`. Two numbers a line, with a comma, a semicolon, blanks or a tab between them; a
-/// first line of words is a heading, and what follows `#` a comment.
+/// Reads the points of a file as `x,y x,y`.
+///
+/// A line has two numbers, with or without quotes, with a comma, a semicolon, blanks or a tab between them. A first line of words is a
+/// heading, and `#` begins a comment.
 ///
 /// # Errors
 /// The file cannot be read, or a line is not two numbers: a message and a remedy.
@@ -14,13 +16,12 @@ pub(super) fn read(path: &Path) -> Result<String, (String, String)> {
         let remedy = "give the path of a CSV file, from the configuration's directory".to_owned();
         (format!("`{name}` cannot be read: {error}"), remedy)
     })?;
-    // What some spreadsheets write first.
-    let text = text.trim_start_matches('\u{feff}');
     let mut points: Vec<String> = Vec::new();
     for (at, line) in text.lines().enumerate() {
         let line = line.split('#').next().unwrap_or_default().trim();
         let cells: Vec<&str> = line
             .split(|c: char| ",;".contains(c) || c.is_whitespace())
+            .map(|cell| cell.trim_matches('"'))
             .filter(|cell| !cell.is_empty())
             .collect();
         let numbers = cells.iter().filter(|cell| cell.parse().is_ok_and(f64::is_finite)).count();
@@ -28,6 +29,10 @@ pub(super) fn read(path: &Path) -> Result<String, (String, String)> {
             [] => {}
             [x, y] if numbers == 2 => points.push(format!("{x},{y}")),
             _ if points.is_empty() && numbers == 0 => {}
+            _ if has_decimal_commas(line) => {
+                let message = format!("line {} of `{name}` has decimal commas: `{line}`", at + 1);
+                return Err((message, "write decimal points, `0.5` for `0,5`".to_owned()));
+            }
             _ => {
                 let message = format!("line {} of `{name}` is not two numbers: `{line}`", at + 1);
                 return Err((message, "write x and the result in each line".to_owned()));
@@ -41,12 +46,41 @@ pub(super) fn read(path: &Path) -> Result<String, (String, String)> {
     Ok(points.join(" "))
 }
 
-/// Reads a file; a pipe, which may never end, is none.
+/// Returns whether a line has two cells with a comma in each, as spreadsheets of many languages write numbers: `0,5;1,25`.
+fn has_decimal_commas(line: &str) -> bool {
+    let cells = line.split(|c: char| c == ';' || c.is_whitespace()).filter(|cell| !cell.is_empty());
+    let is_decimal = |cell: &str| {
+        let digits = cell.trim_matches('"').replacen(',', ".", 1);
+        cell.contains(',') && digits.parse::<f64>().is_ok()
+    };
+    let is_decimal: Vec<bool> = cells.map(is_decimal).collect();
+    is_decimal.len() == 2 && is_decimal.contains(&true)
+}
+
+/// Reads a file in UTF-8, with line ends of any system. A pipe, which may never end, is refused.
 fn text(path: &Path) -> io::Result<String> {
+    let refused = |message: String| Err(io::Error::new(io::ErrorKind::InvalidInput, message));
     if !fs::metadata(path)?.is_file() {
-        return Err(io::Error::new(io::ErrorKind::InvalidInput, "it is no regular file"));
+        return refused("it is no regular file".to_owned());
     }
-    fs::read_to_string(path)
+    let bytes = fs::read(path)?;
+    if bytes.starts_with(&[0xFF, 0xFE]) || bytes.starts_with(&[0xFE, 0xFF]) {
+        return refused("it is UTF-16; save it as UTF-8".to_owned());
+    }
+    match String::from_utf8(bytes) {
+        // Some spreadsheets write a byte order mark first.
+        Ok(text) => {
+            Ok(text.trim_start_matches('\u{feff}').replace("\r\n", "\n").replace('\r', "\n"))
+        }
+        Err(error) => {
+            let valid = error.utf8_error().valid_up_to();
+            let line = 1 + error.as_bytes()[..valid].iter().filter(|byte| **byte == b'\n').count();
+            let byte = error.as_bytes()[valid];
+            refused(format!(
+                "line {line} has the byte {byte:02X}, which is not UTF-8; save it as UTF-8"
+            ))
+        }
+    }
 }
 
 #[cfg(test)]
@@ -63,10 +97,23 @@ mod tests {
         };
         assert_eq!(of("x,y\n0,0\n\n1; -0.5 # low\n2\t1e-3\r\n").unwrap(), "0,0 1,-0.5 2,1e-3");
         assert_eq!(of("\u{feff}0,0\n1,1\n").unwrap(), "0,0 1,1");
+        assert_eq!(of("\"0\",\"0\"\r1 +1\r").unwrap(), "0,0 1,+1");
+        for (bytes, message) in [
+            (
+                &b"# H\xF6he\n0,0\n"[..],
+                "line 1 has the byte F6, which is not UTF-8; save it as UTF-8",
+            ),
+            (b"\xFF\xFE0\x00,\x000\x00", "it is UTF-16; save it as UTF-8"),
+        ] {
+            fs::write(&path, bytes).unwrap();
+            assert!(read(&path).unwrap_err().0.ends_with(message));
+        }
         assert!(read(dir.path()).unwrap_err().0.ends_with("it is no regular file"));
         for (text, message) in [
             ("0,0\n1,\n", "line 2 of `it` is not two numbers: `1,`"),
             ("0,0\nx,y\n", "line 2 of `it` is not two numbers: `x,y`"),
+            ("0,0;0\n0,5;0,25\n", "line 1 of `it` has decimal commas: `0,0;0`"),
+            ("0;0\n0,5;0,25\n", "line 2 of `it` has decimal commas: `0,5;0,25`"),
             ("0,0,0\n", "line 1 of `it` is not two numbers: `0,0,0`"),
             ("x,y\n", "`it` has no samples"),
         ] {

@@ -122,7 +122,7 @@ keys! {
         systemverilog: bool = Key::flag("package.systemverilog", false,
             "Write <name>_pkg.sv: the numbers as types of SystemVerilog, with conversions from and to real."),
         vendor: String = Key::text("package.vendor", "glint", TextPattern::Name,
-            "The vendor in IP-XACT, Vivado and Platform Designer; a domain name, as a rule."),
+            "The vendor for FuseSoC, IP-XACT, Vivado and Platform Designer; a domain name, as a rule."),
         version: String = Key::text("package.version", "0.1.0", TextPattern::Version,
             "The version of the core for FuseSoC, IP-XACT, Vivado and Platform Designer."),
         licence: String = Key::text("package.licence", "LicenseRef-belongs-to-its-user", TextPattern::Licence,

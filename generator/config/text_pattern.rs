@@ -43,10 +43,9 @@ impl TextPattern {
             TextPattern::Name => first("") && more(".-_"),
             TextPattern::Licence => first("(") && more(" .-+()"),
             TextPattern::Formula => {
-                let good = |c: char| c.is_ascii_alphanumeric() || " ._+-*/%^(),<>=−·×π".contains(c);
-                !text.is_empty()
-                    && text.chars().count() <= LONGEST_FORMULA
-                    && text.chars().all(good)
+                // Which signs a formula may have says its parser, with a caret under the first that it may not.
+                let count = text.chars().count();
+                (1..=LONGEST_FORMULA).contains(&count) && !text.chars().any(char::is_control)
             }
             TextPattern::Samples => {
                 let good = |c: char| c.is_ascii_digit() || " .,+-eE".contains(c);
@@ -64,8 +63,10 @@ impl TextPattern {
         match self {
             TextPattern::Name => "^[A-Za-z][A-Za-z0-9._-]{0,59}$",
             TextPattern::Licence => "^[A-Za-z(][A-Za-z0-9 .+()-]{0,59}$",
-            TextPattern::Formula => "^[A-Za-z0-9 ._+*/%^(),<>=−·×π-]{1,500}$",
-            TextPattern::Samples => "^([0-9 .,+eE-]*|.+[.]csv)$",
+            TextPattern::Formula => "^[^\\x00-\\x1f\\x7f-\\x9f]{1,500}$",
+            TextPattern::Samples => {
+                "^([0-9 .,+eE-]*|.+[.]([cC][sS][vV]|[tT][xX][tT]|[tT][sS][vV]|[dD][aA][tT]))$"
+            }
             TextPattern::Version => "^(0|[1-9][0-9]{0,3})(\\.(0|[1-9][0-9]{0,3})){2}$",
         }
     }
@@ -83,11 +84,17 @@ impl TextPattern {
                 "a formula of at most 500 characters, as \"1 / sqrt(x)\", or a number"
             }
             TextPattern::Samples => {
-                "the path of a CSV file, from the configuration's directory, or points as \"0,0 1,0.5\""
+                "the path of a file that ends in .csv, .tsv, .txt or .dat, from the configuration's directory, or points as \"0,0 1,0.5\""
             }
             TextPattern::Version => "a version of three numbers up to 9999, as \"1.0.0\"",
         }
     }
+}
+
+/// Returns whether a text names a file with points, rather than stating them.
+pub(super) fn is_path_of_points(text: &str) -> bool {
+    let ending = text.rsplit_once('.').map(|(_, ending)| ending.to_ascii_lowercase());
+    ending.is_some_and(|ending| ["csv", "tsv", "txt", "dat"].contains(&ending.as_str()))
 }
 
 fn is_number(text: &str) -> bool {
@@ -115,7 +122,7 @@ mod tests {
             (
                 TextPattern::Formula,
                 vec!["1 / sqrt(x)", "if(x <= 2, -x, 3 · x^2 % 4)"],
-                vec!["", "x; y", "a\"b", "$x", "x\n"],
+                vec!["", "x\n", "x\u{85}"],
             ),
             (
                 TextPattern::Samples,

@@ -55,7 +55,8 @@ impl Core {
     ///
     /// # Errors
     /// The mistakes of the description; results that depend on earlier ones, or that the contract's model never shows;
-    /// constraints with a clock that the pipeline is not made for; a style of ROMs that there are not.
+    /// constraints with a clock that the pipeline is not made for; a style of ROMs that there are not; a program that recomputes a
+    /// contract without a formula of one operand.
     pub fn new(device: Device, config: Config) -> Result<Self> {
         let design = device
             .design(&config)
@@ -67,6 +68,10 @@ impl Core {
         device.check_golden(&config)?;
         let contract = (device.contract)(&config);
         device.check_contract(&config, &design, contract.as_ref())?;
+        let asked = Surroundings::new(&config, design.pipeline.as_ref());
+        if asked.software && asked.recomputation {
+            package::check_recomputation(&design.name, &ContractFacts::new(contract.as_ref()))?;
+        }
         Ok(Self { device, config, design, contract })
     }
 

@@ -98,7 +98,7 @@ fn tokens(text: &str) -> Result<Vec<Range<usize>>, Fault> {
             _ if ["**", "<=", ">="].iter().any(|two| rest.starts_with(two)) => 2,
             '+' | '-' | '*' | '/' | '%' | '^' | '(' | ')' | '[' | ']' | ',' | '<' | '>' => 1,
             '−' | '·' | '×' | 'π' => first.len_utf8(),
-            _ if first.is_whitespace() => {
+            _ if first.is_ascii_whitespace() => {
                 at += first.len_utf8();
                 continue;
             }

@@ -20,6 +20,7 @@ mod datasheet;
 mod devices;
 mod diagnostics;
 mod divider;
+mod keys;
 mod lines;
 mod multipliers;
 mod operand_buffers;

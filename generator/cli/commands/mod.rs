@@ -219,6 +219,13 @@ impl Loaded {
     fn contract(&self) -> Result<()> {
         self.bound()?;
         let config = &self.core.config;
+        if config.name.contains("__") {
+            failure::warn(&format!(
+                "{}: the module name `{}` has two underscores in a row, which Verilator's lint refuses beside a wrapper: give another \
+                 name",
+                self.path, config.name
+            ));
+        }
         if (self.core.device.schema)().keys.iter().any(|key| *config.value(key.name) != key.default)
         {
             for remark in self.core.contract.remarks() {

@@ -125,9 +125,13 @@ fn known(one: &Loaded, arguments: &Arguments, found: &Reached) -> Known {
 
 fn print(one: &Loaded, report: &Report) {
     let Report { found, bound, holds, recorded } = report;
-    let verdict = if *holds { "within" } else { "BEYOND" };
+    let verdict = match (bound.is_finite(), holds) {
+        (false, _) => "of a contract that states no bound".to_owned(),
+        (true, true) => format!("within the bound of {bound:.4}"),
+        (true, false) => format!("BEYOND the bound of {bound:.4}"),
+    };
     say!(
-        "{}: {:.4} units, {verdict} the bound of {bound:.4}, by {} from seed {}",
+        "{}: {:.4} units, {verdict}, by {} from seed {}",
         found.config,
         found.units,
         climbs(found.starts),

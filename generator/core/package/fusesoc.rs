@@ -38,13 +38,14 @@ pub fn files(job: &Job, files: &mut Artifacts) -> Result<()> {
             (!benches.is_empty()).then(|| benches.iter().filter_map(wrapper).collect()),
         // That of `<name>.xdc` and `<name>.sdc`, if there are any.
         clock_mhz: Option<f64> = around.clock_mhz,
+        vendor: &'a str = &around.vendor,
         version: &'a str,
         licence: &'a str,
     })?;
     files.add(Kind::Core, format!("{name}.core"), core);
     if let Some((bench, others)) = benches.split_first() {
         let text = fill!("testbench.core" {
-            name: &'a str, version: &'a str, licence: &'a str, bench: &'a str,
+            name: &'a str, vendor: &'a str = &around.vendor, version: &'a str, licence: &'a str, bench: &'a str,
             // Its vectors, and the benches of wrappers with theirs.
             others: &'a [String],
         })?;

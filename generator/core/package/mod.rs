@@ -63,6 +63,7 @@ pub use instance::instance;
 pub use output_file::{OutputFile, digest, sources, sources_for};
 pub use points::{POINTS_FILE, PointsBench, RESULTS_FILE};
 pub use seal::{Seal, is_sealed, sealed, sealed_json};
+pub use software::check_recomputation;
 pub use surroundings::{Surroundings, check_clock, check_rom_style};
 pub use unfit::Unfit;
 

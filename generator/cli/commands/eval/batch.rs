@@ -112,7 +112,8 @@ fn points(
     Ok(())
 }
 
-/// Returns the first row of the results, ending with a newline.
+/// Returns the first row of the results, ending with a newline. Operands, f and formulas are values; a result is a raw integer,
+/// and its heading says so where that is not its value.
 fn headings(contract: &dyn Contract) -> String {
     let mut headings: Vec<String> =
         contract.operands().iter().map(|operand| operand.name.clone()).collect();
@@ -120,7 +121,10 @@ fn headings(contract: &dyn Contract) -> String {
     let outputs = || contract.outputs().iter().map(|output| &output.name);
     headings.extend(contract.length().map(|_| "point".to_owned()));
     headings.extend(highlight.map(|_| "f".to_owned()));
-    headings.extend(outputs().cloned());
+    headings.extend(contract.outputs().iter().map(|output| match output.format.frac {
+        0 => output.name.clone(),
+        _ => format!("raw_{}", output.name),
+    }));
     headings.extend(highlight.map(|_| "formula_f".to_owned()));
     headings.extend(outputs().map(|name| format!("formula_{name}")));
     headings.push("inside_the_domain".to_owned());

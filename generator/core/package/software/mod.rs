@@ -15,6 +15,7 @@ use anyhow::Result;
 
 use super::artifact::{Artifacts, Job};
 use super::tops::Top;
+pub use recompute::check as check_recomputation;
 
 /// Adds what the configuration asks for.
 ///

@@ -5,6 +5,7 @@
 use anyhow::Result;
 
 use super::model::{Field, table_names};
+use crate::observation::ContractFacts;
 use crate::package::artifact::{Artifacts, Job, Kind};
 use crate::package::unfit::Unfit;
 use glint_base::fill;
@@ -16,30 +17,56 @@ use glint_rtl::verilog::text::{ascii, statement};
 /// The most values that the program makes for a part of a formula.
 const VALUES: usize = 8;
 
+/// What the program needs of a contract: one operand with its domain, one result, and its formula.
+struct Subject<'f> {
+    operand: &'f str,
+    domain: (i64, i64),
+    result: &'f str,
+    formula: &'f str,
+}
+
+impl<'f> Subject<'f> {
+    fn new(name: &str, facts: &'f ContractFacts) -> Result<Self, Unfit> {
+        match (&facts.domain[..], &facts.outputs[..], &facts.f[..]) {
+            ([(operand, domain)], [(result, None)], [formula]) => {
+                Ok(Self { operand, domain: *domain, result, formula })
+            }
+            _ => Err(unfit(name, "its contract is no formula of one operand, with a bound")),
+        }
+    }
+}
+
+fn unfit(name: &str, why: &str) -> Unfit {
+    let message = format!("nothing recomputes `{name}`: {why}");
+    Unfit::new("package.recomputation", message, "remove it")
+}
+
+/// Checks that a configuration asks for the program only where there is one.
+///
+/// # Errors
+/// Fails if the core has several operands or results, or if its contract states no formula.
+pub fn check(name: &str, facts: &ContractFacts) -> Result<(), Unfit> {
+    Subject::new(name, facts).map(drop)
+}
+
 /// Adds the program. `read` are the ROMs that the model reads.
 ///
 /// # Errors
-/// A core of several operands or results, or one whose contract states no formula.
+/// Fails as [`check`] does.
 pub fn file(job: &Job, read: &[RomId], files: &mut Artifacts) -> Result<()> {
     let (name, inputs) = (job.name(), job.inputs);
     let design = inputs.sequential.as_ref().unwrap_or(job.design);
-    let unfit = |why: &str| {
-        let message = format!("nothing recomputes `{name}`: {why}");
-        Unfit::new("package.recomputation", message, "remove it")
-    };
-    let facts = inputs.accuracy.as_ref().ok_or_else(|| unfit("it has no contract"))?;
-    let ([(operand, (first, last))], [(result, None)], [text]) =
-        (&facts.domain[..], &facts.outputs[..], &facts.f[..])
-    else {
-        return Err(unfit("its contract is no formula of one operand, with a bound").into());
-    };
+    let facts = inputs.accuracy.as_ref().ok_or_else(|| unfit(name, "it has no contract"))?;
+    let Subject { operand, domain: (first, last), result, formula: text } =
+        Subject::new(name, facts)?;
     let formula = parse(text)?;
     let mut parts = 0;
     formula.walk(&mut |_| parts += 1);
     let field = |name: &str| {
         let mut ports = design.ports.iter();
         let port = ports.find(|port| design.net(port.net).name == name);
-        port.map(|port| Field::new(design, port)).ok_or_else(|| unfit("its contract names no port"))
+        port.map(|port| Field::new(design, port))
+            .ok_or_else(|| unfit(name, "its contract names no port"))
     };
     let (operand, result) = (field(operand)?, field(result)?);
     let (naming, tables) = (Naming::new(design), table_names(design));
@@ -64,8 +91,8 @@ pub fn file(job: &Job, read: &[RomId], files: &mut Artifacts) -> Result<()> {
         operand: String = operand.name,
         result_exponent: i32 = -result.format.frac,
         result: String = result.name,
-        first: &'a i64,
-        last: &'a i64,
+        first: i64,
+        last: i64,
         bound: String = format!("{:?}", facts.bound),
     })?;
     files.add(Kind::Software, format!("{name}_recompute.c"), program);

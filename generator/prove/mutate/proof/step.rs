@@ -21,6 +21,8 @@ pub(super) struct Order<'a> {
     counter: Option<RegId>,
     /// The interval of each net in every slot, of a pipeline with several.
     in_all_slots: Vec<Interval>,
+    /// For each ROM the bits that its words have.
+    words: Vec<Pairs>,
 }
 
 /// A fault, and what the fault-free design has on every net in the microinstruction.
@@ -48,7 +50,13 @@ impl<'a> Order<'a> {
                 _ => None,
             }),
         };
-        Some(Self { design, same: same(design, &order), order, counter, in_all_slots })
+        let words = design.roms.iter().map(|rom| {
+            let width = design.width(rom.data);
+            let words = rom.words.iter().map(|&word| Pairs::constant(word, width));
+            words.reduce(Pairs::or).unwrap_or(Pairs::same(width))
+        });
+        let words = words.collect();
+        Some(Self { design, same: same(design, &order), order, counter, in_all_slots, words })
     }
 
     /// Returns the nets of which a [`State`] is: those of the registers, then those of the ROMs.
@@ -143,15 +151,14 @@ impl<'a> Order<'a> {
         }
     }
 
-    /// Returns the word that a ROM has at its address.
+    /// Returns the word that a ROM has at its address. At power-up, before it reads any, a synchronous ROM shows 0: the first state
+    /// has that.
     fn read(&self, id: RomId, nets: &[Pairs], fault: Option<Injected>) -> Pairs {
         let rom = self.design.rom(id);
         let width = self.design.width(rom.data);
-        let words = rom.words.iter().map(|&word| Pairs::constant(word, width));
-        // At power-up a synchronous ROM shows 0.
-        let start = rom.synchronous.then_some(Pairs::constant(0, width));
+        let words = self.words[id.index()];
         let Some((site, sound)) = fault else {
-            return words.chain(start).reduce(Pairs::or).unwrap_or(Pairs::same(width));
+            return words;
         };
         let address = nets[rom.address.index()];
         let mut differ = match address.differ() {
@@ -169,7 +176,8 @@ impl<'a> Order<'a> {
                 differ |= word ^ rom.words[at];
             }
         }
-        let sound = sound[rom.data.index()];
+        // A synchronous ROM shows the word in the next clock.
+        let sound = if rom.synchronous { words } else { sound[rom.data.index()] };
         sound.across(Pairs::same(width)).and(Pairs::same(width).or_any(differ))
     }
 
