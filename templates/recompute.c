@@ -385,6 +385,8 @@ static void set_precision(mpfr_prec_t bits)
     }
 }
 
+<%- if !memories.is_empty() %>
+
 /* Compares a memory file with the table of the model. */
 static void check_memory(const char *directory, const char *name, const void *table, size_t bytes, size_t count)
 {
@@ -425,6 +427,7 @@ static void check_memory(const char *directory, const char *name, const void *ta
         exit(1);
     }
 }
+<%- endif %>
 
 int main(int argc, char **argv)
 {
@@ -483,7 +486,7 @@ int main(int argc, char **argv)
     mpfr_printf("%.6RUf units of the last place, at the raw operand %" PRId64 "; ", largest, where);
     mpfr_printf("the bound of %.6RUf %s\n", bound, holds ? "holds" : "DOES NOT HOLD");
     if (holds && undecided > 0) {
-        printf("%" PRId64 " operands are not decided, the first is the raw operand %" PRId64 "\n", undecided, first_undecided);
+        printf("not decided: %" PRId64 " operands, the first is the raw operand %" PRId64 "\n", undecided, first_undecided);
         return 3;
     }
     return holds ? 0 : 1;
