@@ -5,7 +5,7 @@
 
 use super::Refusal;
 use glint_base::fixed::exp2;
-use glint_formula::{Enclosure, parse};
+use glint_formula::{Enclosure, Formula, parse};
 
 /// How many times the longer of the steps beside it a step between samples may be.
 const GAP: i64 = 4;
@@ -32,7 +32,7 @@ impl Samples {
                 let remedy = "a number for x, a comma and a number for y";
                 return refused(format!("the sample `{point}` is no pair of numbers"), remedy);
             };
-            let Ok((raw, true)) = x.ceiling(fraction) else {
+            let Some(raw) = raw_operand(&x, fraction) else {
                 let message =
                     format!("the sample `{point}` is at no operand with {fraction} fraction bits");
                 let remedy = "more operand.fraction bits, or number the samples: 0, 1, 2 …";
@@ -96,6 +96,17 @@ impl Samples {
     }
 }
 
+/// Returns the raw operand that a number is: exactly, or as the `f64` that its many digits were printed from.
+fn raw_operand(x: &Formula, fraction: u32) -> Option<i128> {
+    match x.ceiling(fraction) {
+        Ok((raw, true)) => Some(raw),
+        _ => {
+            let raw = x.printed_double()? * exp2(fraction as i32);
+            (raw.fract() == 0.0).then_some(raw as i128)
+        }
+    }
+}
+
 /// Returns the slopes of Steffen's curve at points.
 fn slopes(points: &[(i64, Enclosure)]) -> Vec<f64> {
     let chord = |pair: &[(i64, Enclosure)]| {
@@ -149,6 +160,10 @@ mod tests {
         assert!(samples.limits(1).holds(0.1) && samples.limits(1).low < samples.limits(1).high);
         let halves = Samples::read("0,0 1,1", 1, (0, 2)).unwrap();
         assert!(halves.limits(1).holds(0.5) && halves.count() == 2);
+        // As NumPy prints them: 1 − 2^−20 has 20 digits, of which `%.18e` prints 19.
+        let near = "9.999980926513671875e-01,0 9.999990463256835938e-01,+0.5 1e0,1";
+        let samples = Samples::read(near, 20, ((1 << 20) - 2, 1 << 20)).unwrap();
+        assert_eq!(samples.limits((1 << 20) - 1), Enclosure::exactly(0.5));
         for (text, message) in [
             ("0,0 1,1 3,x", "the sample `3,x` is no pair of numbers"),
             ("0,0 1 3,1", "the sample `1` is no pair of numbers"),

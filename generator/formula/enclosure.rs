@@ -7,8 +7,8 @@ const MARGIN: f64 = 1.0 / (1u64 << 50) as f64;
 /// Below this, products lose bits that a remainder cannot show.
 const SMALL: f64 = 1e-280;
 
-/// A little less than π.
-const HALF_TURN: f64 = 3.141_592_653_589_79;
+/// The largest `f64` that is not above π.
+const HALF_TURN: f64 = std::f64::consts::PI;
 
 /// A lower and an upper limit of a real number.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -102,7 +102,7 @@ impl Enclosure {
         self.rising(function).within(least, most)
     }
 
-    /// Returns the values of a sine. From −3.14 to 3.14 it has the sign of the angle.
+    /// Returns the values of a sine. Within half a turn to either side it has the sign of the angle.
     pub(super) fn sine(self) -> Self {
         let least = if self.low >= 0.0 && self.high <= HALF_TURN { 0.0 } else { -1.0 };
         let most = if self.high <= 0.0 && self.low >= -HALF_TURN { 0.0 } else { 1.0 };

@@ -154,6 +154,17 @@ impl Formula {
         visit(self);
     }
 
+    /// Returns the `f64` that a decimal of 17 or more digits was printed from; `None` for any other formula.
+    ///
+    /// For example, NumPy's `savetxt` prints 1 − 2^−20 as `9.999990463256835938e-01`, which is the nearest decimal of 19 digits.
+    pub fn printed_double(&self) -> Option<f64> {
+        match &self.kind {
+            Kind::Number(literal) if literal.significant_digits() >= 17 => Some(literal.nearest()),
+            Kind::Unary(Function::Negate, a) => a.printed_double().map(|value| -value),
+            _ => None,
+        }
+    }
+
     /// Returns the number of parts, the formula itself included, that satisfy the predicate.
     pub fn count(&self, is: &dyn Fn(&Self) -> bool) -> usize {
         let mut count = 0;

@@ -73,6 +73,13 @@ impl Literal {
         RBig::try_from(self.nearest).is_ok_and(|nearest| nearest == self.value)
     }
 
+    /// Returns how many digits the text has from its first that is not 0, those of the power of ten left out.
+    pub(super) fn significant_digits(&self) -> usize {
+        let digits = self.text.split(['e', 'E']).next().unwrap_or_default();
+        let from_first = digits.trim_start_matches(['0', '.']);
+        from_first.bytes().filter(u8::is_ascii_digit).count()
+    }
+
     /// Returns decimal digits that state the number exactly, as C and Python read them.
     pub fn digits(&self) -> String {
         let shortest = format!("{:?}", self.nearest);

@@ -217,7 +217,7 @@ fn random_decimals_are_read_exactly() {
         };
         let power = if text.contains(['e', 'E']) { exponent } else { 0 } - places as i32;
         let digits = if text.starts_with('-') { -digits } else { digits };
-        let numerator = digits * 10i128.pow(power.max(0) as u32) << fraction;
+        let numerator = (digits * 10i128.pow(power.max(0) as u32)) << fraction;
         let denominator = 10i128.pow((-power).max(0) as u32);
         let expected = (numerator + denominator - 1).div_euclid(denominator);
         let is_operand = numerator % denominator == 0;

@@ -38,6 +38,22 @@ fn assert_renewed(out: &Path) {
     assert_eq!(entries, ["rtl_out", "testbench"]);
 }
 
+/// Runs that write other files into the same directory at the same time find Glint's own files there, one after the other.
+#[test]
+fn runs_at_the_same_time_wait_for_each_other() {
+    let dir = tempfile::tempdir().unwrap();
+    std::thread::scope(|scope| {
+        for text in ["one", "another"] {
+            let out = dir.path();
+            scope.spawn(move || {
+                for _ in 0..100 {
+                    write(out, "core", &files(text), false).unwrap();
+                }
+            });
+        }
+    });
+}
+
 /// Files that are in their places already are no reason to refuse.
 #[test]
 fn a_run_that_was_killed_between_the_moves_is_done_again() {

@@ -22,7 +22,10 @@ const FEW_POINTS: u64 = 64;
 const SEED: u64 = 3;
 
 /// All values of operands are tried if they have no more bits than this.
-const MOST_BITS: u32 = 22;
+pub(super) const MOST_BITS: u32 = 22;
+
+/// All values of all operands are tried for each fault if they have no more bits than this.
+pub(super) const NARROW: u32 = 16;
 
 /// Returns the operand whose register addresses a ROM, held at a word.
 pub(super) fn addressing(core: &Core, rom: RomId, word: usize) -> Option<Operands> {
@@ -65,11 +68,16 @@ pub(super) enum Tried {
     Differs(Operands),
 }
 
-/// Tries all values of the operands that determine `f` while these are held.
+/// Tries all values of the operands that determine `f` while these are held, if they have at most `most_bits` bits.
 ///
 /// # Errors
 /// The mutant cannot be simulated.
-pub(super) fn all(core: &Core, mutant: &Design, mut held: Operands) -> Result<Tried> {
+pub(super) fn all(
+    core: &Core,
+    mutant: &Design,
+    mut held: Operands,
+    most_bits: u32,
+) -> Result<Tried> {
     let contract = core.contract.as_ref();
     if contract.length().is_some() {
         return Ok(Tried::Nothing);
@@ -79,7 +87,7 @@ pub(super) fn all(core: &Core, mutant: &Design, mut held: Operands) -> Result<Tr
     held.extend(colours.map(|it| (it.name.clone(), it.domain.1)));
     let model = core.device.golden(&core.config);
     let clocks = Clocks::new(mutant, model, contract)?.holding(&held);
-    if clocks.bits() > MOST_BITS {
+    if clocks.bits() > most_bits {
         return Ok(Tried::Nothing);
     }
     Ok(match clocks.check((0..clocks.blocks()).collect(), &|_| ())? {

@@ -153,8 +153,8 @@ impl Bench<'_> {
                 return Ok(directed(Difference { held: Vec::new(), mismatch }));
             }
             let tried = match addressing {
-                Some(held) => held::all(self.core, mutant, held)?,
-                None => Tried::Nothing,
+                Some(held) => held::all(self.core, mutant, held, held::MOST_BITS)?,
+                None => held::all(self.core, mutant, Operands::new(), held::NARROW)?,
             };
             match tried {
                 Tried::All => {}
