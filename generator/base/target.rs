@@ -182,7 +182,7 @@ const PURE_MULTIPLIERS: &str = "synth_ice40 -top {top} -run begin:coarse; opt; w
     select a:mul2dsp; setattr -unset mul2dsp; opt_expr -fine; wreduce; select -clear; \
     chtype -set $mul t:$__soft_mul; ";
 
-// The weights are of the 20 cores in `synthesis/`, sequential and pipelined: on iCE40 by `benches/tune/fit`; on ECP5 and Xilinx 7 sought near such a
+// The weights are of the 20 cores in `records/synthesis/`, sequential and pipelined: on iCE40 by `benches/tune/fit`; on ECP5 and Xilinx 7 sought near such a
 // fit for the least error in the median. The estimate of half of the cores is within 9 % of the look-up tables on iCE40, 4 % on ECP5, 10 % on
 // Xilinx 7; the worst are `threshold` on iCE40 (33 % too many), one that is 24 % off on ECP5, and `schlick_pipelined` on Xilinx 7 (51 % too few:
 // its adders divide, those of other cores go into DSP blocks).

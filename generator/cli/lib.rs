@@ -6,6 +6,7 @@ mod failure;
 mod interrupt;
 mod own_file;
 mod progress;
+mod record_text;
 mod store;
 mod tables;
 

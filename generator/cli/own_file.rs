@@ -7,6 +7,7 @@ use anyhow::{Context, Result, bail};
 use serde::Serialize;
 
 use super::destination::Destination;
+use super::record_text::record_text;
 use super::store::create_directory;
 
 /// A file to be, with the place to write it in.
@@ -61,13 +62,12 @@ impl OwnFile {
         Ok(name)
     }
 
-    /// Writes what [`OwnFile::write`] writes, as JSON, indented, with a newline at its end.
+    /// Writes what [`OwnFile::write`] writes, as the JSON of a record.
     ///
     /// # Errors
     /// It cannot be written.
     pub fn write_json(self, value: &impl Serialize) -> Result<String> {
-        let mut text = serde_json::to_string_pretty(value).context("cannot write JSON")?;
-        text.push('\n');
-        self.write(&text)
+        let value = serde_json::to_value(value).context("cannot write JSON")?;
+        self.write(&record_text(&value))
     }
 }

@@ -133,7 +133,6 @@ fn instead_of_sign(sign: char) -> Option<&'static str> {
         '½' => "write `1/2`",
         '¼' => "write `1/4`",
         '∞' => "a formula has finite numbers",
-        '{' | '}' => "parts are put together with `(` and `)`",
         _ => return None,
     })
 }

@@ -35,15 +35,6 @@ pub fn sampled<T>(what: &str, items: impl IntoIterator<Item = T>, count: usize) 
     items.into_iter().map(|(_, item)| item).collect()
 }
 
-/// As [`sampled`] in a run of the quick tier alone; all of the items in a run of both tiers.
-pub fn sampled_alone<T>(what: &str, items: impl IntoIterator<Item = T>, count: usize) -> Vec<T> {
-    if cfg!(feature = "outside-tools") {
-        items.into_iter().collect()
-    } else {
-        sampled(what, items, count)
-    }
-}
-
 /// Returns the seed: `GLINT_SAMPLE`, or the commit, or in a tree without a history the version.
 fn drawn_by() -> String {
     env::var("GLINT_SAMPLE")

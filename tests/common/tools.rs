@@ -87,7 +87,7 @@ pub const EFFORT: Effort = Effort { full: false, without_tools: false, time_limi
 /// There is no such check.
 pub fn finding(core: &Core, id: &str, effort: Effort) -> Finding {
     let check = CHECKS.iter().find(|check| check.id == id).expect("the check");
-    let subject = Subject::new("core.toml", core, effort, Path::new("proofs"));
+    let subject = Subject::new("core.toml", core, effort, Path::new("records/proofs"));
     check.run(&subject, &|_| ()).finding
 }
 

@@ -1,5 +1,5 @@
 //! Stated error bounds: no error measured at random points exceeds them, in any configuration. The proof
-//! over all control operands is recorded in `proofs/`, which `tests/quick/proofs.rs` re-checks.
+//! over all control operands is recorded in `records/proofs/`, which `tests/quick/proofs.rs` re-checks.
 
 use std::path::Path;
 

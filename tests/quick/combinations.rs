@@ -11,7 +11,7 @@ use std::process::{Command, Output};
 
 use crate::common::cores::{configuration, configuration_with, device};
 use crate::common::files::{paths, read};
-use crate::common::sample::sampled_alone;
+use crate::common::sample::sampled;
 use glint::config::Config;
 use glint::core::Core;
 use glint::cosim::exhaustive::{Clocks, Difference, Job, MOST_BITS, Proof, Shard, State};
@@ -130,7 +130,7 @@ const PARTS: u64 = 4;
 
 /// Returns all of them in a run of both tiers; of the quick one alone a part, which the commit draws.
 fn parts(what: &str) -> Vec<Shard> {
-    sampled_alone(what, (1..=PARTS).map(|number| Shard { number, of: PARTS }), 1)
+    sampled(what, (1..=PARTS).map(|number| Shard { number, of: PARTS }), 1)
 }
 
 #[test]

@@ -8,7 +8,7 @@ use crate::common::Sure;
 use crate::common::cores::{configuration, configurations, pipelines};
 use crate::common::files::json;
 use crate::common::json::Json;
-use crate::common::sample::sampled_alone;
+use crate::common::sample::sampled;
 use glint::core::Core;
 use glint::cosim::exhaustive::Record;
 use glint::hdl::netlist::{Design, Driver, RegId, Role};
@@ -21,11 +21,11 @@ use serde_json::Value;
 
 fn make(path: &str, core: &Core) -> Datasheet {
     let digest = core.contract_digest();
-    let proof = Record::find(Path::new("proofs"), &digest, core.contract.as_ref());
+    let proof = Record::find(Path::new("records/proofs"), &digest, core.contract.as_ref());
     let subject = Subject {
         core,
         path,
-        backing: core.backing(Path::new("proofs")).sure_of(path),
+        backing: core.backing(Path::new("records/proofs")).sure_of(path),
         proof: proof.sure_of(path),
         figures: synth::Record::find(Path::new(synth::DIRECTORY), &core.core_digest())
             .sure_of(path),
@@ -59,7 +59,7 @@ fn of_class<'a>(document: &'a Document, class: &'a str) -> impl Iterator<Item = 
 
 #[test]
 fn every_configuration_has_its_page() {
-    for (path, core) in sampled_alone("data sheets", configurations(), 12) {
+    for (path, core) in sampled("data sheets", configurations(), 5) {
         let made = make(&path, &core);
         let document = parse(&made.page);
         needs_nothing_else(&path, &made.page, &document);
@@ -359,7 +359,7 @@ fn rows(document: &Document, label: &str) -> Vec<Vec<String>> {
     rows.map(|row| row.children().filter(Node::is_element).map(text).collect()).collect()
 }
 
-/// The figures of `synthesis/cosine_power.json` for ECP5, over eight clocks a point.
+/// The figures of `records/synthesis/cosine_power.json` for ECP5, over eight clocks a point.
 #[test]
 fn area_and_speed_are_those_of_the_record() {
     let path = "configs/cosine_power.toml";
@@ -367,7 +367,7 @@ fn area_and_speed_are_those_of_the_record() {
     let document = parse(&page);
     let rows = rows(&document, "Area and speed");
     let row = rows.iter().find(|row| row[0].starts_with("ECP5")).expect("ECP5");
-    let record = json("synthesis/cosine_power.json");
+    let record = json("records/synthesis/cosine_power.json");
     let ecp5 = record["targets"].of("target", "ecp5");
     let counts =
         ["luts", "dsps", "block_rams", "flip_flops"].map(|it| ecp5["area"][it].to_string());
@@ -384,7 +384,7 @@ fn area_and_speed_are_those_of_the_record() {
 
 #[test]
 fn every_pipeline_has_its_page() {
-    for (path, core) in pipelines() {
+    for (path, core) in sampled("data sheets of pipelines", pipelines(), 3) {
         let made = make(&path, &core);
         let document = parse(&made.page);
         needs_nothing_else(&path, &made.page, &document);

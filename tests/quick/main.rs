@@ -26,7 +26,6 @@ mod multipliers;
 mod operand_buffers;
 mod output_registers;
 mod pages;
-mod papers;
 mod pipelines;
 mod proofs;
 mod registers;

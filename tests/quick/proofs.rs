@@ -1,4 +1,4 @@
-//! The recorded proofs of the accuracy contract, `proofs/<name>.json`.
+//! The recorded proofs of the accuracy contract, `records/proofs/<name>.json`.
 //!
 //! A proof goes through every place of a contract's sweep, which takes minutes. `glint cosim
 //! --exhaustive --json CONFIG` makes it; here its record is held against the program of today: the
@@ -11,7 +11,7 @@ use std::path::Path;
 use crate::common::cores::{configuration, configurations};
 use crate::common::files::{json, paths, put, read, replaced};
 use crate::common::json::Json;
-use crate::common::sample::sampled_alone;
+use crate::common::sample::sampled;
 use glint::core::Core;
 use glint::cosim::exhaustive::{Backing, Places, Proof, Record};
 use glint::golden::{Bound, Contract, Highlight, Operand, Output, Sweep, cosine_power};
@@ -23,7 +23,7 @@ const AGAIN: u64 = 20_000_000;
 
 /// Returns the records, by configuration.
 fn records() -> Vec<Value> {
-    let records = paths("proofs", ".json").into_iter().map(json);
+    let records = paths("records/proofs", ".json").into_iter().map(json);
     records.flat_map(|record| record["configurations"].list().clone()).collect()
 }
 
@@ -49,11 +49,11 @@ fn the_default_of_every_device_is_proven_below_one_unit() {
 
 #[test]
 fn the_records_hold_today() {
-    for record in sampled_alone("records of proofs", records(), 8) {
+    for record in sampled("records of proofs", records(), 8) {
         let path = record["config"].text();
         let unit = configuration(path);
         let contract = unit.contract.as_ref();
-        let found = Record::find(Path::new("proofs"), &unit.contract_digest(), contract);
+        let found = Record::find(Path::new("records/proofs"), &unit.contract_digest(), contract);
         let found = found.expect("readable records").expect("its record");
         let places = Places::of_sweep(contract, found.sweep(contract));
         let stale = format!("the record of {path} is not of today's program");
@@ -130,12 +130,12 @@ fn a_bound_is_proven_where_somebody_proved_it() {
     let honest = foreign(|config| Box::new(Foreign(cosine_power::contract(config), 1.0)));
     let wrong = foreign(|config| Box::new(Foreign(cosine_power::contract(config), 1.0 / 3.0)));
     let backing = |core: &Core, proofs: &Path| core.backing(proofs).expect("readable records");
-    let record = Backing::Exhaustive("proofs/cosine_power.json".to_owned());
+    let record = Backing::Exhaustive("records/proofs/cosine_power.json".to_owned());
     assert_eq!(backing(&own, Path::new("nowhere")), Backing::Catalogue);
     assert_eq!(backing(&honest, Path::new("nowhere")), Backing::Author);
-    assert_eq!(backing(&honest, Path::new("proofs")), record);
-    assert_eq!(backing(&wrong, Path::new("proofs")), Backing::Author);
-    let page = glint::pages::of(&wrong, "mine.toml", Path::new("proofs")).expect("a page");
+    assert_eq!(backing(&honest, Path::new("records/proofs")), record);
+    assert_eq!(backing(&wrong, Path::new("records/proofs")), Backing::Author);
+    let page = glint::pages::of(&wrong, "mine.toml", Path::new("records/proofs")).expect("a page");
     assert!(
         page.contains("The bound is stated by its author") && !page.contains("proven"),
         "{page}"
@@ -143,7 +143,7 @@ fn a_bound_is_proven_where_somebody_proved_it() {
 
     let proofs = tempfile::tempdir().expect("a directory");
     let certificate = proofs.path().join("certificates/mine.json");
-    let text = read("proofs/certificates/cosine_power.json");
+    let text = read("records/proofs/certificates/cosine_power.json");
     put(&certificate, &text);
     let certified = backing(&honest, proofs.path());
     assert!(

@@ -203,8 +203,8 @@ fn choice(row: &mut Row) {
     let name = key(row).to_owned();
     let core = core(&name);
     let error = |value: &Value| format!("{:.3}", value.number());
-    let worst = &json(format!("proofs/worst/{name}.json"))["units"];
-    let record = format!("proofs/{name}.json");
+    let worst = &json(format!("records/proofs/worst/{name}.json"))["units"];
+    let record = format!("records/proofs/{name}.json");
     let together = match fs::exists(&record).expect("readable") {
         true => error(&json(&record)["configurations"][0]["together"]),
         false => "–".to_owned(),
@@ -340,7 +340,7 @@ fn frequency(figures: &Figures) -> String {
     format!("{median:.1} ({lowest:.1}–{highest:.1})")
 }
 
-/// Rows of the records in a folder of `benches/` with a frequency for the target, and of cores in `synthesis/` beside them. Records
+/// Rows of the records in a folder of `benches/` with a frequency for the target, and of cores in `records/synthesis/` beside them. Records
 /// of the `other` target have no row.
 fn small(rows: &mut Vec<Row>, folder: &str, other: &str, target: Target) {
     let small = input::records::<Record>(&Path::new("benches").join(folder)).expect("records");
@@ -378,19 +378,19 @@ fn literature(rows: &mut [Row]) {
 
 /// The lines of `glint verify` of `cosine_power` that come from records.
 fn verify(rows: &mut [Row]) {
-    let proof = &json("proofs/cosine_power.json")["configurations"][0];
+    let proof = &json("records/proofs/cosine_power.json")["configurations"][0];
     let [evaluations, products] =
         ["evaluations", "colour_products"].map(|key| grouped(proof[key].count()));
     let Faults { planted, caught, equivalent, undecided } =
-        Faults::new(&json("mutation/cosine_power.json")["netlist"]["all"]);
+        Faults::new(&json("records/mutation/cosine_power.json")["netlist"]["all"]);
     let (planted, caught) = (grouped(planted), caught.values().sum::<u64>());
-    let certificates = fs::read_dir("proofs/certificates/cosine_power").expect("certificates");
+    let statements = json("records/proofs/certificates/cosine_power.json")["statements"].count();
     let [sweep, faults, gappa] = [
         format!("{evaluations} evaluations of f and {products} colour products"),
         format!(
             "{planted} faults: {caught} caught, {equivalent} proved equivalent, {undecided} undecided"
         ),
-        format!("all operands: {} statements", certificates.count()),
+        format!("all operands: {} statements", statements),
     ];
     for (check, over) in [
         ("golden model against the formula", sweep),
@@ -428,7 +428,8 @@ impl Faults {
 
 /// Returns the records of faults, of pipelines or of sequential cores, by name.
 fn mutation_records(pipelined: bool) -> Vec<(String, Value)> {
-    let records = input::records::<Value>(Path::new("mutation")).expect("records").into_iter();
+    let records =
+        input::records::<Value>(Path::new("records/mutation")).expect("records").into_iter();
     let named = records.map(|(path, record)| {
         (path.file_stem().expect("a name").to_string_lossy().into_owned(), record)
     });
@@ -473,9 +474,9 @@ fn faults_in_verilog() -> Vec<Row> {
     let counts = |record: &Value| {
         let Faults { planted: netlist, undecided, .. } = Faults::new(&record["netlist"]["all"]);
         let verilog = &record["verilog"];
-        let [planted, lint, bench] = ["planted", "lint", "bench"].map(|key| verilog[key].count());
-        let [equivalent, left] =
-            ["equivalent", "undecided"].map(|key| verilog[key].list().len() as u64);
+        let [planted, lint, bench, equivalent] =
+            ["planted", "lint", "bench", "equivalent"].map(|key| verilog[key].count());
+        let left = verilog["undecided"].list().len() as u64;
         [planted, lint, bench, equivalent, left, planted + netlist, left + undecided]
     };
     summed(false, counts, |[planted, lint, bench, equivalent, left, all, undecided]| {

@@ -8,7 +8,7 @@ use glint::synth::{self, Record, Target};
 use glint::tune::{Answer, Candidate, Cost, ErrorUnit, Goal, Objective, exhaustive, tune};
 
 use crate::common::cores::{configuration, device};
-use crate::common::sample::sampled_alone;
+use crate::common::sample::sampled;
 
 fn integers(range: std::ops::RangeInclusive<i64>) -> Vec<Value> {
     range.map(Value::Integer).collect()
@@ -66,7 +66,7 @@ fn tuned(name: &str, goal: &Goal) -> anyhow::Result<Answer> {
 
 #[test]
 fn the_answer_is_within_a_tenth_of_the_best_there_is() {
-    for (name, error, values) in sampled_alone("spaces of tune", spaces(), 2) {
+    for (name, error, values) in sampled("spaces of tune", spaces(), 2) {
         let device = device(name);
         let base = device.defaults();
         let inside: Vec<&str> = values.iter().map(|(key, _)| *key).collect();

@@ -1,4 +1,4 @@
-//! The largest errors that are known where a proof does not cover all operands, `proofs/worst/<name>.json`, and the search
+//! The largest errors that are known where a proof does not cover all operands, `records/proofs/worst/<name>.json`, and the search
 //! that finds them.
 
 use crate::common::cores::configuration;
@@ -9,7 +9,7 @@ use glint::cosim::search;
 /// By the formula of the claim, in f64, and by hand: the square of n/2·(cos(γ − dγ) − 1) + 1.
 #[test]
 fn the_worst_known_error_of_rough_is_what_its_record_says() {
-    let record = json("proofs/worst/rough.json");
+    let record = json("records/proofs/worst/rough.json");
     let unit = configuration("configs/rough.toml");
     let raw = |name: &str| record["operands"][name].integer();
     let control = ["cos_gamma", "cos_dgamma", "exponent", "dgamma_negative"].map(raw);
@@ -26,10 +26,10 @@ fn the_worst_known_error_of_rough_is_what_its_record_says() {
     assert!(units > 0.9428 && units <= unit.contract.bound().units, "{units}");
 }
 
-/// A record that `glint worst --out proofs/worst` would not take for another configuration's.
+/// A record that `glint worst --out records/proofs/worst` would not take for another configuration's.
 #[test]
 fn records_are_of_todays_contracts() {
-    for file in paths("proofs/worst", ".json") {
+    for file in paths("records/proofs/worst", ".json") {
         let record = json(&file);
         let core = configuration(record["config"].text());
         assert_eq!(record["contract"], core.contract_digest(), "{file}");

@@ -4,7 +4,6 @@
 #[path = "../../examples/smoothstep/main.rs"]
 mod smoothstep;
 
-use std::path::Path;
 use std::time::Duration;
 
 use glint::certify::{self, Outcome, Statement, prove, questions, statements};
@@ -16,7 +15,7 @@ use glint::registry::Device;
 use rayon::prelude::*;
 
 use crate::common::cores::{configuration, parsed};
-use crate::common::files::{paths, put, read};
+use crate::common::files::{json, put};
 use crate::common::tools::{cargo_example, succeeded, tool};
 use crate::example::fresnel;
 
@@ -274,29 +273,24 @@ fn what_cannot_be_stated_says_which_step() {
     assert_eq!(step, "the function `sqrt` has no translation");
 }
 
-/// Returns the certificates of a configuration, with the statements of today.
-fn committed(name: &str) -> Vec<(String, Statement)> {
+/// Returns the statements of a configuration as they are today, those of its record.
+fn recorded(name: &str) -> Vec<Statement> {
     let Core { design, contract, .. } = configuration(&format!("configs/{name}.toml"));
     let stated = statements(&design, contract.as_ref(), Duration::MAX).expect("statements");
-    let directory = Path::new("proofs/certificates").join(name);
-    assert_eq!(paths(&directory, "").len(), stated.len());
-    let read = |statement: Statement| {
-        let file = directory.join(format!("{}_{}.g", statement.output, statement.number));
-        (read(file), statement)
-    };
-    stated.into_iter().map(read).collect()
+    let record = json(format!("records/proofs/certificates/{name}.json"));
+    assert_eq!(record["certified"], true, "{name}");
+    assert_eq!(record["statements"], stated.len(), "{name}");
+    let stale = format!("`glint certify configs/{name}.toml --out DIR` makes another record");
+    assert_eq!(record["scripts"], certify::digest(&stated), "{stale}");
+    stated
 }
 
 #[test]
-fn committed_certificates_are_those_of_today_and_proved() {
+fn recorded_certificates_are_those_of_today_and_proved() {
     for name in CERTIFIED {
-        let all = committed(name);
-        all.into_par_iter().for_each(|(certificate, statement)| {
-            let Statement { output, number, scripts, .. } = statement;
-            let (_, script) = certificate.split_once("\n\n").expect("a head and a script");
-            let dir = format!("{name}: {output}, statement {number}");
-            assert!(scripts.iter().any(|it| it == script), "{dir} is of another time");
-            assert!(accepted(&certificate), "{dir} is not proved");
+        recorded(name).into_par_iter().for_each(|Statement { output, number, scripts, .. }| {
+            let is_proved = scripts.iter().any(|script| accepted(script));
+            assert!(is_proved, "{name}: {output}, statement {number} is not proved");
         });
     }
 }
@@ -306,9 +300,9 @@ fn committed_certificates_are_those_of_today_and_proved() {
 fn coq_accepts_certificates() {
     let wanted = CERTIFIED.into_iter().take(BY_COQ);
     let [gappa, coq] = ["gappa", "coqc"].map(tool);
-    let all = wanted.flat_map(|it| committed(it).into_iter().map(move |of| (it, of)));
+    let all = wanted.flat_map(|it| recorded(it).into_iter().map(move |of| (it, of)));
     let all: Vec<_> = all.collect();
-    all.par_iter().for_each(|(name, (_, statement))| {
+    all.par_iter().for_each(|(name, statement)| {
         let outcome = prove(&gappa, Some(&coq), statement, LIMIT_COQ).expect("tools that work");
         if let Outcome::Open(why) = outcome {
             panic!("{name}: {}, statement {}: {why}", statement.output, statement.number);

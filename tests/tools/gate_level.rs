@@ -5,6 +5,7 @@ use crate::common::Sure;
 use crate::common::cores::{Emitted, configuration, configuration_with};
 use crate::common::files::replaced;
 use crate::common::netlist::{self, POINTS, synthesise};
+use crate::common::sample::sampled;
 use crate::common::tools::{LIMIT, benched, tool};
 use glint::target::{ECP5, FAMILIES, Family};
 use glint::tools::Simulator;
@@ -97,7 +98,7 @@ fn netlists_of_cells_pass_and_wrong_gates_fail() {
     let case = configuration_with("configs/threshold.toml", "\n[package]\nmemories = \"case\"\n");
     let of = |path: &str| configuration(&format!("configs/{path}.toml"));
     let cores = [of("cosine_power_pipelined"), of("lyon_pipelined"), of("cosine_power"), case];
-    cores.par_iter().for_each(|core| {
+    sampled("netlists of cells", cores, 2).par_iter().for_each(|core| {
         let emitted = Emitted::new(core, POINTS, 1);
         let rtl = emitted.rtl();
         let netlist = cells::netlist(&tool("yosys"), &rtl, &emitted.name, LIMIT).sure();

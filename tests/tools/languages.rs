@@ -17,6 +17,7 @@ use serde_json::Value;
 use crate::common::cores::{Emitted, configuration_between, parsed};
 use crate::common::files::{json, read};
 use crate::common::json::Json;
+use crate::common::sample::sampled;
 use crate::common::tools::{benched, ran, yosys};
 
 /// Numbers with a sign, of more than 32 bits, and of one; both architectures; all wrappers.
@@ -31,7 +32,18 @@ const CORES: [(&str, &str); 5] = [
 const PACKAGE: &str = "[package]\nvhdl = true\nsystemverilog = true\nmemories = \"inline\"\n";
 
 fn cores() -> impl ParallelIterator<Item = (String, Core)> {
-    CORES.into_par_iter().map(|(name, interface)| {
+    of_cores(CORES.to_vec())
+}
+
+/// Returns two of the cores, which the commit draws.
+fn some_cores(what: &str) -> impl ParallelIterator<Item = (String, Core)> + use<> {
+    of_cores(sampled(what, CORES, 2))
+}
+
+fn of_cores(
+    cores: Vec<(&'static str, &'static str)>,
+) -> impl ParallelIterator<Item = (String, Core)> {
+    cores.into_par_iter().map(|(name, interface)| {
         let core = configuration_between(
             &format!("configs/{name}.toml"),
             &format!("{interface}{PACKAGE}"),
@@ -152,7 +164,7 @@ fn ports_of_components(text: &str) -> BTreeMap<String, Ports> {
 
 #[test]
 fn components_of_vhdl_have_the_ports_of_the_verilog() {
-    let compared: usize = cores()
+    let compared: usize = some_cores("components of VHDL")
         .map(|(name, core)| {
             let emitted = Emitted::new(&core, 1, 1);
             let dir = emitted.beside("rtl_out/");
@@ -164,7 +176,7 @@ fn components_of_vhdl_have_the_ports_of_the_verilog() {
             components.len()
         })
         .sum();
-    assert_eq!(compared, 12);
+    assert!(compared >= 2, "{compared}");
 }
 
 /// Returns the operands or the results of a core, with their formats.
@@ -195,7 +207,7 @@ fn transfer(core: &Core, numbers: &[(String, Format)]) -> usize {
 /// The conversions of the package, and the places of the numbers in its structures, under both simulators.
 #[test]
 fn types_of_systemverilog_hold_the_numbers() {
-    cores().for_each(|(name, core)| {
+    some_cores("types of SystemVerilog").for_each(|(name, core)| {
         let emitted = Emitted::new(&core, 1, 1);
         let dir = emitted.beside("rtl_out/");
         let values = [-1e30, -3.7, -2.0, -1.5, -0.25, 0.0, 1e-8, 0.75, 1.0, 1.999, 2.0, 300.5, 7e9];

@@ -17,10 +17,10 @@ use rayon::prelude::*;
 const SIMULATED: std::ops::Range<u64> = 0..400;
 
 /// The number of these that are drawn.
-const SIMULATED_DRAWN: usize = 120;
+const SIMULATED_DRAWN: usize = 40;
 
 /// Configurations of a function that are drawn: each takes a search of seconds.
-const FUNCTIONS_DRAWN: usize = 4;
+const FUNCTIONS_DRAWN: usize = 2;
 
 /// Returns every device, with how many of its configurations are drawn where others have `drawn`.
 fn devices(drawn: usize) -> Vec<(Device, usize)> {
@@ -36,7 +36,7 @@ const POINTS: u64 = 150;
 const EMITTED: std::ops::Range<u64> = 10_000..10_100;
 
 /// The number of these that are drawn.
-const EMITTED_DRAWN: usize = 16;
+const EMITTED_DRAWN: usize = 6;
 
 /// Points of the bench of each.
 const BENCH_POINTS: u64 = 20;

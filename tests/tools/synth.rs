@@ -1,4 +1,4 @@
-//! `glint synth`: figures that the tools' own tables bear out, and the record in `synthesis/`.
+//! `glint synth`: figures that the tools' own tables bear out, and the record in `records/synthesis/`.
 
 use std::env;
 use std::ffi::OsString;
@@ -18,7 +18,7 @@ use crate::common::sample::sampled;
 use crate::common::tools::LIMIT;
 
 /// Pairs of a configuration and a target whose areas are measured again.
-const PAIRS: usize = 4;
+const PAIRS: usize = 2;
 
 /// Runs of place and route that are made again.
 const RUNS: usize = 1;

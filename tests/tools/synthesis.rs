@@ -23,7 +23,7 @@ use glint::tools::synthesis::{self, Usage};
 use rayon::prelude::*;
 
 /// Pairs of a configuration and a family that are synthesised.
-const PAIRS: usize = 15;
+const PAIRS: usize = 5;
 
 /// Returns the prefixes of the names of the initial values of a family's block RAMs, before so many hexadecimal
 /// digits.

@@ -25,12 +25,12 @@ fn a_wheel_has_the_module_and_the_program() {
     put(dir.path().join("core.toml"), "device = \"cosine-power\"\n");
     run(&place.join("bin/glint"), &["generate", "core.toml"]);
     assert!(dir.path().join("rtl_out/core/core.v").is_file());
-    let tests = root().join("python/tests").display().to_string();
+    let tests = root().join("bindings/python/tests").display().to_string();
     let python = tool("python");
     let pytest = ["-m", "pytest", "-q", "-p", "no:cacheprovider"];
     run(python.path(), &[&pytest[..], &[&tests]].concat());
     // The oldest NumPy that the wheel promises; what needs Matplotlib, which wants a newer one, is left out.
     let oldest = root().join("target/tools/oldest-numpy");
-    let core = root().join("python/tests/test_core.py").display().to_string();
+    let core = root().join("bindings/python/tests/test_core.py").display().to_string();
     run_beside(&[&place, &oldest], python.path(), &[&pytest[..], &[&core]].concat());
 }

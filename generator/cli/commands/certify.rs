@@ -87,12 +87,14 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
         }
         let out = arguments.out.as_ref().map(|out| out.join(&one.core.config.name));
         let record = OwnFile::record(arguments.out.as_deref(), &one.core.config.name)?;
-        let certificate = |bound, certified| Certificate {
+        let certificate = |bound, certified, stated: &[Statement]| Certificate {
             glint: env!("CARGO_PKG_VERSION").to_owned(),
             config: input::label(&one.path),
             contract: one.core.contract_digest(),
             bound,
             certified,
+            statements: stated.len(),
+            scripts: certify::digest(stated),
         };
         let stated = if is_stated {
             statements(design, contract, limit).map(|stated| (stated, contract.bound().units))
@@ -108,7 +110,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
                     write(&directory, &one.path, &[], &[])?;
                 }
                 if let Some(record) = record {
-                    record.write_json(&certificate(contract.bound().units, false))?;
+                    record.write_json(&certificate(contract.bound().units, false, &[]))?;
                 }
                 if !output.json {
                     say!("{}: not certified: {step}", one.path);
@@ -153,7 +155,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
         let (empty, unknown) = (of(Subject::Nothing), of(Subject::Unknown));
         whole &= open.is_empty();
         if let Some(record) = record {
-            record.write_json(&certificate(bound, open.is_empty()))?;
+            record.write_json(&certificate(bound, open.is_empty(), &stated))?;
         }
         if !output.json {
             let by = if arguments.coq {

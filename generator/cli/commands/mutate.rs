@@ -272,7 +272,7 @@ fn print(scored: &Scored) {
             verilog.planted,
             verilog.lint,
             verilog.bench,
-            verilog.equivalent.len(),
+            verilog.equivalent,
             verilog.undecided.len(),
         );
         print_undecided(&verilog.undecided);

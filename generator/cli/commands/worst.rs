@@ -26,7 +26,7 @@ use glint_core::registry::Registry;
 Examples:
   glint worst my_core.toml
   glint worst my_core.toml --starts 1e5 --seed 7      longer, from other points
-  glint worst configs/rough.toml --out proofs/worst   a record; one of a larger error stays")]
+  glint worst configs/rough.toml --out records/proofs/worst   a record; one of a larger error stays")]
 pub struct Arguments {
     #[command(flatten)]
     configs: Configs,

@@ -141,3 +141,10 @@ fn formulas(contract: &dyn Contract) -> Result<Vec<Formula>, String> {
     });
     parsed.collect()
 }
+
+/// Returns the SHA-256 of all scripts of some statements, in their order.
+pub fn digest(statements: &[Statement]) -> String {
+    let scripts = statements.iter().flat_map(|statement| &statement.scripts);
+    let text: Vec<&str> = scripts.map(String::as_str).collect();
+    glint_core::package::digest(text.join("\n").as_bytes())
+}

@@ -93,12 +93,6 @@ pub struct Score {
     pub kinds: BTreeMap<FaultKind, Tally>,
     /// The ids of those that are undecided.
     pub undecided: Vec<String>,
-    /// The ids of those that the default test misses and stimulus that is directed at them does not.
-    pub directed: Vec<String>,
-    /// The ids of those that were proved equivalent.
-    pub equivalent: BTreeMap<How, Vec<String>>,
-    /// The ids of those that are caught, and not by the shipped bench.
-    pub missed: Vec<String>,
 }
 
 impl Score {
@@ -109,16 +103,8 @@ impl Score {
             let Found { fault, verdict, .. } = one;
             score.all.add(one);
             score.kinds.entry(fault.kind).or_default().add(one);
-            match verdict {
-                Verdict::Undecided => score.undecided.push(fault.id.clone()),
-                Verdict::Caught(Detector::Directed, _) => score.directed.push(fault.id.clone()),
-                Verdict::Caught(..) => {}
-                Verdict::Equivalent(how) => {
-                    score.equivalent.entry(*how).or_default().push(fault.id.clone());
-                }
-            }
-            if one.is_missed() {
-                score.missed.push(fault.id.clone());
+            if *verdict == Verdict::Undecided {
+                score.undecided.push(fault.id.clone());
             }
         }
         score
@@ -144,8 +130,8 @@ pub struct TextScore {
     pub lint: usize,
     /// How many of the others a bench notices.
     pub bench: usize,
-    /// The ids of those that are proved equivalent.
-    pub equivalent: Vec<String>,
+    /// How many are proved equivalent.
+    pub equivalent: usize,
     /// The ids of the others.
     pub undecided: Vec<String>,
     /// The shipped bench's share of the faults that it or a longer one notices.
@@ -164,7 +150,7 @@ impl TextScore {
             match found.verdict {
                 TextVerdict::Lint => score.lint += 1,
                 TextVerdict::Bench => score.bench += 1,
-                TextVerdict::Equivalent => score.equivalent.push(id()),
+                TextVerdict::Equivalent => score.equivalent += 1,
                 TextVerdict::Undecided => score.undecided.push(id()),
             }
             match found.shipped {

@@ -10,7 +10,7 @@ use super::{Figures, Target};
 use glint_base::input;
 
 /// Where the records of this repository stand.
-pub const DIRECTORY: &str = "synthesis";
+pub const DIRECTORY: &str = "records/synthesis";
 
 /// A configuration with all that was measured of it, `<name>.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -99,7 +99,7 @@ fn every_device_is_there_and_configurations_as_they_are() {
     assert_eq!((bits("cosine-power"), bits("core.toml")), (json!([16, 10]), json!([16, 8])));
 }
 
-/// The record of a device in `synthesis/`; frequency over clocks a point, eight of `cosine-power`, are points a second.
+/// The record of a device in `records/synthesis/`; frequency over clocks a point, eight of `cosine-power`, are points a second.
 #[test]
 fn figures_of_a_record_stand_beside_its_device() {
     let directory = root().join("synthesis").display().to_string();

@@ -43,6 +43,12 @@ pub struct Certificate {
     pub bound: f64,
     /// Whether Gappa accepted all statements.
     pub certified: bool,
+    /// The number of statements.
+    #[serde(default)]
+    pub statements: usize,
+    /// SHA-256 of the statements' scripts, which `glint certify --out` writes.
+    #[serde(default)]
+    pub scripts: String,
 }
 
 impl Backing {

@@ -25,7 +25,7 @@ pub use record::Record;
 use glint_golden::{Contract, Sweep};
 
 /// Where records are by default.
-pub const PROOFS: &str = "proofs";
+pub const PROOFS: &str = "records/proofs";
 
 /// The rounding of f64 itself, in units.
 const F64: f64 = 1e-6;
