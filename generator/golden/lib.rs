@@ -3,8 +3,9 @@
 //!
 //! A golden model uses [`glint_base::fixed`] and [`glint_config`] alone. It never sees the description,
 //! the netlist or the microcode, and it computes its own tables; that is what makes the comparison
-//! with the simulated hardware worth something. Of `function` the tables are found once, for both
-//! ([`glint_keys::function`]): there it is the proof at every operand that does not trust them.
+//! with the simulated hardware worth something. Three devices are exceptions: description and golden
+//! model of `function`, `blinn` and `gauss` read the same polynomials ([`glint_keys::function`],
+//! [`glint_keys::decay`]). What vouches for these is the comparison of every control operand with the formula.
 
 pub mod blinn;
 pub mod contract;

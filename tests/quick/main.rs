@@ -1,4 +1,4 @@
-//! The quick tests: everything that needs no tool but Glint, under two minutes on two cores.
+//! The quick tests: everything that needs no tool but Glint; CONTRIBUTING.md has its time.
 //!
 //! Tests with simulators, synthesis, provers or Python are in `tests/tools`.
 

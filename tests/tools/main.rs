@@ -7,6 +7,7 @@ mod common;
 
 mod baseline;
 mod bench_fails;
+mod book;
 mod builder_fuzz;
 mod certificate_check;
 mod certify;
