@@ -1,9 +1,8 @@
-//! Makes keys that a file does not name follow from those that it does.
+//! Adjusts the defaults of keys that the user left out.
 //!
-//! Such a key has its default. Where the device refuses that beside the keys that the file names, it has the nearest value with
-//! which the device accepts the configuration: `exponent.bits = 8` alone brings `domain.exponent_max` down to 255.
-//! Only widths and counts follow, integers and lists of them; what changes the meaning of a device (words and flags) and what
-//! every device shares never does.
+//! If the user's values and a default are invalid together, the default moves to the nearest valid value. For example,
+//! `exponent.bits = 8` lowers the default of `domain.exponent_max` from 1000 to 255. Widths and counts are adjusted; choices, flags
+//! and the keys that every device shares never are.
 
 use std::collections::BTreeSet;
 
@@ -11,8 +10,8 @@ use super::problems::Problems;
 use super::schema::{Key, Kind, Schema};
 use super::values::{Config, Value};
 
-/// Returns the configuration with the keys that are not in `given` moved, key after key, each so that as many conditions as possible
-/// are met. What then is left to complain of, only the keys in `given` can mend.
+/// Returns the configuration with adjusted defaults: every key outside `given` moves, one after the other, to the value that meets
+/// the most conditions of the device. Only a change of the keys in `given` can mend a condition that still fails.
 pub fn follow(schema: &Schema, config: &Config, given: &BTreeSet<&str>) -> Config {
     let mut config = config.clone();
     let mut left = complaints(schema, &config);

@@ -319,7 +319,7 @@ impl Parser<'_> {
         self.call(from, &token)
     }
 
-    /// Returns a function with its parentheses, of which the first is read.
+    /// Parses the arguments of a call; the opening parenthesis has been consumed.
     fn call(&mut self, from: usize, name: &str) -> Result<Formula, Fault> {
         if name == "if" {
             let comparison = self.comparison()?;

@@ -39,7 +39,8 @@ fn every_link_of_the_book_leads_somewhere() {
     let files = files_below(&book).expect("a book");
     let is_page = |path: &&PathBuf| path.extension().is_some_and(|ending| ending == "html");
     // The page to print has all others in one, and the one for wrong addresses knows no place.
-    let is_whole = |path: &&PathBuf| ["print.html", "404.html"].iter().any(|name| path.ends_with(name));
+    let is_whole =
+        |path: &&PathBuf| ["print.html", "404.html"].iter().any(|name| path.ends_with(name));
     let pages: BTreeMap<&PathBuf, String> = files
         .iter()
         .filter(is_page)
@@ -54,7 +55,8 @@ fn every_link_of_the_book_leads_somewhere() {
                 continue;
             }
             let (file, anchor) = link.split_once('#').unwrap_or((&link, ""));
-            let target = if file.is_empty() { (*path).clone() } else { resolved(&place.join(file)) };
+            let target =
+                if file.is_empty() { (*path).clone() } else { resolved(&place.join(file)) };
             let shown = || format!("`{link}` in {}", path.display());
             match target.strip_prefix(&book) {
                 Ok(inside) if target.is_file() => {

@@ -1,10 +1,9 @@
-//! Climbs to the largest error of an output that can be found, in place of drawing points.
+//! Searches for the operands with the largest output error by hill climbing.
 //!
-//! Random points seldom meet what rounds unluckily in every step. From points that the stimulus draws each operand, and each
-//! pair of those with a fraction, is moved by powers of two as long as the error grows: of a highlight first that of `f`,
-//! and then that of an output, with its worst colour. Around the highest places of f all values of each pair of operands are
-//! looked at, for rounding makes the last steps too rough to climb. What is found is a lower limit of the largest error, and
-//! no proof.
+//! Random points rarely hit an input at which every rounding errs in the same direction. The search starts from random points and
+//! changes one operand, or a pair of operands with fraction bits, by powers of two while the error grows. For a highlight it first
+//! climbs the error of `f`, and then that of an output, with the worst colour. Around the highest places it tries every value of each
+//! pair of operands, since rounding makes the last steps too rough to climb. Its result is a lower bound of the true maximum, not a proof.
 
 use rayon::prelude::*;
 

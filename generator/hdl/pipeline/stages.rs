@@ -1,4 +1,4 @@
-//! Builds the pipelined design of a schedule: the logic of every stage, and registers between the stages.
+//! Builds the pipelined design: places every node of the graph in its stage and adds the registers between stages.
 
 use std::collections::{BTreeSet, HashMap, HashSet};
 
@@ -13,7 +13,7 @@ use crate::netlist::{
 };
 use glint_base::fixed::Format;
 
-/// Returns the design of a schedule.
+/// Builds the design of a schedule: the logic of every stage, with the registers between stages.
 pub fn assemble(
     sequential: &Design,
     unrolled: &Unrolled,

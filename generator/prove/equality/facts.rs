@@ -7,7 +7,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::carry_out::Product;
+use super::symbolic::Product;
 use super::term::{Id, Term, Terms};
 use glint_base::fixed::{MAX_WIDTH, mask};
 use glint_base::interval::{self, Interval};

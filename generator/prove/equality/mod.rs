@@ -1,24 +1,22 @@
-//! Proves with an SMT solver that a pipeline computes what its sequential core computes, for every point.
+//! Proves with an SMT solver that a pipeline and its sequential core compute the same outputs for every point.
 //!
-//! Both netlists are carried out clock by clock on terms of bit-vectors, by the same few rules and without
-//! what made the pipeline of the core (`hdl/pipeline`): the core from the clock that takes `start`, its microprogram running
-//! because the control ROM's words are constants; the pipeline with one point on its way, and anything before and behind it.
-//! Products and words of memories are functions that the solver knows nothing of, the same in both, but for
-//! instances of laws of integers (`facts`). Each checkpoint is a lemma on the way: a value of a stage is the register
-//! of the core, and stands in its place once that is proved.
+//! Both netlists are executed symbolically, one clock at a time. The core runs its microprogram from the clock that takes `start`; the
+//! pipeline carries one point, with anything before and behind it. Multiplications and table reads are uninterpreted functions with a
+//! few arithmetic lemmas (`facts`). Each checkpoint is a lemma on the way: once a value of a stage is proved equal to the core's register,
+//! it stands for that register. The code shares nothing with `hdl/pipeline`, which built the pipeline.
 
-mod carry_out;
 mod cells;
 mod facts;
-mod lowest;
 mod module;
+mod random_precheck;
 mod solver;
+mod split_products;
+mod symbolic;
 mod term;
 #[cfg(test)]
 mod tests;
 mod text;
-mod trial;
-mod wholes;
+mod truncated_products;
 
 use std::collections::HashMap;
 use std::fmt;
@@ -28,14 +26,14 @@ use anyhow::{Context, Result, bail, ensure};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 
-use carry_out::{Execution, Product, State};
 use glint_base::fixed::mask;
 use glint_rtl::netlist::{Checkpoint, Design, NetId, Role};
 use glint_tools::Tool;
+use random_precheck::Pair;
 use solver::{Outcome, Solver};
+use split_products::Candidates;
+use symbolic::{Execution, Product, State};
 use term::{Id, Term, Terms};
-use trial::Pair;
-use wholes::Candidates;
 
 pub use text::{TextProof, TextVerdict, compare_text};
 

@@ -7,8 +7,8 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, Result, bail};
 
 use super::Open;
-use super::carry_out::Product;
 use super::facts;
+use super::symbolic::Product;
 use super::term::{ADDRESS, Id, Term, Terms};
 use glint_tools::transient::Directory;
 use glint_tools::{LimitReached, Tool};

@@ -3,8 +3,8 @@
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 
-use super::carry_out::Product;
 use super::facts;
+use super::symbolic::Product;
 use super::term::{ADDRESS, Id, Term, Terms};
 use glint_base::fixed::mask;
 

@@ -13,12 +13,12 @@ use anyhow::{Context, Result, bail, ensure};
 use serde_json::Value;
 
 use super::Open;
-use super::carry_out::{Execution, Product};
 use super::cells::Values;
 use super::module::{Held, Memory, Module, Read};
 use super::solver::{Outcome, Solver};
+use super::split_products::samples;
+use super::symbolic::{Execution, Product};
 use super::term::{Id, Term, Terms};
-use super::wholes::samples;
 use glint_base::fixed::mask;
 use glint_rtl::netlist::{Design, Role};
 use glint_tools::Tool;

@@ -1,4 +1,4 @@
-//! Lists the faults of a cell as a whole: another operator, operands or inputs that change places, one input always.
+//! Lists the faults that replace a whole cell: another operator, swapped operands or mux inputs, or a mux stuck at one input.
 
 use super::kind::FaultKind;
 use glint_rtl::netlist::{Design, Driver, NetId, Op};

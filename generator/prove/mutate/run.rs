@@ -5,14 +5,14 @@ use std::sync::OnceLock;
 use anyhow::{Context, Result};
 use rayon::prelude::*;
 
-use super::beside::PointSearch;
 use super::coverage::{Coverage, Operands, Place};
 use super::fault::{Fault, Site};
-use super::held::{self, Tried};
+use super::pinned_operands::{self, Tried};
 use super::plant;
 use super::proof::Prover;
 use super::shipped::Shipped;
 use super::verdict::{Detector, Difference, Found, How, Verdict};
+use super::witness_search::PointSearch;
 use glint_core::core::{self, Core};
 use glint_core::cosim::{Lockstep, Mismatch};
 use glint_golden::Model;
@@ -114,7 +114,8 @@ impl Bench<'_> {
         let Some(beside) = &self.beside else {
             return Ok(Verdict::Undecided);
         };
-        let found = beside.search(mutant, |held| held::alone(self.core, mutant, held))?;
+        let found =
+            beside.search(mutant, |held| pinned_operands::alone(self.core, mutant, held))?;
         Ok(found.map_or(Verdict::Undecided, |it| Verdict::Caught(Detector::Directed, it)))
     }
 
@@ -143,9 +144,9 @@ impl Bench<'_> {
         let directed = |difference| Verdict::Caught(Detector::Directed, difference);
         let mut all_tried = true;
         for &(word, _) in words {
-            let addressing = held::addressing(self.core, rom, word);
+            let addressing = pinned_operands::addressing(self.core, rom, word);
             for held in addressing.iter().cloned().chain(self.readings(rom, word)?) {
-                if let Some(difference) = held::drawn(self.core, mutant, held)? {
+                if let Some(difference) = pinned_operands::drawn(self.core, mutant, held)? {
                     return Ok(directed(difference));
                 }
             }
@@ -153,14 +154,21 @@ impl Bench<'_> {
                 return Ok(directed(Difference { held: Vec::new(), mismatch }));
             }
             let tried = match addressing {
-                Some(held) => held::all(self.core, mutant, held, held::MOST_BITS)?,
-                None => held::all(self.core, mutant, Operands::new(), held::NARROW)?,
+                Some(held) => {
+                    pinned_operands::all(self.core, mutant, held, pinned_operands::MOST_BITS)?
+                }
+                None => pinned_operands::all(
+                    self.core,
+                    mutant,
+                    Operands::new(),
+                    pinned_operands::NARROW,
+                )?,
             };
             match tried {
                 Tried::All => {}
                 Tried::Nothing => all_tried = false,
                 Tried::Differs(held) => {
-                    let shown = held::drawn(self.core, mutant, held)?;
+                    let shown = pinned_operands::drawn(self.core, mutant, held)?;
                     return Ok(shown.map_or(Verdict::Undecided, directed));
                 }
             }

@@ -8,8 +8,8 @@ use anyhow::Result;
 use super::Comparison;
 use super::facts::{extended, shifted};
 use super::solver::Outcome;
+use super::split_products::agree;
 use super::term::{Id, Term};
-use super::wholes::agree;
 use glint_base::fixed::MAX_WIDTH;
 
 /// How a factor is made of one of the pipeline's: the same, or its lowest bits, so many.
