@@ -102,7 +102,7 @@ fn every_device_is_there_and_configurations_as_they_are() {
 /// The record of a device in `records/synthesis/`; frequency over clocks a point, eight of `cosine-power`, are points a second.
 #[test]
 fn figures_of_a_record_stand_beside_its_device() {
-    let directory = root().join("synthesis").display().to_string();
+    let directory = root().join("records/synthesis").display().to_string();
     let record = json(format!("{directory}/cosine_power.json"));
     let ecp5 = record["targets"].of("target", "ecp5");
     let value = compared(&["core.toml", "--figures", &directory]);
