@@ -10,7 +10,7 @@ import matplotlib
 
 matplotlib.use("Agg")
 
-NOTEBOOK = Path(__file__).parents[2] / "examples/notebook.ipynb"
+NOTEBOOK = Path(__file__).parents[3] / "examples/notebook.ipynb"
 
 
 def shown(outputs):
