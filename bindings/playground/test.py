@@ -126,6 +126,49 @@ def every_choice_has_its_views(page):
         assert page.locator("#schedule tr").count() > 2 and page.locator("#facts dd").count() == 6
 
 
+def old_results_are_dimmed(page):
+    """From a change on, what belongs to the configuration before it is dimmed until its own results are there."""
+    page.locator("#tab-picture").click()
+    page.locator("#toml").fill('device = "lyon"\n')
+    parts = ["facts", "schedule", "diagram", "sphere", "charts"]
+    stale = "ids => ids.map(id => 'stale' in document.getElementById(id).dataset)"
+    assert page.evaluate(stale, parts) == [True] * len(parts)
+    for part in parts:
+        expect(page.locator(f"#{part}")).not_to_have_attribute("data-stale", "", timeout=LIMIT)
+    page.locator("#toml").fill('device = "lyon"\npower = 3\n')
+    expect(page.locator("#problems li")).to_have_count(1, timeout=LIMIT)
+    assert page.evaluate(stale, parts) == [True] * len(parts)
+    # The message is at the field, too.
+    expect(page.locator(".key:has([id='key-power']) .wrong")).to_contain_text("`power`")
+
+
+def a_download_can_be_cancelled(page):
+    page.locator("#toml").fill('device = "shading"\nlights = 2\n')
+    settled(page)
+    page.locator("#download").click()
+    page.locator("#cancel").click()
+    expect(page.locator("#said")).to_contain_text("cancelled")
+    page.locator("#download").click()
+    page.locator("#toml").fill('device = "lyon"\n')
+    expect(page.locator("#said")).to_contain_text("because the configuration changed")
+    settled(page)
+    expect(page.locator("#facts")).not_to_have_attribute("data-stale", "", timeout=LIMIT)
+
+
+def a_drawing_enlarges_by_keyboard(page):
+    page.locator("#tab-diagram").click()
+    page.locator("#diagram button").press("Enter")
+    expect(page.locator("#diagram img")).to_have_class("whole")
+    page.locator("#tab-picture").click()
+
+
+def a_slider_and_the_picture_are_seen_together(page):
+    page.locator("[id='key-cosine.fraction']").scroll_into_view_if_needed()
+    boxes = [page.locator(it).bounding_box() for it in ("[id='key-cosine.fraction']", "#results")]
+    assert all(0 <= box["y"] < 900 for box in boxes), boxes
+    assert boxes[0]["y"] >= boxes[1]["y"] + boxes[1]["height"], boxes
+
+
 def a_link_carries_the_configuration(page, address):
     page.locator("#toml").fill('device = "rough"\narchitecture = "pipelined"\n[pipeline]\ninterval = 3\n')
     settled(page)
@@ -164,10 +207,15 @@ def main():
             files_are_those_of_the_native_program(page, glint, text)
         a_wrong_key_gets_the_message_of_the_command_line(page, glint)
         every_choice_has_its_views(page)
+        old_results_are_dimmed(page)
+        a_download_can_be_cancelled(page)
+        a_drawing_enlarges_by_keyboard(page)
         a_link_carries_the_configuration(page, address)
         for width in (390, 1920):
             page.set_viewport_size({"width": width, "height": 900})
             assert page.evaluate("document.documentElement.scrollWidth") <= width
+            if width == 390:
+                a_slider_and_the_picture_are_seen_together(page)
         # Without a server.
         page.goto(whole.as_uri())
         expect(page.locator("#sphere-image")).to_have_attribute("src", re.compile("^data:image/png"), timeout=LIMIT)

@@ -10,12 +10,34 @@ const element = (name, properties = {}, ...children) => {
   return made;
 };
 
-// Requests to the worker. Of those that wait, one of a kind is left: the last.
-// Of the page that is one file the worker is text in it, which browsers take as a classic script alone.
-const own = globalThis.GLINT_WORKER;
-const worker = new Worker(own ?? new URL("worker.js", import.meta.url), { type: own ? "classic" : "module" });
+// Requests to the worker. Requests of one kind replace each other while they wait: only the last is sent.
 const waiting = new Map();
+// The request that the worker computes, as { kind, then }.
 let running = null;
+let worker = startedWorker();
+
+// In the page that is one file the worker is text in the page, which browsers only start as a classic script.
+function startedWorker() {
+  const own = globalThis.GLINT_WORKER;
+  const started = new Worker(own ?? new URL("worker.js", import.meta.url), { type: own ? "classic" : "module" });
+  started.onmessage = ({ data: { answer, failure } }) => {
+    const { then } = running;
+    running = null;
+    if (failure) showProblems([{ message: `this cannot be computed here: ${failure}` }]);
+    else then(answer);
+    next();
+  };
+  started.onerror = (event) => showProblems([{ message: `the page cannot start its worker: ${event.message ?? "no answer"}` }]);
+  return started;
+}
+
+// Gives up the request that the worker computes, and goes on with those that wait.
+function cancelRunning() {
+  worker.terminate();
+  running = null;
+  worker = startedWorker();
+  next();
+}
 
 function ask(request, then) {
   waiting.set(request.ask, { request, then });
@@ -26,18 +48,9 @@ function next() {
   if (running || waiting.size === 0) return;
   const [kind, { request, then }] = waiting.entries().next().value;
   waiting.delete(kind);
-  running = then;
+  running = { kind, then };
   worker.postMessage({ number: 0, request });
 }
-
-worker.onmessage = ({ data: { answer, failure } }) => {
-  const then = running;
-  running = null;
-  if (failure) showProblems([{ message: `this cannot be computed here: ${failure}` }]);
-  else then(answer);
-  next();
-};
-worker.onerror = (event) => showProblems([{ message: `the page cannot start its worker: ${event.message ?? "no answer"}` }]);
 
 // --- Configuration -----------------------------------------------------------------------------
 
@@ -85,8 +98,10 @@ function showForm() {
   const is = (key, name) => key.name === name || key.name.startsWith(`${name}.`);
   if ($("form").dataset.signature !== signature) {
     $("form").dataset.signature = signature;
-    const row = (key) =>
-      element("div", { className: "key", title: key.doc }, element("label", { htmlFor: `key-${key.name}`, textContent: key.name }), element("div", {}, ...control(key)));
+    const row = (key) => {
+      const label = element("label", { htmlFor: `key-${key.name}`, textContent: key.name });
+      return element("div", { className: "key" }, label, element("div", {}, ...control(key)), element("small", { className: "quiet", textContent: key.doc }));
+    };
     const [more, first] = [true, false].map((wanted) => applied.filter((key) => MORE.some((it) => is(key, it)) === wanted));
     $("form").replaceChildren(...first.map(row));
     $("form-more").replaceChildren(...more.map(row));
@@ -127,11 +142,39 @@ function showProblems(problems) {
     return element("li", {}, go, ": ", element("code", { textContent: text }));
   };
   $("problems").replaceChildren(...problems.map(item));
+  showAtFields(problems);
   $("toml").setAttribute("aria-invalid", String(problems.length > 0));
+}
+
+// Shows each problem of a key below the field of the key too.
+function showAtFields(problems) {
+  for (const old of document.querySelectorAll(".key .wrong")) old.remove();
+  for (const invalid of document.querySelectorAll(".key [aria-invalid]")) invalid.removeAttribute("aria-invalid");
+  for (const { key, message, remedy } of problems) {
+    const input = key && $(`key-${key}`);
+    if (!input) continue;
+    input.setAttribute("aria-invalid", "true");
+    input.closest(".key").append(element("p", { className: "wrong", textContent: remedy ? `${message}; ${remedy}` : message }));
+    if (input.closest("details")) input.closest("details").open = true;
+  }
+}
+
+// The elements that show results. Each is dimmed from a change of the configuration until its results are shown.
+const SHOWN = ["summary", "facts", "schedule", "diagram", "sphere", "charts", "waves", "source"];
+
+function dim(ids) {
+  for (const id of ids) $(id).dataset.stale = "";
+}
+
+// Shows an element undimmed, unless its results belong to another configuration than that of the form.
+function brighten(id, text) {
+  if (text === $("toml").value) delete $(id).dataset.stale;
 }
 
 function refresh() {
   const text = $("toml").value;
+  dim(SHOWN);
+  cancelDownload("The download was cancelled, because the configuration changed.");
   $("results").setAttribute("aria-busy", "true");
   const hash = `#${encoded(text)}`;
   if (location.hash !== hash) history.replaceState(null, "", hash);
@@ -157,6 +200,7 @@ function show(text) {
   showFacts();
   showSchedule();
   $("diagram").replaceChildren(drawing(core.diagram, `Block diagram of ${core.name}`));
+  for (const id of ["summary", "facts", "schedule", "diagram"]) brighten(id, text);
   if (!$("files").hidden) showFiles(text);
   if (!$("waves").hidden) showWaves(text);
   $("exponent-row").hidden = !core.draws || !core.exponents;
@@ -167,22 +211,24 @@ function show(text) {
   }
   $("sphere").hidden = !core.draws;
   if (core.draws) showPicture(text);
-  ask({ ask: "charts", toml: text }, showCharts);
+  ask({ ask: "charts", toml: text }, (answer) => showCharts(answer, text));
 }
 
-// A drawing, fitted to the page until it is clicked.
+// A drawing, fitted to the page until its button is pressed.
 function drawing(svg, alt) {
   const address = URL.createObjectURL(new Blob([svg], { type: "image/svg+xml" }));
   const image = element("img", { src: address, alt });
-  image.onclick = () => image.classList.toggle("whole");
   image.onload = () => URL.revokeObjectURL(address);
-  return image;
+  const button = element("button", { type: "button", className: "drawing", title: "Enlarge, or fit to the page" }, image);
+  button.onclick = () => button.setAttribute("aria-pressed", String(image.classList.toggle("whole")));
+  return button;
 }
 
 function showWaves(text) {
   ask({ ask: "waves", toml: text }, ({ ok, problems, svg, described }) => {
     if (!ok) return showProblems(problems);
     $("waves").replaceChildren(drawing(svg, described), element("p", { className: "quiet", textContent: described }));
+    brighten("waves", text);
   });
 }
 
@@ -192,12 +238,19 @@ function showPicture(text) {
     $("sphere-image").src = `data:image/png;base64,${answer.png}`;
     $("sphere-caption").textContent =
       `The specular term of every pixel is a result of the core, here with n = ${answer.exponent}; the largest error against its own formula is ${answer.units.toFixed(3)} of 255.`;
+    brighten("sphere", text);
   });
+}
+
+// A bound with three places, rounded up, so that it stays one.
+function roundedUp(bound) {
+  const nearest = bound.toFixed(3);
+  return Number(nearest) < bound ? (bound + 0.001).toFixed(3) : nearest;
 }
 
 function showFacts() {
   const facts = [
-    [core.bound.proved ? "Error, proved bound" : "Error, stated bound", `${core.bound.units.toFixed(3)} units`],
+    [core.bound.proved ? "Error, proved bound" : "Error, stated bound", `${roundedUp(core.bound.units)} units`],
     ["Latency", core.latency === null ? "by the operands" : `${core.latency} clocks`],
     ["A point every", core.interval === null ? "line" : core.interval === 1 ? "clock" : `${core.interval} clocks`],
     ...core.estimates.map(({ target, luts, dsps, mhz }) => [`${target}, estimated`, `${luts} LUT, ${dsps} DSP, ${mhz.toFixed(0)} MHz`]),
@@ -223,7 +276,10 @@ let files = { of: null, all: [], whole: false };
 function withFiles(text, whole, then) {
   if (files.of === text && (files.whole || !whole)) return then(files.all);
   ask({ ask: whole ? "files" : "sources", toml: text }, (answer) => {
-    if (!answer.ok) return showProblems(answer.problems);
+    if (!answer.ok) {
+      showDownload("");
+      return showProblems(answer.problems);
+    }
     files = { of: text, all: answer.files, whole };
     then(files.all);
   });
@@ -237,11 +293,12 @@ function showFiles(text) {
     const wanted = all.find(({ name }) => name === before) ?? all.find(({ name }) => name.endsWith(".v")) ?? all[0];
     $("file").value = wanted.name;
     $("source").textContent = wanted.text;
+    brighten("source", text);
     $("files-note").hidden = files.whole;
   });
 }
 
-function showCharts(answer) {
+function showCharts(answer, text) {
   if (!answer.ok) return showProblems(answer.problems);
   const legend = (series) =>
     element("p", { className: "legend" }, ...series.map((name, at) => {
@@ -256,6 +313,7 @@ function showCharts(answer) {
     return figure;
   };
   $("charts").replaceChildren(...answer.charts.map(chart));
+  brighten("charts", text);
 }
 
 // --- Links, files, tabs ------------------------------------------------------------------------
@@ -279,14 +337,31 @@ $("link").onclick = async () => {
   }
 };
 
+// Says how the download ended; while `isRunning` it can be cancelled.
+function showDownload(said, isRunning = false) {
+  $("said").textContent = said;
+  $("cancel").hidden = !isRunning;
+  $("download").disabled = isRunning;
+}
+
+// Gives up a download that waits or runs, if there is one, and says why.
+function cancelDownload(why) {
+  const isWaiting = waiting.delete("files");
+  const isRunning = running?.kind === "files";
+  if (isRunning) cancelRunning();
+  if (isWaiting || isRunning) showDownload(why);
+}
+
+$("cancel").onclick = () => cancelDownload("The download was cancelled.");
+
 $("download").onclick = () => {
-  $("said").textContent = "simulating the bench …";
+  showDownload("Choosing and simulating the points of the test bench …", true);
   const text = $("toml").value;
   withFiles(text, true, (all) => {
     const address = URL.createObjectURL(zip([{ name: "core.toml", text }, ...all]));
     element("a", { href: address, download: `${core.name}.zip` }).click();
     URL.revokeObjectURL(address);
-    $("said").textContent = `${all.length + 1} files`;
+    showDownload(`${all.length + 1} files`);
   });
 };
 
@@ -316,6 +391,7 @@ $("file").onchange = () => showFiles(files.of);
 $("exponent").oninput = (event) => {
   exponent = Number(event.target.value);
   $("exponent-value").textContent = exponent;
+  dim(["sphere"]);
   showPicture($("toml").value);
 };
 $("device").onchange = ({ target: { value } }) => {
