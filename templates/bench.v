@@ -7,6 +7,9 @@
 //   $ verilator --binary --timing --top ${ name }$ ${ module }$*.v
 //   $ obj_dir/V${ name }$
 // Inputs change on the falling edge of the clock; outputs are compared just before the rising edge.
+<%- if word_stride > 1 %>
+// To keep the bench short, its computations notice faults in one of ${ word_stride }$ words of the memories.
+<%- endif %>
 //
 // Generated files belong to their user, without conditions.
 

@@ -47,7 +47,8 @@ struct Cli {
 const EXAMPLES: &str = "\
 Examples:
   glint                                         generate and check everything in configs/
-  glint new rough > my_core.toml                a commented configuration to edit
+  glint new rough > my_core.toml                a configuration to edit
+  glint new rsqrt --pipelined --stream --clock 100 > rsqrt.toml
   glint generate my_core.toml --out build       Verilog, ROMs, manifest and bench into build/
   glint cosim my_core.toml --points 1000000     golden model against hardware, every clock
   glint cosim my_core.toml --simulator icarus   the emitted Verilog in Icarus Verilog
@@ -57,6 +58,7 @@ Examples:
   glint setup my_core.toml gamma=8 exponent=20  operands from angles or vectors
   glint describe my_core.toml                   ports, blocks, microprogram, accuracy: a page
   glint datasheet my_core.toml                  the same as a product guide in HTML
+  glint estimate my_core.toml                   area and clock on each FPGA family, without tools
   glint synth my_core.toml                      area, frequency and critical path
   glint compare --exponent 100                  all devices side by side
   glint verify my_core.toml                     every proof and test there is, and a page about it
@@ -84,7 +86,7 @@ macro_rules! commands {
 
 commands! {
     Generate generate; Cosim cosim; Merge merge; Worst worst; Mutate mutate; Eval eval; Setup setup;
-    Describe describe; Schedule schedule; Synth synth; Tune tune; Certify certify;
+    Describe describe; Schedule schedule; Estimate estimate; Synth synth; Tune tune; Certify certify;
     Datasheet datasheet; Compare compare; Render render; Verify verify;
     List list; New new; Schema schema; Explain explain;
 }

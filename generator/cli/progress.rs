@@ -21,7 +21,10 @@ const BESIDE_WIDE: usize = 76;
 /// Where nothing says how wide the terminal is.
 const USUAL: u16 = 80;
 
-/// Between two lines about progress where there is no terminal, as in a log.
+/// The first line about progress where there is no terminal, as in a log, comes after this time.
+const FIRST: Duration = Duration::from_secs(10);
+
+/// Between two such lines.
 const EVERY: Duration = Duration::from_secs(60);
 
 /// Returns a bar over `total` steps; hidden when output is for scripts or on request, and a line a minute without a terminal.
@@ -42,10 +45,10 @@ pub fn bar(output: Output, total: u64, what: &str) -> ProgressBar {
     bar
 }
 
-/// Writes a line a minute about a bar that nothing draws, until it is finished or dropped.
+/// Writes a line after ten seconds and then a line a minute about a bar that nothing draws, until it is finished or dropped.
 fn told(bar: &WeakProgressBar, what: &str) {
-    loop {
-        std::thread::sleep(EVERY);
+    for wait in std::iter::once(FIRST).chain(std::iter::repeat(EVERY)) {
+        std::thread::sleep(wait);
         let Some(bar) = bar.upgrade().filter(|bar| !bar.is_finished()) else { return };
         let (done, all) = (bar.position(), bar.length().unwrap_or(0));
         let left = remaining(bar.elapsed(), done, all);

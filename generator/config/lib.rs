@@ -2,7 +2,7 @@
 //!
 //! A device states its keys as a [`Schema`]; nothing here knows a device. [`read()`] and [`parse()`]
 //! turn a file into a [`Config`], whose values need no further checks, or into [`Problems`], each
-//! with its location and a remedy. [`commented`] writes the file to start from, and [`sample()`] draws
+//! with its location and a remedy. [`brief`] and [`commented`] write files to start from, and [`sample()`] draws
 //! valid configurations for tests.
 
 mod audit;
@@ -35,7 +35,7 @@ pub use schema::{Key, Kind, Schema};
 pub use shared::{Shared, shared_keys};
 pub use text_pattern::TextPattern;
 pub use values::{Config, Value};
-pub use write::{commented, commented_values};
+pub use write::{brief, commented};
 
 /// The keys of every device that a [`Config`] holds in fields of its own, with what they govern.
 const COMMON: [(&str, &str); 3] = [

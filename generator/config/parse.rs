@@ -271,7 +271,7 @@ impl Reader<'_> {
         self.problems.locate(key.name, span.clone());
         let found = match (&key.kind, value.get_ref()) {
             (Kind::Text(TextPattern::Samples), DeValue::String(path))
-                if path.is_empty() || is_path_of_points(path) =>
+                if is_path_of_points(path) =>
             {
                 let points = points::read(&self.directory.join(&**path));
                 points.map(Value::Text).map_err(|(message, remedy)| {

@@ -1,27 +1,81 @@
 //! Writes configurations as TOML text.
 
-use super::schema::{Key, Schema};
+use super::schema::{Key, Kind, Schema};
 use super::shared::shared_keys;
 use super::values::Config;
 
 /// The widest line of a comment.
 const WIDTH: usize = 90;
 
-/// Returns the file that `glint new` writes: every key with its default, what it governs and what it
-/// accepts. It reads back as the defaults; keys that do not apply to them are commented out.
-pub fn commented(schema: &Schema, name: &str) -> String {
-    commented_values(schema, &Config::defaults(schema, name))
+/// The width that a value of [`brief`] is padded to, so that the remarks begin in one column.
+const REMARK_COLUMN: usize = 38;
+
+/// The most letters that a remark has.
+const REMARK_WIDTH: usize = 80;
+
+/// Returns the short file that `glint new` prints: one line for each key of the device, with a remark.
+///
+/// The keys in `given` have values. All others are comments that show their values, so that a default still adjusts to the keys that
+/// a user sets (see [`super::parse()`]). Keys that do not apply are left out, and so are the keys that every device shares unless they
+/// are given. `glint new DEVICE --all` prints [`commented`].
+pub fn brief(schema: &Schema, config: &Config, given: &[String]) -> String {
+    let mut text = String::new();
+    for (key, value) in common(config) {
+        text += &match key {
+            "strict" => {
+                let sign = if config.strict { "" } else { "# " };
+                let remark = "true refuses a configuration that misses the accuracy contract";
+                remarked(&format!("{sign}strict = {value}"), remark)
+            }
+            _ => format!("{key} = {value}\n"),
+        };
+    }
+    let architecture = "\"pipelined\" computes a point every clock, or every few";
+    text += &remarked(&assignment(config, "architecture"), architecture);
+    text.push('\n');
+    for key in schema.all_keys().filter(|key| key.name != "architecture") {
+        let is_given = given.iter().any(|name| name == key.name);
+        let is_own = schema.keys.contains(key);
+        if (is_own || is_given) && config.applies(schema, key.name) {
+            let sign = if is_given { "" } else { "# " };
+            let line = format!("{sign}{}", assignment(config, key.name));
+            text += &remarked(&line, &remark(key));
+        }
+    }
+    text
 }
 
-/// Writes what [`commented`] writes, with the values of a configuration in place of defaults.
-pub fn commented_values(schema: &Schema, config: &Config) -> String {
-    let shown = if *config == Config::defaults(schema, &config.name) {
-        " with their defaults; those that you do not change"
-    } else {
-        "; those at their defaults"
+/// Returns `key = value` with the dotted name of the key.
+fn assignment(config: &Config, key: &str) -> String {
+    format!("{key} = {}", config.value(key).toml())
+}
+
+/// Returns what a key means in a few words: its first clause, and the values of a choice. A long list of values stands alone.
+fn remark(key: &Key) -> String {
+    let ends = [". ", ": ", "; "].map(|mark| key.doc.find(mark).unwrap_or(key.doc.len()));
+    let end = ends.into_iter().min().unwrap_or(key.doc.len());
+    let clause = key.doc[..end].trim_end_matches('.');
+    let Kind::Choice(options) = key.kind else {
+        return clause.to_owned();
     };
+    let values = key.accepts();
+    let is_said = !options.contains(&clause) && clause.len() + values.len() < REMARK_WIDTH;
+    if is_said { format!("{clause}: {values}") } else { values }
+}
+
+/// Returns a line with a remark behind it.
+fn remarked(line: &str, remark: &str) -> String {
+    format!("{line:REMARK_COLUMN$} # {remark}\n")
+}
+
+/// Returns the file that `glint new --all` prints: every key with its value, its meaning, and the values that it accepts.
+///
+/// The keys in `given` have values. All others are comments that show their values. Without the `# ` before them the lines of the keys
+/// read back as the same configuration.
+pub fn commented(schema: &Schema, config: &Config, given: &[String]) -> String {
     let mut text = comment(&format!(
-        "Glint configuration of the device \"{}\". All keys are shown{shown} may be deleted.",
+        "Glint configuration of the device \"{}\". All keys are shown. A key in a comment has its default, which adjusts to the keys \
+         that are set.",
         schema.device
     ));
     for ((key, value), doc) in common(config).into_iter().zip(super::COMMON.map(|c| c.1)) {
@@ -42,10 +96,9 @@ pub fn commented_values(schema: &Schema, config: &Config) -> String {
                 rule += &format!("; only with {}", condition.words(config.value(condition.key)));
             }
             text += &comment(&sentence(&rule));
-            // No samples are no path.
-            let on = config.applies(schema, key.name) && value != "\"\"";
-            let off = if on { "" } else { "# " };
-            text += &format!("{off}{} = {value}\n", key.table_and_leaf().1);
+            let is_given = given.iter().any(|name| name == key.name);
+            let sign = if is_given { "" } else { "# " };
+            text += &format!("{sign}{} = {value}\n", key.table_and_leaf().1);
         }
     }
     text

@@ -229,12 +229,14 @@ impl Core {
         let sequential = self.microprogram(true)?;
         let datapath = sequential.as_ref().unwrap_or(&self.design);
         let directed = known.computations(datapath, contract, &self.contract_digest())?;
-        if sequential.is_some() {
-            return self.lockstep(BENCH_SEED)?.record(PIPELINE_POINTS, &directed);
-        }
-        let lockstep = self.lockstep(BENCH_SEED)?.with_lines_of(BENCH_LINE);
-        let results = if self.contract.length().is_some() { BENCH_LINE as u64 } else { 1 };
-        lockstep.record(BENCH_POINTS * results, &directed)
+        let vectors = if sequential.is_some() {
+            self.lockstep(BENCH_SEED)?.record(PIPELINE_POINTS, &directed.operands)
+        } else {
+            let lockstep = self.lockstep(BENCH_SEED)?.with_lines_of(BENCH_LINE);
+            let results = if self.contract.length().is_some() { BENCH_LINE as u64 } else { 1 };
+            lockstep.record(BENCH_POINTS * results, &directed.operands)
+        };
+        Ok(Vectors { word_stride: directed.word_stride, ..vectors? })
     }
 
     /// Returns the program that recomputes every operand, the model that it includes, and the memories.

@@ -148,4 +148,7 @@ pub struct Vectors {
     /// The first clock from which results and status are compared. Handshake outputs are compared from the
     /// first clock after one with reset.
     pub known_from: usize,
+    /// The directed computations notice a fault in every word of the memories if this is 1, in every second word if it is 2, and
+    /// so on. 0 if there are no directed computations.
+    pub word_stride: usize,
 }

@@ -2,7 +2,7 @@
 
 use crate::common::cases;
 use crate::common::cores::device;
-use crate::config_device::{lamp, schemas};
+use crate::config_device::{lamp, schemas, uncommented};
 use glint::config::{Config, Schema, commented, parse, read, sample};
 use glint::core::Core;
 use glint::keys::presets::DEVICE as FUNCTION;
@@ -126,7 +126,12 @@ proptest! {
         comments in any::<bool>(),
         changes in vec((any::<prop::sample::Index>(), 0usize..6, piece()), 1..6),
     ) {
-        let text = if comments { commented(&lamp(), "lamp") } else { sample(&lamp(), seed).to_toml(&lamp()) };
+        let text = if comments {
+            let defaults = Config::defaults(&lamp(), "lamp");
+            uncommented(&commented(&lamp(), &defaults, &[]))
+        } else {
+            sample(&lamp(), seed).to_toml(&lamp())
+        };
         let mut text: Vec<char> = text.chars().collect();
         for (place, removed, piece) in changes {
             let start = place.index(text.len() + 1);

@@ -2,16 +2,31 @@
 
 use std::collections::BTreeSet;
 
-use crate::config_device::{lamp, schemas};
-use glint::config::{Config, Key, Schema, Value, commented, parse, sample};
+use crate::config_device::{lamp, schemas, uncommented};
+use glint::config::{Config, Key, Schema, Value, brief, commented, parse, sample};
 
 #[test]
 fn the_commented_file() {
     let expected = include_str!("config_device/commented.toml");
-    let text = commented(&lamp(), "my_lamp");
+    let defaults = Config::defaults(&lamp(), "my_lamp");
+    let text = commented(&lamp(), &defaults, &[]);
     assert_eq!(text, expected);
-    let read = parse("x.toml", &text, &schemas()).expect("valid");
-    assert_eq!(read, Config::defaults(&lamp(), "my_lamp"));
+    for text in [uncommented(&text), text] {
+        let read = parse("x.toml", &text, &schemas()).expect("valid");
+        assert_eq!(read, defaults, "{text}");
+    }
+}
+
+#[test]
+fn the_short_file() {
+    let given = "device = \"lamp\"\nname = \"my_lamp\"\npower = 4\npackage.software = true\n";
+    let config = parse("x.toml", given, &schemas()).expect("valid");
+    let keys = ["power", "package.software"].map(str::to_owned);
+    let text = brief(&lamp(), &config, &keys);
+    assert_eq!(text, include_str!("config_device/brief.toml"));
+    for text in [uncommented(&text), text] {
+        assert_eq!(parse("x.toml", &text, &schemas()).expect("valid"), config, "{text}");
+    }
 }
 
 #[test]

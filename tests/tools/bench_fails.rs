@@ -39,6 +39,7 @@ fn vectors() -> Vectors {
         inputs: clocks.iter().map(|(inputs, _)| inputs.to_vec()).collect(),
         expected: clocks.iter().map(|(_, outputs)| outputs.to_vec()).collect(),
         known_from: 4,
+        word_stride: 0,
     }
 }
 

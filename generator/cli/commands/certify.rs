@@ -11,7 +11,7 @@ use serde_json::json;
 use super::{cosim, load_sequential};
 use crate::own_file::OwnFile;
 use crate::{Configs, Output, progress, say, tables};
-use glint_base::input;
+use glint_base::{input, text};
 use glint_core::cosim::exhaustive::Certificate;
 use glint_core::package::digest;
 use glint_core::registry::Registry;
@@ -59,10 +59,10 @@ const WITNESS: &str = "# The hypotheses hold at ";
 /// Prints the terms of a bound that the contract states; of a device that is made of parts, the bounds of the parts are among them.
 fn tell_terms(bound: &Bound) {
     if bound.is_stated() {
-        say!("  the contract states {:.3} units, which nothing here has checked:", bound.units);
+        say!("  the contract states {} units, which nothing here has checked:", bound.words());
     }
     for Term { key, what, units } in &bound.terms {
-        say!("  {units:.3}  {what} ({key})");
+        say!("  {}  {what} ({key})", text::rounded_up(*units, 3));
     }
 }
 

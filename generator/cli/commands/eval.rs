@@ -26,12 +26,12 @@ Examples:
   glint eval my_core.toml cos_gamma=#1038090     a raw integer, as the port takes it
   glint eval my_core.toml --batch points.csv     a row of results for each row of operands
   glint setup my_core.toml --batch lines.csv | glint eval my_core.toml --batch -
-  glint eval my_core.toml --json                 a typical point, for scripts")]
+  glint eval my_core.toml --typical --json       a point at which results show, for scripts")]
 pub struct Arguments {
     /// A configuration
     config: PathBuf,
     /// Operands: `cos_gamma=0.99` is a value, `cos_gamma=#1038090` a raw integer. An operand that is not
-    /// given has a value at which results show, a colour the largest
+    /// given is 0, or the value nearest to 0 in its domain
     #[arg(value_name = "OPERAND=VALUE")]
     operands: Vec<String>,
     /// Compute many points: a CSV file with the names of operands in its first row, or - for standard input. The
@@ -39,6 +39,10 @@ pub struct Arguments {
     /// rows
     #[arg(long, value_name = "FILE.csv")]
     batch: Option<PathBuf>,
+    /// Give the operands that are not given values at which results show: a colour the largest, an angle at which the
+    /// highlight is half as bright
+    #[arg(long, conflicts_with = "batch")]
+    typical: bool,
 }
 
 /// More clocks than any device takes.
@@ -54,7 +58,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
             wrong_usage!("configuration and --batch are one file")
         }
         Some(path) => batch::batch(output, &one, &given, path),
-        None => point(output, &one, &given),
+        None => point(output, &one, &given, arguments.typical),
     }
 }
 
@@ -77,10 +81,13 @@ fn outside(operands: &[Operand], raw: &[i64]) -> Vec<String> {
 }
 
 /// Returns one point, with every signal of the golden model.
-fn point(output: Output, one: &Loaded, given: &[Option<i64>]) -> Result<bool> {
+fn point(output: Output, one: &Loaded, given: &[Option<i64>], typical: bool) -> Result<bool> {
     let contract = one.core.contract.as_ref();
     let operands = contract.operands();
-    let raw = operands::completed(contract, given);
+    let (raw, missing) = match typical {
+        true => (operands::typical(contract, given), Vec::new()),
+        false => (operands::completed(contract, given), operands::missing(contract, given)),
+    };
     let model = one.core.device.golden(&one.core.config);
     let mut signals = signals(model, operands, &raw)?;
     let outside = outside(operands, &raw);
@@ -110,11 +117,15 @@ fn point(output: Output, one: &Loaded, given: &[Option<i64>]) -> Result<bool> {
         tables::print_json(&json!({
             "config": one.path,
             "operands": operands,
+            "not_given": missing,
             "inside_the_domain": outside.is_empty(),
             "signals": signals,
             "formula": as_json(&results),
         }));
         return Ok(true);
+    }
+    if !missing.is_empty() {
+        say!("Operands that were not given: {}.", missing.join(", "));
     }
     if !outside.is_empty() {
         say!("Outside the domain for which the contract is stated: {}.", outside.join("; "));

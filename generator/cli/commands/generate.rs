@@ -9,10 +9,13 @@ use serde_json::json;
 
 use super::{Loaded, load};
 use crate::store::{self, Written};
-use crate::{Configs, Output, progress, say, tables};
+use crate::{Configs, Output, failure, progress, say, tables};
+use glint_base::program::Program;
 use glint_core::cosim::directed::Known;
 use glint_core::package::{self, OutputFile, Seal};
 use glint_core::registry::Registry;
+use glint_prove::synth::TARGETS;
+use glint_prove::tune::Cost;
 
 /// Write Verilog, ROM contents, manifest, FuseSoC core and test bench
 ///
@@ -34,6 +37,9 @@ pub struct Arguments {
     /// Write nothing; fail if a file differs from what would be written
     #[arg(long)]
     check: bool,
+    /// Write no test bench: a large core is generated in less time
+    #[arg(long)]
+    no_bench: bool,
     /// Replace files that Glint did not write or that were edited since
     #[arg(long)]
     force: bool,
@@ -45,12 +51,12 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     for one in &loaded {
         one.contract()?;
     }
-    let made = all_files(output, &loaded)?;
+    let made = all_files(output, &loaded, !arguments.no_bench)?;
     if arguments.check {
         return compare(output, &arguments.out, &loaded, &made);
     }
     let mut report = Vec::new();
-    for (one, files) in loaded.iter().zip(&made) {
+    for (one, Made { files, .. }) in loaded.iter().zip(&made) {
         let written = write(&arguments.out, one, files, arguments.force)?;
         if output.json {
             let paths: Vec<&str> = files.iter().map(|file| file.path.as_str()).collect();
@@ -64,37 +70,91 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
             say!("{}: {} files {written}", one.path, files.len());
         }
     }
+    for (one, Made { word_stride, .. }) in loaded.iter().zip(&made) {
+        if *word_stride > 1 {
+            failure::warn(&format!(
+                "{}: to keep the test bench short, it checks one of {word_stride} words of the memories; `{Program} cosim` checks more",
+                one.path
+            ));
+        }
+    }
+    let misfits = loaded.iter().filter_map(|one| Some((one, misfit(one)?)));
+    for (one, excess) in misfits {
+        failure::warn(&format!("{}: by the estimate {excess}", one.path));
+    }
     if output.json {
         let shared = [package::driver().path];
         tables::print_json(&json!({ "ok": true, "generated": report, "shared": shared }));
+    } else {
+        print_next_step(&arguments.out, &loaded, !arguments.no_bench);
     }
     Ok(true)
 }
 
-/// Returns every file of each configuration, made in parallel.
-pub fn all_files(output: Output, loaded: &[Loaded]) -> Result<Vec<Vec<OutputFile>>> {
+/// Prints how the generated files are simulated, with their benches if there are any.
+fn print_next_step(out: &Path, loaded: &[Loaded], with_bench: bool) {
+    let (config, name) = match loaded {
+        [only] => (only.path.as_str(), only.core.config.name.as_str()),
+        _ => ("CONFIG", "NAME"),
+    };
+    if !with_bench {
+        say!("To simulate: `{Program} cosim {config} --simulator icarus`.");
+        return;
+    }
+    let directory = |folder: &str| out.join(folder).join(name).display().to_string();
+    say!(
+        "{} is the driver that the benches in Python share.",
+        out.join(package::driver().path).display()
+    );
+    say!(
+        "To simulate: `{Program} cosim {config} --simulator icarus`. By hand, copy {} and {} into one directory and run there, where \
+         the memories are found: iverilog -g2012 -s {name}_tb -o sim {name}*.v && ./sim",
+        directory("rtl_out"),
+        directory("testbench"),
+    );
+}
+
+/// Returns what the chip that a pipeline is scheduled for lacks, in words; `None` if the core fits, or has no target.
+fn misfit(one: &Loaded) -> Option<String> {
+    let pipeline = one.core.design.pipeline.as_ref()?;
+    let target = TARGETS.into_iter().find(|target| target.name() == pipeline.target)?;
+    let excess = Cost::new(&one.core.design, target).excess(target);
+    (!excess.is_empty()).then_some(excess)
+}
+
+/// The files of a configuration.
+pub struct Made {
+    /// The files.
+    pub files: Vec<OutputFile>,
+    /// The bench notices a fault in every word of the memories if this is 1, in every second word if it is 2, and so on.
+    word_stride: usize,
+}
+
+/// Makes every file of each configuration, in parallel; the test benches too if `with_bench`.
+pub fn all_files(output: Output, loaded: &[Loaded], with_bench: bool) -> Result<Vec<Made>> {
     let bar = progress::bar(output, loaded.len() as u64, "generating");
     let known = Known::default();
     let made: Result<_> = loaded
         .par_iter()
         .map(|one| {
-            let files = files(one, &known);
+            let files = files(one, &known, with_bench);
             bar.inc(1);
             files
         })
         .collect();
     bar.finish_and_clear();
-    let made: Vec<Vec<OutputFile>> = made?;
-    let named = loaded.iter().zip(&made).map(|(one, files)| (one.path.as_str(), &files[..]));
+    let made: Vec<Made> = made?;
+    let named = loaded.iter().zip(&made).map(|(one, made)| (one.path.as_str(), &made.files[..]));
     package::module_names::check_together(named)?;
     Ok(made)
 }
 
-/// Returns every file of a configuration, with its bench.
-fn files(one: &Loaded, known: &Known) -> Result<Vec<OutputFile>> {
-    let vectors = one.core.shipped_vectors_of(known);
+/// Makes every file of a configuration, with its bench if `with_bench`.
+fn files(one: &Loaded, known: &Known, with_bench: bool) -> Result<Made> {
+    let vectors = with_bench.then(|| one.core.shipped_vectors_of(known)).transpose();
     let vectors = vectors.with_context(|| format!("`{}`", one.path))?;
-    one.files(vectors)
+    let word_stride = vectors.as_ref().map_or(1, |vectors| vectors.word_stride);
+    Ok(Made { files: one.files(vectors)?, word_stride })
 }
 
 /// Writes the files of a configuration, and the driver that its bench in Python shares with others.
@@ -112,18 +172,13 @@ pub fn write(out: &Path, one: &Loaded, files: &[OutputFile], force: bool) -> Res
 }
 
 /// Runs `--check`: returns whether what is there is what would be written.
-fn compare(
-    output: Output,
-    out: &Path,
-    loaded: &[Loaded],
-    made: &[Vec<OutputFile>],
-) -> Result<bool> {
+fn compare(output: Output, out: &Path, loaded: &[Loaded], made: &[Made]) -> Result<bool> {
     let mut all = Vec::new();
     let driver = package::driver();
     if store::differs(out, &driver)? {
         all.push(driver.path);
     }
-    for (one, files) in loaded.iter().zip(made) {
+    for (one, Made { files, .. }) in loaded.iter().zip(made) {
         all.extend(store::differences(out, &one.core.config.name, files)?);
     }
     if output.json {

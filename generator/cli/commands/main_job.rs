@@ -31,8 +31,8 @@ pub fn run(registry: &Registry, output: Output, details: bool) -> Result<bool> {
     for one in &loaded {
         one.bound()?;
     }
-    for (one, files) in loaded.iter().zip(generate::all_files(output, &loaded)?) {
-        generate::write(Path::new("."), one, &files, false)?;
+    for (one, made) in loaded.iter().zip(generate::all_files(output, &loaded, true)?) {
+        generate::write(Path::new("."), one, &made.files, false)?;
     }
     let bar = progress::bar(output, TEST_POINTS * loaded.len() as u64, "points checked");
     let findings: Vec<Finding> =

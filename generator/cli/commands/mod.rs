@@ -8,6 +8,7 @@ pub mod compare;
 pub mod cosim;
 pub mod datasheet;
 pub mod describe;
+pub mod estimate;
 pub mod eval;
 pub mod explain;
 pub mod generate;
@@ -21,6 +22,7 @@ pub mod render;
 mod rows;
 pub mod schedule;
 pub mod schema;
+mod settings;
 pub mod setup;
 pub mod synth;
 pub mod tune;
@@ -36,6 +38,7 @@ use crate::wrong_usage;
 use glint_base::diagnostic::Diagnostics;
 use glint_base::input;
 use glint_base::program::Program;
+use glint_base::text;
 use glint_config::{self as config, Problems};
 use glint_core::core::Core;
 use glint_core::package::{OutputFile, Unfit, Vectors};
@@ -203,7 +206,7 @@ fn verdict(bound: &Bound, failures: &[String]) -> &'static str {
 
 impl Loaded {
     /// Returns every file of the configuration. A key that asks for what the core cannot have is shown where the file gives it.
-    fn files(&self, vectors: Vectors) -> Result<Vec<OutputFile>> {
+    fn files(&self, vectors: impl Into<Option<Vectors>>) -> Result<Vec<OutputFile>> {
         self.core.files(&self.path, vectors).map_err(|error| match error.downcast_ref::<Unfit>() {
             Some(unfit) => {
                 let mut problems = self.locations.clone();
@@ -249,7 +252,8 @@ impl Loaded {
             failure::warn(&message);
         } else if !bound.keeps() {
             let limit = bound.limiting().map_or_else(String::new, |term| {
-                format!("; most of it, {:.3}, is of `{}` ({})", term.units, term.key, term.what)
+                let units = text::rounded_up(term.units, 3);
+                format!("; most of it, {units}, is of `{}` ({})", term.key, term.what)
             });
             let advice = match advice::of(&self.core) {
                 Some(advice) => {
@@ -266,8 +270,10 @@ impl Loaded {
                 None => "; no single key that it depends on brings it down".to_owned(),
             };
             let message = format!(
-                "{}: outside the accuracy contract: the error bound is {:.3} units, not below {}{limit}{advice}",
-                self.path, bound.units, bound.limit
+                "{}: outside the accuracy contract: the error bound is {} units, not below {}{limit}{advice}",
+                self.path,
+                bound.words(),
+                bound.limit
             );
             if self.core.config.strict {
                 bail!("{message}; `strict = true` refuses that");

@@ -1,22 +1,31 @@
-//! `glint new`: prints a commented configuration of a device, or of a function by its name.
+//! `glint new`: prints a configuration of a device, or of a function by its name.
 
-use anyhow::{Result, bail};
+use anyhow::Result;
 use clap::Args;
+use clap::builder::PossibleValuesParser;
 use serde_json::json;
 
 use super::none_of;
+use super::settings::Setting;
 use crate::failure::WrongUsage;
-use crate::{Output, tables, wrong_usage};
-use glint_config::{self as config, Config};
+use crate::{Output, number, tables, wrong_usage};
+use glint_base::program::Program;
+use glint_base::target::TIMING_NAMES;
+use glint_config::{self as config, Config, Schema};
 use glint_core::registry::Registry;
 use glint_keys::presets;
 
-/// Print a commented configuration of a device, or of a function by its name
+/// Print a configuration of a device, or of a function by its name
+///
+/// The file has a line for each key of the device. Keys that you do not set are comments: they show their defaults, which adjust to the
+/// keys that you set. The file generates as it is.
 #[derive(Args)]
 #[command(after_help = "\
-Example:
-  glint new rough --name my_core > my_core.toml
-  glint new rsqrt > rsqrt.toml")]
+Examples:
+  glint new rsqrt > rsqrt.toml
+  glint new rsqrt --pipelined --stream --clock 100 > rsqrt.toml
+  glint new cosine-power --set cosine.fraction=16 --set exponent.bits=8 > highlight.toml
+  glint new rough --name my_core --all > my_core.toml     every key, with its meaning and its range")]
 pub struct Arguments {
     /// A device of `glint list`, or a function: exp2, exp, log2, ln, reciprocal, rsqrt, sqrt, sin, cos, atan, sigmoid, tanh,
     /// gelu, silu, softplus, gamma
@@ -24,6 +33,24 @@ pub struct Arguments {
     /// The name of the top module [default: the device's, with _ for -]
     #[arg(long)]
     name: Option<String>,
+    /// Show every key with its meaning and the values that it accepts
+    #[arg(long)]
+    all: bool,
+    /// A key with its value, as `cosine.fraction=16`; may be repeated
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// A pipeline, which computes a point every clock: `architecture = "pipelined"`
+    #[arg(long)]
+    pipelined: bool,
+    /// An AXI4-Stream wrapper around the core: `interface.stream = true`
+    #[arg(long)]
+    stream: bool,
+    /// The clock in MHz: of a pipeline the one that its stages must reach, of a sequential core the one in its constraints
+    #[arg(long, value_name = "MHZ", value_parser = number)]
+    clock: Option<f64>,
+    /// The FPGA family whose delays a pipeline is scheduled for: `pipeline.target`
+    #[arg(long, requires = "pipelined", value_parser = PossibleValuesParser::new(TIMING_NAMES))]
+    target: Option<String>,
 }
 
 /// The line by which editors find the schema, and how it comes there.
@@ -32,34 +59,83 @@ const SCHEMA: &str =
 
 /// Runs `glint new`.
 pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
-    let Arguments { device, name } = arguments;
+    let device = &arguments.device;
     let preset = presets::values(device);
-    let of_preset = preset.as_ref().and_then(|_| registry.device(presets::DEVICE));
-    let Some(found) = registry.device(device).or(of_preset) else {
+    let device_of_preset = preset.as_ref().and_then(|_| registry.device(presets::DEVICE));
+    let Some(found) = registry.device(device).or(device_of_preset) else {
         let names = registry.devices().iter().map(|device| device.name);
         let names: Vec<&str> = names.chain(presets::names()).collect();
         wrong_usage!("there is no device `{device}`{}", none_of(device, "devices", &names));
     };
     let schema = (found.schema)();
-    let own = || if preset.is_some() { device.replace('-', "_") } else { schema.module() };
-    let name = name.clone().unwrap_or_else(own);
-    let text = match preset.map(|values| Config::from_values(&schema, &name, values)) {
-        Some(Ok(config)) => config::commented_values(&schema, &config),
-        _ => config::commented(&schema, &name),
-    };
-    // A name that the reader would refuse is refused here.
-    if let Err(problems) = config::parse("<new>", &text, &[schema]) {
-        let found: Vec<String> = problems
-            .iter()
-            .map(|problem| format!("{}; {}", problem.message, problem.remedy))
-            .collect();
-        bail!(WrongUsage(found.join("\n")));
+    let default_name = || if preset.is_some() { device.replace('-', "_") } else { schema.module() };
+    let name = arguments.name.clone().unwrap_or_else(default_name);
+    let mut settings = arguments.settings()?;
+    for (key, value) in preset.iter().flatten() {
+        if settings.iter().all(|setting| setting.key != *key) {
+            settings.push(Setting { key: key.clone(), value: value.toml() });
+        }
     }
-    let text = format!("{SCHEMA}{text}");
+    let config = configuration(&schema, &name, &settings)?;
+    let given: Vec<String> = settings.into_iter().map(|setting| setting.key).collect();
+    let text = if arguments.all {
+        format!("{SCHEMA}{}", config::commented(&schema, &config, &given))
+    } else {
+        let head = format!(
+            "# A Glint configuration. Keys in comments have their defaults, which adjust to the keys that are set.\n\
+             # `{Program} new {device} --all` explains every key; `{Program} generate FILE` writes the core.\n"
+        );
+        head + &config::brief(&schema, &config, &given)
+    };
     if output.json {
         tables::print_json(&json!({ "ok": true, "device": device, "name": name, "text": text }));
     } else {
         tables::print_line(text.trim_end());
     }
     Ok(true)
+}
+
+impl Arguments {
+    /// Returns the keys that the options set.
+    fn settings(&self) -> Result<Vec<Setting>> {
+        let mut settings = Vec::new();
+        if self.pipelined {
+            settings.push(Setting::word("architecture", "pipelined"));
+        }
+        if let Some(target) = &self.target {
+            settings.push(Setting::word("pipeline.target", target));
+        }
+        if self.stream {
+            settings.push(Setting::parse("interface.stream=true")?);
+        }
+        for given in &self.set {
+            settings.push(Setting::parse(given)?);
+        }
+        if let Some(clock) = self.clock {
+            let is_pipelined = settings.iter().any(|setting| {
+                setting.key == "architecture" && setting.value.contains("pipelined")
+            });
+            if is_pipelined {
+                settings.push(Setting::parse(&format!("pipeline.clock_mhz={clock}"))?);
+            } else {
+                settings.push(Setting::parse("package.constraints=true")?);
+                settings.push(Setting::parse(&format!("package.clock_mhz={clock}"))?);
+            }
+        }
+        Ok(settings)
+    }
+}
+
+/// Returns the configuration that has these settings.
+///
+/// # Errors
+/// Fails if the reader would refuse a file with the name and the settings.
+fn configuration(schema: &Schema, name: &str, settings: &[Setting]) -> Result<Config> {
+    let head = [Setting::word("device", schema.device), Setting::word("name", name)];
+    let text: String = head.iter().chain(settings).map(Setting::line).collect();
+    config::parse("<new>", &text, std::slice::from_ref(schema)).map_err(|problems| {
+        let lines =
+            problems.iter().map(|problem| format!("{}; {}", problem.message, problem.remedy));
+        WrongUsage(lines.collect::<Vec<String>>().join("\n")).into()
+    })
 }

@@ -340,8 +340,9 @@ fn tell(
             difference.largest
         );
         say!(
-            "  against its own formula: largest error {:.3} units (bound {bound:.3})",
-            comparison.units
+            "  against its own formula: largest error {:.3} units (bound {})",
+            comparison.units,
+            core.contract.bound().words()
         );
     }
 }

@@ -9,10 +9,12 @@ use clap::Args;
 use indicatif::ProgressBar;
 use serde_json::{Value as Json, json};
 
+use super::settings::Setting;
 use crate::destination::Destination;
 use crate::tables;
 use crate::{Force, Output, failure, number, progress, say, wrong_usage};
 use glint_base::program::Program;
+use glint_base::text;
 use glint_config::{self as config, Config, Value};
 use glint_core::registry::{Device, Registry};
 use glint_prove::synth::Target;
@@ -154,21 +156,14 @@ fn base(registry: &Registry, arguments: &Arguments) -> Result<(Device, Config, V
     };
     let name = arguments.name.clone().unwrap_or_else(|| (device.schema)().module());
     // The same reader as a file's, so that messages are the same.
-    let mut text = format!("device = \"{}\"\nname = \"{name}\"\n", device.name);
+    let mut given_text = format!("device = \"{}\"\nname = \"{name}\"\n", device.name);
     let mut fixed = Vec::new();
     for given in &arguments.set {
-        let Some((key, value)) = given.split_once('=') else {
-            wrong_usage!("--set {given}: a key and a value are wanted, as cosine.fraction=16");
-        };
-        let (key, value) = (key.trim(), value.trim());
-        let is_bare = value.parse::<f64>().is_ok()
-            || value.starts_with(['[', '"'])
-            || matches!(value, "true" | "false");
-        let value = if is_bare { value.to_owned() } else { format!("\"{value}\"") };
-        text += &format!("{key} = {value}\n");
-        fixed.push(key.to_owned());
+        let setting = Setting::parse(given)?;
+        given_text += &setting.line();
+        fixed.push(setting.key);
     }
-    let config = config::parse("--set", &text, &registry.schemas())?;
+    let config = config::parse("--set", &given_text, &registry.schemas())?;
     Ok((*device, config, fixed))
 }
 
@@ -182,15 +177,15 @@ fn toml(device: &Device, best: &Candidate, arguments: &Arguments) -> String {
     let cost = &best.cost;
     let head = format!(
         "# The smallest `{}` within {} {} that `{Program} tune` found for {}.\n\
-         # Bound, {}: {:.6} of f, {:.4} output units. Estimate: {:.0} LUTs, {} DSP blocks, {} block RAMs,\n\
+         # Bound, {}: {} of f, {} output units. Estimate: {:.0} LUTs, {} DSP blocks, {} block RAMs,\n\
          # {} bits of ROM, {:.0} MHz{}; `{Program} synth` measures.\n{}",
         device.name,
         arguments.error,
         arguments.unit,
         arguments.target.title(),
         origin(device),
-        best.bound.f,
-        best.bound.units,
+        text::rounded_up(best.bound.f, 6),
+        best.bound.words(),
         cost.luts,
         cost.dsps,
         cost.block_rams,
@@ -218,8 +213,8 @@ fn print(device: &Device, answer: &Answer, arguments: &Arguments, text: &str) {
     let rows = answer.front.iter().map(|candidate| {
         let cost = &candidate.cost;
         vec![
-            format!("{:.6}", candidate.bound.f),
-            format!("{:.4}", candidate.bound.units),
+            text::rounded_up(candidate.bound.f, 6),
+            candidate.bound.words(),
             format!("{:.0}", cost.luts),
             cost.dsps.to_string(),
             cost.block_rams.to_string(),

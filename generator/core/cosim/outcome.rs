@@ -71,7 +71,7 @@ impl Outcome {
             && worst.units > bound.units
         {
             failures.push(format!(
-                "`{}` is off by {:.4} units, beyond the stated bound of {:.4}",
+                "`{}` is off by {:.6} units, beyond the stated bound of {:.6}",
                 worst.output, worst.units, bound.units
             ));
         }

@@ -117,6 +117,7 @@ fn bench(job: &Job, vectors: &Vectors) -> Result<String> {
         expected_last: u32 = total(&outputs) - 1,
         clocks: usize = vectors.inputs.len(),
         known_from: usize = vectors.known_from,
+        word_stride: usize = vectors.word_stride,
         declarations: Vec<String> = variables(design, true),
         // The assignment of a word of stimulus to the inputs.
         stimulus: Vec<String> = statement(12, &stimulus),

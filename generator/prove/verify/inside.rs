@@ -82,8 +82,9 @@ fn lockstep(subject: &Subject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Result<Fi
     let bound = subject.core.contract.bound();
     let worst = outcome.worst.as_ref().map_or_else(String::new, |worst| {
         format!(
-            " The largest error against the formula in f64 is {:.3} units, of a stated {:.3}.",
-            worst.units, bound.units
+            " The largest error against the formula in f64 is {:.3} units, of a stated {}.",
+            worst.units,
+            bound.words()
         )
     });
     let stimulus = match subject.core.design.pipeline {

@@ -2,10 +2,12 @@
 
 use std::fmt;
 
+use glint_base::fixed::Format;
+use glint_base::text::rounded_up;
 use glint_config::{Config, Kind, Schema, Value};
 use glint_core::core::Core;
 use glint_core::registry::Device;
-use glint_golden::Bound;
+use glint_golden::{Bound, Contract};
 
 /// Steps by which an integer is changed. A larger one is tried only where no smaller one helps.
 const STEPS: [i64; 4] = [1, 2, 4, 8];
@@ -30,7 +32,7 @@ impl fmt::Display for Advice {
         let changes = self.changes.iter();
         let changes = changes.map(|(key, from, to)| format!("`{key} = {to}` in place of {from}"));
         let changes = changes.collect::<Vec<_>>().join(" and ");
-        write!(f, "{changes} would bring the bound to {:.3} units", self.units)
+        write!(f, "{changes} would bring the bound to {} units", rounded_up(self.units, 3))
     }
 }
 
@@ -62,13 +64,25 @@ fn better(device: &Device, config: &Config, bound: &Bound) -> Option<Better> {
     STEPS.into_iter().find_map(|step| {
         let tried = candidates(&schema, config, bound, step).into_iter();
         let better = tried.filter_map(|(key, value)| {
-            let config = with(&schema, config, key, &value)?;
-            let bound = (device.contract)(&config).bound();
-            Some(Better { config, bound })
+            let changed = with(&schema, config, key, &value)?;
+            has_same_units(device, config, &changed).then(|| {
+                let bound = (device.contract)(&changed).bound();
+                Better { config: changed, bound }
+            })
         });
         let best = better.min_by(|a, b| a.bound.units.total_cmp(&b.bound.units))?;
         (best.bound.units < bound.units - GAIN).then_some(best)
     })
+}
+
+/// Returns whether the outputs of two configurations have the same formats. Otherwise their bounds are in different units, and a
+/// smaller number need not be a smaller error.
+fn has_same_units(device: &Device, config: &Config, other: &Config) -> bool {
+    let [one, other] = [config, other].map(|config| (device.contract)(config));
+    let formats = |contract: &dyn Contract| -> Vec<Format> {
+        contract.outputs().iter().map(|output| output.format).collect()
+    };
+    formats(one.as_ref()) == formats(other.as_ref())
 }
 
 /// Leaves out the changes without which the contract is kept too.

@@ -44,3 +44,18 @@ fn check(config: &Config, problems: &mut Problems) {
         problems.push("sine.segments", "more segments than the cosine has", "give fewer");
     }
 }
+
+/// Returns the text of a configuration in which every key that is a comment has its value.
+pub fn uncommented(text: &str) -> String {
+    let is_of_key = |c: char| c.is_ascii_alphanumeric() || "_.".contains(c);
+    // The last line of an explanation may begin as an assignment, and ends with a full stop.
+    let is_assignment = |line: &str| {
+        let name = line.split_once(" = ").map(|(name, _)| name);
+        name.is_some_and(|name| name.chars().all(is_of_key)) && !line.ends_with('.')
+    };
+    let lines = text.lines().map(|line| match line.strip_prefix("# ") {
+        Some(bare) if is_assignment(bare) => bare,
+        _ => line,
+    });
+    lines.collect::<Vec<_>>().join("\n")
+}

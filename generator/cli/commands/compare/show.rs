@@ -90,7 +90,7 @@ fn print_errors(arguments: &Arguments, entries: &[Entry]) {
             None => row.resize(9, "-".to_owned()),
             Some(accuracy) => row.extend(errors(accuracy).map(|error| format!("{error:.6}"))),
         }
-        row.push(format!("{:.3}", entry.core.contract.bound().units));
+        row.push(entry.core.contract.bound().words());
         row
     });
     tables::print(

@@ -9,7 +9,7 @@ use serde_json::{Map, Value, json};
 use super::operands;
 use crate::commands::setup::REAL;
 use crate::commands::{Loaded, rows};
-use crate::{Output, tables};
+use crate::{Output, failure, tables};
 use glint_golden::Contract;
 
 /// The result of a point. Its room is used again for the next.
@@ -31,18 +31,33 @@ pub fn batch(output: Output, one: &Loaded, given: &[Option<i64>], path: &Path) -
     let contract = one.core.contract.as_ref();
     let (mut text, mut json) = (headings(contract), Vec::new());
     let mut row = Row::default();
+    let mut missing = Vec::new();
     let mut shown = |row: &Row| match output.json {
         true => json.push(as_json(contract, row)),
         false => append(contract, row, &mut text),
     };
     rows::read(
         path,
-        |headings| columns(one, given, headings.iter()),
+        |headings| {
+            let columns = columns(one, given, headings.iter())?;
+            missing = missing_columns(contract, given, &columns);
+            Ok(columns)
+        },
         |columns, record| points(contract, given, columns, record, &mut row, &mut shown),
     )?;
     match output.json {
-        true => tables::print_json(&json!({ "config": one.path, "points": json })),
-        false => tables::print_line(text.trim_end()),
+        true => {
+            tables::print_json(
+                &json!({ "config": one.path, "not_given": missing, "points": json }),
+            );
+        }
+        false => {
+            tables::print_line(text.trim_end());
+            if !missing.is_empty() {
+                let path = path.display();
+                failure::warn(&format!("`{path}` has no column for {}", missing.join(", ")));
+            }
+        }
     }
     Ok(true)
 }
@@ -68,6 +83,19 @@ fn columns<'a>(
     Ok(columns)
 }
 
+/// Returns the operands that have neither a column nor a value on the command line, with the values that they have then.
+fn missing_columns(
+    contract: &dyn Contract,
+    given: &[Option<i64>],
+    columns: &[Option<usize>],
+) -> Vec<String> {
+    let mut given = given.to_vec();
+    for at in columns.iter().flatten() {
+        given[*at] = Some(0);
+    }
+    operands::missing(contract, &given)
+}
+
 /// Hands the points of a row to `shown`: those of a line, or one.
 fn points(
     contract: &dyn Contract,
@@ -80,7 +108,7 @@ fn points(
     let known = contract.operands();
     let mut given = given.to_vec();
     for (at, text) in columns.iter().zip(record) {
-        // An empty cell leaves the operand to its default.
+        // An empty cell does not give the operand.
         if let (Some(at), false) = (*at, text.is_empty()) {
             given[at] = Some(operands::named_value(&known[at], text)?);
         }

@@ -32,14 +32,38 @@ pub fn position(operands: &[Operand], name: &str) -> Result<usize, String> {
     })
 }
 
-/// Returns all operands: what is not given is typical, so that results show, and of a colour the largest.
+/// Returns all operands. An operand that is not given is 0, or the value nearest to 0 in its domain.
 pub fn completed(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<i64> {
+    let operands = contract.operands().iter().zip(given);
+    let value =
+        |(operand, given): (&Operand, &Option<i64>)| given.unwrap_or(nearest_to_zero(operand));
+    operands.map(value).collect()
+}
+
+fn nearest_to_zero(operand: &Operand) -> i64 {
+    let (low, high) = operand.domain;
+    0.clamp(low, high)
+}
+
+/// Returns all operands. Those that are not given have values at which the results are well inside their ranges; a colour has the
+/// largest.
+pub fn typical(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<i64> {
     let typical = trial::typical(contract, given);
     let each = contract.operands().iter().zip(given).zip(typical);
     let each = each.map(|((operand, given), typical)| {
         given.unwrap_or(if operand.colour { operand.domain.1 } else { typical })
     });
     each.collect()
+}
+
+/// Returns the operands that are not given, with the values that [`completed`] gives them: `green = 0, blue = 0`.
+pub fn missing(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<String> {
+    let operands = contract.operands().iter().zip(given);
+    let missing = operands.filter(|(_, given)| given.is_none()).map(|(operand, _)| {
+        let value = operand.format.to_f64(i128::from(nearest_to_zero(operand)));
+        format!("{} = {value}", operand.name)
+    });
+    missing.collect()
 }
 
 /// Returns the raw value that a text gives to an operand; what is wrong with it names the operand.

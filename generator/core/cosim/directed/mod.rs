@@ -52,8 +52,14 @@ struct Candidate {
 #[derive(Default)]
 pub struct Known(Mutex<HashMap<String, Arc<Mutex<Option<Computations>>>>>);
 
-/// Raw operands, in the order of the contract.
-type Computations = Vec<Vec<i64>>;
+/// The computations of a bench.
+#[derive(Clone, Default)]
+pub struct Computations {
+    /// Their raw operands, in the order of the contract.
+    pub operands: Vec<Vec<i64>>,
+    /// A fault in every word of the memories is noticed if this is 1, in every second word if it is 2, and so on.
+    pub word_stride: usize,
+}
 
 impl Known {
     /// Returns [`computations`], which are looked for once for each design, whatever its name. `contract_digest` tells the
@@ -82,11 +88,11 @@ impl Known {
     }
 }
 
-/// Returns the raw operands of the computations, in the order of the contract.
+/// Chooses the computations.
 ///
 /// # Errors
 /// A design that cannot be simulated, or does not belong to the contract.
-pub fn computations(design: &Design, contract: &dyn Contract) -> Result<Vec<Vec<i64>>> {
+pub fn computations(design: &Design, contract: &dyn Contract) -> Result<Computations> {
     let observed = observable(design);
     let machine = Machine::new(Arc::new(Program::new(&observed)?));
     let mut device = SideBySide::new(&observed, contract, machine)?;
@@ -125,7 +131,8 @@ pub fn computations(design: &Design, contract: &dyn Contract) -> Result<Vec<Vec<
     let words: usize = design.roms.iter().map(|rom| rom.words.len()).sum();
     choose(&candidates, watch.count(), watch.count() + words, &mut chosen);
     let chosen = chosen.into_iter().map(|at| candidates[at].operands.clone());
-    Ok(chosen.chain(of_words.found).collect())
+    let operands = chosen.chain(of_words.found).collect();
+    Ok(Computations { operands, word_stride: of_words.word_stride })
 }
 
 /// Chooses lines that read table after table: the first, which is the longest, and those of which most words are new.

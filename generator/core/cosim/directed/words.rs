@@ -18,6 +18,10 @@ use glint_rtl::sim::{Machine, Program};
 /// Readers of a word that take more clocks than this are not asked: lines that read a table from end to end.
 pub const LONGEST: u32 = 64;
 
+/// The clocks of all computations that notice faults in words, about. Where every word would take more, every second word has a
+/// computation, or every third, and so on, evenly over all memories: a simulator ends within seconds.
+const MOST_CLOCKS: u64 = 40_000;
+
 /// Where no reader of a word notices a fault, so many times others are tried that are near readers: within the domain,
 /// and then beyond it.
 const ROUNDS: usize = 6;
@@ -33,6 +37,8 @@ pub struct Chosen {
     pub chosen: BTreeSet<usize>,
     /// Others, by their operands.
     pub found: Vec<Vec<i64>>,
+    /// Every word has a computation if this is 1, every second word if it is 2, and so on.
+    pub word_stride: usize,
 }
 
 /// Finds computations that notice every bit of the upper half of a word, inverted, that any of the candidates notices
@@ -58,14 +64,23 @@ pub fn chosen(
         let width = if design.is_control_memory(rom) { 0 } else { design.width(rom.data) };
         widths.extend(std::iter::repeat_n(width, rom.words.len()));
     }
-    for (word, readers) in readers(candidates) {
+    let mut readers = readers(candidates);
+    readers.retain(|word, _| !known.contains(word));
+    let stride = word_stride(candidates, &readers);
+    search.result.word_stride = stride;
+    for (word, readers) in readers.into_iter().step_by(stride) {
         let width = widths[word as usize];
         let upper = (width / 2..width).fold(0, |bits, bit| bits | 1 << bit);
-        if !known.contains(&word) {
-            search.word(word, upper, &readers)?;
-        }
+        search.word(word, upper, &readers)?;
     }
     Ok(search.result)
+}
+
+/// Returns the stride with which the computations of all words take about [`MOST_CLOCKS`], one computation a word.
+fn word_stride(candidates: &[Candidate], readers: &BTreeMap<u32, Vec<usize>>) -> usize {
+    let first = readers.values().filter_map(|readers| readers.first());
+    let clocks: u64 = first.map(|&at| u64::from(candidates[at].shown.clocks)).sum();
+    clocks.div_ceil(MOST_CLOCKS).max(1) as usize
 }
 
 /// Returns for each word the brightest of its readers, as many as there are lanes.

@@ -8,6 +8,7 @@ mod table;
 use crate::evidence::advice::Advice;
 use glint_base::fixed::Format;
 use glint_base::program::Program;
+use glint_base::text::rounded_up;
 use glint_config::{Config, Key, Schema, shared_keys};
 use glint_core::cosim::exhaustive::Backing;
 use glint_core::package::facts::{self, Sequence};
@@ -287,7 +288,7 @@ pub fn pipeline_clocks(pipeline: &Pipeline) -> Table {
 pub fn terms(bound: &Bound) -> Table {
     let mut table = Table::of("key | units: | what rounds or approximates");
     for term in &bound.terms {
-        table.row([code(term.key), format!("{:.3}", term.units), term.what.to_owned()]);
+        table.row([code(term.key), rounded_up(term.units, 3), term.what.to_owned()]);
     }
     table
 }

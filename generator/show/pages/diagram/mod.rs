@@ -206,24 +206,17 @@ impl Page<'_> {
         let drawn = |(number, _): &(usize, &Stage)| columns(*number).next().is_some();
         for (number, stage) in pipeline.stages.iter().enumerate().filter(drawn) {
             let bottom = end(number);
-            self.stage(number, stage, 1000.0 / pipeline.clock_mhz, [top, bottom], routes);
+            self.stage(number, stage, [top, bottom], routes);
             top = bottom;
         }
     }
 
-    fn stage(
-        &mut self,
-        number: usize,
-        stage: &Stage,
-        period: f64,
-        ends: [f64; 2],
-        routes: &Routes,
-    ) {
+    fn stage(&mut self, number: usize, stage: &Stage, ends: [f64; 2], routes: &Routes) {
         let [top, bottom] = ends.map(coordinate);
-        let time = period - stage.slack_ns;
         let mut said = vec![
             ("name", format!("stage {number}")),
-            ("small", format!("{time:.2} of {period:.2} ns")),
+            ("small", format!("{:.2} ns", stage.logic_ns)),
+            ("small", format!("slack {:.2} ns", stage.slack_ns)),
             ("small", format!("{} register bits", stage.register_bits)),
         ];
         if stage.delayed_bits > 0 {

@@ -1,0 +1,50 @@
+//! Parses the option `--set KEY=VALUE` of commands that make a configuration.
+
+use anyhow::Result;
+
+use crate::wrong_usage;
+
+/// A key with the value that a user gave it.
+#[derive(Clone)]
+pub struct Setting {
+    /// The dotted name, as `cosine.fraction`.
+    pub key: String,
+    /// The value as TOML.
+    pub value: String,
+}
+
+impl Setting {
+    /// Parses `KEY=VALUE`. A word needs no quotes: `architecture=pipelined` sets `architecture = "pipelined"`.
+    ///
+    /// # Errors
+    /// Fails if there is no `=`, or if the key has other characters than letters, digits, `_`, `-` and `.`.
+    pub fn parse(given: &str) -> Result<Setting> {
+        let Some((key, value)) = given.split_once('=') else {
+            wrong_usage!("--set {given}: a key and a value are wanted, as cosine.fraction=16");
+        };
+        let (key, value) = (key.trim(), value.trim());
+        let is_of_key = |c: char| c.is_ascii_alphanumeric() || "_-.".contains(c);
+        if key.is_empty() || !key.chars().all(is_of_key) {
+            wrong_usage!("--set {given}: `{key}` is no name of a key, as cosine.fraction");
+        }
+        let is_toml = value.parse::<f64>().is_ok()
+            || value.starts_with(['[', '"'])
+            || matches!(value, "true" | "false");
+        let value = if is_toml { value.to_owned() } else { quoted(value) };
+        Ok(Setting { key: key.to_owned(), value })
+    }
+
+    /// Makes the setting of a key to a word.
+    pub fn word(key: &str, word: &str) -> Setting {
+        Setting { key: key.to_owned(), value: quoted(word) }
+    }
+
+    /// Returns the line of TOML that sets the key.
+    pub fn line(&self) -> String {
+        format!("{} = {}\n", self.key, self.value)
+    }
+}
+
+fn quoted(word: &str) -> String {
+    toml::Value::from(word).to_string()
+}
