@@ -353,7 +353,10 @@ impl Whole<'_> {
             return unlike("f(4x) is neither a power of two times f(x) nor a constant more");
         };
         if first == 0 && !rises {
-            return refused("0 is in no octave", "change function.from to the least operand above");
+            return refused(
+                "function.from is 0, and 0 is in no octave",
+                "change function.from to the least operand above 0",
+            );
         }
         // The octave, or the pair, that the polynomials are of: that of the largest results.
         let of = |octave: i32| if pairs { octave >> 1 } else { octave };

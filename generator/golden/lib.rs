@@ -292,7 +292,9 @@ impl fmt::Display for Axis {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.values {
             Values::Range(low, high) => write!(f, "{} = {low} to {high}", self.name),
-            Values::List(values) => write!(f, "{} settings of {}", values.len(), self.name),
+            Values::List(values) => {
+                write!(f, "{} of {}", text::counted(values.len(), "value"), self.name)
+            }
         }
     }
 }

@@ -70,7 +70,7 @@ module blinn_pipelined #(
     reg  [20:0] cos_gamma_s1;
     always @(posedge clk) if (advance) cos_gamma_s1 <= cos_gamma;
 
-    // Stage 1, part of: distance from the cosine
+    // Stage 1, of the microinstructions distance from the cosine
     wire cos_gamma_reg_part_2_s1 = ~cos_gamma_s1[20];
     wire [19:0] cos_gamma_reg_part_3_s1 = cos_gamma_s1[19:0] & {{19{cos_gamma_reg_part_2_s1}},
             cos_gamma_reg_part_2_s1};
@@ -92,7 +92,7 @@ module blinn_pipelined #(
         aligned_s2 <= cos_gamma_reg_s1[20];
     end
 
-    // Stage 2, part of: distance from the cosine
+    // Stage 2, of the microinstructions distance from the cosine
     wire octave_top8_s2 = |{octave_by16_part_4_s2, octave_by16_part_2_s2[15:12]};
     wire [7:0] octave_by8_part_2_s2 = octave_by16_part_2_s2[7:0] & {{7{octave_top8_s2}},
             octave_top8_s2};
@@ -113,7 +113,7 @@ module blinn_pipelined #(
         aligned_s3 <= aligned_s2;
     end
 
-    // Stage 3, part of: distance from the cosine; ratio <- those from 1 on
+    // Stage 3, of the microinstructions distance from the cosine; ratio <- those from 1 on
     wire octave_top2_s3 = |octave_by4_part_3_s3[15:14];
     wire octave_free2_s3 = ~octave_top2_s3;
     wire [1:0] octave_by2_part_2_s3 = octave_by4_part_2_s3[1:0] & {octave_top2_s3, octave_top2_s3};
@@ -143,7 +143,7 @@ module blinn_pipelined #(
         aligned_s4 <= aligned_s3;
     end
 
-    // Stage 4, part of: ratio <- those from 1 on
+    // Stage 4, of the microinstructions ratio <- those from 1 on
     wire ratio_offset_top_s4 = ~distance_next_s4[14];
     wire signed [14:0] polynomial_product_s5;  // s14.0
     blinn_pipelined_multiplier #(
@@ -168,7 +168,7 @@ module blinn_pipelined #(
         aligned_s5 <= aligned_s4;
     end
 
-    // Stage 5, part of: ratio <- those from 1 on
+    // Stage 5, of the microinstructions ratio <- those from 1 on
     // ROM ratio_coefficients1: coefficient of the segment's polynomial
     reg [12:0] ratio_coefficients1_rom [0:15];
     initial $readmemh(RATIO_COEFFICIENTS1_FILE, ratio_coefficients1_rom);
@@ -187,7 +187,7 @@ module blinn_pipelined #(
         aligned_s6 <= aligned_s5;
     end
 
-    // Stage 6, part of: ratio <- all coefficients
+    // Stage 6, of the microinstructions ratio <- all coefficients
     wire signed [25:0] polynomial_product_2_s7;  // s25.0
     blinn_pipelined_multiplier #(
         .A_WIDTH(14),
@@ -210,7 +210,7 @@ module blinn_pipelined #(
         aligned_s7 <= aligned_s6;
     end
 
-    // Stage 7, part of: ratio <- those from 1 on; ratio <- all coefficients
+    // Stage 7, of the microinstructions ratio <- those from 1 on; ratio <- all coefficients
     // ROM ratio_coefficients: coefficient of the segment's polynomial
     reg [18:0] ratio_coefficients_rom [0:15];
     initial $readmemh(RATIO_COEFFICIENTS_FILE, ratio_coefficients_rom);
@@ -227,7 +227,7 @@ module blinn_pipelined #(
         aligned_s8 <= aligned_s7;
     end
 
-    // Stage 8, part of: factor <- way * ratio
+    // Stage 8, of the microinstructions factor <- way * ratio
     wire [35:0] product_upper_s9;
     blinn_pipelined_multiplier #(
         .A_WIDTH(18),
@@ -250,7 +250,7 @@ module blinn_pipelined #(
         aligned_s9 <= aligned_s8;
     end
 
-    // Stage 9, part of: factor <- way * ratio
+    // Stage 9, of the microinstructions factor <- way * ratio
     wire [17:0] product_part_s9 = ratio_s9 & {{17{product_row_s9}}, product_row_s9};
     wire [35:0] product_upper_3_s9 = {19'd0, product_part_s9[17:1]} + product_upper_s9;
     wire [17:0] product_at_highest_s9 = ratio_s9 & {{17{product_highest_s9}}, product_highest_s9};
@@ -264,7 +264,7 @@ module blinn_pipelined #(
         aligned_s10 <= aligned_s9;
     end
 
-    // Stage 10, part of: factor <- way * ratio
+    // Stage 10, of the microinstructions factor <- way * ratio
     wire decay_large_s10 = |product_3_s10[36:34];
     wire octave_any_s10 = |octave_s10;  // cos gamma is below one half
     wire decay_far_s10 = decay_large_s10 | octave_any_s10;
@@ -280,7 +280,7 @@ module blinn_pipelined #(
         aligned_s11 <= aligned_s10;
     end
 
-    // Stage 11, part of: halvings <- n * factor
+    // Stage 11, of the microinstructions halvings <- n * factor
     wire [27:0] product_upper_5_s12;
     blinn_pipelined_multiplier #(
         .A_WIDTH(18),
@@ -312,7 +312,7 @@ module blinn_pipelined #(
         aligned_s12 <= aligned_s11;
     end
 
-    // Stage 12, part of: factor <- way * ratio; halvings <- n * factor
+    // Stage 12, of the microinstructions factor <- way * ratio; halvings <- n * factor
     wire decay_small_s12 = ~decay_far_s12;  // the decay is below 1/4, and all its bits count
     wire [27:0] product_upper_7_s12 = {18'd0, product_lower_s12[15:6]} + product_upper_5_s12;
     reg         facing_s13, aligned_s13;
@@ -326,7 +326,7 @@ module blinn_pipelined #(
         aligned_s13 <= aligned_s12;
     end
 
-    // Stage 13, part of: power <- those from 1 on; reflectance <- 2^-halvings
+    // Stage 13, of the microinstructions power <- those from 1 on; reflectance <- 2^-halvings
     // u16.18: n*decay: how often f is half of 1.0
     wire [33:0] halvings_s13 = {halvings_part_3_s13, halvings_part_s13};
     // ROM power_coefficients2: coefficient of the segment's polynomial
@@ -351,7 +351,7 @@ module blinn_pipelined #(
         places_bits_s14 <= places_s13[4];
     end
 
-    // Stage 14, part of: power <- those from 1 on
+    // Stage 14, of the microinstructions power <- those from 1 on
     wire signed [14:0] polynomial_product_3_s15;  // s14.0
     blinn_pipelined_multiplier #(
         .A_WIDTH(7),
@@ -375,7 +375,7 @@ module blinn_pipelined #(
         places_bits_s15 <= places_bits_s14;
     end
 
-    // Stage 15, part of: power <- those from 1 on
+    // Stage 15, of the microinstructions power <- those from 1 on
     // ROM power_coefficients1: coefficient of the segment's polynomial
     reg [15:0] power_coefficients1_rom [0:15];
     initial $readmemh(POWER_COEFFICIENTS1_FILE, power_coefficients1_rom);
@@ -396,7 +396,7 @@ module blinn_pipelined #(
         places_bits_s16 <= places_bits_s15;
     end
 
-    // Stage 16, part of: power <- all coefficients
+    // Stage 16, of the microinstructions power <- all coefficients
     wire signed [29:0] polynomial_product_4_s17;  // s29.0
     blinn_pipelined_multiplier #(
         .A_WIDTH(16),
@@ -418,7 +418,7 @@ module blinn_pipelined #(
         places_bits_s17 <= places_bits_s16;
     end
 
-    // Stage 17, part of: power <- all coefficients; reflectance <- 2^-halvings
+    // Stage 17, of the microinstructions power <- all coefficients; reflectance <- 2^-halvings
     // ROM power_coefficients: coefficient of the segment's polynomial
     reg [19:0] power_coefficients_rom [0:15];
     initial $readmemh(POWER_COEFFICIENTS_FILE, power_coefficients_rom);
@@ -439,7 +439,7 @@ module blinn_pipelined #(
                 exp2_shift_by16_part_4_s17};
     end
 
-    // Stage 18, part of: reflectance <- 2^-halvings
+    // Stage 18, of the microinstructions reflectance <- 2^-halvings
     wire [9:0] exp2_shift_by8_part_s18 = places_bits_2_s18 ? exp2_shift_by16_part_5_s18[15:6] :
             {exp2_shift_by16_part_5_s18[7:0], exp2_shift_by16_part_2_s18};
     wire exp2_shift_by8_part_3_s18 = ~places_bits_2_s18;
@@ -469,7 +469,7 @@ module blinn_pipelined #(
         exp2_shift_by1_s19 <= {exp2_shift_by1_part_4_s18, exp2_shift_by1_part_s18};
     end
 
-    // Stage 19, part of: reflectance <- 2^-halvings
+    // Stage 19, of the microinstructions reflectance <- 2^-halvings
     wire [17:0] exp2_rounded_nearest_s19 = {1'b0, exp2_shift_by1_s19[17:1]} + {17'd0,
             exp2_shift_by1_s19[0]};
     wire exp2_rounded_over_s19 = |exp2_rounded_nearest_s19[17:16];
@@ -483,7 +483,7 @@ module blinn_pipelined #(
         lit_s20 <= exp2_rounded_s19 | {{15{aligned_s19}}, aligned_s19};
     end
 
-    // Stage 20, part of: reflectance <- 2^-halvings; result
+    // Stage 20, of the microinstructions reflectance <- 2^-halvings; result
     wire [15:0] reflectance_s20 = lit_s20 & {{15{facing_s20}}, facing_s20};  // f
     wire [23:0] red_product_s21;  // u8.16: an output before it is rounded
     blinn_pipelined_multiplier #(
@@ -524,7 +524,7 @@ module blinn_pipelined #(
     reg  [15:0] reflectance_s21;
     always @(posedge clk) if (advance) reflectance_s21 <= reflectance_s20;
 
-    // Stage 21, part of: result
+    // Stage 21, of the microinstructions result
     reg  [15:0] reflectance_s22;
     reg  [7:0]  red_intensity_s22, green_intensity_s22, blue_intensity_s22;
     always @(posedge clk) if (advance) begin

@@ -54,7 +54,7 @@ module cosine_power_pipelined (
         else if (advance) valid <= {valid[9:1], in_valid};
     end
 
-    // Stage 0, part of: operands 1 - cos gamma, n/m
+    // Stage 0, of the microinstructions operands 1 - cos gamma, n/m
     // u1.20: cosine of the angle between normal and half vector
     wire [20:0] cos_gamma_reg_s0 = cos_gamma[20] ? COS_GAMMA_MOST : cos_gamma;
     reg  [20:0] complement_s1;  // u1.20: 1.0 - cos gamma
@@ -66,7 +66,7 @@ module cosine_power_pipelined (
         facing_s1 <= |cos_gamma_reg_s0;
     end
 
-    // Stage 1, part of: accumulator <- n/m * (1 - cos gamma)
+    // Stage 1, of the microinstructions accumulator <- n/m * (1 - cos gamma)
     reg         facing_s2;
     reg  [27:0] product_upper_s2;
     reg  [9:0]  product_row_2_s2, product_row_4_s2, product_at_highest_s2;
@@ -78,7 +78,7 @@ module cosine_power_pipelined (
         product_at_highest_s2 <= complement_s1[20] ? exponent_s1 : 10'd0;
     end
 
-    // Stage 2, part of: accumulator <- n/m * (1 - cos gamma)
+    // Stage 2, of the microinstructions accumulator <- n/m * (1 - cos gamma)
     wire [10:0] product_upper_4_s2 = {2'd0, product_row_2_s2[9:1]} + {1'b0, product_row_4_s2};
     wire [27:0] product_upper_7_s2 = {18'd0, product_upper_4_s2[10:1]} + product_upper_s2;
     wire [9:0] product_2_s2 = product_upper_7_s2[27:18] | product_at_highest_s2;
@@ -91,7 +91,7 @@ module cosine_power_pipelined (
         product_view_kept_inside_s3 <= {product_2_s2[3:0], product_upper_7_s2[17:6]};
     end
 
-    // Stage 3, part of: accumulator <- n/m * (1 - cos gamma); accumulator <- base^2
+    // Stage 3, of the microinstructions accumulator <- n/m * (1 - cos gamma); accumulator <- base^2
     // u0.16: n/m*(1 - cos gamma), then the powers of W's base
     wire [15:0] accumulator_s3 = (|product_view_kept_bits_s3) ? 16'hffff :
             product_view_kept_inside_s3;
@@ -99,28 +99,28 @@ module cosine_power_pipelined (
     reg  [15:0] base_s4;  // u0.16: base of the power
     always @(posedge clk) if (advance) base_s4 <= facing_s3 ? inverse_s3 : 16'd0;
 
-    // Stage 4, part of: accumulator <- base^2
+    // Stage 4, of the microinstructions accumulator <- base^2
     wire [31:0] product_4_s4 = base_s4 * base_s4;
     reg  [15:0] accumulator_2_s5;  // u0.16: n/m*(1 - cos gamma), then the powers of W's base
     always @(posedge clk) if (advance) accumulator_2_s5 <= product_4_s4[31:16];
 
-    // Stage 5, part of: accumulator <- accumulator^2
+    // Stage 5, of the microinstructions accumulator <- accumulator^2
     wire [31:0] product_5_s5 = accumulator_2_s5 * accumulator_2_s5;
     reg  [15:0] accumulator_3_s6;  // u0.16: n/m*(1 - cos gamma), then the powers of W's base
     always @(posedge clk) if (advance) accumulator_3_s6 <= product_5_s5[31:16];
 
-    // Stage 6, part of: accumulator <- accumulator^2
+    // Stage 6, of the microinstructions accumulator <- accumulator^2
     wire [31:0] product_6_s6 = accumulator_3_s6 * accumulator_3_s6;
     reg  [15:0] accumulator_4_s7;  // u0.16: n/m*(1 - cos gamma), then the powers of W's base
     always @(posedge clk) if (advance) accumulator_4_s7 <= product_6_s6[31:16];
 
-    // Stage 7, part of: accumulator <- accumulator^2
+    // Stage 7, of the microinstructions accumulator <- accumulator^2
     wire [31:0] product_7_s7 = accumulator_4_s7 * accumulator_4_s7;
     reg  [15:0] accumulator_5_s8;  // u0.16: n/m*(1 - cos gamma), then the powers of W's base
     wire [7:0]  red_s8, green_s8, blue_s8;
     always @(posedge clk) if (advance) accumulator_5_s8 <= product_7_s7[31:16];
 
-    // Stage 8, part of: result
+    // Stage 8, of the microinstructions result
     // u8.16: an output before it is rounded
     wire [23:0] red_product_s8 = accumulator_5_s8 * red_s8;
     wire [23:0] green_product_s8 = accumulator_5_s8 * green_s8;
@@ -136,7 +136,7 @@ module cosine_power_pipelined (
         blue_product_bits_s9 <= blue_product_s8[15];
     end
 
-    // Stage 9, part of: result
+    // Stage 9, of the microinstructions result
     reg  [7:0] red_intensity_s10, green_intensity_s10, blue_intensity_s10;
     always @(posedge clk) if (advance) begin
         red_intensity_s10 <= red_product_kept_s9 + {7'd0, red_product_bits_s9};

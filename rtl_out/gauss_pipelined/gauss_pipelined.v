@@ -64,7 +64,7 @@ module gauss_pipelined #(
         else if (advance) valid <= {valid[17:1], in_valid};
     end
 
-    // Stage 0, part of: distance from the cosine; ratio <- those from 1 on
+    // Stage 0, of the microinstructions distance from the cosine; ratio <- those from 1 on
     wire cos_gamma_reg_part_2_s0 = ~cos_gamma[20];
     wire [19:0] cos_gamma_reg_part_3_s0 = cos_gamma[19:0] & {{19{cos_gamma_reg_part_2_s0}},
             cos_gamma_reg_part_2_s0};
@@ -85,7 +85,7 @@ module gauss_pipelined #(
         ratio_coefficients2_word_s1 <= ratio_coefficients2_word_s0;
     end
 
-    // Stage 1, part of: distance from the cosine; ratio <- those from 1 on
+    // Stage 1, of the microinstructions distance from the cosine; ratio <- those from 1 on
     wire ratio_offset_top_s1 = ~distance_s1[16];
     wire signed [16:0] polynomial_product_s2;  // s16.0
     gauss_pipelined_multiplier #(
@@ -112,7 +112,7 @@ module gauss_pipelined #(
         aligned_s2 <= cos_gamma_reg_s1[20];
     end
 
-    // Stage 2, part of: ratio <- those from 1 on
+    // Stage 2, of the microinstructions ratio <- those from 1 on
     // ROM ratio_coefficients1: coefficient of the segment's polynomial
     reg [14:0] ratio_coefficients1_rom [0:7];
     initial $readmemh(RATIO_COEFFICIENTS1_FILE, ratio_coefficients1_rom);
@@ -131,7 +131,7 @@ module gauss_pipelined #(
         aligned_s3 <= aligned_s2;
     end
 
-    // Stage 3, part of: ratio <- all coefficients
+    // Stage 3, of the microinstructions ratio <- all coefficients
     wire signed [29:0] polynomial_product_2_s4;  // s29.0
     gauss_pipelined_multiplier #(
         .A_WIDTH(16),
@@ -154,7 +154,7 @@ module gauss_pipelined #(
         aligned_s4 <= aligned_s3;
     end
 
-    // Stage 4, part of: distance from the cosine; ratio <- all coefficients
+    // Stage 4, of the microinstructions distance from the cosine; ratio <- all coefficients
     // ROM ratio_coefficients: coefficient of the segment's polynomial
     reg [20:0] ratio_coefficients_rom [0:7];
     initial $readmemh(RATIO_COEFFICIENTS_FILE, ratio_coefficients_rom);
@@ -171,7 +171,7 @@ module gauss_pipelined #(
         aligned_s5 <= aligned_s4;
     end
 
-    // Stage 5, part of: factor <- way * ratio
+    // Stage 5, of the microinstructions factor <- way * ratio
     wire [16:0] product_part_s5 = ratio_s5 & {{16{distance_whole_s5[0]}}, distance_whole_s5[0]};
     wire [16:0] product_part_2_s5 = ratio_s5 & {{16{distance_whole_s5[1]}}, distance_whole_s5[1]};
     wire [34:0] product_upper_s6;
@@ -197,7 +197,7 @@ module gauss_pipelined #(
         aligned_s6 <= aligned_s5;
     end
 
-    // Stage 6, part of: factor <- way * ratio
+    // Stage 6, of the microinstructions factor <- way * ratio
     wire [34:0] product_upper_7_s6 = {18'd0, product_upper_4_s6[17:1]} + product_upper_s6;
     wire [16:0] product_2_s6 = product_upper_7_s6[34:18] | product_at_highest_s6;
     wire [9:0]  exponent_s7;
@@ -213,7 +213,7 @@ module gauss_pipelined #(
         aligned_s7 <= aligned_s6;
     end
 
-    // Stage 7, part of: factor <- way * ratio; halvings <- n * factor
+    // Stage 7, of the microinstructions factor <- way * ratio; halvings <- n * factor
     wire [18:0] factor_part_s7 = decay_large_s7 ? decay_coarse_s7 : product_6_s7;
     wire decay_small_s7 = ~decay_large_s7;  // the decay is below 1/4, and all its bits count
     wire [4:0] factor_part_3_s7 = factor_part_2_s7 & {{4{decay_small_s7}}, decay_small_s7};
@@ -251,7 +251,7 @@ module gauss_pipelined #(
         aligned_s8 <= aligned_s7;
     end
 
-    // Stage 8, part of: halvings <- n * factor
+    // Stage 8, of the microinstructions halvings <- n * factor
     wire [27:0] product_upper_10_s8 = {18'd0, product_lower_s8[15:6]} + product_upper_8_s8;
     reg         facing_s9, aligned_s9;
     reg  [25:0] halvings_part_s9;
@@ -264,7 +264,7 @@ module gauss_pipelined #(
         aligned_s9 <= aligned_s8;
     end
 
-    // Stage 9, part of: power <- those from 1 on; reflectance <- 2^-halvings
+    // Stage 9, of the microinstructions power <- those from 1 on; reflectance <- 2^-halvings
     // u11.18: n*decay: how often f is half of 1.0
     wire [28:0] halvings_s9 = {halvings_part_3_s9, halvings_part_s9};
     // ROM power_coefficients2: coefficient of the segment's polynomial
@@ -289,7 +289,7 @@ module gauss_pipelined #(
         places_bits_s10 <= places_s9[4];
     end
 
-    // Stage 10, part of: power <- those from 1 on
+    // Stage 10, of the microinstructions power <- those from 1 on
     wire signed [14:0] polynomial_product_3_s11;  // s14.0
     gauss_pipelined_multiplier #(
         .A_WIDTH(7),
@@ -313,7 +313,7 @@ module gauss_pipelined #(
         places_bits_s11 <= places_bits_s10;
     end
 
-    // Stage 11, part of: power <- those from 1 on
+    // Stage 11, of the microinstructions power <- those from 1 on
     // ROM power_coefficients1: coefficient of the segment's polynomial
     reg [15:0] power_coefficients1_rom [0:15];
     initial $readmemh(POWER_COEFFICIENTS1_FILE, power_coefficients1_rom);
@@ -334,7 +334,7 @@ module gauss_pipelined #(
         places_bits_s12 <= places_bits_s11;
     end
 
-    // Stage 12, part of: power <- all coefficients
+    // Stage 12, of the microinstructions power <- all coefficients
     wire signed [29:0] polynomial_product_4_s13;  // s29.0
     gauss_pipelined_multiplier #(
         .A_WIDTH(16),
@@ -356,7 +356,7 @@ module gauss_pipelined #(
         places_bits_s13 <= places_bits_s12;
     end
 
-    // Stage 13, part of: power <- all coefficients; reflectance <- 2^-halvings
+    // Stage 13, of the microinstructions power <- all coefficients; reflectance <- 2^-halvings
     // ROM power_coefficients: coefficient of the segment's polynomial
     reg [19:0] power_coefficients_rom [0:15];
     initial $readmemh(POWER_COEFFICIENTS_FILE, power_coefficients_rom);
@@ -377,7 +377,7 @@ module gauss_pipelined #(
                 exp2_shift_by16_part_4_s13};
     end
 
-    // Stage 14, part of: reflectance <- 2^-halvings
+    // Stage 14, of the microinstructions reflectance <- 2^-halvings
     wire [9:0] exp2_shift_by8_part_s14 = places_bits_2_s14 ? exp2_shift_by16_part_5_s14[15:6] :
             {exp2_shift_by16_part_5_s14[7:0], exp2_shift_by16_part_2_s14};
     wire exp2_shift_by8_part_3_s14 = ~places_bits_2_s14;
@@ -407,7 +407,7 @@ module gauss_pipelined #(
         exp2_shift_by1_s15 <= {exp2_shift_by1_part_4_s14, exp2_shift_by1_part_s14};
     end
 
-    // Stage 15, part of: reflectance <- 2^-halvings
+    // Stage 15, of the microinstructions reflectance <- 2^-halvings
     wire [17:0] exp2_rounded_nearest_s15 = {1'b0, exp2_shift_by1_s15[17:1]} + {17'd0,
             exp2_shift_by1_s15[0]};
     wire exp2_rounded_over_s15 = |exp2_rounded_nearest_s15[17:16];
@@ -421,7 +421,7 @@ module gauss_pipelined #(
         lit_s16 <= exp2_rounded_s15 | {{15{aligned_s15}}, aligned_s15};
     end
 
-    // Stage 16, part of: reflectance <- 2^-halvings; result
+    // Stage 16, of the microinstructions reflectance <- 2^-halvings; result
     wire [15:0] reflectance_s16 = lit_s16 & {{15{facing_s16}}, facing_s16};  // f
     wire [23:0] red_product_s17;  // u8.16: an output before it is rounded
     gauss_pipelined_multiplier #(
@@ -462,7 +462,7 @@ module gauss_pipelined #(
     reg  [15:0] reflectance_s17;
     always @(posedge clk) if (advance) reflectance_s17 <= reflectance_s16;
 
-    // Stage 17, part of: result
+    // Stage 17, of the microinstructions result
     reg  [15:0] reflectance_s18;
     reg  [7:0]  red_intensity_s18, green_intensity_s18, blue_intensity_s18;
     always @(posedge clk) if (advance) begin

@@ -66,7 +66,7 @@ module lyon_pipelined (
         dz_s1 <= dz;
     end
 
-    // Stage 1, part of: operands dx, dy, dz
+    // Stage 1, of the microinstructions operands dx, dy, dz
     reg  signed [35:0] multiplier1_s2;  // register 1, s3.32
     reg  signed [35:0] multiplier2_s2;  // register 2, s3.32
     reg  signed [17:0] dz_s2;
@@ -76,7 +76,7 @@ module lyon_pipelined (
         multiplier2_s2 <= dy_s1 * dy_s1;
     end
 
-    // Stage 2, part of: operands dx, dy, dz; shift_register <- D^2 / (4*power)
+    // Stage 2, of the microinstructions operands dx, dy, dz; shift_register <- D^2 / (4*power)
     reg  signed [35:0] multiplier3_s3;  // register 3, s3.32
     reg  signed [36:0] adder1_s3;       // register 1, s4.32
     always @(posedge clk) if (advance) begin
@@ -84,7 +84,8 @@ module lyon_pipelined (
         adder1_s3 <= {multiplier1_s2[35], multiplier1_s2} + {multiplier2_s2[35], multiplier2_s2};
     end
 
-    // Stage 3, part of: shift_register <- D^2 / (4*power); shift_register <- 2 * shift_register
+    // Stage 3, of the microinstructions shift_register <- D^2 / (4*power); shift_register <- 2 *
+    // shift_register
     // adder 2, s4.32: D^2
     wire signed [36:0] adder2_s3 = adder1_s3 + {multiplier3_s3[35], multiplier3_s3};
     wire        [3:0]  shift_s4;
@@ -95,7 +96,7 @@ module lyon_pipelined (
         shift_register_shifted_scaled_bits_2_s4 <= |adder2_s3[35:30];
     end
 
-    // Stage 4, part of: shift_register <- 2 * shift_register
+    // Stage 4, of the microinstructions shift_register <- 2 * shift_register
     // u1.26: beta*D^2, once it has shifted
     wire [26:0] shift_register_s4 = {2'd0, adder2_s4[35:12], 1'b0};
     wire [26:0] shift_register_6_s4 = shift_register_shifted_scaled_bits_2_s4 ? 27'h7ffffff :
@@ -112,7 +113,7 @@ module lyon_pipelined (
         shift_reg_4_s5 <= shift_s4[0];
     end
 
-    // Stage 5, part of: shift_register <- 2 * shift_register
+    // Stage 5, of the microinstructions shift_register <- 2 * shift_register
     wire [26:0] shift_register_10_s5 = (|shift_register_9_s5[26:25]) ? 27'h7ffffff :
             {shift_register_9_s5[24:0], 2'd0};
     wire [26:0] shift_register_11_s5 = shift_reg_3_s5 ? shift_register_10_s5 : shift_register_9_s5;
@@ -123,7 +124,7 @@ module lyon_pipelined (
         shift_register_13_s6 <= shift_reg_4_s5 ? shift_register_12_s5 : shift_register_11_s5;
     end
 
-    // Stage 6, part of: accumulator <- base^2
+    // Stage 6, of the microinstructions accumulator <- base^2
     // u1.16: beta*D^2, to the point of f
     wire [16:0] beta_distance_s6 = shift_register_13_s6[26:10];
     wire comparator_s6 = beta_distance_s6 < ONE;  // beta*D^2 is below 1.0
@@ -131,28 +132,28 @@ module lyon_pipelined (
     reg  [15:0] base_s7;  // u0.16: base of the power, or 0
     always @(posedge clk) if (advance) base_s7 <= comparator_s6 ? inverse_s6 : 16'd0;
 
-    // Stage 7, part of: accumulator <- base^2
+    // Stage 7, of the microinstructions accumulator <- base^2
     wire [31:0] multiplier4_s7 = base_s7 * base_s7;  // multiplier 4, u0.32
     reg  [15:0] accumulator_s8;  // u0.16: the powers of the base, in the end f
     always @(posedge clk) if (advance) accumulator_s8 <= multiplier4_s7[31:16];
 
-    // Stage 8, part of: accumulator <- accumulator^2
+    // Stage 8, of the microinstructions accumulator <- accumulator^2
     wire [31:0] multiplier4_2_s8 = accumulator_s8 * accumulator_s8;  // multiplier 4, u0.32
     reg  [15:0] accumulator_2_s9;  // u0.16: the powers of the base, in the end f
     always @(posedge clk) if (advance) accumulator_2_s9 <= multiplier4_2_s8[31:16];
 
-    // Stage 9, part of: accumulator <- accumulator^2
+    // Stage 9, of the microinstructions accumulator <- accumulator^2
     wire [31:0] multiplier4_3_s9 = accumulator_2_s9 * accumulator_2_s9;  // multiplier 4, u0.32
     reg  [15:0] accumulator_3_s10;  // u0.16: the powers of the base, in the end f
     always @(posedge clk) if (advance) accumulator_3_s10 <= multiplier4_3_s9[31:16];
 
-    // Stage 10, part of: accumulator <- accumulator^2
+    // Stage 10, of the microinstructions accumulator <- accumulator^2
     wire [31:0] multiplier4_4_s10 = accumulator_3_s10 * accumulator_3_s10;  // multiplier 4, u0.32
     reg  [15:0] accumulator_4_s11;  // u0.16: the powers of the base, in the end f
     wire [7:0]  red_s11, green_s11, blue_s11;
     always @(posedge clk) if (advance) accumulator_4_s11 <= multiplier4_4_s10[31:16];
 
-    // Stage 11, part of: result
+    // Stage 11, of the microinstructions result
     // u8.16: an output before it is rounded
     wire [23:0] red_product_s11 = accumulator_4_s11 * red_s11;
     wire [23:0] green_product_s11 = accumulator_4_s11 * green_s11;
@@ -168,7 +169,7 @@ module lyon_pipelined (
         blue_product_bits_s12 <= blue_product_s11[15];
     end
 
-    // Stage 12, part of: result
+    // Stage 12, of the microinstructions result
     reg  [7:0] red_intensity_s13, green_intensity_s13, blue_intensity_s13;
     always @(posedge clk) if (advance) begin
         red_intensity_s13 <= red_product_kept_s12 + {7'd0, red_product_bits_s12};

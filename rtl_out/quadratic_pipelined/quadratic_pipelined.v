@@ -60,7 +60,7 @@ module quadratic_pipelined #(
         else if (advance) valid <= {valid[7:1], in_valid};
     end
 
-    // Stage 0, part of: operands; ROM(n) addressed
+    // Stage 0, of the microinstructions operands; ROM(n) addressed
     reg  [17:0] coefficient_word_s1;  // u10.8
     // ROM coefficient: a(n), minimax, for an exponent n (the address)
     reg [17:0] coefficient_rom [0:1023];
@@ -72,7 +72,7 @@ module quadratic_pipelined #(
         cos_gamma_reg_s1 <= cos_gamma[20] ? COS_GAMMA_MOST : cos_gamma;
     end
 
-    // Stage 1, part of: operands; ROM(n) addressed
+    // Stage 1, of the microinstructions operands; ROM(n) addressed
     wire [20:0] multiplier5_row_2_s1 = cos_gamma_reg_s1[0] ? {cos_gamma_reg_s1[19:2], 1'b0,
             cos_gamma_reg_s1[1:0]} : 21'd0;
     wire [20:0] multiplier5_row_4_s1 = cos_gamma_reg_s1[1] ? {cos_gamma_reg_s1[19:2], 1'b0,
@@ -90,7 +90,7 @@ module quadratic_pipelined #(
         coefficient_word_s2 <= coefficient_word_s1;
     end
 
-    // Stage 2, part of: operands; ROM(n) addressed; difference <- c^2 - c
+    // Stage 2, of the microinstructions operands; ROM(n) addressed; difference <- c^2 - c
     wire [35:0] multiplier5_upper_7_s2 = {17'd0, multiplier5_upper_4_s2[21:3]} +
             multiplier5_upper_s2;
     wire [21:0] adder1_upper_3_s2 = {1'b0, cos_gamma_reg_s2[20], multiplier5_upper_7_s2[35:16]} -
@@ -106,7 +106,7 @@ module quadratic_pipelined #(
         multiplier1_below_s3 <= adder1_upper_3_s2[17:1];
     end
 
-    // Stage 3, part of: intensity <- c + a(n) * difference, not below 0
+    // Stage 3, of the microinstructions intensity <- c + a(n) * difference, not below 0
     wire [34:0] multiplier1_inside_s3 = coefficient_word_s3 * multiplier1_below_s3;
     reg  [17:0] multiplier1_s4;          // register 1
     reg  [9:0]  multiplier1_2_s4;        // register 1
@@ -121,7 +121,7 @@ module quadratic_pipelined #(
         adder2_upper_3_s4 <= multiplier1_inside_s3[6:0];
     end
 
-    // Stage 4, part of: intensity <- c + a(n) * difference, not below 0
+    // Stage 4, of the microinstructions intensity <- c + a(n) * difference, not below 0
     wire signed [18:0] multiplier1_upper_s4 = {1'b0, multiplier1_s4} - {1'b0,
             multiplier1_at_sign_s4};
     wire [28:0] adder2_upper_2_s4 = {multiplier1_upper_s4, multiplier1_2_s4} + {8'd0,
@@ -137,7 +137,7 @@ module quadratic_pipelined #(
         adder2_kept_inside_s5 <= adder2_s4[26:11];
     end
 
-    // Stage 5, part of: intensity <- c + a(n) * difference, not below 0
+    // Stage 5, of the microinstructions intensity <- c + a(n) * difference, not below 0
     wire [15:0] clamped_limited_s5 = (|adder2_kept_bits_2_s5) ? 16'hffff : adder2_kept_inside_s5;
     reg  [15:0] intensity_s6;  // u0.16: the reflectance f
     wire [7:0]  red_s6, green_s6, blue_s6;
@@ -145,7 +145,7 @@ module quadratic_pipelined #(
         intensity_s6 <= adder2_kept_bits_s5 ? 16'd0 : clamped_limited_s5;
     end
 
-    // Stage 6, part of: result
+    // Stage 6, of the microinstructions result
     // multiplier 2, u8.16: an output before it is rounded
     wire [23:0] red_product_s6 = intensity_s6 * red_s6;
     // multiplier 3, u8.16: an output before it is rounded
@@ -163,7 +163,7 @@ module quadratic_pipelined #(
         blue_product_bits_s7 <= blue_product_s6[15];
     end
 
-    // Stage 7, part of: result
+    // Stage 7, of the microinstructions result
     reg  [7:0] red_intensity_s8, green_intensity_s8, blue_intensity_s8;
     always @(posedge clk) if (advance) begin
         red_intensity_s8 <= red_product_kept_s7 + {7'd0, red_product_bits_s7};

@@ -59,8 +59,8 @@ module rough_pipelined #(
         else if (advance) valid <= {valid[17:1], in_valid};
     end
 
-    // Stage 0, part of: operands cos gamma, cos dgamma; sine of gamma addressed; 19 <- sin gamma;
-    // 11 <- cos gamma * cos dgamma
+    // Stage 0, of the microinstructions operands cos gamma, cos dgamma; sine of gamma addressed; 19
+    // <- sin gamma; 11 <- cos gamma * cos dgamma
     // register 1, u1.20: cosine of the angle between normal and half vector
     reg  [20:0] cos_gamma_reg_s1;
     // register 2, u1.20: cosine of the angle by which the normal is perturbed
@@ -76,8 +76,8 @@ module rough_pipelined #(
         complement_2_s1 <= cos_dgamma[20] ? 21'd0 : (COS_GAMMA_MOST - cos_dgamma);
     end
 
-    // Stage 1, part of: operands cos gamma, cos dgamma; sine of gamma addressed; 19 <- sin gamma;
-    // 11 <- cos gamma * cos dgamma
+    // Stage 1, of the microinstructions operands cos gamma, cos dgamma; sine of gamma addressed; 19
+    // <- sin gamma; 11 <- cos gamma * cos dgamma
     wire sine_in_range7_s1 = |complement_s1[20:4];  // u is in range 7 or in one above
     wire sine_in_range8_s1 = |complement_s1[20:2];  // u is in range 8 or in one above
     wire sine_in_range1_s1 = |complement_s1[20:16];  // u is in range 1 or in one above
@@ -156,8 +156,8 @@ module rough_pipelined #(
         sine_word1_2_s2 <= sine_in_range1_2_s1 ? {1'b0, sine_word0_2_s1} : sine_word2_2_s1;
     end
 
-    // Stage 2, part of: operands cos gamma, cos dgamma; sine of gamma addressed; 19 <- sin gamma;
-    // 11 <- cos gamma * cos dgamma
+    // Stage 2, of the microinstructions operands cos gamma, cos dgamma; sine of gamma addressed; 19
+    // <- sin gamma; 11 <- cos gamma * cos dgamma
     reg  [34:0] sine_word_s3;
     reg  [34:0] sine_word_2_s3;
     wire sine_in_range4_s2 = |complement_s2[20:10];  // u is in range 4 or in one above
@@ -227,8 +227,8 @@ module rough_pipelined #(
         multiplier10_at_highest_2_s3 <= multiplier10_at_highest_2_s2;
     end
 
-    // Stage 3, part of: operands cos gamma, cos dgamma; sine of gamma addressed; 19 <- sin gamma;
-    // 11 <- cos gamma * cos dgamma
+    // Stage 3, of the microinstructions operands cos gamma, cos dgamma; sine of gamma addressed; 19
+    // <- sin gamma; 11 <- cos gamma * cos dgamma
     wire [35:0] multiplier10_upper_14_s3 = {17'd0, multiplier10_upper_12_s3[20:2]} +
             multiplier10_upper_s3;
     wire [19:0] multiplier10_inside_3_s3 = multiplier10_upper_14_s3[35:16] |
@@ -263,8 +263,8 @@ module rough_pipelined #(
         sine_word_2_s5 <= sine_word_2_s4;
     end
 
-    // Stage 5, part of: 19 <- sin gamma; 11 <- cos gamma * cos dgamma; operands sin dgamma, sin
-    // gamma
+    // Stage 5, of the microinstructions 19 <- sin gamma; 11 <- cos gamma * cos dgamma; operands sin
+    // dgamma, sin gamma
     wire [26:0] sine_rise_s5 = sine_slope_s5 * sine_rest4_s5;  // u-5.32
     wire [26:0] sine_rise_2_s5 = sine_word_2_s5[12:0] * sine_rest4_2_s5;  // u-5.32
     reg  [16:0] sine_rise_kept_s6;    // u-5.22
@@ -281,8 +281,8 @@ module rough_pipelined #(
         sine_rise_kept_2_s6 <= sine_rise_2_s5[26:10];
     end
 
-    // Stage 6, part of: 19 <- sin gamma; 11 <- cos gamma * cos dgamma; operands sin dgamma, sin
-    // gamma
+    // Stage 6, of the microinstructions 19 <- sin gamma; 11 <- cos gamma * cos dgamma; operands sin
+    // dgamma, sin gamma
     wire [22:0] sine_sum_s6 = {1'b0, sine_base_s6} + {6'd0, sine_rise_kept_s6};  // u1.22
     wire [22:0] sine_sum_2_s6 = {1'b0, sine_base_2_s6} + {6'd0, sine_rise_kept_2_s6};  // u1.22
     // u0.22: sine of the addressed cosine
@@ -299,7 +299,7 @@ module rough_pipelined #(
         multiplier10_lower_bits_2_s7 <= sine_value_s6[3:0];
     end
 
-    // Stage 7, part of: 12 <- sin gamma * sin dgamma
+    // Stage 7, of the microinstructions 12 <- sin gamma * sin dgamma
     reg         dgamma_negative_s8, facing_s8;
     reg  [17:0] multiplier10_upper_bits_3_s8, multiplier10_upper_bits_4_s8;
     reg  [21:0] multiplier10_lower_s8, multiplier10_upper_16_s8;
@@ -318,7 +318,7 @@ module rough_pipelined #(
         multiplier10_row_20_s8 <= reg19_sin_gamma_s7[3] ? multiplier10_lower_bits_2_s7 : 4'd0;
     end
 
-    // Stage 8, part of: 12 <- sin gamma * sin dgamma
+    // Stage 8, of the microinstructions 12 <- sin gamma * sin dgamma
     wire [4:0] multiplier10_upper_19_s8 = {2'd0, multiplier10_row_12_s8[3:1]} + {1'b0,
             multiplier10_row_14_s8};
     wire [4:0] multiplier10_upper_23_s8 = {1'b0, multiplier10_upper_19_s8[4:1]} + {1'b0,
@@ -340,7 +340,7 @@ module rough_pipelined #(
                 multiplier10_upper_16_s8};
     end
 
-    // Stage 9, part of: 12 <- sin gamma * sin dgamma
+    // Stage 9, of the microinstructions 12 <- sin gamma * sin dgamma
     wire [23:0] multiplier10_upper_32_s9 = {20'd0, multiplier10_upper_26_s9[4:1]} + {1'b0,
             multiplier10_upper_29_s9};
     wire [35:0] multiplier10_upper_34_s9 = {16'd0, multiplier10_upper_32_s9[23:4]} +
@@ -356,7 +356,7 @@ module rough_pipelined #(
         reg12_sin_sin_s10 <= multiplier10_sum_10_s9[43:22];
     end
 
-    // Stage 10, part of: operands adder 15, n/2
+    // Stage 10, of the microinstructions operands adder 15, n/2
     wire [22:0] raised12_s10 = {1'b1, reg12_sin_sin_s10};  // u1.22: register 12 + 1.0, by wiring
     // s1.22: -(register 12) - 1.0, less an ulp
     wire signed [23:0] inverse12_s10 = ~{1'b0, raised12_s10};
@@ -374,7 +374,7 @@ module rough_pipelined #(
         adder15_s11 <= {1'b0, reg11_cos_cos_s10} + mux14_s10 + {23'd0, subtracts_s10};
     end
 
-    // Stage 11, part of: 13 <- n/2 * (cos(gamma +- dgamma) - 1)
+    // Stage 11, of the microinstructions 13 <- n/2 * (cos(gamma +- dgamma) - 1)
     // what the product of a negative operand is too large by, above its sign
     reg  [9:0]  multiplier10_excess_s12;
     reg         facing_s12;
@@ -387,7 +387,7 @@ module rough_pipelined #(
         multiplier10_excess_s12 <= adder15_s11[23] ? exponent_s11 : 10'd0;
     end
 
-    // Stage 12, part of: 13 <- n/2 * (cos(gamma +- dgamma) - 1)
+    // Stage 12, of the microinstructions 13 <- n/2 * (cos(gamma +- dgamma) - 1)
     wire [27:0] multiplier10_upper_37_s12 = {18'd0, multiplier10_lower_2_s12[14:5]} +
             multiplier10_upper_35_s12;
     reg         facing_s13;
@@ -400,7 +400,8 @@ module rough_pipelined #(
         multiplier10_view_3_s13 <= multiplier10_upper_37_s12[17:2];
     end
 
-    // Stage 13, part of: 13 <- n/2 * (cos(gamma +- dgamma) - 1); operands adder 16, adder 16
+    // Stage 13, of the microinstructions 13 <- n/2 * (cos(gamma +- dgamma) - 1); operands adder 16,
+    // adder 16
     wire adder16_upper_s13 = ~multiplier10_upper_39_s13[0];
     wire [16:0] adder16_before_2_s13 = (~multiplier10_upper_39_s13[10] &
             (|multiplier10_upper_39_s13[9:0])) ? 17'h1ffff : {adder16_upper_s13,
@@ -414,7 +415,7 @@ module rough_pipelined #(
         adder16_s14 <= facing_s13 ? adder16_before_3_s13 : 17'd0;
     end
 
-    // Stage 14, part of: 13 <- (... + 1)^2
+    // Stage 14, of the microinstructions 13 <- (... + 1)^2
     wire [33:0] multiplier10_6_s14 = adder16_s14 * adder16_s14;  // multiplier 10
     reg  signed [16:0] line_or_square_kept_inside_s15;  // s0.16
     reg                facing_s15;
@@ -425,7 +426,7 @@ module rough_pipelined #(
         line_or_square_kept_inside_s15 <= multiplier10_6_s14[32:16];
     end
 
-    // Stage 15, part of: 13 <- (... + 1)^2
+    // Stage 15, of the microinstructions 13 <- (... + 1)^2
     wire signed [16:0] result_s15 = (|result_high_2_s15) ? RESULT_MOST :
             line_or_square_kept_inside_s15;
     // mux 13, s0.16: n/2*(cos(gamma +- dgamma) - 1), then f
@@ -434,7 +435,7 @@ module rough_pipelined #(
     wire [7:0]  red_s16, green_s16, blue_s16;
     always @(posedge clk) if (advance) f_s16 <= reg13_result_s15[15:0];
 
-    // Stage 16, part of: valid: intensities on the outputs
+    // Stage 16, of the microinstructions valid: intensities on the outputs
     // multiplier 20, u8.16: an output before it is rounded
     wire [23:0] red_product_s16 = f_s16 * red_s16;
     // multiplier 21, u8.16: an output before it is rounded
@@ -452,7 +453,7 @@ module rough_pipelined #(
         blue_product_bits_s17 <= blue_product_s16[15];
     end
 
-    // Stage 17, part of: valid: intensities on the outputs
+    // Stage 17, of the microinstructions valid: intensities on the outputs
     reg  [7:0] red_intensity_s18, green_intensity_s18, blue_intensity_s18;
     always @(posedge clk) if (advance) begin
         red_intensity_s18 <= red_product_kept_s17 + {7'd0, red_product_bits_s17};

@@ -53,7 +53,7 @@ module rsqrt_pipelined #(
     reg  [16:0] x_s1;
     always @(posedge clk) if (advance) x_s1 <= x;
 
-    // Stage 1, part of: operand; table addressed; sum1 <- coefficients from 1 on
+    // Stage 1, of the microinstructions operand; table addressed; sum1 <- coefficients from 1 on
     wire x_under_s1 = x_s1 < X_LEAST;
     wire [16:0] x_reg_s1 = x_under_s1 ? X_LEAST : x_s1;  // u1.16: the operand
     // ROM coefficients2: coefficient of the segment's polynomial
@@ -71,7 +71,7 @@ module rsqrt_pipelined #(
         offset_top_s2 <= ~x_reg_s1[11];
     end
 
-    // Stage 2, part of: sum1 <- coefficients from 1 on
+    // Stage 2, of the microinstructions sum1 <- coefficients from 1 on
     wire signed [12:0] product_s2 = $signed({1'b0, coefficients2_word_s2}) * $signed({offset_top_s2,
             x_reg_s2[10:5]});
     reg  signed [11:0] offset_of_step_s3;  // s-1.12
@@ -83,7 +83,7 @@ module rsqrt_pipelined #(
         product1_s3 <= product_s2[11:4];
     end
 
-    // Stage 3, part of: operand; table addressed; sum1 <- coefficients from 1 on
+    // Stage 3, of the microinstructions operand; table addressed; sum1 <- coefficients from 1 on
     // ROM coefficients1: coefficient of the segment's polynomial
     reg [12:0] coefficients1_rom [0:15];
     initial $readmemh(COEFFICIENTS1_FILE, coefficients1_rom);
@@ -99,7 +99,7 @@ module rsqrt_pipelined #(
         sum1_s4 <= added1_s3[12:0];
     end
 
-    // Stage 4, part of: result <- the polynomial
+    // Stage 4, of the microinstructions result <- the polynomial
     wire signed [24:0] product_2_s4 = sum1_s4 * offset_of_step_s4;  // s24.0
     reg  signed [12:0] product0_s5;     // s-5.17
     reg         [3:0]  number_bits_s5;
@@ -108,7 +108,7 @@ module rsqrt_pipelined #(
         product0_s5 <= product_2_s4[24:12];
     end
 
-    // Stage 5, part of: operand; table addressed; result <- the polynomial
+    // Stage 5, of the microinstructions operand; table addressed; result <- the polynomial
     // ROM coefficients: coefficient of the segment's polynomial
     reg [16:0] coefficients_rom [0:15];
     initial $readmemh(COEFFICIENTS_FILE, coefficients_rom);

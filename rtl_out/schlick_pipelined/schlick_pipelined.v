@@ -55,7 +55,7 @@ module schlick_pipelined (
         else if (advance) valid <= {valid[14:1], in_valid};
     end
 
-    // Stage 0, part of: operands cos gamma, n
+    // Stage 0, of the microinstructions operands cos gamma, n
     // u1.20: 1.0 - cos gamma
     wire [20:0] complement_s0 = cos_gamma[20] ? 21'd0 : (COS_GAMMA_MOST - cos_gamma);
     reg  [20:0] cos_gamma_reg_s1;      // u1.20: cosine of the angle between normal and half vector
@@ -71,7 +71,7 @@ module schlick_pipelined (
         scaled_row_3_s1 <= complement_s0[1];
     end
 
-    // Stage 1, part of: cos gamma by n*(1 - cos gamma) + cos gamma
+    // Stage 1, of the microinstructions cos gamma by n*(1 - cos gamma) + cos gamma
     reg  [20:0] cos_gamma_reg_s2;
     reg  [27:0] scaled_upper_s2;
     reg  [9:0]  scaled_row_2_s2, scaled_row_4_s2, scaled_at_highest_s2;
@@ -83,7 +83,7 @@ module schlick_pipelined (
         scaled_at_highest_s2 <= scaled_highest_s1 ? exponent_s1 : 10'd0;
     end
 
-    // Stage 2, part of: cos gamma by n*(1 - cos gamma) + cos gamma
+    // Stage 2, of the microinstructions cos gamma by n*(1 - cos gamma) + cos gamma
     wire [10:0] scaled_upper_4_s2 = {2'd0, scaled_row_2_s2[9:1]} + {1'b0, scaled_row_4_s2};
     wire [27:0] scaled_upper_7_s2 = {18'd0, scaled_upper_4_s2[10:1]} + scaled_upper_s2;
     wire facing_s2 = |cos_gamma_reg_s2;  // the surface faces the half vector
@@ -100,7 +100,8 @@ module schlick_pipelined (
         dark_s3 <= ~facing_s2;
     end
 
-    // Stage 3, part of: cos gamma by n*(1 - cos gamma) + cos gamma; next bit of the quotient
+    // Stage 3, of the microinstructions cos gamma by n*(1 - cos gamma) + cos gamma; next bit of the
+    // quotient
     wire [30:0] denominator_s3 = {1'b0, scaled_2_s3, scaled_sum_s3, scaled_rows_3_s3} + {10'd0,
             cos_gamma_reg_s3} + {30'd0, dark_s3};
     reg         [29:0] quotient_divisor_s4;                   // u10.20: the divisor
@@ -113,7 +114,7 @@ module schlick_pipelined (
         quotient_trial_s4 <= {10'd0, cos_gamma_reg_s3, 1'b0} - {2'd0, denominator_s3[29:0]};
     end
 
-    // Stage 4, part of: next bit of the quotient
+    // Stage 4, of the microinstructions next bit of the quotient
     // the divisor fits: the next bit of the quotient
     wire quotient_bit_s4 = ~quotient_trial_s4[31];
     wire signed [31:0] quotient_left_s4 = quotient_bit_s4 ? quotient_trial_s4 : {1'b0,
@@ -137,7 +138,7 @@ module schlick_pipelined (
         quotient_s5 <= {quotient_bit_s4, quotient_bit_2_s4};
     end
 
-    // Stage 5, part of: next bit of the quotient
+    // Stage 5, of the microinstructions next bit of the quotient
     // s11.20: negative where the divisor does not fit
     wire signed [31:0] quotient_trial_3_s5 = {1'b0, quotient_remainder_2_s5, 1'b0} - {2'd0,
             quotient_divisor_s5};
@@ -155,7 +156,7 @@ module schlick_pipelined (
         quotient_2_s6 <= {quotient_s5, quotient_bit_3_s5};
     end
 
-    // Stage 6, part of: next bit of the quotient
+    // Stage 6, of the microinstructions next bit of the quotient
     // s11.20: negative where the divisor does not fit
     wire signed [31:0] quotient_trial_4_s6 = {1'b0, quotient_remainder_3_s6, 1'b0} - {2'd0,
             quotient_divisor_s6};
@@ -173,7 +174,7 @@ module schlick_pipelined (
         quotient_3_s7 <= {quotient_2_s6, quotient_bit_4_s6};
     end
 
-    // Stage 7, part of: next bit of the quotient
+    // Stage 7, of the microinstructions next bit of the quotient
     // s11.20: negative where the divisor does not fit
     wire signed [31:0] quotient_trial_5_s7 = {1'b0, quotient_remainder_4_s7, 1'b0} - {2'd0,
             quotient_divisor_s7};
@@ -191,7 +192,7 @@ module schlick_pipelined (
         quotient_4_s8 <= {quotient_3_s7, quotient_bit_5_s7};
     end
 
-    // Stage 8, part of: next bit of the quotient
+    // Stage 8, of the microinstructions next bit of the quotient
     // s11.20: negative where the divisor does not fit
     wire signed [31:0] quotient_trial_6_s8 = {1'b0, quotient_remainder_5_s8, 1'b0} - {2'd0,
             quotient_divisor_s8};
@@ -209,7 +210,7 @@ module schlick_pipelined (
         quotient_5_s9 <= {quotient_4_s8, quotient_bit_6_s8};
     end
 
-    // Stage 9, part of: next bit of the quotient
+    // Stage 9, of the microinstructions next bit of the quotient
     // s11.20: negative where the divisor does not fit
     wire signed [31:0] quotient_trial_7_s9 = {1'b0, quotient_remainder_6_s9, 1'b0} - {2'd0,
             quotient_divisor_s9};
@@ -227,7 +228,7 @@ module schlick_pipelined (
         quotient_6_s10 <= {quotient_5_s9, quotient_bit_7_s9};
     end
 
-    // Stage 10, part of: next bit of the quotient
+    // Stage 10, of the microinstructions next bit of the quotient
     // s11.20: negative where the divisor does not fit
     wire signed [31:0] quotient_trial_8_s10 = {1'b0, quotient_remainder_7_s10, 1'b0} - {2'd0,
             quotient_divisor_s10};
@@ -245,7 +246,7 @@ module schlick_pipelined (
         quotient_7_s11 <= {quotient_6_s10, quotient_bit_8_s10};
     end
 
-    // Stage 11, part of: next bit of the quotient
+    // Stage 11, of the microinstructions next bit of the quotient
     // s11.20: negative where the divisor does not fit
     wire signed [31:0] quotient_trial_9_s11 = {1'b0, quotient_remainder_8_s11, 1'b0} - {2'd0,
             quotient_divisor_s11};
@@ -263,7 +264,7 @@ module schlick_pipelined (
         quotient_8_s12 <= {quotient_7_s11, quotient_bit_9_s11};
     end
 
-    // Stage 12, part of: next bit of the quotient
+    // Stage 12, of the microinstructions next bit of the quotient
     // s11.20: negative where the divisor does not fit
     wire signed [31:0] quotient_trial_10_s12 = {1'b0, quotient_remainder_9_s12, 1'b0} - {2'd0,
             quotient_divisor_s12};
@@ -275,7 +276,7 @@ module schlick_pipelined (
         quotient_9_s13 <= {quotient_8_s12, quotient_bit_10_s12};
     end
 
-    // Stage 13, part of: result
+    // Stage 13, of the microinstructions result
     // u8.10: an output before it is rounded
     wire [17:0] red_product_s13 = quotient_9_s13 * red_s13;
     wire [17:0] green_product_s13 = quotient_9_s13 * green_s13;
@@ -291,7 +292,7 @@ module schlick_pipelined (
         blue_product_bits_s14 <= blue_product_s13[9];
     end
 
-    // Stage 14, part of: result
+    // Stage 14, of the microinstructions result
     reg  [7:0] red_intensity_s15, green_intensity_s15, blue_intensity_s15;
     always @(posedge clk) if (advance) begin
         red_intensity_s15 <= red_product_kept_s14 + {7'd0, red_product_bits_s14};

@@ -87,8 +87,8 @@ module shading_pipelined #(
         hz_s1 <= hz;
     end
 
-    // Stage 1, part of: diffuse_cosine: x; diffuse_cosine: y; specular_cosine: x; specular_cosine:
-    // y
+    // Stage 1, of the microinstructions diffuse_cosine: x; diffuse_cosine: y; specular_cosine: x;
+    // specular_cosine: y
     wire signed [31:0] diffuse_cosine_product_s2;  // s3.28
     shading_pipelined_multiplier #(
         .A_WIDTH(16),
@@ -168,8 +168,8 @@ module shading_pipelined #(
         hz_s2 <= hz_s1;
     end
 
-    // Stage 2, part of: diffuse_cosine: y; diffuse_cosine: z; specular_cosine: y; specular_cosine:
-    // z
+    // Stage 2, of the microinstructions diffuse_cosine: y; diffuse_cosine: z; specular_cosine: y;
+    // specular_cosine: z
     wire signed [33:0] diffuse_cosine_sum_added_s2 = {{2{diffuse_cosine_product_s2[31]}},
             diffuse_cosine_product_s2} + {{2{diffuse_cosine_product_2_s2[31]}},
             diffuse_cosine_product_2_s2};
@@ -223,7 +223,8 @@ module shading_pipelined #(
         specular_cosine_sum_s3 <= specular_cosine_sum_added_s2[32:0];
     end
 
-    // Stage 3, part of: diffuse_cosine: z; diffuse_cosine: normalise; specular_cosine: z
+    // Stage 3, of the microinstructions diffuse_cosine: z; diffuse_cosine: normalise;
+    // specular_cosine: z
     wire signed [33:0] diffuse_cosine_squares_added_2_s3 = {2'd0, diffuse_cosine_squares_s3} +
             {{2{diffuse_cosine_square_3_s3[31]}}, diffuse_cosine_square_3_s3};
     reg  signed [33:0] diffuse_cosine_sum_added_2_s4;   // s5.28
@@ -240,8 +241,8 @@ module shading_pipelined #(
                 {{2{specular_cosine_product_3_s3[31]}}, specular_cosine_product_3_s3};
     end
 
-    // Stage 4, part of: diffuse_cosine: normalise; diffuse_cosine: look_up; specular_cosine:
-    // look_up
+    // Stage 4, of the microinstructions diffuse_cosine: normalise; diffuse_cosine: look_up;
+    // specular_cosine: look_up
     wire [15:0] diffuse_cosine_left16_part_s4 = diffuse_cosine_squares_bits_bits_2_s4 &
             {{15{diffuse_cosine_top16_s4}}, diffuse_cosine_top16_s4};
     wire [15:0] diffuse_cosine_left16_part_2_s4 = diffuse_cosine_top16_s4 ?
@@ -286,8 +287,8 @@ module shading_pipelined #(
                 specular_cosine_distance_by4_s4[22:0] : specular_cosine_distance_by4_s4[24:2];
     end
 
-    // Stage 5, part of: diffuse_cosine: normalise; diffuse_cosine: look_up; specular_cosine:
-    // look_up
+    // Stage 5, of the microinstructions diffuse_cosine: normalise; diffuse_cosine: look_up;
+    // specular_cosine: look_up
     reg  [33:0] diffuse_cosine_inverse_roots_word_s6;
     wire diffuse_cosine_top2_s5 = |diffuse_cosine_left4_part_3_s5[27:26];
     wire [1:0] diffuse_cosine_mantissa_part_2_s5 = diffuse_cosine_left4_part_2_s5[1:0] &
@@ -334,7 +335,7 @@ module shading_pipelined #(
         specular_cosine_distance_part_s6 <= ~specular_cosine_distance_rounded_nearest_s5[21];
     end
 
-    // Stage 6, part of: diffuse_cosine: look_up; specular_cosine: look_up
+    // Stage 6, of the microinstructions diffuse_cosine: look_up; specular_cosine: look_up
     // the products, for a length from 1.0 to 2.0
     wire [17:0] diffuse_cosine_distance_s6 = (diffuse_cosine_distance_rounded_nearest_inside_s6 |
             {{17{diffuse_cosine_distance_rounded_over_s6}},
@@ -353,7 +354,7 @@ module shading_pipelined #(
         diffuse_cosine_mantissa_bits_2_s7 <= diffuse_cosine_mantissa_bits_2_s6;
     end
 
-    // Stage 7, part of: diffuse_cosine: invert
+    // Stage 7, of the microinstructions diffuse_cosine: invert
     wire [24:0] diffuse_cosine_fallen_s8;
     shading_pipelined_multiplier #(
         .A_WIDTH(12),
@@ -371,7 +372,7 @@ module shading_pipelined #(
         diffuse_cosine_inverse_roots_word_bits_s8 <= diffuse_cosine_inverse_roots_word_bits_s7;
     end
 
-    // Stage 8, part of: diffuse_cosine: invert
+    // Stage 8, of the microinstructions diffuse_cosine: invert
     wire signed [22:0] diffuse_cosine_inverse_found_s8 = {1'b0,
             diffuse_cosine_inverse_roots_word_bits_s8} - {11'd0, diffuse_cosine_fallen_s8[24:13]};
     wire [19:0] diffuse_cosine_inverse_rounded_nearest_s8 = {1'b0,
@@ -385,7 +386,7 @@ module shading_pipelined #(
                 diffuse_cosine_inverse_rounded_nearest_s8[17:0];
     end
 
-    // Stage 9, part of: diffuse_cosine: invert
+    // Stage 9, of the microinstructions diffuse_cosine: invert
     wire diffuse_cosine_inverse_rounded_over_s9 = |diffuse_cosine_inverse_rounded_nearest_bits_s9;
     reg  [17:0] diffuse_cosine_inverse_s10;  // 1/sqrt of the mantissa
     wire [17:0] diffuse_cosine_distance_s10, specular_cosine_distance_s10;
@@ -395,7 +396,7 @@ module shading_pipelined #(
                 diffuse_cosine_inverse_rounded_over_s9};
     end
 
-    // Stage 10, part of: diffuse_cosine: scale; specular_cosine: scale
+    // Stage 10, of the microinstructions diffuse_cosine: scale; specular_cosine: scale
     wire [35:0] diffuse_cosine_scaled_s11;  // u1.35
     shading_pipelined_multiplier #(
         .A_WIDTH(18),
@@ -421,8 +422,8 @@ module shading_pipelined #(
         .product(specular_cosine_scaled_s11)
     );
 
-    // Stage 11, part of: diffuse_cosine: scale; specular_cosine: scale; highlight: accumulator <-
-    // n/m * (1 - cos gamma)
+    // Stage 11, of the microinstructions diffuse_cosine: scale; specular_cosine: scale; highlight:
+    // accumulator <- n/m * (1 - cos gamma)
     wire [18:0] specular_cosine_rounded_nearest_s11 = specular_cosine_scaled_s11[35:17] + {18'd0,
             specular_cosine_scaled_s11[16]};
     reg  [15:0] diffuse_cosine_rounded_s12;           // u2.14
@@ -439,8 +440,8 @@ module shading_pipelined #(
                 specular_cosine_rounded_nearest_s11;
     end
 
-    // Stage 12, part of: diffuse_cosine: scale; specular_cosine: scale; highlight: accumulator <-
-    // n/m * (1 - cos gamma); highlight: accumulator <- base^2
+    // Stage 12, of the microinstructions diffuse_cosine: scale; specular_cosine: scale; highlight:
+    // accumulator <- n/m * (1 - cos gamma); highlight: accumulator <- base^2
     wire diffuse_cosine_below_s12 = diffuse_cosine_rounded_s12 < DIFFUSE_COSINE_ONE;
     wire [13:0] diffuse_cosine_limited_part_2_s12 = diffuse_cosine_rounded_s12[13:0] &
             {{13{diffuse_cosine_below_s12}}, diffuse_cosine_below_s12};
@@ -479,8 +480,8 @@ module shading_pipelined #(
         highlight_facing_s13 <= |specular_cosine_cosine_s12;
     end
 
-    // Stage 13, part of: highlight: accumulator <- n/m * (1 - cos gamma); highlight: accumulator <-
-    // base^2
+    // Stage 13, of the microinstructions highlight: accumulator <- n/m * (1 - cos gamma);
+    // highlight: accumulator <- base^2
     wire [9:0] highlight_product_2_s13 = highlight_product_inside_s13[27:18] |
             highlight_product_at_highest_s13;
     wire highlight_distance_over_s13 = |highlight_product_2_s13[9:4];
@@ -496,7 +497,7 @@ module shading_pipelined #(
                 highlight_facing_s13};
     end
 
-    // Stage 14, part of: highlight: accumulator <- base^2
+    // Stage 14, of the microinstructions highlight: accumulator <- base^2
     wire [35:0] highlight_product_5_s15;
     shading_pipelined_multiplier #(
         .A_WIDTH(18),
@@ -510,7 +511,7 @@ module shading_pipelined #(
         .product(highlight_product_5_s15)
     );
 
-    // Stage 15, part of: highlight: accumulator <- accumulator^2
+    // Stage 15, of the microinstructions highlight: accumulator <- accumulator^2
     // u0.18: n/m*(1 - cos gamma), then the powers of W's base
     wire [17:0] highlight_accumulator_2_s15 = highlight_product_5_s15[35:18];
     wire [35:0] highlight_product_6_s16;
@@ -526,7 +527,7 @@ module shading_pipelined #(
         .product(highlight_product_6_s16)
     );
 
-    // Stage 16, part of: highlight: accumulator <- accumulator^2
+    // Stage 16, of the microinstructions highlight: accumulator <- accumulator^2
     wire [17:0] highlight_accumulator_3_s16 = highlight_product_6_s16[35:18];
     wire [35:0] highlight_product_7_s17;
     shading_pipelined_multiplier #(
@@ -541,7 +542,7 @@ module shading_pipelined #(
         .product(highlight_product_7_s17)
     );
 
-    // Stage 17, part of: highlight: accumulator <- accumulator^2
+    // Stage 17, of the microinstructions highlight: accumulator <- accumulator^2
     wire [17:0] highlight_accumulator_4_s17 = highlight_product_7_s17[35:18];
     wire [35:0] highlight_product_8_s18;
     shading_pipelined_multiplier #(
@@ -559,7 +560,7 @@ module shading_pipelined #(
     wire [7:0]  specular_green_s18, specular_blue_s18;
     wire [14:0] diffuse_cosine_cosine_s18;
 
-    // Stage 18, part of: highlight: result; result
+    // Stage 18, of the microinstructions highlight: result; result
     // u8.4: intensity of the light times k_s
     wire [11:0] highlight_red_reg_s18 = {specular_red_s18, 4'd0};
     wire [11:0] highlight_green_reg_s18 = {specular_green_s18, 4'd0};
@@ -639,7 +640,7 @@ module shading_pipelined #(
         .product(blue_diffuse_s19)
     );
 
-    // Stage 19, part of: highlight: result; result
+    // Stage 19, of the microinstructions highlight: result; result
     // holds the output
     wire [11:0] highlight_red_out_reg_s19 = highlight_red_product_s19[29:18] + {11'd0,
             highlight_red_product_s19[17]};
@@ -666,7 +667,7 @@ module shading_pipelined #(
         blue_lit_upper_4_s20 <= blue_diffuse_s19[9:0];
     end
 
-    // Stage 20, part of: result
+    // Stage 20, of the microinstructions result
     wire [9:0] red_saturated_nearest_s20 = (red_sum_upper_s20 + {2'd0, ambient_red_s20}) + {9'd0,
             red_lit_s20[3]};
     wire red_saturated_over_s20 = |red_saturated_nearest_s20[9:8];

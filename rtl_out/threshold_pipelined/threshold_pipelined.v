@@ -63,7 +63,7 @@ module threshold_pipelined #(
         else if (advance) valid <= {valid[8:1], in_valid};
     end
 
-    // Stage 0, part of: operands; ROM(n) addressed
+    // Stage 0, of the microinstructions operands; ROM(n) addressed
     // register 1, u1.20: cosine of the angle between normal and half vector
     reg  [20:0] cos_gamma_reg_s1;
     reg  [9:0]  exponent_s1;
@@ -72,8 +72,8 @@ module threshold_pipelined #(
         exponent_s1 <= exponent;
     end
 
-    // Stage 1, part of: scaled <- n/2 * (cos gamma - 1); intensity <- (scaled + 1)^2, or 0 below
-    // ROM(n)
+    // Stage 1, of the microinstructions scaled <- n/2 * (cos gamma - 1); intensity <- (scaled +
+    // 1)^2, or 0 below ROM(n)
     wire [9:0] multiplier1_row_2_s1 = cos_gamma_reg_s1[0] ? exponent_s1 : 10'd0;
     wire [9:0] multiplier1_row_4_s1 = cos_gamma_reg_s1[1] ? exponent_s1 : 10'd0;
     reg         facing_s2;               // the surface faces the half vector
@@ -90,7 +90,7 @@ module threshold_pipelined #(
         facing_s2 <= |cos_gamma_reg_s1;
     end
 
-    // Stage 2, part of: scaled <- n/2 * (cos gamma - 1)
+    // Stage 2, of the microinstructions scaled <- n/2 * (cos gamma - 1)
     wire [27:0] multiplier1_upper_7_s2 = {18'd0, multiplier1_upper_4_s2[10:1]} +
             multiplier1_upper_s2;
     wire signed [10:0] multiplier1_upper_8_s2 = {1'b0, multiplier1_upper_7_s2[27:18]} - {1'b0,
@@ -106,8 +106,8 @@ module threshold_pipelined #(
         facing_s3 <= facing_s2;
     end
 
-    // Stage 3, part of: scaled <- n/2 * (cos gamma - 1); intensity <- (scaled + 1)^2, or 0 below
-    // ROM(n)
+    // Stage 3, of the microinstructions scaled <- n/2 * (cos gamma - 1); intensity <- (scaled +
+    // 1)^2, or 0 below ROM(n)
     // s0.16: n/2*(cos gamma - 1), not below -1.0
     wire signed [16:0] scaled_s3 = (multiplier1_kept_bits_s3 & ~(&multiplier1_kept_bits_2_s3)) ?
             MULTIPLIER1_ROUNDED_LEAST : multiplier1_kept_inside_s3;
@@ -121,7 +121,7 @@ module threshold_pipelined #(
         adder2_upper_3_s4 <= scaled_s3[15:0];
     end
 
-    // Stage 4, part of: intensity <- (scaled + 1)^2, or 0 below ROM(n)
+    // Stage 4, of the microinstructions intensity <- (scaled + 1)^2, or 0 below ROM(n)
     reg  [15:0] levels_word_s5;  // u0.16
     // block 2, u1.16: base of the square, 0 ... 1.0
     wire [16:0] adder2_s4 = {adder2_upper_2_s4, adder2_upper_3_s4};
@@ -139,7 +139,8 @@ module threshold_pipelined #(
         multiplier2_kept_inside_s5 <= multiplier2_s4[31:16];
     end
 
-    // Stage 5, part of: operands; ROM(n) addressed; intensity <- (scaled + 1)^2, or 0 below ROM(n)
+    // Stage 5, of the microinstructions operands; ROM(n) addressed; intensity <- (scaled + 1)^2, or
+    // 0 below ROM(n)
     reg  [15:0] square_s6;       // u0.16
     reg  [15:0] levels_word_s6;
     reg         facing_s6;
@@ -149,7 +150,7 @@ module threshold_pipelined #(
         square_s6 <= (|multiplier2_kept_bits_s5) ? 16'hffff : multiplier2_kept_inside_s5;
     end
 
-    // Stage 6, part of: intensity <- (scaled + 1)^2, or 0 below ROM(n)
+    // Stage 6, of the microinstructions intensity <- (scaled + 1)^2, or 0 below ROM(n)
     wire comparator_s6 = square_s6 < levels_word_s6;  // the square is below the level of visibility
     wire visible_s6 = ~comparator_s6;
     wire pass_s6 = facing_s6 & visible_s6;  // opens the gates
@@ -157,7 +158,7 @@ module threshold_pipelined #(
     wire [7:0]  red_s7, green_s7, blue_s7;
     always @(posedge clk) if (advance) intensity_s7 <= pass_s6 ? square_s6 : 16'd0;
 
-    // Stage 7, part of: result
+    // Stage 7, of the microinstructions result
     // multiplier 3, u8.16: an output before it is rounded
     wire [23:0] red_product_s7 = intensity_s7 * red_s7;
     // multiplier 4, u8.16: an output before it is rounded
@@ -175,7 +176,7 @@ module threshold_pipelined #(
         blue_product_bits_s8 <= blue_product_s7[15];
     end
 
-    // Stage 8, part of: result
+    // Stage 8, of the microinstructions result
     reg  [7:0] red_intensity_s9, green_intensity_s9, blue_intensity_s9;
     always @(posedge clk) if (advance) begin
         red_intensity_s9 <= red_product_kept_s8 + {7'd0, red_product_bits_s8};

@@ -44,13 +44,15 @@ impl<T, E: Display> Sure<T> for Result<T, E> {
     }
 }
 
-/// Cases of a fuzz test: so many by default, or what `GLINT_FUZZ_CASES` says.
+/// Returns the number of cases of a fuzz test: `all` with `GLINT_TESTS=all`, a third of them otherwise, or what `GLINT_FUZZ_CASES`
+/// says. Each run draws other cases.
 ///
 /// # Panics
-/// It does not say a number.
-pub fn cases(default: u32) -> u32 {
+/// Panics if `GLINT_FUZZ_CASES` is no number.
+pub fn cases(all: u32) -> u32 {
     match std::env::var("GLINT_FUZZ_CASES") {
         Ok(text) => text.parse().expect("GLINT_FUZZ_CASES is a number"),
-        Err(_) => default,
+        Err(_) if std::env::var("GLINT_TESTS").is_ok() => all,
+        Err(_) => all.div_ceil(3),
     }
 }

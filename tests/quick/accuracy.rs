@@ -14,12 +14,13 @@ use rayon::prelude::*;
 
 use crate::common::Sure;
 use crate::common::cores::parsed;
+use crate::common::sample::sampled;
 
-/// Random configurations of each device.
-const CONFIGURATIONS: u64 = 300;
+/// Random configurations of each device, and how many of them a run draws.
+const CONFIGURATIONS: (u64, usize) = (300, 60);
 
-/// Random configurations of the function, each of which takes a search.
-const FUNCTIONS: u64 = 8;
+/// Random configurations of the function, each of which takes a search, and how many of them a run draws.
+const FUNCTIONS: (u64, usize) = (8, 3);
 
 /// Points of each, and places.
 const POINTS: usize = 2000;
@@ -99,19 +100,19 @@ fn random_configurations_of_every_device() {
     for device in Registry::catalogue().devices() {
         let schema = (device.schema)();
         let is_function = schema.device == FUNCTION;
-        (0..if is_function { FUNCTIONS } else { CONFIGURATIONS }).into_par_iter().for_each(
-            |seed| {
-                let config = config::sample(&schema, seed);
-                let contract = (device.contract)(&config);
-                let mut rng = ChaCha8Rng::seed_from_u64(seed);
-                let what = config.to_toml(&schema);
-                // Of a function the places are all there is.
-                if !is_function {
-                    assert_outputs_within_bound(contract.as_ref(), POINTS, &mut rng, &what);
-                }
-                assert_places_within_bound(contract.as_ref(), POINTS, &mut rng, &what);
-            },
-        );
+        let (all, drawn) = if is_function { FUNCTIONS } else { CONFIGURATIONS };
+        let what = format!("random configurations of {}", device.name);
+        sampled(&what, 0..all, drawn).into_par_iter().for_each(|seed| {
+            let config = config::sample(&schema, seed);
+            let contract = (device.contract)(&config);
+            let mut rng = ChaCha8Rng::seed_from_u64(seed);
+            let what = config.to_toml(&schema);
+            // Of a function the places are all there is.
+            if !is_function {
+                assert_outputs_within_bound(contract.as_ref(), POINTS, &mut rng, &what);
+            }
+            assert_places_within_bound(contract.as_ref(), POINTS, &mut rng, &what);
+        });
     }
 }
 

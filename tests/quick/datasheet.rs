@@ -59,7 +59,7 @@ fn of_class<'a>(document: &'a Document, class: &'a str) -> impl Iterator<Item = 
 
 #[test]
 fn every_configuration_has_its_page() {
-    for (path, core) in sampled("data sheets", configurations(), 5) {
+    for (path, core) in sampled("data sheets", configurations(), 3) {
         let made = make(&path, &core);
         let document = parse(&made.page);
         needs_nothing_else(&path, &made.page, &document);

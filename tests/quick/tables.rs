@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use glint::approximate::{Layout, Piecewise};
 use glint::base::input;
-use glint::base::text::grouped;
+use glint::base::text::{grouped, rounded_up};
 use glint::config::{Config, Value as ConfigValue};
 use glint::core::Core;
 use glint::evidence::comparison::{accuracy, clocks_per_point};
@@ -146,7 +146,7 @@ fn function(row: &mut Row) {
             layout => format!(" ({})", layout.name()),
         };
         let shape = format!("{}{layout}, degree {}", it.words.len(), it.degree());
-        let error = format!("{:.3}", (it.bound * 1000.0).ceil() / 1000.0);
+        let error = rounded_up(it.bound, 3);
         put(row, column, [shape, grouped(it.rom_bits()), error]);
     }
 }
@@ -180,7 +180,7 @@ fn main_job(row: &mut Row) {
     let bound = core.contract.bound().units;
     let device = format!("`{}`", core.device.name);
     let rom_bits = grouped(core.design.rom_bits());
-    put(row, 1, [device, clocks.to_string(), rom_bits, format!("{bound:.3}")]);
+    put(row, 1, [device, clocks.to_string(), rom_bits, rounded_up(bound, 3)]);
     assert!(row[5].parse::<f64>().is_ok_and(|error| error <= bound), "{row:?}");
 }
 
@@ -209,7 +209,7 @@ fn choice(row: &mut Row) {
         true => error(&json(&record)["configurations"][0]["together"]),
         false => "–".to_owned(),
     };
-    let bound = format!("{:.3}", core.contract.bound().units);
+    let bound = core.contract.bound().words();
     put(row, 3, [grouped(core.design.rom_bits()), bound, error(worst), together]);
 }
 

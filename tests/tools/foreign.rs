@@ -85,6 +85,30 @@ fn a_program_made_of_the_packages_generates_and_simulates() {
     }
 }
 
+/// The crate that `glint new-device` writes: its tests pass, and its program generates and simulates.
+#[test]
+fn a_new_device_is_a_crate_that_works() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let glint = root().display().to_string();
+    let new = ["new-device", "soft-blend", "--glint", &glint];
+    succeeded(Command::new(env!("CARGO_BIN_EXE_glint")).args(new).current_dir(&directory));
+    let foreign = directory.path().join("soft-blend");
+    fs::copy(root().join("Cargo.lock"), foreign.join("Cargo.lock")).expect("copied");
+    let cargo = |arguments: &[&str]| {
+        let mut cargo = Command::new(env!("CARGO"));
+        succeeded(cargo.args(arguments).current_dir(&foreign).env("CARGO_TARGET_DIR", target()))
+    };
+    cargo(&["test", "--quiet"]);
+    let run = |arguments: &[&str]| cargo(&[&["run", "--quiet", "--"], arguments].concat());
+    put(foreign.join("core.toml"), &run(&["new", "soft-blend"]));
+    run(&["generate", "core.toml", "--quiet"]);
+    let core = read(foreign.join("rtl_out/soft_blend/soft_blend.v"));
+    assert!(core.contains("module soft_blend"), "{core}");
+    let cosim = run(&["cosim", "core.toml", "--exhaustive", "--quiet", "--json"]);
+    let cosim: serde_json::Value = serde_json::from_str(&cosim).expect("JSON");
+    assert_eq!(cosim["configurations"][0]["verdict"], "proved", "{cosim}");
+}
+
 /// Returns how many crates the workspace publishes: the root, and the members whose manifest does not say otherwise.
 fn published() -> usize {
     let manifest: toml::Table = read("Cargo.toml").parse().expect("TOML");

@@ -18,6 +18,7 @@ pub mod merge;
 mod mismatch;
 pub mod mutate;
 pub mod new;
+pub mod new_device;
 pub mod render;
 mod rows;
 pub mod schedule;

@@ -33,14 +33,15 @@ const EXPONENT: f64 = 35.0;
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
-  glint synth my_core.toml                            every target whose tools are installed
+  glint synth my_core.toml                            every target whose tools are installed; of a pipeline its own
   glint synth my_core.toml --target ecp5 --seeds 11   one of them, more seeds
   glint synth --json                                  everything in configs/, for scripts
   glint synth --out synthesis                         a record of each configuration in configs/")]
 pub struct Arguments {
     #[command(flatten)]
     configs: Configs,
-    /// The technology to measure for; may be repeated [default: every target whose tools are installed]
+    /// The technology to measure for; may be repeated [default: the target of the pipelines, or every target whose tools are
+    /// installed]
     #[arg(long = "target", value_name = "TARGET", value_enum)]
     targets: Vec<Target>,
     /// Runs of place and route, of which the median counts
@@ -82,19 +83,24 @@ struct Recorded<'a> {
 /// Runs `glint synth`.
 pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
-    let (flows, notes) = flows(arguments)?;
+    let (flows, notes) = flows(arguments, &loaded)?;
     let record = |one: &Loaded| OwnFile::record(arguments.out.as_deref(), &one.core.config.name);
     let records: Vec<Option<OwnFile>> = loaded.iter().map(record).collect::<Result<_>>()?;
     let steps = flows.iter().map(|flow| Flow::steps(flow.target(), arguments.seeds));
     let steps = steps.sum::<u64>() * loaded.len() as u64;
     let bar = progress::bar(output, steps, "synthesis");
     bar.tick();
+    let tell = |one: &Loaded, figures: &Figures| {
+        if !output.json {
+            bar.suspend(|| say!("{}: {}", one.path, show::in_a_line(figures)));
+        }
+    };
     let jobs = rayon::ThreadPoolBuilder::new()
         .num_threads(arguments.jobs.map_or_else(rayon::current_num_threads, usize::from));
     let jobs = jobs.build().context("cannot start threads")?;
     let measured: Vec<Result<Measured>> = jobs.install(|| {
         let all = loaded.par_iter();
-        all.map(|one| measure(one, &flows, arguments, &|steps| bar.inc(steps))).collect()
+        all.map(|one| measure(one, &flows, arguments, &|steps| bar.inc(steps), &tell)).collect()
     });
     let measured: Vec<Measured> = measured.into_iter().collect::<Result<_>>()?;
     bar.finish_and_clear();
@@ -115,14 +121,27 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     Ok(true)
 }
 
+/// Returns the targets that pipelines are scheduled for, if every configuration is a pipeline with such a target; else nothing.
+fn targets_of_pipelines(loaded: &[Loaded]) -> Vec<Target> {
+    let target = |one: &Loaded| {
+        let pipeline = one.core.design.pipeline.as_ref()?;
+        TARGETS.into_iter().find(|target| target.name() == pipeline.target)
+    };
+    loaded.iter().map(target).collect::<Option<Vec<Target>>>().unwrap_or_default()
+}
+
 /// Returns the tools for each target, and what is said of targets that are left out.
-fn flows(arguments: &Arguments) -> Result<(Vec<Flow>, Vec<String>)> {
+fn flows(arguments: &Arguments, loaded: &[Loaded]) -> Result<(Vec<Flow>, Vec<String>)> {
     let search = std::env::var_os("PATH").unwrap_or_default();
     let find = |target: Target| {
         let flow = Flow::find(target, &search, &arguments.liberty);
         flow.with_context(|| format!("nothing can be measured for {}", target.title()))
     };
     let mut wanted = arguments.targets.clone();
+    // A record is of all targets.
+    if wanted.is_empty() && arguments.out.is_none() {
+        wanted = targets_of_pipelines(loaded);
+    }
     wanted.sort();
     wanted.dedup();
     if !wanted.is_empty() {
@@ -133,7 +152,6 @@ fn flows(arguments: &Arguments) -> Result<(Vec<Flow>, Vec<String>)> {
     for target in TARGETS {
         match find(target) {
             Ok(flow) => flows.push(flow),
-            // A record is of all targets.
             Err(error) if arguments.out.is_some() => return Err(error),
             Err(error) => notes.push(format!("{error:#}")),
         }
@@ -144,12 +162,13 @@ fn flows(arguments: &Arguments) -> Result<(Vec<Flow>, Vec<String>)> {
     Ok((flows, notes))
 }
 
-/// Measures a configuration for all targets; `done` is called after each step.
+/// Measures a configuration for all targets; `done` is called after each step, and `tell` with the figures of each target.
 fn measure<'a>(
     one: &'a Loaded,
     flows: &[Flow],
     arguments: &Arguments,
     done: &(dyn Fn(u64) + Sync),
+    tell: &(dyn Fn(&Loaded, &Figures) + Sync),
 ) -> Result<Measured<'a>> {
     let core = &one.core;
     let clocks_per_point =
@@ -175,6 +194,7 @@ fn measure<'a>(
         if let Some(cache) = Cache::beside(&one.path) {
             cache.keep(core, &digest, &figures);
         }
+        tell(one, &figures);
         Ok(figures)
     });
     Ok(Measured { one, clocks_per_point, figures: figures.collect::<Result<_>>()? })

@@ -10,6 +10,7 @@ use serde_json::json;
 use super::{Loaded, load};
 use crate::own_file::OwnFile;
 use crate::{Configs, Output, TimeLimit, progress, say, tables};
+use glint_base::text::counted;
 use glint_core::cosim::exhaustive::PROOFS;
 use glint_core::registry::Registry;
 use glint_prove::verify::{
@@ -32,7 +33,10 @@ Examples:
   glint verify my_core.toml                       every check, in a minute or two
   glint verify my_core.toml --full                the whole proof, all faults: minutes to hours
   glint verify my_core.toml --without-tools       what needs no simulator, solver or synthesiser
-  glint verify --json                             everything in configs/, for scripts")]
+  glint verify --json                             everything in configs/, for scripts
+
+Exit codes: 0 verified, or verified without what --without-tools leaves out; 1 a check fails, or could not be run to its end
+(\"verified but for …\"); 2 wrong usage.")]
 pub struct Arguments {
     #[command(flatten)]
     configs: Configs,
@@ -136,7 +140,14 @@ fn print_conclusion(one: &Loaded, record: &Record) {
     let with = |verdict| record.checks.iter().filter(move |it| it.finding.verdict == verdict);
     let counts = record.counts.iter();
     let counts: Vec<String> = counts.map(|(it, count)| format!("{count} {}", it.words())).collect();
-    let words = record.conclusion.words();
+    let open = record
+        .checks
+        .iter()
+        .filter(|check| check.finding.verdict.conclusion() == Conclusion::Incomplete);
+    let words = match record.conclusion {
+        Conclusion::Incomplete => format!("verified but for {}", counted(open.count(), "check")),
+        other => other.words().to_owned(),
+    };
     tables::print_line(&format!("{}: {words}: {}", one.path, counts.join(", ")));
     let holds = |it: &Verdict| matches!(it, Verdict::Proved | Verdict::Passed | Verdict::Failed);
     for &verdict in record.counts.keys().filter(|it| !holds(it)) {

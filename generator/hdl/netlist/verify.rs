@@ -94,10 +94,17 @@ impl Design {
         let mut seen: HashMap<&str, SourceLocation> = HashMap::new();
         let nets = self.nets.iter().map(|net| (net.name.as_str(), net.location));
         let roms = self.roms.iter().map(|rom| (rom.name.as_str(), rom.location));
+        // The module of a configuration without a `name`.
+        let module = self.about.device.replace('-', "_");
         for (name, location) in nets.chain(roms) {
             if name == "clk" {
                 let message = "`clk` is the clock of every design; choose another name";
                 found.push(Diagnostic::new(codes::NAME, message.to_owned(), location));
+            } else if name == module {
+                let message = format!(
+                    "`{name}` is the name of the device, and so of its module; choose another name"
+                );
+                found.push(Diagnostic::new(codes::NAME, message, location));
             } else if let Err(why) = identifier::check(name) {
                 let message = format!("`{name}` cannot be a Verilog name: {why}");
                 found.push(Diagnostic::new(codes::NAME, message, location));

@@ -174,11 +174,11 @@ fn enable(design: &Design, pipeline: &Pipeline) -> Option<NetId> {
     design.registers.iter().find(|it| pipeline.valid.contains(&it.q))?.enable
 }
 
-/// Writes `Stage 3, part of: accumulator <- base^2`.
+/// Writes `Stage 3, of the microinstructions accumulator <- base^2`.
 fn title(number: usize, microinstructions: &[String]) -> Vec<String> {
     let what = match microinstructions {
         [] => ": values on their way".to_owned(),
-        some => format!(", part of: {}", some.join("; ")),
+        some => format!(", of the microinstructions {}", some.join("; ")),
     };
     comment(4, &ascii(&format!("Stage {number}{what}")))
 }

@@ -123,7 +123,7 @@ impl Verdict {
     }
 
     /// Returns the conclusion of all checks if this verdict decides.
-    fn conclusion(self) -> Conclusion {
+    pub fn conclusion(self) -> Conclusion {
         match self {
             Self::Failed => Conclusion::Failed,
             Self::Undecided | Self::LimitReached | Self::NotRun => Conclusion::Incomplete,

@@ -3,6 +3,7 @@
 use glint::registry::Registry;
 
 use crate::common::json::Json;
+use crate::common::sample::sampled;
 use crate::config_device::uncommented;
 use crate::workspace::Workspace;
 
@@ -69,7 +70,7 @@ fn a_new_configuration_of_a_function_is_accepted() {
 /// The printed file is short, and generates as it is: with its defaults, with them written out, and as a pipeline.
 #[test]
 fn every_new_configuration_is_short_and_generates() {
-    for device in Registry::shipped().devices() {
+    for device in sampled("new configurations", Registry::shipped().devices(), 5) {
         for options in [&[][..], &["--all"], &["--pipelined", "--stream", "--clock", "60"]] {
             let dir = Workspace::new();
             let text = dir.done([&["new", device.name], options].concat());

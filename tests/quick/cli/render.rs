@@ -10,6 +10,7 @@ use crate::common::Sure;
 use crate::common::cores::all_configurations;
 use crate::common::files::{read, root};
 use crate::common::json::Json;
+use crate::common::sample::sampled;
 use crate::workspace::{COSINE_POWER, Run, Workspace};
 
 /// Every line of the documentation's list of pictures that is a command.
@@ -77,13 +78,14 @@ fn every_engine_draws_the_same_pixels() {
     dir.write("quad.toml", "device = \"quad-cosine\"\n");
     dir.write("squared.toml", "device = \"cosine-squared\"\n");
     dir.write("shading.toml", "device = \"shading\"\n");
-    for (config, more) in [
+    let scenes = [
         ("power.toml", &["--height", "bumps.png"][..]),
         ("rough.toml", &["--height", "bumps.png"]),
         ("quad.toml", &["--shape", "torus"]),
         ("squared.toml", &[]),
         ("shading.toml", &["--shape", "torus", "--height", "bumps.png"]),
-    ] {
+    ];
+    for (config, more) in sampled("scenes", scenes, 2) {
         let mut pictures = Vec::new();
         let all = ["golden", "rust-hdl", "verilator"];
         let there = if cfg!(feature = "outside-tools") { &all[..] } else { &all[..2] };
@@ -105,11 +107,10 @@ fn every_engine_draws_the_same_pixels() {
 fn every_configuration_draws() {
     let dir = Workspace::new();
     let mut drawn = 0;
-    for (path, core) in all_configurations() {
-        // A function is no highlight.
-        if core.contract.highlight().is_none() {
-            continue;
-        }
+    // A function is no highlight.
+    let highlights = all_configurations().into_iter();
+    let highlights = highlights.filter(|(_, core)| core.contract.highlight().is_some());
+    for (path, _) in sampled("drawn configurations", highlights, 10) {
         let path = root().join(path).display().to_string();
         let mut pictures = Vec::new();
         for through in ["golden", "rust-hdl"] {

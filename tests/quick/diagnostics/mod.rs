@@ -6,7 +6,7 @@ mod microprogram;
 use std::panic::Location;
 
 use glint::config::Config;
-use glint::dsl::{Designer, Setting, end, loop_while, step, valid};
+use glint::dsl::{About, Designer, Setting, end, loop_while, step, valid};
 use glint::fixed::{Format, Overflow, Rounding};
 use glint::hdl::blocks::divider::Divider;
 use glint::registry::Registry;
@@ -260,6 +260,15 @@ fn names_of_the_sequencer_are_reserved() {
         d.operand("word_address", BYTE);
     })
     .are(["the name `word_address` is used twice"]);
+}
+
+#[test]
+fn no_signal_has_the_name_of_the_device() {
+    mistakes(|d| {
+        d.about(About { device: "soft-blend".into(), ..About::default() });
+        d.operand("soft_blend", BYTE);
+    })
+    .are(["`soft_blend` is the name of the device, and so of its module; choose another name"]);
 }
 
 #[test]

@@ -21,6 +21,9 @@ use show::{announce, report};
 /// How often the state is written.
 const SAVE: Duration = Duration::from_secs(5);
 
+/// A shorter proof is not worth more cores.
+const WORTH_SHARING: Duration = Duration::from_secs(60);
+
 /// Numbers of cores for which the duration of a proof is estimated.
 const CORES: [u32; 3] = [1, 16, 1000];
 
@@ -132,7 +135,11 @@ fn announce_duration(job: &Job<'_>, state: &State) -> Result<()> {
         let duration = duration.mul_f64(threads as f64 / f64::from(cores));
         format!("{} on {}", roughly(duration), text::counted(cores as usize, "core"))
     });
-    say!("  {here} ({})", elsewhere.join(", "));
+    if duration < WORTH_SHARING {
+        say!("  {here}");
+    } else {
+        say!("  {here} ({})", elsewhere.join(", "));
+    }
     Ok(())
 }
 

@@ -37,6 +37,17 @@ pub fn print(measured: &[Measured], notes: &[String]) {
     }
 }
 
+/// Returns the figures of a target in a line: `ECP5: 367 LUT, 1 DSP, 0 RAM, 112.30 MHz`.
+pub fn in_a_line(figures: &Figures) -> String {
+    let area = &figures.area;
+    let counts = [("LUT", area.luts), ("DSP", area.dsps), ("RAM", area.block_rams)];
+    let counts = counts.into_iter().filter_map(|(unit, count)| Some(format!("{} {unit}", count?)));
+    let gates = area.gates.map(|gates| format!("{gates:.0} gates"));
+    let clock = figures.frequency.map(|frequency| format!("{:.2} MHz", frequency.median));
+    let parts: Vec<String> = counts.chain(gates).chain(clock).collect();
+    format!("{}: {}", figures.target.title(), parts.join(", "))
+}
+
 fn row(one: &Measured, figures: &Figures) -> Vec<String> {
     let (area, frequency) = (&figures.area, figures.frequency);
     let known = |text: Option<String>| text.unwrap_or_else(|| NONE.to_owned());

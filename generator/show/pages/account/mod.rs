@@ -8,7 +8,7 @@ mod table;
 use crate::evidence::advice::Advice;
 use glint_base::fixed::Format;
 use glint_base::program::Program;
-use glint_base::text::rounded_up;
+use glint_base::text::{counted, rounded_up};
 use glint_config::{Config, Key, Schema, shared_keys};
 use glint_core::cosim::exhaustive::Backing;
 use glint_core::package::facts::{self, Sequence};
@@ -107,7 +107,9 @@ pub fn proof(inputs: &PageInputs) -> String {
         .iter()
         .map(|axis| match &axis.values {
             Values::Range(low, high) => format!("{} = {low} … {high}", code(&axis.name)),
-            Values::List(values) => format!("{} settings of {}", values.len(), code(&axis.name)),
+            Values::List(values) => {
+                format!("{} of {}", counted(values.len(), "value"), code(&axis.name))
+            }
         })
         .collect();
     let omits = match sweep.omits.as_str() {

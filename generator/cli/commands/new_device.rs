@@ -1,0 +1,121 @@
+//! `glint new-device`: writes a crate with a device of one's own.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail};
+use clap::Args;
+use serde_json::json;
+
+use crate::{Output, say, tables, wrong_usage};
+use glint_base::identifier;
+use glint_core::registry::Registry;
+
+/// Write a crate with a device of your own: description, golden model, contract, command line and test
+///
+/// The device computes x². Change its formula in four places: the keys, the description, the golden model and the test.
+#[derive(Args)]
+#[command(after_help = "\
+Example:
+  glint new-device sine-wave --glint ../glint
+  cd sine-wave
+  cargo test
+  cargo run -- new sine-wave > sine.toml
+  cargo run -- generate sine.toml")]
+pub struct Arguments {
+    /// The name of the device and of its crate: lower-case letters, digits and `-`
+    name: String,
+    /// The directory to make [default: the name]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// The checkout of Glint, as seen from the new directory
+    #[arg(long, value_name = "DIR", default_value = "../glint")]
+    glint: String,
+}
+
+/// The files of the crate of the device `parabola`, by their paths.
+const FILES: [(&str, &str); 6] = [
+    ("Cargo.toml", include_str!("../new_device/manifest.toml")),
+    ("src/lib.rs", include_str!("../new_device/lib.rs")),
+    ("src/description.rs", include_str!("../new_device/description.rs")),
+    ("src/golden.rs", include_str!("../new_device/golden.rs")),
+    ("src/main.rs", include_str!("../new_device/main.rs")),
+    ("tests/device.rs", include_str!("../new_device/test.rs")),
+];
+
+/// Runs `glint new-device`.
+pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+    let name = &arguments.name;
+    check_name(registry, name)?;
+    let directory = arguments.out.clone().unwrap_or_else(|| PathBuf::from(name));
+    let files = FILES.map(|(path, text)| (path, text_for(text, name, &arguments.glint)));
+    write(&directory, &files)?;
+    if output.json {
+        let paths = FILES.map(|(path, _)| path);
+        tables::print_json(
+            &json!({ "ok": true, "directory": directory.display().to_string(), "files": paths }),
+        );
+    } else {
+        say!("{}: {} files written. Next:", directory.display(), FILES.len());
+        say!("  cd {}", directory.display());
+        say!("  cargo test");
+        say!("  cargo run -- new {name} > {name}.toml");
+        say!("  cargo run -- generate {name}.toml");
+    }
+    Ok(true)
+}
+
+/// Writes the files below a directory that is not there yet: all of them, or nothing.
+fn write(directory: &Path, files: &[(&str, String)]) -> Result<()> {
+    if directory.symlink_metadata().is_ok() {
+        bail!(
+            "`{}` is there already; move it away, or name another directory with --out",
+            directory.display()
+        );
+    }
+    let parent = match directory.parent() {
+        Some(parent) if parent != Path::new("") => parent,
+        _ => Path::new("."),
+    };
+    let cannot = || format!("cannot write `{}`", directory.display());
+    let staging = tempfile::tempdir_in(parent).with_context(cannot)?;
+    let made = staging.path().join("crate");
+    for (path, text) in files {
+        let path = made.join(path);
+        fs::create_dir_all(path.parent().unwrap_or(&made)).with_context(cannot)?;
+        fs::write(path, text).with_context(cannot)?;
+    }
+    fs::rename(&made, directory).with_context(cannot)
+}
+
+/// Checks the name of a new device.
+///
+/// # Errors
+/// Fails if the name is no name of a crate, a word of Rust or Verilog, or the name of a device that `registry` has.
+fn check_name(registry: &Registry, name: &str) -> Result<()> {
+    let is_letter = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
+    let begins = name.starts_with(|c: char| c.is_ascii_lowercase());
+    if !begins || !name.chars().all(is_letter) || name.ends_with('-') || name.contains("--") {
+        wrong_usage!(
+            "`{name}`: a name has lower-case letters, digits and single `-`, and begins with a letter"
+        );
+    }
+    if let Err(why) = identifier::check(&name.replace('-', "_")) {
+        wrong_usage!("`{name}`: {why} of Verilog or SystemVerilog");
+    }
+    if ["anyhow", "glint-hdl"].contains(&name) {
+        wrong_usage!("`{name}` is a crate that the new one uses; choose another name");
+    }
+    if registry.device(name).is_some() {
+        wrong_usage!("there is a device `{name}` already; choose another name");
+    }
+    Ok(())
+}
+
+/// Returns a file of the template for another device.
+fn text_for(text: &str, name: &str, glint: &str) -> String {
+    let module = name.replace('-', "_");
+    text.replace("parabola_device", &format!("{module}_device"))
+        .replace("parabola", name)
+        .replace("GLINT", &glint.replace('\\', "/"))
+}

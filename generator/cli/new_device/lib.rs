@@ -1,0 +1,36 @@
+//! The device `parabola`, which computes x².
+//!
+//! A device is five things. The configuration keys and the line that ties everything together are here. The description is in
+//! `description.rs`; golden model and accuracy contract are in `golden.rs`. Description and golden model share nothing but the keys:
+//! Glint compares them clock by clock.
+
+mod description;
+mod golden;
+
+use glint::config::{Key, Schema};
+use glint::registry::Device;
+
+glint::keys! {
+    /// The keys: what the user of the device may choose. `new` writes them into a file, with these sentences.
+    struct Keys {
+        operand: u32 = Key::integer("x.fraction", 12, 4..=16, "Fraction bits of x, u0.F."),
+        result: u32 = Key::integer("result.fraction", 12, 4..=16, "Fraction bits of the result, u1.F."),
+    }
+}
+
+fn schema() -> Schema {
+    // `check` refuses combinations of keys; this device has none to refuse.
+    Schema { device: "parabola", keys: Keys::keys(), check: |_, _| {} }
+}
+
+/// The device.
+pub const DEVICE: Device = Device {
+    name: "parabola",
+    summary: "x^2 of a fraction",
+    schema,
+    describe: description::describe,
+    model: golden::model,
+    contract: golden::contract,
+    // `true` would say that a record proves the bound of the contract.
+    proved: false,
+};

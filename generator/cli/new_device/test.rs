@@ -1,0 +1,28 @@
+//! The device beside its golden model, and beside numbers that were worked out by hand.
+
+use anyhow::Result;
+use glint::config::Config;
+use glint::core::Core;
+use parabola_device::DEVICE;
+
+fn core() -> Result<Core> {
+    Core::new(DEVICE, Config::defaults(&(DEVICE.schema)(), "parabola"))
+}
+
+/// Every register and every output, on every clock; and no output is further off than the contract says.
+#[test]
+fn golden_model_and_hardware_agree() -> Result<()> {
+    let core = core()?;
+    let outcome = core.lockstep(1)?.run(10_000, &|_| {})?;
+    assert_eq!(outcome.failures(&core.contract.bound()), Vec::<String>::new());
+    Ok(())
+}
+
+/// 0.5² is 0.25: with 12 fraction bits the integers are 2048 and 1024.
+#[test]
+fn half_of_a_half_is_a_quarter() -> Result<()> {
+    let mut outputs = Vec::new();
+    core()?.contract.results(&[2048], 0, &mut outputs);
+    assert_eq!(outputs, [1024]);
+    Ok(())
+}
