@@ -15,6 +15,7 @@ pub struct Literal {
     text: String,
     value: RBig,
     nearest: f64,
+    is_exact: bool,
 }
 
 impl PartialEq for Literal {
@@ -50,12 +51,13 @@ impl Literal {
             RBig::from(numerator * IBig::from(ten_to_power))
         };
         let nearest = text.parse().ok()?;
-        Some(Self { text, value, nearest })
+        let is_exact = RBig::try_from(nearest).is_ok_and(|nearest| nearest == value);
+        Some(Self { text, value, nearest, is_exact })
     }
 
     /// Makes the number 0.
     pub fn zero() -> Self {
-        Self { text: "0".to_owned(), value: RBig::ZERO, nearest: 0.0 }
+        Self { text: "0".to_owned(), value: RBig::ZERO, nearest: 0.0, is_exact: true }
     }
 
     /// Returns the number without any rounding.
@@ -70,7 +72,7 @@ impl Literal {
 
     /// Returns whether the nearest `f64` is the number itself.
     pub fn is_exact(&self) -> bool {
-        RBig::try_from(self.nearest).is_ok_and(|nearest| nearest == self.value)
+        self.is_exact
     }
 
     /// Returns how many digits the text has from its first that is not 0, those of the power of ten left out.

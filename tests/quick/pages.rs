@@ -130,7 +130,12 @@ fn links_lead_somewhere() {
         headings.map(anchor).collect()
     };
     let pages = ["README.md", "CONTRIBUTING.md"].map(String::from);
-    for page in pages.into_iter().chain(paths("docs", ".md")) {
+    for page in pages
+        .into_iter()
+        .chain(paths("docs", ".md"))
+        .chain(paths("docs/flows", ".md"))
+        .chain(paths("docs/evidence", ".md"))
+    {
         let text = read(&page);
         for link in text.split("](").skip(1) {
             let link = link.split(')').next().unwrap_or_default();

@@ -35,30 +35,32 @@ type Row = Vec<String>;
 type Make = fn(&mut Vec<Row>);
 
 const MEASUREMENTS: &str = "docs/measurements.md";
+const AREA: &str = "docs/evidence/area.md";
+const RATES: &str = "docs/evidence/rates.md";
 const VERIFICATION: &str = "docs/verification.md";
+const FAULTS: &str = "docs/evidence/faults.md";
 const FUNCTIONS: &str = "docs/functions.md";
+const FUNCTION_SIZES: &str = "docs/evidence/functions.md";
 
 /// A table: its page, its name, and the function that makes it.
 const TABLES: [(&str, &str, Make); 17] = [
     ("README.md", "main_job", |rows| rows.iter_mut().for_each(main_job)),
     (MEASUREMENTS, "devices", |rows| rows.iter_mut().for_each(device)),
     (MEASUREMENTS, "choices", |rows| rows.iter_mut().for_each(choice)),
-    (MEASUREMENTS, "area_and_speed", area_and_speed),
-    (MEASUREMENTS, "small_ice40", |rows| small(rows, "small", "_60", Target::Ice40)),
-    (MEASUREMENTS, "small_ecp5", |rows| small(rows, "small", "_up5k", Target::Ecp5)),
-    (MEASUREMENTS, "intervals", |rows| small(rows, "intervals", "none", Target::Ecp5)),
+    (AREA, "area_and_speed", area_and_speed),
+    (AREA, "small_ice40", |rows| small(rows, "small", "_60", Target::Ice40)),
+    (AREA, "small_ecp5", |rows| small(rows, "small", "_up5k", Target::Ecp5)),
+    (RATES, "intervals", |rows| small(rows, "intervals", "none", Target::Ecp5)),
     (MEASUREMENTS, "literature", |rows| literature(rows)),
-    (MEASUREMENTS, "pipelines", pipelines),
-    (MEASUREMENTS, "registered_multipliers", |rows| {
-        rows.iter_mut().for_each(registered_multipliers)
-    }),
+    (RATES, "pipelines", pipelines),
+    (RATES, "registered_multipliers", |rows| rows.iter_mut().for_each(registered_multipliers)),
     (FUNCTIONS, "presets", |rows| rows.par_iter_mut().for_each(preset)),
-    (FUNCTIONS, "functions", |rows| rows.par_iter_mut().for_each(function)),
+    (FUNCTION_SIZES, "functions", |rows| rows.par_iter_mut().for_each(function)),
     (VERIFICATION, "verify", |rows| verify(rows)),
-    (VERIFICATION, "faults", |rows| *rows = faults_in_netlists(false)),
-    (VERIFICATION, "faults_of_pipelines", |rows| *rows = faults_in_netlists(true)),
-    (VERIFICATION, "faults_in_verilog", |rows| *rows = faults_in_verilog()),
-    (VERIFICATION, "shipped_benches", |rows| *rows = shipped_benches()),
+    (FAULTS, "faults", |rows| *rows = faults_in_netlists(false)),
+    (FAULTS, "faults_of_pipelines", |rows| *rows = faults_in_netlists(true)),
+    (FAULTS, "faults_in_verilog", |rows| *rows = faults_in_verilog()),
+    (FAULTS, "shipped_benches", |rows| *rows = shipped_benches()),
 ];
 
 /// Returns the text of a page before the rows of its table of that name, the rows, and the text after them.
@@ -102,7 +104,9 @@ fn bless_changes_no_table() {
 
 #[test]
 fn every_table_between_markers_is_blessed() {
-    for page in ["README.md", MEASUREMENTS, FUNCTIONS, VERIFICATION] {
+    for page in
+        ["README.md", MEASUREMENTS, AREA, RATES, FUNCTIONS, FUNCTION_SIZES, VERIFICATION, FAULTS]
+    {
         let names = TABLES.iter().filter(|(of, ..)| *of == page).count();
         assert_eq!(read(page).matches("<!-- table ").count(), names, "{page}");
     }
@@ -523,7 +527,7 @@ fn shipped_benches() -> Vec<Row> {
     rows
 }
 
-/// Shipped benches notice no less than the goals, but for those that docs/verification.md names.
+/// Shipped benches notice no less than the goals, but for those that docs/evidence/faults.md names.
 #[test]
 fn shipped_benches_reach_the_goals() {
     let mut together = [0, 0];

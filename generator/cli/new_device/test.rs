@@ -1,12 +1,11 @@
 //! The device beside its golden model, and beside numbers that were worked out by hand.
 
 use anyhow::Result;
-use glint::config::Config;
 use glint::core::Core;
 use parabola_device::DEVICE;
 
 fn core() -> Result<Core> {
-    Core::new(DEVICE, Config::defaults(&(DEVICE.schema)(), "parabola"))
+    Core::new(DEVICE, DEVICE.defaults())
 }
 
 /// Every register and every output, on every clock; and no output is further off than the contract says.
