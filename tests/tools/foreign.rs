@@ -100,7 +100,7 @@ fn a_new_device_is_a_crate_that_works() {
     };
     cargo(&["test", "--quiet"]);
     let run = |arguments: &[&str]| cargo(&[&["run", "--quiet", "--"], arguments].concat());
-    put(foreign.join("core.toml"), &run(&["new", "soft-blend"]));
+    put(foreign.join("core.toml"), run(&["new", "soft-blend"]));
     run(&["generate", "core.toml", "--quiet"]);
     let core = read(foreign.join("rtl_out/soft_blend/soft_blend.v"));
     assert!(core.contains("module soft_blend"), "{core}");
