@@ -130,12 +130,9 @@ fn links_lead_somewhere() {
         headings.map(anchor).collect()
     };
     let pages = ["README.md", "CONTRIBUTING.md"].map(String::from);
-    for page in pages
-        .into_iter()
-        .chain(paths("docs", ".md"))
-        .chain(paths("docs/flows", ".md"))
-        .chain(paths("docs/evidence", ".md"))
-    {
+    let folders = ["docs", "docs/design", "docs/evidence", "docs/flows"];
+    let in_folders = folders.iter().flat_map(|folder| paths(folder, ".md"));
+    for page in pages.into_iter().chain(in_folders) {
         let text = read(&page);
         for link in text.split("](").skip(1) {
             let link = link.split(')').next().unwrap_or_default();
