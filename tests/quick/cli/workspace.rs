@@ -6,6 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use regex::Regex;
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -107,13 +108,19 @@ impl Workspace {
     }
 }
 
+/// Returns standard error without the lines about progress, which a slow machine adds: `evaluations: 12 of 34, about 1 s left`.
+fn without_progress(text: &str) -> String {
+    let progress = Regex::new(r"(?m)^[^\n]+: \d+ of \d+(, about [^\n]+ left)?\n");
+    progress.expect("a pattern").replace_all(text, "").into_owned()
+}
+
 impl Run {
     pub fn of(output: std::io::Result<Output>) -> Self {
         let output = output.expect("the program runs");
         let run = Self {
             code: output.status.code().unwrap_or(-1),
             out: String::from_utf8(output.stdout).expect("UTF-8"),
-            err: String::from_utf8(output.stderr).expect("UTF-8"),
+            err: without_progress(&String::from_utf8(output.stderr).expect("UTF-8")),
         };
         assert!(!run.err.contains("panicked"), "{run:?}");
         run
