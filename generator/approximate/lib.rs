@@ -1,9 +1,10 @@
 //! Finds piecewise polynomials in fixed point that approximate a function of one operand, and proves their error.
 //!
-//! The domain is cut into [`Segments`]; a table has the coefficients of each, and Horner's rule carries the polynomial out
-//! in integers. [`find`] chooses degree, segments, coefficients and widths; [`Piecewise::prove`] then computes every
-//! operand and sets the result against the formula, whose own error of evaluation is in the bound. Of more operands than
-//! can be computed it takes intervals within segments.
+//! The domain is cut into [`Segments`]. A table holds the coefficients of each segment, and the hardware evaluates the
+//! polynomial in integers with Horner's rule. [`find`] chooses the degree, the segments, the coefficients and the widths.
+//! [`Piecewise::prove`] then computes the result of every operand and compares it with the formula; the bound includes the
+//! error with which the formula is evaluated. If a formula's domain has too many operands, the proof uses intervals within
+//! segments instead.
 
 mod minimax;
 mod reduction;
@@ -39,7 +40,7 @@ const MOST_SUMS: usize = 4;
 const POLES: u32 = 1 << 16;
 const BESIDE: f64 = 1.0 / 1024.0;
 
-/// The most bits of an operand of which every value is computed.
+/// The widest operand, in bits, for which every value is computed.
 pub const MOST_BITS: u32 = 26;
 
 glint_config::choices! {
@@ -140,7 +141,7 @@ pub struct Piecewise {
     pub words: Vec<Vec<i64>>,
     /// The cuts of the product that is added to coefficient k.
     pub steps: Vec<Step>,
-    /// The formats of the sums from coefficient k on; the first is that of the polynomial.
+    /// The formats of the sums from coefficient k on. The first is the format of the polynomial.
     pub sums: Vec<Format>,
     /// The format of the result, which is the polynomial where nothing is reduced.
     pub result: Format,
@@ -254,7 +255,8 @@ impl Piecewise {
         self.coefficients.len() - 1
     }
 
-    /// Returns the polynomial's operand for a raw operand of the domain, and how its result comes of the polynomial.
+    /// Returns the polynomial's operand for a raw operand of the domain, and the way to restore the result from the
+    /// polynomial.
     fn reduced(&self, raw: i64) -> (i64, Restore) {
         self.reduction.as_ref().map_or((raw, Restore::default()), |it| it.reduce(raw))
     }
@@ -270,7 +272,7 @@ impl Piecewise {
         Place { word: word.min(self.words.len() - 1), offset }
     }
 
-    /// Returns the sum from coefficient k on, of which `above` is the one from k + 1 on; whole.
+    /// Returns the sum from coefficient k on, without cutting off upper bits. `above` is the sum from coefficient k + 1 on.
     pub fn sum(&self, k: usize, place: Place, above: i64) -> i64 {
         let coefficient = self.words[place.word][k];
         let Some(step) = self.steps.get(k) else { return coefficient };
@@ -300,7 +302,7 @@ impl Piecewise {
         self.restored(raw, self.sums_of(raw)[0])
     }
 
-    /// Returns the result of a raw operand, of the polynomial there.
+    /// Returns the result of a raw operand from the value of the polynomial there.
     pub fn restored(&self, raw: i64, polynomial: i64) -> i64 {
         self.reduced(raw).1.result(polynomial)
     }
@@ -315,8 +317,8 @@ impl Piecewise {
     /// whatever its exact value.
     ///
     /// # Errors
-    /// An operand whose sums leave their formats, whose result is further off than the function allows, or where the
-    /// function has no value; a proof that takes too long.
+    /// Fails if the sums of an operand leave their formats, if its result is further off than the function allows, or if the
+    /// function has no value there. Fails also if the proof takes too long.
     pub fn prove(&self, function: &Function) -> Result<f64, Refusal> {
         let (first, last) = self.domain;
         let of = |raw: i64| self.error_at(function, raw);
@@ -351,10 +353,11 @@ impl Piecewise {
 
 type Found = Result<Arc<Piecewise>, Refusal>;
 
-/// Returns the approximation of a function with least cost, and proved; what was found before is not searched again.
+/// Returns the approximation of a function with the least cost, and with a proved bound. A search that was already made is
+/// not repeated.
 ///
 /// # Errors
-/// Why there is none.
+/// Fails if no approximation can be found and proved. The error says why.
 pub fn find(function: &Function, wish: Wish) -> Found {
     static FOUND: LazyLock<Mutex<HashMap<String, Found>>> = LazyLock::new(Mutex::default);
     let key = format!("{function:?} {wish:?}");

@@ -1,9 +1,10 @@
-//! Finds the polynomial of least largest error on some points, by exchange of points (Remez).
+//! Finds the polynomial with the smallest largest error on given points, by exchanging reference points (the Remez
+//! algorithm).
 
 /// The most coefficients.
 const MOST: usize = 4;
 
-/// Exchanges until the largest error is that of the reference.
+/// The most exchanges. The search ends earlier once the largest error equals the error at the reference points.
 const EXCHANGES: usize = 30;
 
 /// Returns the coefficients, from the constant on, of the polynomial of `degree` whose largest distance from `values` at the

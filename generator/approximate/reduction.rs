@@ -1,8 +1,9 @@
-//! Reduces ranges: the operand of a whole format becomes one of a short domain, and the polynomial's result there
-//! becomes that of the operand.
+//! Reduces ranges: maps an operand of a whole format to an operand of a short domain. It also maps the polynomial's result
+//! there back to the result of the original operand.
 //!
-//! An identity of the formula is tried at a few points here and proved nowhere. No bound rests on it: every
-//! operand of the whole domain is computed and set against the formula; a domain that is too large for that is refused.
+//! This module tries an identity of the formula at a few points and proves it nowhere. No bound depends on the identity:
+//! [`super::Piecewise::prove`] compares the result of every operand of the whole domain with the formula. The search refuses
+//! a domain that is too large for that.
 
 use super::{Curve, Function, Outside, Refusal};
 use glint_base::fixed::{Format, exp2};
@@ -10,7 +11,8 @@ use glint_formula::Function::Log2;
 use glint_formula::{Enclosure, Formula, Kind, RBig, parse};
 
 glint_config::choices! {
-    /// The identity by which values elsewhere follow from those of a short domain.
+    /// The identity with which values elsewhere are computed from values on a short domain. For example, `Even` computes
+    /// f(−3) as f(3).
     #[derive(Default, Hash)]
     pub enum Identity {
         /// None is used.
@@ -43,7 +45,7 @@ pub struct Reduction {
     pub rule: Rule,
     /// Bits of the number.
     pub bits: u32,
-    /// Fraction bits of the polynomial beyond those of the result.
+    /// The fraction bits of the polynomial in addition to the fraction bits of the result.
     pub guard: u32,
 }
 
@@ -61,8 +63,8 @@ pub enum Rule {
         width: u32,
         /// Whether the number has a bit that says which of a pair it is.
         pairs: bool,
-        /// By the leading zeros of the operand: the shift to the right, and what is added before it, in units of the
-        /// polynomial.
+        /// One entry for each number of leading zeros of the operand: the shift to the right, and the addend before the
+        /// shift, in units of the polynomial.
         restores: Vec<(u32, i64)>,
     },
     /// To the fraction of the exponent; the integer of the exponent becomes a shift.
@@ -76,7 +78,7 @@ pub enum Rule {
     },
 }
 
-/// How the result of an operand comes of the polynomial.
+/// Restores the result of an operand from the polynomial.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Restore {
     /// Added to the polynomial.
@@ -117,7 +119,7 @@ impl Restore {
 }
 
 impl Reduction {
-    /// Returns the number of a raw operand, and how its result comes of the polynomial there.
+    /// Returns the number of a raw operand, and the way to restore its result from the polynomial there.
     pub fn reduce(&self, raw: i64) -> (i64, Restore) {
         let mask = (1i64 << self.bits) - 1;
         let mirrored = |low: i64| if low == 0 { mask } else { mask + 1 - low };
@@ -166,7 +168,7 @@ impl Reduction {
     /// holds the largest of them.
     ///
     /// # Errors
-    /// The formula does not look as if the identity holds, or the domain does not suit it.
+    /// Fails if the formula does not look as if the identity holds, or if the domain does not suit the identity.
     pub(super) fn of(
         identity: Identity,
         function: &Function,
@@ -230,7 +232,7 @@ fn refused<T>(message: &str, remedy: &str) -> Result<T, Refusal> {
     Err(Refusal::new(KEY, message.to_owned(), remedy))
 }
 
-/// Refuses a formula of which the identity does not hold, for the reason `wanted`.
+/// Refuses a formula for which the identity does not hold, for the reason `wanted`.
 fn unlike<T>(wanted: &str) -> Result<T, Refusal> {
     refused(&format!("the formula has no such identity: {wanted}"), "\"none\", or another")
 }
@@ -239,7 +241,8 @@ fn near(a: f64, b: f64) -> bool {
     (a - b).abs() <= EQUAL * a.abs().max(b.abs()).max(1e-3)
 }
 
-/// A rule, bits of a number, and fraction bits of it with the operand that it stands for, as a formula of the number's value.
+/// A rule, the bits of a number, and the number's fraction bits with the operand that the number denotes, as a formula of the
+/// number's value.
 type Found = Result<(Rule, u32, (i32, String)), Refusal>;
 
 /// A function that is to be reduced.
@@ -358,7 +361,7 @@ impl Whole<'_> {
                 "change function.from to the least operand above 0",
             );
         }
-        // The octave, or the pair, that the polynomials are of: that of the largest results.
+        // The octave, or the pair of octaves, on which the polynomials are fitted: the one with the largest results.
         let of = |octave: i32| if pairs { octave >> 1 } else { octave };
         let own = match factor {
             0.0 => format.frac.clamp(low, high),

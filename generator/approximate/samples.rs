@@ -1,7 +1,7 @@
-//! Reads measured points that stand in place of a formula, and computes the curve through them.
+//! Reads measured points that replace a formula, and computes the curve through them.
 //!
-//! Between points the curve is Steffen's cubic (Astronomy and Astrophysics 239, 443, 1990): with one derivative, and as monotone as
-//! the points are. Its slopes at the points are the numbers of f64 that his formula gives.
+//! Between points the curve is Steffen's cubic (Astronomy and Astrophysics 239, 443, 1990). It has one continuous derivative,
+//! and is monotone wherever the points are. The slopes at the points are the f64 numbers that Steffen's formula gives.
 
 use super::Refusal;
 use glint_base::fixed::exp2;
@@ -21,7 +21,8 @@ impl Samples {
     /// Reads points as a configuration has them, `x,y x,y`, for a domain of raw operands.
     ///
     /// # Errors
-    /// A point that is no number or no operand of the domain, two of one operand, and gaps between them.
+    /// Fails if a point is no pair of numbers or at no operand of the domain, if two points have the same operand, if the
+    /// domain has no point at an end, or if the points have a gap.
     pub fn read(text: &str, fraction: u32, domain: (i64, i64)) -> Result<Self, Refusal> {
         let refused = |message: String, remedy: &str| Err(Refusal::new(KEY, message, remedy));
         let mut points: Vec<(i64, Enclosure)> = Vec::new();
@@ -160,7 +161,7 @@ mod tests {
         assert!(samples.limits(1).holds(0.1) && samples.limits(1).low < samples.limits(1).high);
         let halves = Samples::read("0,0 1,1", 1, (0, 2)).unwrap();
         assert!(halves.limits(1).holds(0.5) && halves.count() == 2);
-        // As NumPy prints them: 1 − 2^−20 has 20 digits, of which `%.18e` prints 19.
+        // The decimals are as NumPy prints them: 1 − 2^−20 has 20 digits, and `%.18e` prints 19 of them.
         let near = "9.999980926513671875e-01,0 9.999990463256835938e-01,+0.5 1e0,1";
         let samples = Samples::read(near, 20, ((1 << 20) - 2, 1 << 20)).unwrap();
         assert_eq!(samples.limits((1 << 20) - 1), Enclosure::exactly(0.5));

@@ -34,8 +34,8 @@ const WIDENING: usize = 1 << 20;
 /// The most bits of an operand's number.
 const WIDEST: u32 = 46;
 
-/// By how much the search is stricter where it does not look at every operand, as a part of what the error leaves beside the
-/// rounding of the result: the next of these where a proof fails.
+/// How much stricter the search is if it does not look at every operand. Each number is a fraction of the allowed error minus
+/// the rounding of the result (half a unit). If a proof fails, the search tries the next number.
 const STRICTER: [f64; 5] = [0.02, 0.1, 0.25, 0.5, 0.75];
 
 /// The cost of a step of Horner's rule beside the table, in look-up tables: a sum, and a multiplier's wiring.
@@ -44,15 +44,15 @@ const STEP: f64 = 50.0;
 /// The cost of an octave: a row of the muxes that bring offsets into their place.
 const OCTAVE: f64 = 12.0;
 
-/// Errors of which the nearest is told where one is out of reach.
+/// The errors to try if the allowed error is out of reach. The message names the smallest one that is reached.
 const NEAREST: [f64; 14] =
     [0.51, 0.55, 0.6, 0.7, 0.8, 0.9, 1.0, 1.5, 2.0, 4.0, 8.0, 16.0, 64.0, 256.0];
 
 /// Finds the cheapest approximation of `function` that `wish` allows, and proves its error bound.
 ///
 /// # Errors
-/// The domain has too many operands, or no approximation that keeps the error is found and proved. The refusal names a
-/// key and a remedy.
+/// Fails if the domain has too many operands, or if no approximation that keeps the error is found and proved. The error
+/// names a key and a remedy.
 pub(super) fn search(function: &Function, wish: Wish) -> Result<Piecewise, Refusal> {
     let span = function.domain.1.abs_diff(function.domain.0);
     if span >> WIDEST != 0 {
@@ -113,8 +113,8 @@ fn attempt(function: &Function, wish: Wish) -> Result<Option<Piecewise>, Refusal
     unproved.map_or(Ok(None), Err)
 }
 
-/// Returns the forms of a polynomial that are tried one after the other where operands are reduced: its fraction bits beyond
-/// those of the result, and whether the largest size has a number of its own.
+/// Returns the forms of a polynomial to try in turn if operands are reduced. A form is the number of fraction bits in addition
+/// to the fraction bits of the result, and whether the largest size has a number of its own.
 fn variants(identity: Identity) -> &'static [(u32, bool)] {
     match identity {
         Identity::Odd | Identity::Even => &[(0, false), (0, true)],

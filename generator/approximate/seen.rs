@@ -1,11 +1,11 @@
-//! Computes which results are within the allowed error, from lowest to highest, at each operand that a search looks at.
+//! Computes, at each operand that a search looks at, the lowest and the highest result within the allowed error.
 
 use rayon::prelude::*;
 
 use super::{Function, Reduction, Refusal};
 use glint_base::fixed::{Format, exp2, nearest};
 
-/// The most operands that the search looks at; of more, these are taken evenly.
+/// The most operands that the search looks at. If there are more, the search takes evenly spread ones.
 const HELD: u64 = 1 << 25;
 
 /// The most of them where there are more than can be computed.

@@ -5,7 +5,7 @@
 pub enum Layout {
     /// All of one length.
     Uniform,
-    /// Half as long in each octave toward the low end: for what is steep there.
+    /// Half as long in each octave toward the low end, for functions that are steep there.
     Octaves,
     /// Half as long in each octave toward the high end.
     Halving,
@@ -22,15 +22,15 @@ impl Layout {
     }
 }
 
-/// The domain, from 0 to 2^bits, cut into segments. An octave holds the numbers with one leading bit; what lies below the last is
-/// a block of its own, and each block has as many segments as every other.
+/// The domain, from 0 to 2^bits, cut into segments. An octave is the block of numbers with the same highest bit. The numbers
+/// below the last octave are a block too, and all blocks have the same number of segments.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Segments {
     /// Bits of the number of an operand.
     pub bits: u32,
     /// How the segments are laid.
     pub layout: Layout,
-    /// How many octaves there are; none of uniform ones.
+    /// The number of octaves, or 0 for segments of one length.
     pub octaves: u32,
     /// Bits of the number of a segment in its block.
     pub prefix: u32,

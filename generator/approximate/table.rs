@@ -1,8 +1,9 @@
-//! Finds the words of a table for given segments: coefficients that are right at every operand, as narrow as may be.
+//! Finds the words of a table for given segments: the narrowest coefficients that are right at every operand.
 //!
-//! Coefficients are rounded one after the other, the highest first: what the hardware makes of those that are chosen is
-//! taken off the function, and the rest is fitted again. The constant closes the search: every operand of a segment allows
-//! an interval of constants, and one within all of them is right for all.
+//! The search rounds the coefficients one after the other, the highest first. It subtracts from the function the part that
+//! the hardware computes from the coefficients chosen so far, and fits the rest again. The constant closes the search: every
+//! operand of a segment allows an interval of constants, and a constant within all of these intervals is right for all
+//! operands.
 
 use rayon::prelude::*;
 
@@ -15,7 +16,7 @@ use glint_base::interval::Interval;
 /// Points of a segment to which polynomials are fitted.
 const FITTED: i64 = 40;
 
-/// Fraction bits of coefficients beyond those of the result, where the search begins.
+/// The fraction bits of coefficients, in addition to the fraction bits of the result, with which the search begins.
 const GENEROUS: i32 = 8;
 
 /// The fewest of them.
@@ -40,7 +41,8 @@ pub(super) struct Piece {
     values: Vec<f64>,
 }
 
-/// Fraction bits beyond those of the result, the constant's first, and leading bits of the offset at each step.
+/// The fraction bits in addition to the fraction bits of the result, for the constant first, and the number of leading
+/// offset bits that each step multiplies.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Widths {
     guard: Vec<i32>,
@@ -96,7 +98,7 @@ pub(super) struct Table<'s> {
     pieces: Vec<Option<Piece>>,
 }
 
-/// The words of a table, of which those that no operand reads are not known.
+/// The words of a table. `None` is a word that no operand reads.
 pub(super) type Words = Vec<Option<Vec<i64>>>;
 
 impl<'s> Table<'s> {
@@ -257,7 +259,8 @@ impl<'s> Table<'s> {
         self.pieces.par_iter().map(fit).collect()
     }
 
-    /// Chooses coefficient `k` and those below it; `product` is what is added to it at the points of the fit.
+    /// Chooses coefficient `k` and all lower coefficients. `product` is the addend of coefficient `k` at the points of the
+    /// fit.
     fn place(
         &self,
         piece: &Piece,
@@ -309,7 +312,7 @@ impl<'s> Table<'s> {
                 return None;
             }
         }
-        // None is looked at where the operands of a segment lie between those that are.
+        // No operand was looked at if all operands of the segment lie between the operands that the search visits.
         Some(if least == i64::MIN { 0 } else { least + (most - least) / 2 })
     }
 
@@ -364,7 +367,8 @@ impl<'s> Table<'s> {
         let Seen { result: polynomial, whole, .. } = self.seen;
         let function = whole.map_or(self.seen.function, |it| it.0);
         let coefficients = self.formats(widths, &words);
-        // A word that no operand of the domain reads has what stands before or behind it.
+        // A word that no operand of the domain reads gets the word before it, or the first known word if there is none before
+        // it.
         let mut before = words.iter().flatten().next()?.clone();
         let words = words.into_iter().map(|word| {
             before = word.unwrap_or_else(|| before.clone());

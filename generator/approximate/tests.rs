@@ -94,7 +94,7 @@ fn what_cannot_be_had_is_refused_with_what_can() {
     assert_eq!((wide.key, wide.remedy.as_str()), ("operand.fraction", "at most 23"));
 }
 
-/// The bound over intervals is that of every operand or a little more, and a wrong coefficient breaks it.
+/// The bound over intervals equals the bound over every operand or is a little larger, and a wrong coefficient breaks it.
 #[test]
 fn a_bound_over_intervals_holds_at_every_operand() {
     for (text, degree) in [

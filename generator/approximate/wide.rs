@@ -1,8 +1,9 @@
-//! Proves a bound of the error where operands are too many to compute each: by intervals within segments.
+//! Proves a bound of the error by intervals within segments, for domains with too many operands to compute each.
 //!
-//! With the real number t in place of the offset, a word is a polynomial P, and the result lags behind P(t) by what its
-//! roundings drop, which is known of a whole segment. The distance from the function to P is that in the middle of an interval, and at
-//! most the derivative times the way from there. Where that is too much the interval is halved, down to single operands.
+//! If a real number t replaces the offset, a word of the table is a polynomial P. The result lies below P(t) by the parts
+//! that its roundings drop, and limits of this lag are known for a whole segment. The distance from the function to P within
+//! an interval is at most the distance in its middle plus the derivative times the way from there. If this bound is too
+//! large, the interval is halved, down to single operands.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -70,7 +71,7 @@ impl Piecewise {
         Some(Walk { sums, lag: lag + last })
     }
 
-    /// Returns the way through a segment that an offset stands for, from its middle, of its length.
+    /// Returns the way from the middle of the segment that an offset denotes, as a fraction of the segment's length.
     fn way(&self, offset: i64) -> Enclosure {
         Enclosure::exactly(offset as f64 * exp2(-(self.segments.rest() as i32)))
     }

@@ -1,4 +1,5 @@
-//! Defines the codes of mistakes in a description, and reads the page of each in `diagnostics.md`, written by hand.
+//! Defines the codes of mistakes in a description. For example, `G0301` is a name that Verilog does not take. [`pages`] reads
+//! the page of each code from `diagnostics.md`, which is written by hand.
 
 use std::fmt;
 
@@ -28,7 +29,7 @@ pub const LOOP: Code = Code(203);
 pub const UNUSED: Code = Code(204);
 /// A signal of another designer.
 pub const FOREIGN: Code = Code(205);
-/// A netlist that refers to what is not there.
+/// A netlist that refers to something that does not exist.
 pub const REFERENCE: Code = Code(206);
 /// A name that Verilog does not take.
 pub const NAME: Code = Code(301);
@@ -50,7 +51,7 @@ pub const CLASH: Code = Code(406);
 pub const UNUSED_CONTROL: Code = Code(407);
 /// An input that is not one of the mux.
 pub const PICK: Code = Code(408);
-/// A product that is not that of the selection.
+/// A product that differs from the product of the selected operands.
 pub const PRODUCT: Code = Code(409);
 /// A part that does not fit.
 pub const PART: Code = Code(501);

@@ -1,9 +1,9 @@
-//! Finds the nodes of a graph that can be reached from given nodes.
+//! Searches graphs: the nodes that given roots depend on, and the nodes that given steps lead to.
 
 use std::collections::HashSet;
 use std::hash::Hash;
 
-/// Marks the nodes that a root depends on, roots included. Each of the `count` nodes stands behind its operands.
+/// Marks the nodes that any root depends on, including the roots. Each of the `count` nodes must come after its operands.
 pub fn needed<I: IntoIterator<Item = usize>>(
     count: usize,
     roots: impl IntoIterator<Item = usize>,
@@ -19,7 +19,7 @@ pub fn needed<I: IntoIterator<Item = usize>>(
     needed
 }
 
-/// Returns where steps lead, from any of these on, themselves too.
+/// Returns all nodes that repeated `steps` reach from the nodes `from`, including these nodes.
 pub fn reached<T: Copy + Eq + Hash, I: IntoIterator<Item = T>>(
     from: impl IntoIterator<Item = T>,
     steps: impl Fn(T) -> I,

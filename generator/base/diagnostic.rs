@@ -20,7 +20,7 @@ pub struct Diagnostic {
     pub location: SourceLocation,
     /// Other source locations that take part.
     pub notes: Vec<(String, SourceLocation)>,
-    /// The key of the configuration that asks for what the description cannot give, and what to do about it.
+    /// The configuration key that asks for more than the description can give, and the remedy.
     pub key: Option<(&'static str, String)>,
     /// The nearest value of that key that the description can give.
     pub nearest: Option<f64>,

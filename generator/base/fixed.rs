@@ -1,9 +1,9 @@
 //! Defines fixed-point formats that are chosen at run time, and computes their rounding and overflow.
 //!
-//! A format is written `uI.F` or `sI.F`: I integer bits, F fraction bits and, for a signed format,
-//! one sign bit more. The width is therefore I + F, or 1 + I + F. A *raw* value is the integer that
-//! the bits denote; the value is `raw · 2⁻ᶠ`. One ulp is `2⁻ᶠ`. Raw values travel as `i128`, bit
-//! patterns (what a wire carries) as `u64`.
+//! A format is written `uI.F` or `sI.F`: I integer bits, F fraction bits and, in a signed format, one sign bit more. The
+//! width is therefore I + F, or 1 + I + F. A *raw* value is the integer that the bits denote. The real value is `raw · 2⁻ᶠ`,
+//! and one ulp is `2⁻ᶠ`. For example, raw 3 in `u1.2` is the value 0.75. Functions pass raw values as `i128`, and the bit
+//! pattern of a wire as `u64`.
 
 use std::fmt;
 use std::str::FromStr;
@@ -63,18 +63,19 @@ impl Format {
     /// Returns the width in bits.
     ///
     /// # Panics
-    /// Never for a format that a constructor of the DSL or the configuration accepted; a format of
-    /// no or negative width is a programming error.
+    /// Panics if the width is negative. The constructors of the DSL and the configuration never accept such a format, so it is
+    /// a programming error.
     pub fn width(self) -> u32 {
         u32::try_from(self.int + self.frac + i32::from(self.signed)).expect("a positive width")
     }
 
-    /// Returns the smallest raw value; of a format that no net can have, of those of an `i128`.
+    /// Returns the smallest raw value. If the format is too wide for any net, the result is limited to the range of an
+    /// `i128`.
     pub fn min_raw(self) -> i128 {
         if self.signed { i128::MIN >> 128u32.saturating_sub(self.width()) } else { 0 }
     }
 
-    /// Returns the largest raw value; of a format that no net can have, of those of an `i128`.
+    /// Returns the largest raw value. If the format is too wide for any net, the result is limited to the range of an `i128`.
     pub fn max_raw(self) -> i128 {
         i128::MAX >> 127u32.saturating_sub(self.width().saturating_sub(u32::from(self.signed)))
     }
@@ -187,7 +188,7 @@ impl Rounding {
     pub fn shift(self, raw: i128, places: i32) -> i128 {
         match (self, places) {
             (_, ..=0) => raw << -places,
-            // Of more places than there are bits, the sign is what is left.
+            // If `places` exceeds the number of bits, only the sign is left.
             (Self::Truncate, _) => raw >> places.min(127),
             (Self::Nearest, _) => ((raw >> (places - 1).min(127)) + 1) >> 1,
         }
@@ -212,7 +213,7 @@ pub const fn mask(width: u32) -> u64 {
 #[inline]
 pub fn exp2(exponent: i32) -> f64 {
     match exponent {
-        // A normal number, of which only the exponent is not 0.
+        // A normal number: its fraction bits are all 0, so only the exponent field must be set.
         -1022..=1023 => f64::from_bits(((exponent + 1023) as u64) << 52),
         _ => libm::ldexp(1.0, exponent),
     }

@@ -5,7 +5,7 @@ use crate::keywords::is_keyword;
 /// Checks that `name` can name a net, a ROM or a module of the emitted Verilog.
 ///
 /// # Errors
-/// The name is refused; the text says why.
+/// Fails if the name is refused. The error says why.
 pub fn check(name: &str) -> Result<(), &'static str> {
     let mut characters = name.chars();
     match characters.next() {

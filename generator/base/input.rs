@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result};
 use serde::de::DeserializeOwned;
 
-/// The path that stands for standard input.
+/// The path that means standard input.
 pub const STDIN: &str = "-";
 
 /// Returns the name by which written files know the file `path`: without directories, so that they are the same on every machine.
@@ -27,10 +27,10 @@ pub fn label(path: &str) -> String {
     name.chars().map(|sign| if plain(sign) { sign.to_string() } else { escaped(sign) }).collect()
 }
 
-/// Opens a file, or standard input where the path is [`STDIN`].
+/// Opens a file, or standard input if the path is [`STDIN`].
 ///
 /// # Errors
-/// The file cannot be read; what stands there is a directory, a pipe or a device, which might never end.
+/// Fails if the file cannot be read, or if the path is a directory, a pipe or a device. A pipe or a device might never end.
 pub fn open(path: &Path) -> io::Result<Box<dyn Read>> {
     if path == Path::new(STDIN) {
         return Ok(Box::new(io::stdin().lock()));
@@ -63,7 +63,7 @@ pub fn text(path: &Path) -> Result<Option<String>> {
 /// alone, and a directory that is not there has none.
 ///
 /// # Errors
-/// The directory or a file in it cannot be read, or is no JSON.
+/// Fails if the directory or a file in it cannot be read, or if a file is no JSON.
 pub fn records<T: DeserializeOwned>(directory: &Path) -> Result<Vec<(PathBuf, T)>> {
     let entries = match fs::read_dir(directory) {
         Ok(entries) => entries,

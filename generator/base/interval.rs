@@ -1,4 +1,5 @@
-//! Computes with intervals of raw values: hulls, intersections, products, and whether a format holds one.
+//! Computes with intervals of raw values: hulls, intersections, products, and whether a format can represent all values of an
+//! interval. For example, the product of `(-1, 2)` and `(3, 4)` is `(-4, 8)`.
 
 use super::fixed::Format;
 
@@ -21,20 +22,21 @@ pub fn common(a: Interval, b: Interval) -> Option<Interval> {
     (both.0 <= both.1).then_some(both)
 }
 
-/// Returns the products of two intervals. Of more than 64 bits, which no net can have, they are not exact.
+/// Returns the interval of the products of two intervals. Products of more than 64 bits are not exact, but no net can have them.
 pub fn product(a: Interval, b: Interval) -> Interval {
     let corners = [(a.0, b.0), (a.0, b.1), (a.1, b.0), (a.1, b.1)];
     let [first, rest @ ..] = corners.map(|(a, b)| a.saturating_mul(b));
     rest.into_iter().fold((first, first), |all, raw| (all.0.min(raw), all.1.max(raw)))
 }
 
-/// Returns whether a format holds all these values.
+/// Returns whether a format can represent all values of the interval.
 pub fn fits(interval: Interval, format: Format) -> bool {
     format.holds(interval.0) && format.holds(interval.1)
 }
 
-/// Returns the multiple of the modulus that brings numbers of this range into the format, as hardware that drops what is
-/// above its bits does; `None` if it is not one for all.
+/// Returns the multiple of the modulus that moves every number of the interval into the format, as hardware does when it
+/// drops the bits above the format. Returns `None` if no single multiple works for all numbers. For example, `(256, 260)` in
+/// `u8.0` gives −256.
 pub fn wrap((low, high): Interval, format: Format) -> Option<i128> {
     let (least, most) = format.range();
     let modulus = most - least + 1;

@@ -1,4 +1,4 @@
-//! Provides what all other modules use: fixed-point formats, intervals, diagnostics, targets, names, text and input.
+//! Provides the basis of all other crates: fixed-point formats, intervals, diagnostics, targets, names, text and input.
 
 pub mod codes;
 pub mod cone;

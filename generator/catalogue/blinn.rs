@@ -1,8 +1,8 @@
-//! The hardware description of `blinn`: cⁿ itself for run-time n (seeds 000–002: the function that all the others
-//! approximate).
+//! The hardware description of `blinn`: cⁿ itself for run-time n (seeds 000–002). All other devices approximate this
+//! function.
 //!
-//! The seeds give no circuit. This is the one that a logarithm, a product and an exponential make: cⁿ = 2^(−n·decay) with the
-//! decay −log₂ c, an octave number before that of a mantissa.
+//! The seeds give no circuit. This circuit consists of a logarithm, a product and an exponential: cⁿ = 2^(−n·decay) with the
+//! decay −log₂ c. The decay is the number of an octave plus the decay of a mantissa.
 
 use glint_base::fixed::Format;
 use glint_config::Config;
@@ -22,7 +22,7 @@ pub fn describe(d: &Designer, config: &Config) {
     let bits = keys.operands.cosine.fraction;
     let fraction = cos_gamma.bits(0, Format::unsigned(0, bits as i32));
     let normalised = shift::normalise(d, "octave", fraction);
-    // The normaliser is slow: what follows waits for it once.
+    // The normaliser is slow, so a pipeline register follows it.
     let octave = d.pipeline("octave", normalised.zeros).doc("leading zeros of cos gamma");
     let mantissa = normalised.word.bits(0, Format::unsigned(bits as i32 - 1, 0));
     let u = d.not("distance_next", mantissa);

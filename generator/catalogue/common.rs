@@ -13,7 +13,7 @@ pub fn cosine<'d>(d: &'d Designer, keys: &keys::Cosine) -> Operand<'d> {
         .doc("cosine of the angle between normal and half vector")
 }
 
-/// Returns the operand `exponent`, of so many bits.
+/// Returns the operand `exponent` with `bits` bits.
 #[track_caller]
 pub fn exponent(d: &Designer, bits: u32) -> Operand<'_> {
     d.operand("exponent", Format::unsigned(bits as i32, 0)).doc("specular exponent n")
@@ -32,7 +32,8 @@ impl<'d> Products<'d> {
         Self { colours: Colours::new(d, keys.bits as i32, blocks), in_turn: keys.in_turn() }
     }
 
-    /// Makes the outputs, and returns the microinstructions that make them, which stand before the one with the result.
+    /// Makes the outputs. Returns the microinstructions that compute the outputs, which must come before the microinstruction
+    /// with the result.
     #[track_caller]
     pub fn outputs(&self, f: Signal<'d>, rounding: Rounding) -> Vec<Step> {
         if self.in_turn {

@@ -1,10 +1,8 @@
-//! The hardware description of `cosine-power` (seed 002): the paper's W(n,γ) = `(n/m·(cos γ − 1) + 1)^m`,
-//! m ∈ {2, 4, 8, 16}.
+//! The hardware description of `cosine-power` (seed 002): the paper's W(n,γ) = `(n/m·(cos γ − 1) + 1)^m`, m ∈ {2, 4, 8, 16}.
 //!
-//! The paper gives no circuit; this is the least that its formula asks for: one multiplier, one
-//! accumulator. n/m is a shift by wiring. The sum is formed as a complement, `1 − n/m·(1 − cos γ)`, so that
-//! every number is a fraction from 0 to 1 and the clamp at the zero of W is the saturation of the
-//! first product.
+//! The paper gives no circuit. This circuit is the smallest for the formula: one multiplier and one accumulator. n/m is a
+//! shift by wiring. The sum is formed as a complement, `1 − n/m·(1 − cos γ)`. Every number is therefore a fraction from 0 to
+//! 1, and the saturation of the first product is the clamp at the zero of W.
 
 use glint_base::fixed::{Format, Overflow};
 use glint_config::Config;
@@ -70,8 +68,8 @@ pub fn describe(d: &Designer, config: &Config) {
     d.microprogram(steps.into_iter().chain(outputs));
 }
 
-/// Returns the base `1 − n/m·(1 − cos γ)` as the complement of the accumulator: an ulp too small, which is what keeps it a
-/// fraction. 0 when cos γ ≤ 0.
+/// Returns the base `1 − n/m·(1 − cos γ)` as the complement of the accumulator. The complement is an ulp too small, and is
+/// therefore always a fraction. The base is 0 when cos γ ≤ 0.
 fn base<'d>(d: &'d Designer, cos_gamma: Signal<'d>, accumulator: Signal<'d>) -> Signal<'d> {
     let facing = d.any("facing", cos_gamma).doc("the surface faces the half vector");
     let inverse = d.not("inverse", accumulator).doc("1.0 - accumulator, less an ulp");

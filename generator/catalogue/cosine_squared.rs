@@ -1,8 +1,8 @@
-//! The hardware description of `cosine-squared`, seed 000's prototype (Abbas, Szirmay-Kalos, Horváth 2000): `cos²(a·δ)`
-//! along a scan line.
+//! The hardware description of `cosine-squared`, seed 000's prototype (Abbas, Szirmay-Kalos, Horváth 2000): `cos²(a·δ)` along
+//! a scan line.
 //!
-//! The accumulator of `quad-cosine`; the host multiplies its angles by `a = √(n/2)`, so that nothing stands
-//! between register 8 and a single table.
+//! It has the accumulator of `quad-cosine`. The host multiplies its angles by `a = √(n/2)`, so that register 8 directly
+//! addresses a single table.
 
 use glint_config::Config;
 use glint_keys::cosine_squared::Keys;
@@ -42,7 +42,7 @@ pub fn describe(d: &Designer, config: &Config) {
     } else {
         colours.outputs(cosine.out(), rounding);
     }
-    // Register 8, ROM 12, and what is between.
+    // Register 8, ROM 12, and the stages between them.
     line.microprogram(keys.stages);
 }
 

@@ -1,9 +1,8 @@
-//! The hardware description that `blinn` and `gauss` share: `f = 2^(−n·decay)`, where the decay is a function of cos γ
-//! alone.
+//! The hardware description that `blinn` and `gauss` share: `f = 2^(−n·decay)`, where the decay is a function of cos γ alone.
 //!
-//! The decay is the distance 1 − cos γ times a ratio that is smooth, and so keeps its relative accuracy toward cos γ = 1,
-//! which is what n multiplies. Ratio and 2^−x are piecewise polynomials on one multiplier; another multiplies distance and ratio,
-//! then n and decay; the integer of n·decay is a shift.
+//! The decay is the distance 1 − cos γ times a smooth ratio. This product keeps its relative accuracy toward cos γ = 1, which
+//! matters because n multiplies the decay. The ratio and 2^−x are piecewise polynomials on one multiplier. Another multiplier
+//! computes distance times ratio, and then n times decay. The integer of n·decay is a shift.
 
 use glint_base::fixed::{Format, Overflow, Rounding};
 use glint_config::Config;

@@ -1,5 +1,5 @@
-//! The hardware description of `dot-product`, the cosine between a vector of any length and a unit vector: the sums of
-//! products and of squares, the inverse root of the latter, and its product with the former.
+//! The hardware description of `dot-product`, the cosine between a vector of any length and a unit vector. It computes the
+//! sum of products and the sum of squares, and multiplies the sum of products by the inverse root of the sum of squares.
 
 use super::normaliser::{by_pairs, inverse_root};
 use glint_base::fixed::{Format, Overflow, Rounding};

@@ -1,7 +1,7 @@
 //! The hardware description of `gauss`: exp(−n·γ²/2), γ = arccos c, the fourth function that seed 002 weighs.
 //!
-//! The seed gives no circuit, and prints the angle as ∠(H,L); its own formulas use ∠(N,H), which is taken
-//! here. exp(−n·γ²/2) = 2^(−n·decay) with the decay γ²/(2 ln 2), 1 − c times a smooth function of it.
+//! The seed gives no circuit. It prints the angle as ∠(H,L), but its own formulas use ∠(N,H), and this device uses ∠(N,H)
+//! too. It computes exp(−n·γ²/2) as 2^(−n·decay) with the decay γ²/(2 ln 2), which is 1 − c times a smooth function of 1 − c.
 
 use glint_base::fixed::Format;
 use glint_config::Config;

@@ -1,8 +1,8 @@
 //! The hardware description of `lyon` (US 5 739 820, Fig. 7C and 7D; the first analogue in seed 000):
 //! `max(0, 1 − β·D²)^(2^s)` from the difference vector D = N − H.
 //!
-//! The seed lists the parts only: two adders, four multipliers, shift register, counter, comparator and
-//! mux. The wiring is our reading. Numbers count each kind of block.
+//! The seed lists only the parts: two adders, four multipliers, shift register, counter, comparator and mux. The wiring is
+//! Glint's reading of the seed. Each kind of block is numbered on its own: adder 1, multiplier 1.
 
 use glint_base::fixed::{Format, Overflow, Rounding};
 use glint_config::{Config, Shared};
@@ -114,8 +114,8 @@ fn rounded_distance<'d>(d: &'d Designer, keys: &Keys, sum: Signal<'d>) -> Signal
 
 /// Returns the patent's scaling: a register that shifts one place a clock, under the counter.
 ///
-/// It starts from half of D²/2^(s+1), by wiring, so that it shifts once at least. What has left the
-/// range stays at the largest word, above 1.0.
+/// It starts from half of D²/2^(s+1), by wiring, so that it shifts at least once. A value that has left the range saturates
+/// to the largest word, above 1.0.
 fn by_shift<'d>(d: &'d Designer, keys: &Keys, distance: Distance<'d>) -> Scaled<'d> {
     let count = keys.squarings();
     let half_down = count as i32 + 2;
@@ -149,7 +149,7 @@ fn by_shift<'d>(d: &'d Designer, keys: &Keys, distance: Distance<'d>) -> Scaled<
     Scaled { value: register.q(), steps, squarings }
 }
 
-/// Returns the exact β: a multiplier of ours, and n/2^(s+1) by wiring.
+/// Returns the exact β·D², from a multiplier that the patent does not have, and n/2^(s+1) by wiring.
 fn by_multiplier<'d>(d: &'d Designer, keys: &Keys, distance: Distance<'d>) -> Scaled<'d> {
     let count = keys.squarings();
     let exponent = common::exponent(d, keys.exponent_bits).q();
@@ -172,8 +172,8 @@ fn by_multiplier<'d>(d: &'d Designer, keys: &Keys, distance: Distance<'d>) -> Sc
     Scaled { value: scaled.q(), steps, squarings }
 }
 
-/// Returns `1 − β·D²` as the complement of β·D²: an ulp too small, which is what keeps it a fraction. The comparator with 1.0
-/// makes the mux pass 0 instead.
+/// Returns `1 − β·D²` as the complement of β·D². The complement is an ulp too small, and is therefore always a fraction. If
+/// β·D² reaches 1.0, the comparator makes the mux pass 0 instead.
 fn base<'d>(d: &'d Designer, value: Signal<'d>, f: Format) -> Signal<'d> {
     let one = d.constant("one", 1.0, Format::unsigned(1, f.frac));
     let comparator = d.less("comparator", value, one).doc("beta*D^2 is below 1.0");
@@ -182,7 +182,7 @@ fn base<'d>(d: &'d Designer, value: Signal<'d>, f: Format) -> Signal<'d> {
     d.choose("base", comparator, [zero, inverse]).doc("base of the power, or 0")
 }
 
-/// Returns the note that says what the clocks of a point are for.
+/// Returns the note that lists the clocks of a point and their purposes.
 fn clocks_note(keys: &Keys, config: &Config) -> Note {
     let shift = keys.scale == Scale::Shift;
     let (squares, colours) = (keys.squares_in_turn(), keys.colours.in_turn());

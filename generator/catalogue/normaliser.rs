@@ -6,7 +6,7 @@ use glint_config::Config;
 use glint_keys::normaliser::Keys;
 use glint_rtl::dsl::{About, Designer, Signal, end, step, valid};
 
-/// Returns an unsigned integer of so many bits.
+/// Returns the format of an unsigned integer with `bits` bits.
 fn integer(bits: i32) -> Format {
     Format::unsigned(bits, 0)
 }
@@ -109,7 +109,7 @@ pub(super) fn inverse_root<'d>(
     };
     let fall = |prefix: i128| value(prefix) - value(prefix + 1);
     let fall_bits = 128 - fall(first).leading_zeros() as i32;
-    // A mantissa below 1.0 is 0, of the zero vector.
+    // Only the zero vector has a mantissa below 1.0. Its word is 0.
     let words: Vec<i128> = (0..count)
         .map(|at| if at < first { 0 } else { value(at) << fall_bits | fall(at) })
         .collect();
@@ -125,7 +125,7 @@ pub(super) fn inverse_root<'d>(
     let whole =
         d.narrow("fallen_cut", fallen, integer(fall_bits), Rounding::Truncate, Overflow::Saturate);
     let left = d.sub("inverse_found", start, whole.shift_right(inverse));
-    // What falls over a segment is less than its start.
+    // The fall over a segment is less than its start.
     let format = Format::unsigned(1, inverse);
     d.narrow("inverse_kept", left, format, Rounding::Truncate, Overflow::Wrap)
 }

@@ -1,5 +1,5 @@
-//! Builds the hardware of a piecewise polynomial, which computes a function of one operand: a table of coefficients,
-//! and Horner's rule, of which each step is one product and one sum.
+//! Builds the hardware of a piecewise polynomial, which computes a function of one operand: a table of coefficients, and
+//! Horner's rule. Each step of Horner's rule is one product and one sum.
 //!
 //! The number of the operand within the domain addresses the table. One multiplier serves all polynomials of a description.
 
@@ -9,7 +9,7 @@ use glint_approximate::{Layout, Piecewise, Step};
 use glint_base::fixed::{Format, MAX_WIDTH, Overflow, Rounding};
 use glint_rtl::dsl::{Designer, OperandMux, Register, Setting, SharedProduct, Signal};
 
-/// The multiplier of the steps of polynomials, each of which it carries out in a microinstruction of its own.
+/// The multiplier of the steps of polynomials. Each step has a microinstruction of its own.
 pub struct Multiplier<'d> {
     d: &'d Designer,
     name: &'d str,
@@ -56,7 +56,8 @@ impl<'d> Multiplier<'d> {
 /// How the coefficients are kept.
 #[derive(Clone, Copy, Debug)]
 pub struct Tables {
-    /// Each coefficient has a table of its own; else they stand side by side in words of as many bits as a net may have.
+    /// Each coefficient has a table of its own. Otherwise the coefficients are concatenated in words of as many bits as a net
+    /// may have.
     pub split: bool,
     /// They are read on the clock edge, and come a clock after the number.
     pub synchronous: bool,
@@ -76,10 +77,10 @@ pub struct Polynomial<'d, 'p> {
 }
 
 impl<'d, 'p> Polynomial<'d, 'p> {
-    /// Makes the table and the registers of the sums, which have these names, the polynomial's first. `number` is the operand's
-    /// number within the domain, an integer of as many bits as [`glint_approximate::Segments::bits`] says; it stands while the
-    /// sums are loaded, and for a clock before where the table is read on the clock edge. Names of other nets begin with
-    /// `prefix`.
+    /// Makes the table and the registers of the sums. `registers` names these registers, the polynomial's first. `number` is
+    /// the operand's number within the domain, an integer of as many bits as [`glint_approximate::Segments::bits`] says. It
+    /// must be stable while the sums are loaded, and a clock earlier if the table is read on the clock edge. Names of other
+    /// nets begin with `prefix`.
     pub fn new(
         d: &'d Designer,
         prefix: &str,

@@ -1,8 +1,8 @@
-//! The hardware description of `quad-cosine` (seed 000, the claimed device): `cosᵏ(√(n/k)·δ)` along a scan line,
-//! k ∈ {1, 2, 4, 16} by n.
+//! The hardware description of `quad-cosine` (seed 000, the claimed device): `cosᵏ(√(n/k)·δ)` along a scan line, k ∈ {1, 2,
+//! 4, 16} by n.
 //!
-//! Block numbers are the patent's. Block 14's triggers become words of a microprogram with the same order
-//! of events; ROMs 9 and 12 are synchronous, and output 29 follows output 37 by two clocks.
+//! Block numbers are the patent's. The triggers of block 14 become words of a microprogram with the same order of events.
+//! ROMs 9 and 12 are synchronous, and output 29 follows output 37 by two clocks.
 
 use glint_base::fixed::Format;
 use glint_config::Config;
@@ -75,7 +75,7 @@ pub fn describe<'d>(d: &'d Designer, config: &Config) {
     } else {
         colours.outputs(cosine.out(), rounding);
     }
-    // Register 8, ROM 12, and what is between.
+    // Register 8, ROM 12, and the stages between them.
     line.microprogram(keys.stages);
 }
 

@@ -1,9 +1,8 @@
-//! The hardware description of `quadratic` (UA 20998, the analogue in seed 001): `c + a(n)·(c² − c)`, with a(n) from
-//! ROM.
+//! The hardware description of `quadratic` (UA 20998, the analogue in seed 001): `c + a(n)·(c² − c)`, with a(n) from ROM.
 //!
-//! The patent's blocks follow one another without a control block; two registers of ours cut the chain
-//! so that no clock holds more than one multiplier before the outputs. Numbers count each kind of block, as the
-//! seed's text does: register 1, adder 1, multiplier 1.
+//! The patent's blocks follow one another without a control block. Two registers that the patent does not have cut the chain,
+//! so that no clock holds more than one multiplier before the outputs. Each kind of block is numbered on its own, as in the
+//! seed's text: register 1, adder 1, multiplier 1.
 
 mod coefficient;
 

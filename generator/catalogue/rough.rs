@@ -1,8 +1,7 @@
-//! The hardware description of `rough` (UA 60139, seed 001): the highlight of a rough surface,
-//! `(n/2·(cos(γ±dγ) − 1) + 1)²`.
+//! The hardware description of `rough` (UA 60139, seed 001): the highlight of a rough surface, `(n/2·(cos(γ±dγ) − 1) + 1)²`.
 //!
-//! Block numbers are the patent's. One multiplier (10) serves four products under the select lines
-//! V1 V2; the microprogram is the patent's table 1, word by word.
+//! Block numbers are the patent's. Multiplier 10 computes four products, one at a time, and the select lines V1 V2 choose the
+//! product. The microprogram is the patent's table 1, word by word.
 
 mod sine;
 
@@ -127,8 +126,8 @@ pub fn describe(d: &Designer, config: &Config) {
     };
 
     let half_n = half_n.named("half_exponent").doc("n/2, by wiring");
-    // Words 0, 2, 4 and 6 settle the operands of what words 1, 3, 5 and 7 load: they are held, so that the
-    // multiplier shares a clock with none of the adders in front of it.
+    // Words 0, 2, 4 and 6 settle the operands for the loads in words 1, 3, 5 and 7. The operands are held in registers, so
+    // that the multiplier never shares a clock with an adder in front of it.
     let mux8 = d
         .bus("mux8", operand_select, [cos_gamma, sine, adder15, adder16])
         .block(8)

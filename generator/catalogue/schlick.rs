@@ -1,8 +1,8 @@
 //! The hardware description of `schlick` (seed 002), the rival of the paper's function: `c / (n − n·c + c)`, c = cos γ.
 //!
-//! The paper names the division as what makes the function hard to build, and gives no circuit. This
-//! is the least: one multiplier for the divisor and an iterative divider, one bit of the quotient a
-//! clock. The divisor is formed as n·(1 − c) + c, in which every term is positive.
+//! The paper says that the division makes the function hard to build, and gives no circuit. This circuit is the smallest: one
+//! multiplier for the divisor, and an iterative divider that computes one bit of the quotient a clock. The divisor is formed
+//! as n·(1 − c) + c, in which every term is positive.
 
 use glint_base::fixed::{Format, Overflow, Rounding};
 use glint_config::Config;

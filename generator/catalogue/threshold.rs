@@ -99,7 +99,7 @@ fn level_rom<'d>(d: &'d Designer, keys: &Keys, exponent: Signal<'d>) -> Rom<'d> 
         .comments(comments)
 }
 
-/// Returns the level for n: that of its octave.
+/// Returns the level for n: the level of the octave of n.
 fn hundredths(keys: &Keys, n: i64) -> u32 {
     let levels = &keys.levels;
     let octave = n.max(1).ilog2() as usize;

@@ -11,8 +11,8 @@ use glint_tools::transient::Directory;
 /// The file while it is written, in a directory of its own.
 const UNFINISHED: &str = "unfinished";
 
-/// Where a file goes: written beside its place and moved there when it is whole. A pipe or a device is
-/// written itself.
+/// The place of a file. The file is written beside it and moved there when it is whole. A pipe or a device is written
+/// directly.
 pub struct Destination {
     path: PathBuf,
     sink: Sink,
@@ -24,11 +24,11 @@ enum Sink {
 }
 
 impl Destination {
-    /// Makes sure that `path` can be written, before any work is done for it. What a symbolic link leads to is replaced, and
-    /// not the link.
+    /// Makes sure that `path` can be written, before any work is done for it. If `path` is a symbolic link, the file
+    /// behind it is replaced, and not the link.
     ///
     /// # Errors
-    /// It cannot; a link leads nowhere; the directory is missing.
+    /// Fails if `path` cannot be written, if a link leads nowhere, or if the directory is missing.
     pub fn open(path: &Path) -> Result<Self> {
         if fs::metadata(path).is_ok_and(|found| !found.is_file()) {
             let file = OpenOptions::new().write(true).open(path);
@@ -63,7 +63,7 @@ impl Destination {
     /// Opens a file that is not there yet, as [`Destination::open`] does, or one that may be replaced by `force`.
     ///
     /// # Errors
-    /// It is there; as of [`Destination::open`].
+    /// Without `force`, fails if the file is there. Fails if [`Destination::open`] fails.
     pub fn fresh(path: &Path, force: bool) -> Result<Self> {
         if path.is_file() && !force {
             bail!(
@@ -77,7 +77,7 @@ impl Destination {
     /// Returns the file to write.
     ///
     /// # Errors
-    /// The system has no more files.
+    /// Fails if the system has no more files.
     pub fn file(&self) -> Result<File> {
         let file = match &self.sink {
             Sink::Itself(file) => file.try_clone(),
@@ -88,7 +88,7 @@ impl Destination {
         file.with_context(|| cannot(&self.path))
     }
 
-    /// Returns where the file will be.
+    /// Returns the path of the finished file.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -96,7 +96,7 @@ impl Destination {
     /// Moves the file into its place.
     ///
     /// # Errors
-    /// It cannot be moved; then nothing was changed.
+    /// Fails if the file cannot be moved; then nothing was changed.
     pub fn commit(self) -> Result<()> {
         match self.sink {
             Sink::Itself(_) => Ok(()),
@@ -108,7 +108,7 @@ impl Destination {
     /// Writes the whole file and moves it into its place.
     ///
     /// # Errors
-    /// It cannot be written or moved; then nothing was changed.
+    /// Fails if the file cannot be written or moved; then nothing was changed.
     pub fn write(self, contents: impl AsRef<[u8]>) -> Result<()> {
         self.file()?.write_all(contents.as_ref()).with_context(|| cannot(&self.path))?;
         self.commit()
@@ -118,7 +118,7 @@ impl Destination {
 /// Replaces the file `path` as a whole, or leaves it as it was.
 ///
 /// # Errors
-/// It cannot be written.
+/// Fails if the file cannot be written.
 pub fn replace(path: &Path, contents: impl AsRef<[u8]>) -> Result<()> {
     Destination::open(path)?.write(contents)
 }

@@ -27,7 +27,7 @@ macro_rules! wrong_usage {
 }
 pub(crate) use wrong_usage;
 
-/// Several errors, none the cause of another: those of several configurations.
+/// Several errors, none the cause of another: for example, the errors of several configurations.
 #[derive(Debug)]
 pub struct Several(pub Vec<anyhow::Error>);
 
@@ -39,7 +39,7 @@ impl fmt::Display for Several {
 
 impl std::error::Error for Several {}
 
-/// Returns the exit code that stands for an error.
+/// Returns the exit code for an error.
 pub fn exit_code(error: &anyhow::Error) -> ExitCode {
     // Also when a context was put around it.
     if let Some(interrupted) = error.downcast_ref::<Interrupted>() {
@@ -60,13 +60,12 @@ pub fn print(error: &anyhow::Error, as_json: bool) {
     }
 }
 
-/// Prints what is wrong as a JSON object; each of the problems has the keys of
-/// [`Problems::to_json`].
+/// Prints the problems as a JSON object; each problem has the keys of [`Problems::to_json`].
 pub fn print_problems(problems: Vec<Value>) {
     super::tables::print_json(&json!({ "ok": false, "problems": problems }));
 }
 
-/// Returns a problem that is none of a configuration's text, with the keys of those that are.
+/// Returns a problem that is not in the text of a configuration. It has the same keys as a problem that is.
 pub fn problem(message: &str) -> Value {
     json!({ "file": null, "line": null, "column": null, "key": null, "message": message, "remedy": null })
 }

@@ -33,7 +33,8 @@ impl fmt::Display for Interrupted {
 
 impl std::error::Error for Interrupted {}
 
-/// While it lives, the first signal is noted for the command to save what it has; the second ends the process.
+/// While it lives, the first signal is only noted, so that the command can save its work. The second signal ends the
+/// process.
 pub struct Deferred(());
 
 impl Deferred {
@@ -67,7 +68,7 @@ impl Drop for Deferred {
 /// files. A signal that is ignored, as `nohup` has it, stays ignored.
 ///
 /// # Errors
-/// The system refuses.
+/// Fails if the system refuses.
 #[cfg(unix)]
 pub fn listen() -> std::io::Result<()> {
     use std::io::Write;
@@ -97,13 +98,13 @@ pub fn listen() -> std::io::Result<()> {
 /// Does nothing: elsewhere the system ends the process.
 ///
 /// # Errors
-/// None.
+/// Never fails.
 #[cfg(not(unix))]
 pub fn listen() -> std::io::Result<()> {
     Ok(())
 }
 
-/// Returns the signals that this process was told to ignore, a bit each. Where the system does not say: none.
+/// Returns the signals that this process was told to ignore, a bit each. It is 0 if the system does not say.
 #[cfg(unix)]
 fn ignored() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();

@@ -135,7 +135,7 @@ struct Output {
 }
 
 impl Output {
-    /// Returns whether everything `holds`, once scripts are told what was found of each configuration.
+    /// Returns whether everything `holds`. With `--json`, it first prints the findings about each configuration.
     fn concluded(self, holds: bool, configurations: impl Serialize) -> bool {
         if self.json {
             tables::print_json(&json!({ "ok": holds, "configurations": configurations }));

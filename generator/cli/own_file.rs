@@ -1,4 +1,4 @@
-//! Writes single files that Glint writes again and again: what is not one of them is not overwritten.
+//! Writes single files that Glint writes again and again. It does not overwrite a file that Glint did not write.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -20,15 +20,16 @@ impl OwnFile {
     /// The first characters of a JSON file that Glint wrote.
     pub const JSON: &str = "{\n  \"glint\":";
 
-    /// Prepares a file `name` in `directory`, which is made, if what is there under this name contains `marker`, or
-    /// nothing is there. This is done before the work for it, so that a place that cannot be written is known then.
+    /// Prepares a file `name` in `directory`, which is made if it is missing. A file that is already there must
+    /// contain `marker`. This is done before the work for the file, so that a place that cannot be written is known
+    /// then.
     ///
     /// # Errors
-    /// Something else is there; it cannot be written.
+    /// Fails if something else is there, or if the file cannot be written.
     pub fn new(directory: &Path, name: &str, marker: &str) -> Result<Self> {
         create_directory(directory)?;
         let path = directory.join(name);
-        // What else is wrong with it shows in writing.
+        // Other problems with the file show in writing.
         let foreign = path.is_file()
             && fs::read(&path).is_ok_and(|bytes| {
                 let found = std::str::from_utf8(&bytes);
@@ -47,7 +48,7 @@ impl OwnFile {
     /// Returns the record `<name>.json`, if there is a directory for records.
     ///
     /// # Errors
-    /// As [`OwnFile::new`].
+    /// Fails as [`OwnFile::new`] does.
     pub fn record(directory: Option<&Path>, name: &str) -> Result<Option<Self>> {
         directory.map(|it| Self::new(it, &format!("{name}.json"), Self::JSON)).transpose()
     }
@@ -55,17 +56,17 @@ impl OwnFile {
     /// Returns its name, when it is written.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// Fails if the file cannot be written.
     pub fn write(self, contents: &str) -> Result<String> {
         let name = self.path.display().to_string().replace('\\', "/");
         self.destination.write(contents)?;
         Ok(name)
     }
 
-    /// Writes what [`OwnFile::write`] writes, as the JSON of a record.
+    /// Does the same as [`OwnFile::write`], with `value` as the JSON of a record.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// Fails if the file cannot be written.
     pub fn write_json(self, value: &impl Serialize) -> Result<String> {
         let value = serde_json::to_value(value).context("cannot write JSON")?;
         self.write(&record_text(&value))

@@ -7,21 +7,21 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle, W
 
 use super::Output;
 
-/// The narrowest terminal on which the counts stand beside the bar.
+/// The narrowest terminal that shows the counts beside the bar.
 const WIDE: usize = 100;
 
 /// The bar alone, at most and at least.
 const LONGEST: usize = 30;
 const SHORTEST: usize = 5;
 
-/// Everything else of a line: what is done, brackets, share or counts, rate, remaining time, blanks.
+/// Everything else of a line: the name of the work, brackets, share or counts, rate, remaining time, blanks.
 const BESIDE: usize = 44;
 const BESIDE_WIDE: usize = 76;
 
-/// Where nothing says how wide the terminal is.
+/// The width if nothing says how wide the terminal is.
 const USUAL: u16 = 80;
 
-/// The first line about progress where there is no terminal, as in a log, comes after this time.
+/// Without a terminal, as in a log, the first line about progress comes after this time.
 const FIRST: Duration = Duration::from_secs(10);
 
 /// Between two such lines.
@@ -147,7 +147,7 @@ mod tests {
         assert_eq!(after(9.0, 40), None);
     }
 
-    /// A terminal that remembers what was written on it.
+    /// A terminal that remembers everything that was written on it.
     #[derive(Clone, Debug)]
     struct Paper(u16, Arc<Mutex<Vec<String>>>);
 

@@ -1,4 +1,4 @@
-//! Prints JSON as text for records: indented, and what fits into a line in one.
+//! Prints JSON as text for records: indented, and in one line if a value fits into it.
 //!
 //! For example, the counts of one kind of fault are a line: `"inverted": { "planted": 848, "undecided": 0 }`.
 
@@ -15,7 +15,7 @@ pub fn record_text(value: &Value) -> String {
     text
 }
 
-/// Appends a value, in one line if it fits behind what is in the line already.
+/// Appends a value, in one line if it fits behind the text that is already in the line.
 fn append(value: &Value, depth: usize, text: &mut String) {
     let line = one_line(value);
     let start = text.rfind('\n').map_or(0, |newline| newline + 1);

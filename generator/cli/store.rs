@@ -1,8 +1,9 @@
-//! Writes what was generated, without ever costing the user a file.
+//! Writes generated files, without ever costing the user a file.
 //!
-//! Everything is written beside the directories of a configuration first, and moved into place, file by file, when it is
-//! complete. What stands there already is replaced only when the manifest's digests say that Glint wrote it and nobody
-//! edited it since. What is not Glint's and not in the way (an editor's swap file, a note) is not touched.
+//! Everything is written beside the directories of a configuration first. When it is complete, it is moved into
+//! place, file by file. A file that is already there is replaced only if the manifest's digests say that Glint wrote
+//! it and nobody edited it since. A file that is not Glint's and not in the way (an editor's swap file, a note) is
+//! not touched.
 
 mod staging;
 mod survey;
@@ -40,14 +41,16 @@ impl fmt::Display for Written {
     }
 }
 
-/// Writes the files of configuration `name` below `out`. Files that are neither Glint's nor in the way stay
-/// where they are.
+/// Writes the files of configuration `name` below `out`. Files that are neither Glint's nor in the way stay in their
+/// places.
 ///
 /// # Errors
-/// Files of Glint's that were edited, or others that would be overwritten, unless `force` (which still keeps
-/// those that are not in the way); a directory that cannot be written. Nothing of the user's is changed then.
+/// Without `force`, fails if files of Glint's were edited, or if other files would be overwritten; `force` replaces
+/// them, and still keeps files that are not in the way. Fails if a directory cannot be written. After an error, the
+/// user's files are unchanged.
 pub fn write(out: &Path, name: &str, files: &[OutputFile], force: bool) -> Result<Written> {
-    // Of two runs into one directory the second waits: between its first file and its manifest the first one's files look foreign.
+    // If two runs write into one directory, the second waits: between its first file and its manifest the first one's
+    // files look foreign.
     create_directory(out)?;
     let _lock = locked(out);
     let found = Survey::new(out, name, files)?;
@@ -75,11 +78,11 @@ fn locked(directory: &Path) -> Option<fs::File> {
     Some(opened)
 }
 
-/// Returns the files below `out` that differ from `files` or are missing, and those of Glint's that are none of `files`
-/// any more.
+/// Returns the files below `out` that differ from `files` or are missing, and the files of Glint's that are no longer
+/// in `files`.
 ///
 /// # Errors
-/// A file that cannot be read.
+/// Fails if a file cannot be read.
 pub fn differences(out: &Path, name: &str, files: &[OutputFile]) -> Result<Vec<String>> {
     Ok(Survey::new(out, name, files)?.different)
 }
@@ -87,8 +90,8 @@ pub fn differences(out: &Path, name: &str, files: &[OutputFile]) -> Result<Vec<S
 /// Writes a single file that vouches for itself.
 ///
 /// # Errors
-/// A file there that Glint did not write or that was edited since, unless `force`; a directory that cannot be
-/// written. Whatever fails, what was there before is there after.
+/// Without `force`, fails if there is a file that Glint did not write or that was edited since. Fails if a directory
+/// cannot be written. After a failure, the old file is still there.
 pub fn write_sealed(path: &Path, text: &str, seal: Seal, force: bool) -> Result<Written> {
     if may_write(path, seal, force)?.is_some_and(|found| found == text.as_bytes()) {
         return Ok(Written::Unchanged);
@@ -98,10 +101,10 @@ pub fn write_sealed(path: &Path, text: &str, seal: Seal, force: bool) -> Result<
     Ok(Written::Replaced)
 }
 
-/// Returns whether [`write_sealed`] would refuse to replace what is there, which it returns.
+/// Checks that [`write_sealed`] may replace the file at `path`, and returns its contents; `None` if there is no file.
 ///
 /// # Errors
-/// A file that Glint did not write or that was edited since, unless `force`; one that cannot be read.
+/// Without `force`, fails if Glint did not write the file, or if it was edited since. Fails if it cannot be read.
 pub fn may_write(path: &Path, seal: Seal, force: bool) -> Result<Option<Vec<u8>>> {
     match fs::read(path) {
         Ok(found) if !force && !is_sealed(&found, seal) => bail!(
@@ -118,7 +121,7 @@ pub fn may_write(path: &Path, seal: Seal, force: bool) -> Result<Option<Vec<u8>>
 /// Returns whether a file below `out` is not as it would be written, or missing.
 ///
 /// # Errors
-/// It cannot be read.
+/// Fails if the file cannot be read.
 pub fn differs(out: &Path, file: &OutputFile) -> Result<bool> {
     let path = out.join(&file.path);
     match fs::read(&path) {
@@ -146,10 +149,10 @@ fn create_parent(path: &Path) -> Result<()> {
     }
 }
 
-/// Makes a directory, with those above it.
+/// Makes a directory, and the directories above it.
 ///
 /// # Errors
-/// It cannot be made.
+/// Fails if the directory cannot be made.
 pub fn create_directory(path: &Path) -> Result<()> {
     fs::create_dir_all(path)
         .with_context(|| format!("cannot create the directory `{}`", path.display()))

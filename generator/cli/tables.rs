@@ -16,14 +16,15 @@ struct Column<'a> {
     heading: &'a str,
     /// Whether it has numbers: aligned to the right, and never broken.
     number: bool,
-    /// Columns go, those of the largest number first, where there is no room for all; those of 0 stay.
+    /// If there is too little room, columns are left out, beginning with the largest number. A column with 0 stays.
     dispensable: u8,
 }
 
 impl<'a> Column<'a> {
-    /// Returns the columns of some headings, which bars part. The cells below one with a colon behind it are numbers, others words, which
-    /// may be broken into lines; a digit behind the colon, or behind a semicolon, is when a column goes where there is no
-    /// room for all.
+    /// Returns the columns of some headings, which are separated by bars.
+    ///
+    /// The cells below a heading with a colon are numbers. Other cells are words, which may be broken into lines. A
+    /// digit behind a colon or a semicolon says when a column is left out if there is too little room.
     fn all(headings: &'a str) -> Vec<Self> {
         let column = |heading: &'a str| {
             let number = heading.contains(':');
@@ -34,14 +35,16 @@ impl<'a> Column<'a> {
     }
 }
 
-/// Prints rows under headings, as `device | points: | clocks:2 | remark;1` has them, no wider than the terminal: columns
-/// with a digit go, those of the largest first, and where that is not enough, the cells of a row stand below each other.
+/// Prints rows under headings, such as `device | points: | clocks:2 | remark;1`, no wider than the terminal. Columns
+/// with a digit are left out if there is too little room, beginning with the largest digit. If that is not enough,
+/// the cells of a row are printed below each other.
 pub fn print(headings: &str, rows: impl IntoIterator<Item = Vec<String>>) {
     let rows: Vec<Vec<String>> = rows.into_iter().collect();
     print_line(&text(&Column::all(headings), &rows, width()));
 }
 
-/// Returns how wide a line may be: what `COLUMNS` says, or the terminal; without either, as wide as it likes.
+/// Returns the largest width of a line: the value of `COLUMNS`, or else the width of the terminal. Returns `None`
+/// without either, and a line may then have any width.
 fn width() -> Option<usize> {
     let said = std::env::var("COLUMNS").ok().and_then(|text| text.parse().ok());
     let terminal = || Some(usize::from(console::Term::stdout().size_checked()?.1));
@@ -150,7 +153,7 @@ fn stacked(columns: &[Column<'_>], rows: &[Vec<String>], room: Option<usize>) ->
     rows.iter().map(row).collect::<Vec<_>>().join("\n")
 }
 
-/// Returns a line, broken between words where it is wider than there is room; what goes on is indented.
+/// Returns a line, broken between words if it is wider than `room`. The parts after the first are indented.
 fn folded(line: &str, room: Option<usize>) -> String {
     let Some(room) = room else {
         return line.to_owned();
@@ -182,7 +185,7 @@ pub fn print_json(value: &Value) {
 /// Prints rows as CSV, as RFC 4180 has it.
 ///
 /// # Errors
-/// A row has not as many fields as the first.
+/// Fails if a row has not as many fields as the first.
 pub fn print_csv(rows: impl IntoIterator<Item = Vec<String>>) -> Result<()> {
     let mut csv = csv::Writer::from_writer(Vec::new());
     rows.into_iter().try_for_each(|row| csv.write_record(row))?;
@@ -193,7 +196,7 @@ pub fn print_csv(rows: impl IntoIterator<Item = Vec<String>>) -> Result<()> {
 /// The first failure to write standard output.
 static FAILURE: OnceLock<io::Error> = OnceLock::new();
 
-/// Prints a line. A failure is kept for [`finish`]; a reader that went away is none.
+/// Prints a line. A failure is kept for [`finish`]; a reader that went away is no failure.
 pub fn print_line(line: &str) {
     if let Err(error) = writeln!(io::stdout().lock(), "{line}")
         && error.kind() != ErrorKind::BrokenPipe
@@ -211,7 +214,7 @@ pub(crate) use say;
 /// Checks that everything that was printed was written.
 ///
 /// # Errors
-/// Standard output cannot be written, as on a full disk.
+/// Fails if standard output cannot be written, as on a full disk.
 pub fn finish() -> Result<()> {
     match FAILURE.get() {
         Some(error) => bail!("cannot write standard output: {error}"),

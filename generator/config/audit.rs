@@ -6,11 +6,11 @@ use super::shared::shared_keys;
 use super::values::Config;
 
 impl Schema {
-    /// Returns mistakes in the schema itself, for a device's own tests: names that repeat, that are not plain TOML or
-    /// that stand for a table and a value at once; defaults outside their range or refused by `check`; conditions on
+    /// Returns the mistakes in the schema itself, for a device's own tests. It reports names that repeat, that are not plain
+    /// TOML, or that name both a table and a value; defaults outside their range or refused by `check`; and conditions on
     /// keys or values that do not exist.
     ///
-    /// A schema without mistakes gives an empty list; the reader relies on that.
+    /// A schema without mistakes gives an empty list. The reader relies on a schema without mistakes.
     pub fn mistakes(&self) -> Vec<String> {
         let mut mistakes = Vec::new();
         for (index, key) in self.keys.iter().enumerate() {

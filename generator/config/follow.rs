@@ -62,7 +62,8 @@ fn complaints(schema: &Schema, config: &Config) -> Vec<String> {
     problems.iter().map(|problem| problem.key.clone()).collect()
 }
 
-/// Returns the values of a key, those near its default first: of two that are as near, the smaller.
+/// Returns the other values of a key, the value nearest to its default first. If two integers are equally near, the smaller comes
+/// first.
 fn neighbours(key: &Key) -> Vec<Value> {
     match (&key.kind, &key.default) {
         (Kind::Integer { min, max }, Value::Integer(default)) => {

@@ -5,11 +5,12 @@ use serde_json::{Map, Value as Json, json};
 use super::schema::{Key, Kind, Schema};
 use super::values::Value;
 
-/// Returns a JSON Schema (draft 7) of a configuration of any of these devices: names, types, ranges, defaults and what
-/// each key governs. Conditions between keys are in the descriptions alone; reading the file checks them.
+/// Returns a JSON Schema (draft 7) of a configuration of any of these devices: names, types, ranges, defaults and the
+/// meaning of each key. Only the descriptions mention conditions between keys; reading the file checks them.
 pub fn json_schema(schemas: &[Schema]) -> Json {
     let names: Vec<&str> = schemas.iter().map(|schema| schema.device).collect();
-    // Not `oneOf`, of which editors say only that no alternative fits: they name the key that is wrong.
+    // Not `oneOf`: if a file is wrong, editors then say only that no alternative fits. With `if` and `then` they name the
+    // wrong key.
     let by_device = schemas.iter().map(|schema| {
         let is_it = json!({
             "required": ["device"],

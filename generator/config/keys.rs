@@ -1,4 +1,4 @@
-//! Declares keys as the fields of a struct, which description and golden model read.
+//! Declares keys as the fields of a struct. The hardware description and the golden model of a device both read this struct.
 
 use super::schema::Key;
 use super::values::Config;
@@ -117,7 +117,7 @@ impl Setting for i64 {
     }
 }
 
-/// A number of bits, of which the limits of the key allow no negative one.
+/// A number of bits. The limits of the key must exclude negative values.
 impl Setting for u32 {
     fn read(config: &Config, keys: &[Key]) -> Self {
         u32::try_from(config.integer(keys[0].name)).expect("no negative number")

@@ -1,9 +1,8 @@
-//! Reads configurations: TOML to validated values, with all problems of a file reported at once.
+//! Reads configurations: converts TOML to validated values, and reports all problems of a file at once.
 //!
-//! A device states its keys as a [`Schema`]; nothing here knows a device. [`read()`] and [`parse()`]
-//! turn a file into a [`Config`], whose values need no further checks, or into [`Problems`], each
-//! with its location and a remedy. [`brief`] and [`commented`] write files to start from, and [`sample()`] draws
-//! valid configurations for tests.
+//! A device declares its keys as a [`Schema`]; this crate knows no device. [`read()`] and [`parse()`] turn a file into a
+//! [`Config`], whose values need no further checks, or into [`Problems`], each with its location and a remedy. [`brief`] and
+//! [`commented`] write files to start from, and [`sample()`] draws valid configurations for tests.
 
 mod audit;
 mod follow;
@@ -37,7 +36,7 @@ pub use text_pattern::TextPattern;
 pub use values::{Config, Value};
 pub use write::{brief, commented};
 
-/// The keys of every device that a [`Config`] holds in fields of its own, with what they govern.
+/// The keys that every device has and that a [`Config`] stores in fields of its own, each with its meaning.
 const COMMON: [(&str, &str); 3] = [
     ("device", "The device that is generated."),
     (

@@ -1,4 +1,4 @@
-//! Checks names of Verilog modules: which are legal, and what is wrong with the others.
+//! Checks names of Verilog modules, and explains the fault of an illegal name. For example, `2fast` begins with a digit.
 
 use super::problems::{Violation, quoted};
 use glint_base::keywords::is_keyword;

@@ -1,4 +1,4 @@
-//! Finds the valid word that somebody meant, and lists words in a sentence.
+//! Finds the valid word that a user meant, and lists words in a sentence. For example, `colour` is near `colours`.
 
 /// Returns the candidate closest to `word`, if it is close enough to be a slip of the pen; else the first that begins with `word`.
 ///

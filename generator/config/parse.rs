@@ -19,17 +19,17 @@ use glint_base::program::Program;
 
 /// Reads a configuration from its text.
 ///
-/// `file_name` is shown in messages, and its stem (with `_` for `-`) is the module name unless the
-/// text gives one. `schemas` are those of all devices.
+/// Messages show `file_name`. Its stem (with `_` for `-`) is the module name unless the text gives one. `schemas` must
+/// contain the schemas of all devices.
 ///
 /// # Errors
-/// All problems of the text at once. Conditions between keys are examined only if the text is
-/// valid TOML, for otherwise it is not known which keys it gives.
+/// Fails if the text has any problem. The error lists all problems at once. Conditions between keys are examined only if the
+/// text is valid TOML, because otherwise the given keys are unknown.
 pub fn parse(file_name: &str, text: &str, schemas: &[Schema]) -> Result<Config, Problems> {
     located(file_name, text, schemas).map(|(config, _)| config)
 }
 
-/// Parses what [`parse`] parses, and also returns where the text gives which key, for problems that show later.
+/// Parses a text as [`parse`] does. It also returns the location of each key in the text, for problems that are found later.
 ///
 /// # Errors
 /// As of [`parse`].
@@ -67,8 +67,7 @@ struct Reader<'t> {
     /// Where its lines end.
     newlines: Vec<usize>,
     problems: Problems,
-    /// Lines, counted from 0, that a syntax error spoils: what the parser made of them is not worth
-    /// a message.
+    /// The lines, counted from 0, that contain a syntax error. The parser's result for such a line deserves no message.
     broken: BTreeSet<usize>,
     valid_toml: bool,
 }
@@ -241,7 +240,7 @@ impl Reader<'_> {
             if self.broken.contains(&self.line(key.span().start)) {
                 continue;
             }
-            // The span of a table is that of its heading, or of one of its keys.
+            // The span of a table is the span of its heading, or of one of its keys.
             let span = match value.get_ref() {
                 DeValue::Table(_) => key.span(),
                 _ => value.span(),
@@ -320,7 +319,7 @@ impl Reader<'_> {
         let remedy = if common_names().chain(names()).chain(tables()).any(|k| k == below) {
             format!("`{below}` is outside [{heading}]: move it above the first [table] heading")
         } else if let Some(meant) = meant {
-            // What the true value of the key that was meant is to be is not known.
+            // The name is misspelt, so the true value of the key that was meant is unknown.
             let within = format!("{meant}.");
             for key in keys().filter(|key| key.name == meant || key.name.starts_with(&within)) {
                 draft.doubtful.insert(key.name);
@@ -336,7 +335,7 @@ impl Reader<'_> {
         self.report(&name, span, message, remedy);
     }
 
-    /// Adds a problem, unless what it is about was spoilt by a syntax error.
+    /// Adds a problem, unless a syntax error spoilt the line of `span`.
     fn report(&mut self, key: &str, span: Range<usize>, message: String, remedy: String) {
         if !self.broken.contains(&self.line(span.start)) {
             self.problems.push_at(span, key, message, remedy);

@@ -9,7 +9,7 @@ use std::{fs, io};
 /// heading, and `#` begins a comment.
 ///
 /// # Errors
-/// The file cannot be read, or a line is not two numbers: a message and a remedy.
+/// Fails if the file cannot be read, or if a line is not two numbers. The error is a message and a remedy.
 pub(super) fn read(path: &Path) -> Result<String, (String, String)> {
     let name = path.display();
     let text = text(path).map_err(|error| {

@@ -1,4 +1,4 @@
-//! Collects everything that is wrong with a configuration, with the location and a remedy for each.
+//! Collects all problems of a configuration, with a location and a remedy for each.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -14,7 +14,7 @@ use serde_json::{Value as Json, json};
 pub struct Problems {
     file: String,
     text: String,
-    /// Where the file gives each key: what [`Problems::push`] points at.
+    /// The location of each key in the file. [`Problems::push`] points at it.
     locations: BTreeMap<String, Range<usize>>,
     list: Vec<Problem>,
     /// Problems beyond the limit, which are counted only.
@@ -73,7 +73,8 @@ impl Problems {
     ) {
         let whole = self.locations.get(key).cloned();
         let within = whole.clone().zip(bytes.clone()).and_then(|(whole, bytes)| {
-            // Between quotes, without an escape; what is missing at the end is missing at the closing quote.
+            // The text must be between quotes and contain no escape. If something is missing at the end, the span is the
+            // closing quote.
             let text = self.text.get(whole.clone())?;
             let plain = text.starts_with(['"', '\''])
                 && !text.starts_with("\"\"\"")
@@ -98,7 +99,7 @@ impl Problems {
         message: impl Into<String>,
         remedy: impl Into<String>,
     ) {
-        // What is missing at the end of the text is missing in its last line, not below it.
+        // If something is missing at the end of the text, it is missing in the last line, not below it.
         let end = self.text.trim_end_matches(['\r', '\n']).len();
         let span = span.start.min(end)..span.end.min(end);
         self.insert(Problem {
@@ -125,7 +126,7 @@ impl Problems {
         Problems { list: Vec::new(), further: 0, refused: self.is_refused(), ..self.clone() }
     }
 
-    /// Returns whether the file is refused whatever else a check finds: what takes long is then not worth it.
+    /// Returns whether the file is refused, whatever else a check finds. A check can then skip work that takes long.
     pub fn is_refused(&self) -> bool {
         self.refused || !self.is_empty()
     }

@@ -11,19 +11,19 @@ use super::values::Config;
 use glint_base::input;
 use glint_base::program::Program;
 
-/// Far beyond any configuration, and far below what would exhaust the memory.
+/// Larger than any configuration, and small enough not to exhaust the memory.
 const LARGEST: u64 = 1 << 16;
 
 /// Reads a configuration file, or standard input where the path is `-`.
 ///
 /// # Errors
-/// All problems of the file at once: that it cannot be read, that it is not text, or what
-/// [`parse`](super::parse()) finds.
+/// Fails if the file cannot be read, is not text, or has a problem that [`parse`](super::parse()) finds. The error lists all
+/// problems at once.
 pub fn read(path: &Path, schemas: &[Schema]) -> Result<Config, Problems> {
     read_located(path, schemas).map(|(config, _)| config)
 }
 
-/// Reads what [`read`] reads, and also returns where the file gives which key: what shows later to be wrong is added
+/// Reads a file as [`read`] does. It also returns the location of each key in the file, so that later checks can add problems
 /// there.
 ///
 /// # Errors

@@ -12,7 +12,7 @@ use glint_base::keywords::is_keyword;
 pub struct Schema {
     /// The name of the device, which the key `device` gives.
     pub device: &'static str,
-    /// The keys, in the order in which a written file shows them. Those that every device shares
+    /// The device's own keys, in the order in which a written file shows them. The keys that every device shares
     /// ([`super::shared_keys`]) are not among them.
     pub keys: Vec<Key>,
     /// Conditions between keys. It is called with every value inside its own range, in any
@@ -22,7 +22,7 @@ pub struct Schema {
 }
 
 impl Schema {
-    /// Returns the name of the module where nobody gives another: that of the device, unless it is a keyword.
+    /// Returns the default name of the module: the name of the device, or `my_` and that name if it is a keyword.
     pub fn module(&self) -> String {
         let name = self.device.replace('-', "_");
         if is_keyword(&name) { format!("my_{name}") } else { name }
@@ -49,7 +49,7 @@ pub struct Key {
     pub drawn: Option<(i64, i64)>,
 }
 
-/// What another key must be for a key to apply.
+/// The value that another key must have for a key to apply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Condition {
     /// The name of the other key.
@@ -187,7 +187,7 @@ impl Key {
         self
     }
 
-    /// Marks a key that came to a device of which there were configurations.
+    /// Marks a key that was added to a device after configurations of that device existed.
     pub fn joined_later(self) -> Self {
         Self { joined_later: true, ..self }
     }
@@ -210,7 +210,8 @@ impl Kind {
         matches!(self, Kind::Choice(options) if options.iter().all(|option| is_integer(option)))
     }
 
-    /// Returns whether a file may write an integer: of a choice among words and integers, those without quotes.
+    /// Returns whether a file may write an integer. Among words and integers of a choice, the integers are written without
+    /// quotes.
     pub(super) fn takes_integers(&self) -> bool {
         matches!(self, Kind::Choice(options) if options.iter().any(|option| is_integer(option)))
             || *self == Kind::Text(TextPattern::Formula)

@@ -1,7 +1,8 @@
-//! The keys of every device, of a user's own too: what is put around a core, not what it computes.
+//! Declares the keys that every device has, including a user's own device. They choose the architecture
+//! and the surroundings of a core, not the function that it computes.
 //!
-//! They are declared and read as a device's own keys, and [`Schema::key`] finds them. A configuration
-//! that leaves them at their defaults is written as one without them, so that the digests in older records stay valid.
+//! They are declared and read as a device's own keys, and [`Schema::key`] finds them. A configuration that leaves them at
+//! their defaults is written without them, so that the digests in older records stay valid.
 
 use std::sync::LazyLock;
 
@@ -9,7 +10,7 @@ use super::schema::{Key, Schema};
 use super::text_pattern::TextPattern;
 use glint_base::target::TIMING_NAMES;
 
-/// Returns the shared keys, in the order in which a written file shows them, after those of the device.
+/// Returns the shared keys in the order in which a written file shows them. A file shows them after the keys of the device.
 pub fn shared_keys() -> &'static [Key] {
     &KEYS
 }
@@ -136,7 +137,7 @@ impl Schema {
         self.all_keys().find(|key| key.name == name)
     }
 
-    /// Returns the keys of the device, then those that every device shares.
+    /// Returns the keys of the device, then the keys that every device shares.
     pub fn all_keys(&self) -> impl Iterator<Item = &Key> {
         self.keys.iter().chain(shared_keys())
     }

@@ -1,5 +1,5 @@
-//! Checks texts in a configuration by patterns. A text that fits needs no escapes in Tcl, XML, YAML and TOML, except
-//! `<` and `>` of a formula in XML.
+//! Checks texts in a configuration by patterns. A text that fits needs no escapes in Tcl, XML, YAML and TOML, except for `<`
+//! and `>` of a formula in XML.
 
 /// The pattern of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -8,11 +8,11 @@ pub enum TextPattern {
     Name,
     /// Three numbers without leading zeros and with dots between them.
     Version,
-    /// An SPDX licence expression, of which only the characters are checked: letters, digits, blanks, `.`, `-`,
-    /// `+` and parentheses, beginning with a letter or a parenthesis.
+    /// An SPDX licence expression. Only the characters are checked: letters, digits, blanks, `.`, `-`, `+` and parentheses,
+    /// beginning with a letter or a parenthesis.
     Licence,
-    /// Letters, digits, blanks and the signs of a formula, of which its reader says whether it is one. It alone may have
-    /// signs that XML writes otherwise.
+    /// Letters, digits, blanks and the signs of a formula. The formula parser decides whether the text is a formula. Only
+    /// this pattern allows signs that XML must escape.
     Formula,
     /// Measured points `x,y x,y`, or nothing. A file may write the path of a CSV file, whose points are read.
     Samples,

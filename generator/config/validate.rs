@@ -1,4 +1,5 @@
-//! Checks values and makes a [`Config`] of them: ranges, conditions on keys, and the device's own check.
+//! Checks values and builds a [`Config`] from them. It checks ranges, the conditions of keys, and the device's own
+//! conditions.
 
 use std::collections::BTreeSet;
 
@@ -70,7 +71,7 @@ impl Key {
         self.violation(format!("`{}` must be {wanted}, not {found}", self.name))
     }
 
-    /// Returns a violation with the usual remedy: what the key accepts.
+    /// Returns a violation with the usual remedy, which lists the accepted values of the key.
     pub(super) fn violation(&self, message: String) -> Violation {
         Violation {
             entry: None,
@@ -136,7 +137,7 @@ impl Key {
         }
     }
 
-    /// Returns values that stand in for one that is not known, to see what a check says of each.
+    /// Returns values that replace an unknown value in trial runs of a check.
     fn stand_ins(&self) -> Vec<Value> {
         let ends: Vec<Value> = match &self.kind {
             Kind::Integer { min, max } => vec![Value::Integer(*min), Value::Integer(*max)],
@@ -180,7 +181,7 @@ pub(super) struct Draft<'a> {
     pub doubtful: BTreeSet<&'a str>,
 }
 
-/// Checks the conditions that hold between keys: those of `only_when`, and the device's own.
+/// Checks the conditions between keys: the conditions of `only_when`, and the device's own check.
 ///
 /// A condition is reported only if it fails whatever the doubtful values may turn out to be (as
 /// far as the ends of their ranges tell), so that one mistake raises no messages about others.
@@ -283,7 +284,7 @@ fn chain(schema: &Schema, key: &Key) -> Vec<Condition> {
     conditions
 }
 
-/// Returns the configuration with its doubtful values replaced by each of their stand-ins in turn.
+/// Returns configurations in which each doubtful value is replaced by its trial values in turn.
 fn trials(schema: &Schema, draft: &Draft) -> Vec<Config> {
     let stand_ins: Vec<(&str, Vec<Value>)> = schema
         .all_keys()
@@ -316,7 +317,7 @@ impl Config {
     /// Returns the defaults with some values replaced, under the same rules as a file.
     ///
     /// # Errors
-    /// The problems that a file with these values would have, without positions.
+    /// Fails if a file with these values would have problems. The error lists them without positions.
     pub fn from_values(
         schema: &Schema,
         name: &str,
@@ -374,8 +375,8 @@ impl<'a> Draft<'a> {
         }
     }
 
-    /// Checks the conditions between keys, and gives the configuration if nothing is wrong. Keys that were not
-    /// given follow from those that were.
+    /// Checks the conditions between keys, and returns the configuration if nothing is wrong. Keys that were not given follow
+    /// from the keys that were given.
     pub(super) fn finish(
         mut self,
         schema: &Schema,
@@ -402,7 +403,7 @@ pub(super) fn keys_of(schema: &Schema, table: &str) -> String {
         return format!("keys of [{table}]: {}", keys.join(", "));
     }
     keys.splice(0..0, super::COMMON.map(|(name, _)| name));
-    // The first is that of the keys at the top.
+    // The first table contains the keys at the top, and has no heading.
     let tables = tables(schema).into_iter().skip(1).map(|(name, _)| format!("[{name}]"));
     let tables = Vec::from_iter(tables).join(", ");
     let keys = keys.join(", ");

@@ -50,7 +50,8 @@ fn assignment(config: &Config, key: &str) -> String {
     format!("{key} = {}", config.value(key).toml())
 }
 
-/// Returns what a key means in a few words: its first clause, and the values of a choice. A long list of values stands alone.
+/// Returns the meaning of a key in a few words: its first clause, and the values of a choice. If the values are too long for
+/// both, the remark is the list of values alone.
 fn remark(key: &Key) -> String {
     let ends = [". ", ": ", "; "].map(|mark| key.doc.find(mark).unwrap_or(key.doc.len()));
     let end = ends.into_iter().min().unwrap_or(key.doc.len());
@@ -105,15 +106,16 @@ pub fn commented(schema: &Schema, config: &Config, given: &[String]) -> String {
 }
 
 impl Config {
-    /// Returns the configuration as a TOML file that reads back as the same: every key of the device that
-    /// applies, and of those that joined later or that every device shares the ones that differ from their defaults.
+    /// Returns the configuration as a TOML file that reads back as the same configuration. The file contains every key of the
+    /// device that applies. A key that joined later or that every device shares is written only if it differs from its
+    /// default.
     pub fn to_toml(&self, schema: &Schema) -> String {
         plain(schema, self)
     }
 }
 
-/// Returns the keys of a configuration that apply, without comments; of those that joined later or that every device shares,
-/// the ones that differ from their defaults.
+/// Returns the keys of a configuration that apply, without comments. A key that joined later or that every device shares is
+/// included only if it differs from its default.
 fn plain(schema: &Schema, config: &Config) -> String {
     let mut text = String::new();
     for (key, value) in common(config) {
@@ -146,7 +148,7 @@ fn common(config: &Config) -> [(&'static str, String); 3] {
     ]
 }
 
-/// Returns the keys by table, that of the keys at the top first; otherwise in the order of the schema.
+/// Returns the keys by table. The keys at the top come first, and the rest have the order of the schema.
 pub(super) fn tables(schema: &Schema) -> Vec<(&'static str, Vec<&Key>)> {
     let mut tables: Vec<(&str, Vec<&Key>)> = vec![("", Vec::new())];
     for key in schema.all_keys() {

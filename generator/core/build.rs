@@ -1,13 +1,13 @@
-//! Tells the build what it is made of: `GLINT_SOURCES` is a digest of the sources that take part in a proof.
+//! Sets `GLINT_SOURCES` for the build: a digest of the sources that take part in a proof.
 //!
-//! A proof that is interrupted, or divided among machines, may go on only with what began it.
+//! A proof that is interrupted, or divided among machines, may continue only with the sources that began it.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use sha2::{Digest, Sha256};
 
-/// What computes: formats, configurations, golden models, descriptions, simulator, and the proof itself.
+/// The sources that compute: formats, configurations, golden models, descriptions, simulator, and the proof itself.
 const SOURCES: [&str; 10] = [
     "../approximate",
     "../base",

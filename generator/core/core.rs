@@ -1,5 +1,5 @@
-//! [`Core`]: a configuration of a device with its design and its contract, and everything that is made of them: Verilog
-//! and other files, digests, timing, bench vectors, and the jobs of co-simulation and proof.
+//! [`Core`]: a configuration of a device with its design and its contract. It makes everything that follows from them:
+//! Verilog and other files, digests, timing, bench vectors, and the jobs of co-simulation and proof.
 
 use std::path::Path;
 
@@ -18,15 +18,14 @@ use glint_config::{Config, Key};
 use glint_golden::{Contract, Sweep};
 use glint_rtl::netlist::Design;
 
-/// Results that the main job and `cosim` check of each configuration, unless told otherwise: the default
-/// test.
+/// The results that the main job and `cosim` check for each configuration, unless an option says otherwise: the default test.
 pub const TEST_POINTS: u64 = 100_000;
 
 /// The seed of the default test.
 pub const TEST_SEED: u64 = 1;
 
-/// Computations at random at the beginning of the shipped bench, with all that the handshake allows; of lines so
-/// many times [`BENCH_LINE`] results.
+/// Computations at random at the beginning of the shipped bench, with everything that the handshake allows. For lines, the
+/// number of results is this times [`BENCH_LINE`].
 const BENCH_POINTS: u64 = 64;
 
 /// The results of a line there, at most.
@@ -54,9 +53,13 @@ impl Core {
     /// Builds and checks the design.
     ///
     /// # Errors
-    /// The mistakes of the description; results that depend on earlier ones, or that the contract's model never shows;
-    /// constraints with a clock that the pipeline is not made for; a style of ROMs that there are not; a program that recomputes a
-    /// contract without a formula of one operand.
+    /// Fails in these cases:
+    /// - The description has mistakes.
+    /// - Results depend on earlier results, or the contract's model never shows them.
+    /// - The constraints ask for a faster clock than the pipeline is made for.
+    /// - The configuration asks for a style of ROMs, and no ROM of the core can have it.
+    /// - The configuration asks for a program that recomputes results, and the contract has no formula of one operand.
+    /// - The golden model cannot model the output registers or the operand buffers.
     pub fn new(device: Device, config: Config) -> Result<Self> {
         let design = device
             .design(&config)
@@ -75,14 +78,15 @@ impl Core {
         Ok(Self { device, config, design, contract })
     }
 
-    /// Tells this configuration, and version of Glint, from others: SHA-256 in hexadecimal.
+    /// Returns a digest that identifies this configuration and the version of Glint: SHA-256 in hexadecimal.
     pub fn digest(&self) -> String {
         let text = self.config.to_toml(&(self.device.schema)());
         package::digest(format!("{}\n{text}", env!("CARGO_PKG_VERSION")).as_bytes())
     }
 
-    /// Tells what a proof of the accuracy contract depends on from others: the device, and its own keys that are not at
-    /// their defaults. A key that comes later, at its default, leaves the digest as it is. SHA-256 in hexadecimal.
+    /// Returns a digest that identifies the contract in a record of a proof: the device, and its own keys that are not at
+    /// their defaults. A key that is added later does not change the digest while it is at its default. SHA-256 in
+    /// hexadecimal.
     pub fn contract_digest(&self) -> String {
         self.digest_of((self.device.schema)().keys.iter())
     }
@@ -90,7 +94,7 @@ impl Core {
     /// Returns the evidence for the contract's bound; `proofs` is the directory of records.
     ///
     /// # Errors
-    /// A record that cannot be read.
+    /// Fails if a record cannot be read.
     pub fn backing(&self, proofs: &Path) -> Result<Backing> {
         if self.device.proved {
             return Ok(Backing::Catalogue);
@@ -98,8 +102,8 @@ impl Core {
         Backing::of_records(proofs, &self.contract_digest(), self.contract.as_ref())
     }
 
-    /// Tells this core, whatever its name, from others: as [`Core::contract_digest`], with the architecture. What stands around
-    /// the core and beside it makes no other core.
+    /// Returns a digest that identifies this core, whatever its name: as [`Core::contract_digest`], with the architecture.
+    /// Keys of the tables `interface` and `package` do not change it, because they concern only the surroundings of the core.
     pub fn core_digest(&self) -> String {
         let schema = (self.device.schema)();
         let around = |key: &&Key| ["interface", "package"].contains(&key.table_and_leaf().0);
@@ -118,9 +122,9 @@ impl Core {
         package::digest(text.as_bytes())
     }
 
-    /// Tells what a proof of this configuration goes through and computes from others: the configuration, the sweep, the
-    /// sources of everything that takes part, and what a spread of places gives, which also notices a
-    /// golden model outside this crate that was changed. The same on every machine.
+    /// Returns a digest that identifies a proof of this configuration. It covers the configuration, the sweep, the sources of
+    /// everything that takes part, and the errors at places spread over the sweep. These errors also reveal a changed golden
+    /// model outside this crate. The digest is the same on every machine.
     pub fn fingerprint(&self, sweep: &Sweep) -> String {
         let contract = self.contract.as_ref();
         let places = [Places::of_sweep(contract, sweep.clone()), Places::of_colours(contract)];
@@ -137,7 +141,7 @@ impl Core {
     /// Pairs the golden model with the built-in simulator, for runs whose stimuli are drawn from `seed`.
     ///
     /// # Errors
-    /// Model and design do not name the same signals.
+    /// Fails if model and design do not name the same signals.
     pub fn lockstep(&self, seed: u64) -> Result<Lockstep<'_>> {
         self.lockstep_of(&self.design, seed)
     }
@@ -145,7 +149,7 @@ impl Core {
     /// Pairs the golden model with another design of its ports and registers: a mutant, say.
     ///
     /// # Errors
-    /// Model and design do not name the same signals.
+    /// Fails if model and design do not name the same signals.
     pub fn lockstep_of<'a>(&'a self, design: &'a Design, seed: u64) -> Result<Lockstep<'a>> {
         let model = self.device.golden(&self.config);
         Lockstep::new(design, model, self.contract.as_ref(), seed)
@@ -155,15 +159,15 @@ impl Core {
     /// combination of operands clock by clock.
     ///
     /// # Errors
-    /// Model and design do not name the same signals.
+    /// Fails if model and design do not name the same signals.
     pub fn job(&self) -> Result<Job<'_>> {
         self.job_of(self.contract.sweep())
     }
 
-    /// Returns the job by a sweep with other values than those of the contract.
+    /// Returns the job by a sweep with other values than the contract's sweep.
     ///
     /// # Errors
-    /// Model and design do not name the same signals.
+    /// Fails if model and design do not name the same signals.
     pub fn job_of(&self, sweep: Sweep) -> Result<Job<'_>> {
         Ok(Job::of_sweep(self.contract.as_ref(), sweep).with(self.clocks()?))
     }
@@ -171,7 +175,7 @@ impl Core {
     /// Returns every combination of operands, golden model against built-in simulator.
     ///
     /// # Errors
-    /// Model and design do not name the same signals.
+    /// Fails if model and design do not name the same signals.
     pub fn clocks(&self) -> Result<Clocks<'_>> {
         let model = self.device.golden(&self.config);
         Clocks::new(&self.design, model, self.contract.as_ref())
@@ -180,7 +184,7 @@ impl Core {
     /// Returns the clocks between the events of the handshake, as [`trial::timing`] measures them.
     ///
     /// # Errors
-    /// A device that does not end.
+    /// Fails if the device does not end.
     pub fn timing(&self) -> Result<Timing> {
         trial::timing(&self.design, self.contract.as_ref())
     }
@@ -188,7 +192,7 @@ impl Core {
     /// Returns one computation with all its numbers.
     ///
     /// # Errors
-    /// A device that does not end.
+    /// Fails if the device does not end.
     pub fn example(&self) -> Result<WorkedExample> {
         trial::example(&self.design, self.contract.as_ref())
     }
@@ -196,7 +200,7 @@ impl Core {
     /// Returns the clocks of a line in terms of its length, where the device walks lines.
     ///
     /// # Errors
-    /// A device that does not end.
+    /// Fails if the device does not end.
     pub fn line(&self) -> Result<Option<LineClocks>> {
         trial::line(&self.design, self.contract.as_ref())
     }
@@ -204,7 +208,7 @@ impl Core {
     /// Returns stimulus and expected outputs for a bench; the golden model and the built-in simulator agree on them.
     ///
     /// # Errors
-    /// They do not agree.
+    /// Fails if they do not agree.
     pub fn vectors(&self, points: u64, seed: u64) -> Result<Vectors> {
         self.lockstep(seed)?.record(points, &[])
     }
@@ -218,8 +222,8 @@ impl Core {
         self.shipped_vectors_of(&directed::Known::default())
     }
 
-    /// Returns what [`Core::shipped_vectors`] returns, but takes directed computations that are in `known` already from
-    /// there, and adds new ones to it.
+    /// Returns the same as [`Core::shipped_vectors`], but takes directed computations that are already in `known` from there,
+    /// and adds new ones to it.
     ///
     /// # Errors
     /// As of [`Core::vectors`].
@@ -242,7 +246,7 @@ impl Core {
     /// Returns the program that recomputes every operand, the model that it includes, and the memories.
     ///
     /// # Errors
-    /// A contract that is no formula of one operand.
+    /// Fails if the contract is no formula of one operand.
     pub fn recomputation(&self) -> Result<Vec<OutputFile>> {
         let asked = Surroundings { software: true, recomputation: true, ..Surroundings::default() };
         let inputs = EmitInputs {
@@ -263,7 +267,7 @@ impl Core {
     /// Returns every file of the configuration, which the command line knows as `config`, a path; without vectors there are no benches.
     ///
     /// # Errors
-    /// Golden model and simulation do not agree, or the design cannot be written as Verilog.
+    /// Fails if golden model and simulation do not agree, or if the design cannot be written as Verilog.
     pub fn files(
         &self,
         config: &str,
@@ -285,10 +289,10 @@ impl Core {
         package::emit(&self.design, &inputs)
     }
 
-    /// Returns Verilog and ROM contents alone, pairs of a plain name and contents: what synthesis needs.
+    /// Returns only the files that synthesis needs, Verilog and ROM contents, as pairs of a plain name and contents.
     ///
     /// # Errors
-    /// The design cannot be written as Verilog.
+    /// Fails if the design cannot be written as Verilog.
     pub fn verilog(&self) -> Result<Vec<(String, String)>> {
         self.verilog_for("")
     }
@@ -296,7 +300,7 @@ impl Core {
     /// Returns the Verilog for a target, by name, with its own files.
     ///
     /// # Errors
-    /// The design cannot be written as Verilog.
+    /// Fails if the design cannot be written as Verilog.
     pub fn verilog_for(&self, target: &str) -> Result<Vec<(String, String)>> {
         let around = Surroundings {
             style: Surroundings::new(&self.config, None).style,

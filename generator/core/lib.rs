@@ -1,6 +1,7 @@
-//! Makes everything that follows from a configuration: its files, and the checks whether they do what they should.
+//! Makes everything that follows from a configuration: its files, and the checks that its core is correct.
 //!
-//! No process, thread of its own or signal is in this crate or below it (`tests/quick/rooms.rs`).
+//! This crate and the crates below it start no process, no thread of their own and no signal handler
+//! (`tests/quick/rooms.rs`).
 
 pub mod core;
 pub mod cosim;

@@ -70,7 +70,7 @@ pub struct ContractFacts {
 }
 
 impl ContractFacts {
-    /// Extracts what a program can use of a contract: domain, outputs, formulas and bound.
+    /// Extracts the parts of a contract that a program can use: domain, outputs, formulas and bound.
     pub fn new(contract: &dyn Contract) -> Self {
         let operands = contract.operands();
         let colours = operands.iter().filter(|operand| operand.colour);

@@ -1,4 +1,4 @@
-//! The registry of devices: keys, description, golden model, contract of each.
+//! The registry of devices. It knows the keys, the description, the golden model and the accuracy contract of each device.
 
 use anyhow::{Result, ensure};
 
@@ -36,8 +36,10 @@ pub struct Device {
     pub model: fn(&Config) -> Box<dyn Model>,
     /// Its accuracy contract.
     pub contract: fn(&Config) -> Box<dyn Contract>,
-    /// Whether the bound of the contract is proved, beside the golden model, for every configuration; otherwise it is what the
-    /// author states. Who takes a device with another contract, `Device { contract, proved: false, ..own }`, states it anew.
+    /// Whether the bound of the contract is proved, beside the golden model, for every configuration. Otherwise the bound is
+    /// the word of the author.
+    ///
+    /// A device with another contract must set this field anew: `Device { contract, proved: false, ..own }`.
     pub proved: bool,
 }
 
@@ -51,7 +53,7 @@ impl Device {
     /// Returns the design that a configuration asks for.
     ///
     /// # Errors
-    /// The mistakes of the description; a pipeline that cannot be made.
+    /// Fails if the description has mistakes, or if the pipeline cannot be made.
     pub fn design(&self, config: &Config) -> Result<Design, Diagnostics> {
         let sequential = self.sequential(config)?;
         match pipelining(config) {
@@ -63,10 +65,10 @@ impl Device {
         }
     }
 
-    /// Returns the design with the microprogram, of which a pipeline is made too.
+    /// Returns the sequential design, which executes a microprogram. [`Device::design`] also makes pipelines from it.
     ///
     /// # Errors
-    /// The mistakes of the description.
+    /// Fails if the description has mistakes. The error lists them.
     pub fn sequential(&self, config: &Config) -> Result<Design, Diagnostics> {
         let designer = Designer::new(&config.name);
         let keys = Shared::of(config);
@@ -86,7 +88,7 @@ impl Device {
     /// Returns the golden model of the design with the microprogram.
     pub fn golden(&self, config: &Config) -> Box<dyn Model> {
         let mut model = (self.model)(config);
-        // What does not know how differs from the design, and that is reported.
+        // A model that lacks the registers or buffers differs from the design, and the comparison reports the difference.
         if config.flag(OUTPUT_REGISTERED) {
             model = model.with_output_registers().unwrap_or(model);
         }
@@ -96,10 +98,10 @@ impl Device {
         model
     }
 
-    /// Checks whether the golden model can do what the configuration asks for.
+    /// Checks whether the golden model supports the keys of the configuration.
     ///
     /// # Errors
-    /// It cannot.
+    /// Fails if the golden model cannot model the output registers or the operand buffers that the configuration asks for.
     pub fn check_golden(&self, config: &Config) -> Result<()> {
         let model = (self.model)(config);
         ensure!(
@@ -117,10 +119,10 @@ impl Device {
         Ok(())
     }
 
-    /// Refuses a device of whose results the contract cannot speak.
+    /// Refuses a device whose results the contract cannot describe.
     ///
     /// # Errors
-    /// They depend on what an earlier computation left, or are never shown.
+    /// Fails if results depend on values that an earlier computation left, or are never shown.
     pub fn check_contract(
         &self,
         config: &Config,
@@ -132,7 +134,7 @@ impl Device {
             // It could not have been made.
             None
         } else if config.flag(OPERANDS_BUFFERED) {
-            // What a buffer holds is an operand, and nothing that an earlier computation left.
+            // The value in a buffer is an operand, and not a value that an earlier computation left.
             let designer = Designer::new(&config.name);
             (self.describe)(&designer, config);
             pipeline::carried(&designer.finish()?)

@@ -49,7 +49,7 @@ pub(super) trait Arithmetic {
     /// Returns the integer that the value certainly is, if its size is at most `largest`.
     fn known_integer(&self, a: &Self::Value, largest: u32) -> Option<i64>;
 
-    /// Returns an interval for a value that is one of two, where it is not known which; `what` names the doubt.
+    /// Returns an interval for a value that is one of two, if it is unknown which. `what` names the unknown decision.
     ///
     /// Arithmetic that must decide fails instead.
     fn either(&self, a: Self::Value, b: Self::Value, what: &str) -> Result<Self::Value, String>;

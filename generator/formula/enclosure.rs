@@ -1,4 +1,4 @@
-//! Interval arithmetic: computes limits that certainly hold the value of a real number. Every rounding is outward.
+//! Interval arithmetic: computes limits that are guaranteed to contain the value of a real number. Every rounding is outward.
 
 /// Far more than any function of `libm` is off: musl's, from which they come, state errors below 1.5 units in the last
 /// place, and this is at least four of them.
@@ -59,7 +59,8 @@ impl Enclosure {
         Self { low: low - margin(low), high: high + margin(high) }
     }
 
-    /// Returns the hull of what `of` gives for the corners of two enclosures: the limits of a function that is monotone in each.
+    /// Returns the hull of the results of `of` at the corners of two enclosures. These are the limits of a function that is
+    /// monotone in each operand.
     fn corners(self, other: Self, of: impl Fn(f64, f64) -> Self) -> Self {
         let first = of(self.low, other.low);
         if self.low == self.high && other.low == other.high {
@@ -161,7 +162,7 @@ impl Enclosure {
     }
 }
 
-/// Returns the enclosure of a number of which the nearest f64 is `value`, and whose difference from it has the sign of `error`.
+/// Returns the enclosure of a number. Its nearest f64 is `value`, and the number minus `value` has the sign of `error`.
 fn directed(value: f64, error: f64) -> Enclosure {
     if value.abs() < SMALL && (value != 0.0 || error != 0.0) || !error.is_finite() {
         return Enclosure { low: value.next_down(), high: value.next_up() };

@@ -2,8 +2,8 @@
 //! numbers.
 //!
 //! For example, `0.1 * 10` is 1, `16 ^ (1 / 2)` is 4, and `sin(pi * 0.5)` is 1, although no step of floating-point arithmetic shows it.
-//! Intervals decide everything else; exact values decide what no interval can, as on which side of a jump a value
-//! lies that is the jump itself.
+//! Intervals decide everything else. Exact values decide a question that no interval can: if a value lies exactly on a jump,
+//! they say on which side it counts.
 
 use dashu_base::{Abs, BitTest, Signed, SquareRootRem};
 use dashu_int::{IBig, UBig};
@@ -164,7 +164,7 @@ impl Exact {
     }
 }
 
-/// Returns the root of a number if that is rational; of a negative number only the first root.
+/// Returns the root of a number if the root is rational. A negative number gives a root only if `degree` is 1.
 fn root(value: &RBig, degree: usize) -> Option<RBig> {
     if degree == 1 {
         return Some(value.clone());

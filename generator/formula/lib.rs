@@ -1,8 +1,8 @@
 //! Parses formulas from text to a tree, evaluates the tree to intervals that contain its value, and prints it as Python
 //! and C.
 //!
-//! The text is what a configuration or a contract states, `1 / sqrt(x)` or `max(x, 0) if x > 1 else 2 ** -x`. Every part
-//! of the tree knows the bytes of the text that it came from, so that a mistake is shown under its place.
+//! The text comes from a configuration or a contract, for example `1 / sqrt(x)` or `max(x, 0) if x > 1 else 2 ** -x`. Every
+//! part of the tree stores the bytes of the text that it came from, so that a message can point at the mistake.
 
 mod arithmetic;
 mod enclosure;
@@ -22,7 +22,7 @@ pub use enclosure::Enclosure;
 pub use literal::Literal;
 pub use parse::{FUNCTIONS, parse};
 
-/// A part of a formula. Two are equal whose kinds are, wherever they come from.
+/// A part of a formula. Two parts are equal if their kinds are equal, wherever they come from.
 #[derive(Clone, Debug)]
 pub struct Formula {
     /// The kind of the part.
@@ -40,7 +40,7 @@ pub enum Kind {
     Constant(&'static str, f64),
     /// An operand, as a value and not raw.
     Operand(String),
-    /// A word of a ROM, as a value, by the name of the ROM and what numbers it.
+    /// A word of a ROM, as a value: the name of the ROM, and the formula of the word's number.
     Word(String, Box<Formula>),
     /// A function of one number.
     Unary(Function, Box<Formula>),
@@ -117,7 +117,7 @@ impl Fault {
         Self { span, message: message.into() }
     }
 
-    /// Returns the text in a line, carets under the place in the next, and what is wrong behind them.
+    /// Returns the text on one line. The next line has carets under the mistake, and the message after the carets.
     pub fn under(&self, text: &str) -> String {
         let count = |range: Range<usize>| text.get(range).map_or(0, |it| it.chars().count());
         let carets = count(self.span.clone()).max(1);
@@ -148,7 +148,7 @@ impl Formula {
         }
     }
 
-    /// Visits the formula and all parts within it, each after those that it is made of.
+    /// Visits the formula and all parts within it. The operands of a part are visited before the part.
     pub fn walk<'f>(&'f self, visit: &mut dyn FnMut(&'f Self)) {
         self.parts().into_iter().for_each(|part| part.walk(visit));
         visit(self);
@@ -175,7 +175,7 @@ impl Formula {
     /// Refuses names other than `operand`, and words of ROMs.
     ///
     /// # Errors
-    /// The first such name.
+    /// Fails at the first such name.
     pub fn of_operand(self, operand: &str) -> Result<Self, Fault> {
         let mut fault = None;
         self.walk(&mut |part| {

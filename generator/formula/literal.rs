@@ -75,7 +75,8 @@ impl Literal {
         self.is_exact
     }
 
-    /// Returns how many digits the text has from its first that is not 0, those of the power of ten left out.
+    /// Returns the number of significant digits in the text: all digits from the first that is not 0. The digits of the
+    /// exponent are not counted.
     pub(super) fn significant_digits(&self) -> usize {
         let digits = self.text.split(['e', 'E']).next().unwrap_or_default();
         let from_first = digits.trim_start_matches(['0', '.']);

@@ -41,7 +41,7 @@ const DEFINED: [(&str, &str); 14] = [
     ("int", "if(u < 0, u + -u % 1, u - u % 1)"),
 ];
 
-/// What some functions that are missing here are in those that are not.
+/// Some functions that this language lacks, each with a formula to write instead.
 const INSTEAD: [(&str, &str); 7] = [
     ("ceil", "-floor(-x)"),
     ("round", "floor(x + 0.5)"),
@@ -58,7 +58,7 @@ const CONSTANTS: [(&str, f64); 2] = [("pi", std::f64::consts::PI), ("e", std::f6
 /// The sign of the first of them.
 const PI: &str = "π";
 
-/// The most parts within each other: as many calls of the parser stand on the stack.
+/// The deepest nesting of parts. It limits the depth of recursion of the parser.
 const DEEPEST: usize = 200;
 
 /// The most parts of a formula once its functions are written out. For example, `silu(x)` has 6 parts more than x, and names x
@@ -69,7 +69,7 @@ const MOST_PARTS: usize = 4096;
 /// functions, `if(a < b, x, y)`, and `x if a < b else y` as Python writes it.
 ///
 /// # Errors
-/// The first mistake, with its place.
+/// Fails at the first mistake. The error has its place.
 pub fn parse(text: &str) -> Result<Formula, Fault> {
     let mut parser = Parser { text, tokens: tokens(text)?, at: 0, depth: 0 };
     let formula = parser.choice()?;
@@ -302,7 +302,7 @@ impl Parser<'_> {
         }
         self.at += 1;
         if self.taken(&["["]) {
-            // What numbers a word is an integer, which Python wants to be told.
+            // The number of a word is an integer. A formula for Python says so with `int`.
             self.taken(&["int"]);
             let place = Box::new(self.choice()?);
             self.expect("]")?;

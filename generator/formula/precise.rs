@@ -1,7 +1,7 @@
-//! Interval arithmetic of any precision, which knows exact values as such.
+//! Interval arithmetic of any precision, which also stores a value exactly if it is known exactly.
 //!
-//! It is slow, and decides what intervals of `f64` leave open: on which side of a step a value lies, and values beyond the
-//! range of `f64`, for example `exp(1000)` within `1 / (1 + exp(1000))`.
+//! It is slow, and decides only questions that intervals of `f64` leave open: the side of a step on which a value lies, or a
+//! value beyond the range of `f64`. For example, `exp(1000)` within `1 / (1 + exp(1000))` is beyond that range.
 
 use std::cmp::Ordering;
 
@@ -18,7 +18,7 @@ use super::{Enclosure, Function, Literal, Operator};
 /// A number m · 2ᵉ of any size.
 type Number = Repr<2>;
 
-/// What an operation of the library gives: a number that is rounded in the direction of the context, or no number.
+/// The result of an operation of the library: a number that is rounded in the direction of the context, or an error.
 type Outcome<R> =
     Result<dashu_base::Approximation<FBig<R, 2>, dashu_float::round::Rounding>, FpError>;
 
@@ -122,7 +122,7 @@ impl Precise {
         PreciseValue::between(low, high)
     }
 
-    /// Returns what an operation gives when it is rounded down and when it is rounded up.
+    /// Returns the interval between the results of an operation rounded down and rounded up.
     fn rounded(down: Outcome<mode::Down>, up: Outcome<mode::Up>) -> Result<PreciseValue, String> {
         let beyond = |error: FpError| match error {
             FpError::Overflow(_) | FpError::Underflow(_) => {
@@ -139,8 +139,8 @@ impl Precise {
         Self::rounded(self.down.mul(a, b), self.up.mul(a, b))
     }
 
-    /// Returns the smallest interval that contains an operation's results at the four corners of two intervals: that of an
-    /// operation that is monotone in each operand.
+    /// Returns the smallest interval that contains an operation's results at the four corners of two intervals. This is the
+    /// interval of the operation if it is monotone in each operand.
     fn corners(
         &self,
         a: &PreciseValue,

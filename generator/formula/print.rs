@@ -2,7 +2,7 @@
 
 use super::{Comparison, Formula, Function, Kind, Operator};
 
-/// How strongly a part holds together: sums, products, signs, powers, and what needs no parentheses.
+/// The precedence of a part: sums, products, signs, powers, and parts that need no parentheses.
 const SUM: u8 = 0;
 const PRODUCT: u8 = 1;
 const SIGN: u8 = 2;

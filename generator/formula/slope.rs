@@ -1,4 +1,4 @@
-//! Differentiates a formula: computes limits that certainly hold its derivative.
+//! Differentiates a formula: computes limits that are guaranteed to contain its derivative.
 
 use super::arithmetic::Double;
 use super::evaluate::{binary, unary};
@@ -12,12 +12,11 @@ struct Pair {
 }
 
 impl Formula {
-    /// Returns the limits of the value and of the derivative to an operand within its limits. At a corner the
-    /// derivative is between those of
-    /// both sides.
+    /// Returns the limits of the value and of the derivative with respect to `operand`, if the operand lies within `limits`.
+    /// At a corner the derivative lies between the derivatives of both sides.
     ///
     /// # Errors
-    /// A part that has no value, may jump, or is infinitely steep.
+    /// Fails if a part of the formula has no value, may jump, or is infinitely steep.
     pub fn slope(&self, operand: &str, limits: Enclosure) -> Result<(Enclosure, Enclosure), Fault> {
         self.pair(operand, limits).map(|it| (it.value, it.slope))
     }

@@ -1,6 +1,6 @@
 //! The golden model and the accuracy contract of `blinn`: cⁿ itself (seeds 000–002).
 //!
-//! Both are those of [`decay`]: 2^(−n·decay) with the decay −log₂ c.
+//! [`decay`] makes both: they compute 2^(−n·decay) with the decay −log₂ c.
 
 use super::decay;
 use super::{Contract, Model};

@@ -1,5 +1,5 @@
-//! Makes what the accuracy contracts of several devices share: control operands, the error bound from its terms, and
-//! expressions of Python.
+//! Makes the parts that the accuracy contracts of several devices share: control operands, the error bound from its terms,
+//! and Python expressions.
 
 use super::{Bound, Operand, Term};
 use glint_base::fixed::{Format, Rounding, exp2};
@@ -10,7 +10,7 @@ pub const COSINE: &str = "cos_gamma";
 /// The operand n, where a device has it.
 pub const EXPONENT: &str = "exponent";
 
-/// One contribution to the error of `f`: its configuration key, what it is, and its size.
+/// One contribution to the error of `f`: its configuration key, its description, and its size.
 pub type ErrorShare = (&'static str, &'static str, f64);
 
 /// Returns the operand cos γ.
@@ -82,11 +82,12 @@ pub fn exponent_at(operand: &Operand, n: f64) -> Option<i64> {
     (held && (low..=high).contains(&raw)).then_some(raw)
 }
 
-/// Returns the control operands among `operands` for an angle `gamma` (in radians) and an exponent: `cos_gamma` and
-/// `exponent`, both of which must be there. Others take their value in `neutral`, or else the value of
-/// their domain that is nearest to 0.
+/// Returns the control operands among `operands` for an angle `gamma` (in radians) and an exponent `n`. `operands` must
+/// contain `cos_gamma` and `exponent`. Any other operand takes its value in `neutral`, or else the value of its domain that
+/// is nearest to 0.
 ///
-/// `None` where `n` is not in the domain of the exponent, or not an exponent that it can hold.
+/// Returns `None` if `cos_gamma` or `exponent` is missing, if `n` is not in the domain of the exponent, or if the exponent
+/// cannot represent `n`.
 pub fn operands_at(
     operands: &[Operand],
     gamma: f64,

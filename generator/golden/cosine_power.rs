@@ -131,9 +131,9 @@ impl Reflectance for Arithmetic {
     /// Derives the terms of f's error. Every quantity here lies in 0 … 1, hardware's and formula's alike, so by the mean value
     /// theorem an error ε before a power p grows to at most p·ε.
     ///
-    /// - Base: the inverse stands for 1.0 − ulp − t where 1.0 − t is meant. With t rounded by an error
-    ///   in (−ulp, 0] (truncated) the base is low by (0, ulp]; by ±ulp/2 (nearest), low by up to
-    ///   3/2 ulp. Saturation of t at 1.0 − ulp makes the base 0 where the formula has at most as much.
+    /// - Base: the hardware uses the inverse, 1.0 − ulp − t, instead of 1.0 − t. If t is truncated, its error is in (−ulp, 0],
+    ///   and the base is low by (0, ulp]. If t is rounded to the nearest, its error is ±ulp/2, and the base is low by up to
+    ///   3/2 ulp. Saturation of t at 1.0 − ulp makes the base 0, and the formula's base is then at most as large as that error.
     ///   The base is raised to m.
     /// - The result of squaring number i is rounded, and then raised to m/2^i: m − 1 in sum.
     /// - The output adds its own rounding; it cannot exceed the largest colour, for f < 1.

@@ -52,7 +52,7 @@ pub fn model(config: &Config) -> Box<dyn Model> {
     let mut frame = Frame::default();
     let Keys { length_bits, stages, .. } = keys;
     let (angle, program) = line::walker(&mut frame, keys.angle_format(), length_bits, stages);
-    // What ROM 12 read at the latest edge.
+    // The word that ROM 12 read at the latest edge.
     let cosine = frame.hidden();
     let products = products(&keys);
     let it = Arithmetic::new(keys);
@@ -63,7 +63,7 @@ pub fn model(config: &Config) -> Box<dyn Model> {
         // The address of ROM 12, and the word that it read an edge earlier.
         let (address, held) = (frame.hidden(), frame.hidden());
         products.slots(&mut frame, held);
-        // From the output back to the angle: each takes what the one before it held.
+        // From the output back to the angle: each slot takes the value that the slot before it in the pipeline held.
         frame.every_edge(move |s| {
             s[held] = s[cosine];
             s[cosine] = it.table.words[s[address] as usize];
@@ -73,8 +73,8 @@ pub fn model(config: &Config) -> Box<dyn Model> {
     Box::new(frame.model(program))
 }
 
-/// Returns the accuracy contract. Control operands: `delta_zeta`, `zeta_start`, `length`; those of a point have its
-/// angle for `zeta_start`.
+/// Returns the accuracy contract. The control operands are `delta_zeta`, `zeta_start` and `length`. For a point of a line,
+/// `zeta_start` is the angle of that point.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     let keys = Keys::of(config);
     let mut operands = line::angle_operands(keys.angle_format()).to_vec();
@@ -109,8 +109,8 @@ impl Reflectance for Arithmetic {
         vec![line::interval(angle, last[1], length, first[0]), angle, length]
     }
 
-    /// Returns a line of one point, its angle stretched by `√(n/2)` as the host does it. What the operand denotes is
-    /// an angle and n together, so that it has no cosine.
+    /// Returns a line of one point. Its angle is stretched by `√(n/2)`, as the host stretches it. The operand denotes an
+    /// angle and n together, so it has no cosine.
     fn at(&self, operands: &[Operand], gamma: f64, n: f64) -> Option<Vec<i64>> {
         let stretched = (n / 2.0).sqrt() * gamma;
         Some(vec![0, line::raw_angle(&operands[1], stretched), 0])

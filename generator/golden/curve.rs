@@ -1,7 +1,7 @@
-//! Makes the table of an increasing, concave function by straight segments, independently of the hardware's table.
+//! Builds the table of an increasing, concave function from straight segments, independently of the hardware's table.
 //!
-//! The operand u is an integer of C bits. Ranges, each a quarter of the one before, are cut uniformly,
-//! and so is the tail below them; a value is a raw u0.S.
+//! The operand u is an integer of C bits. Each range is a quarter of the range before it. Each range, and the tail below the
+//! ranges, is cut into segments of equal length. A value is a raw u0.S.
 
 use glint_base::fixed::exp2;
 
@@ -20,7 +20,7 @@ pub struct Params {
     pub tail: u32,
 }
 
-/// A segment, with what is stored for it.
+/// A segment, with its stored base and slope.
 #[derive(Clone, Copy, Debug)]
 struct Segment {
     start: u64,
@@ -46,8 +46,8 @@ pub struct Piece {
 #[derive(Clone, Debug)]
 pub struct Curve {
     params: Params,
-    /// From the topmost range down: log₂ of a segment's length, and where the range's prefix 0 would
-    /// stand in `segments`.
+    /// From the topmost range down: log₂ of a segment's length, and the index in `segments` that the range's prefix 0 would
+    /// have.
     ranges: Vec<(u32, i64)>,
     segments: Vec<Segment>,
     largest: i64,

@@ -62,9 +62,10 @@ impl Arithmetic {
         }
     }
 
-    /// Returns how often c doubles before it is at least one half, and the distance less an ulp of what has become of c.
+    /// Returns the octave of c and its distance. The octave is the number of times that c is doubled until it is at least one
+    /// half. The distance is 1 minus the doubled c, less an ulp.
     ///
-    /// Without a fraction (c = 0 and 1.0) the hardware counts all ones; f does not depend on either.
+    /// If c has no fraction (c = 0 and 1.0), the hardware counts all ones; f does not depend on either number then.
     #[inline]
     fn operand(&self, cosine: i64) -> (i64, i64) {
         let one = self.keys.operands.cosine.one();
@@ -82,8 +83,8 @@ impl Arithmetic {
         }
     }
 
-    /// Returns the decay of a distance in an octave, by its ratio to it, as a factor: whole if it is small, below ¼, which is
-    /// told too, and else with fewer bits.
+    /// Returns the decay of a distance in an octave as a factor, and whether it is small. `ratio` is the decay divided by the
+    /// distance. A small decay, below ¼, keeps all bits; a larger decay has fewer bits.
     #[inline]
     fn factor(&self, octave: i64, distance: i64, ratio: i64) -> (i64, bool) {
         let (fraction, coarse) = (self.keys.decay_fraction, self.keys.coarse_fraction);
@@ -132,12 +133,12 @@ impl Arithmetic {
         }
     }
 
-    /// Returns the error of f from the decays of distances from one to another, in an octave: that of the ratio, that of the
-    /// rounding of the decay, and what the product does not see.
+    /// Returns the error of f for the distances `from` to `to`, in an octave. The three shares are the error of the ratio,
+    /// the rounding of the decay, and the bits that a coarse decay loses.
     fn of_distances(&self, (from, to): (i64, i64), octave: f64) -> [f64; 3] {
         let keys = &self.keys;
         let [from, to] = [from, to].map(|raw| raw as f64 * keys.operands.cosine.ulp());
-        // Half of what the table does not see.
+        // Half of the range of the low bits that the table does not read, times the steepest slope of the ratio.
         let unseen = match keys.unseen() {
             0 => 0.0,
             bits => exp2(bits as i32 - 1) * keys.operands.cosine.ulp() * self.of.steepest(),
@@ -228,7 +229,7 @@ impl Reflectance for Arithmetic {
         Some(self.formula(cosine, exponent as f64))
     }
 
-    /// Limits the slope by the largest n, and the jump at a right angle by that of the smallest n:
+    /// Limits the slope by the largest n, and the jump at a right angle by the jump of the smallest n:
     /// - cosⁿγ: n·c^(n − 1), at most n; with n = 0 it jumps from 1.
     /// - exp(−n·γ²/2): n·(γ/sin γ)·exp(−n·γ²/2), at most n, since γ/sin γ ≤ exp(γ²/2) up to a right angle (its logarithm is
     ///   γ²/6 + γ⁴/180 + …, of positive terms that are together below γ²/2 there). There it jumps from exp(−n·π²/8).
@@ -252,17 +253,18 @@ impl Reflectance for Arithmetic {
     /// Derives the terms of f's error. Let y = n·decay be exact and z the hardware's product before it is cut to the fraction
     /// bits of the table of 2^−x.
     ///
-    /// - The ratio of decay to distance is off by what its table is, over every operand, and by what the distances that have one
-    ///   operand differ, from their middle on, times the ratio's steepest slope. The distance multiplies that.
+    /// - The ratio of decay to distance has the error of its table, which is proved over every operand. In addition, several
+    ///   distances share one operand of the table: their difference from the middle distance counts times the ratio's
+    ///   steepest slope. The sum of both errors is multiplied by the distance.
     /// - |z − y| ≤ n·e, where e is the error of the decay and of the bits that a coarse decay loses. So
-    ///   |2^−z − 2^−y| ≤ ln 2·n·e·2^−min(y, z), and min(y, z) ≥ n·(decay − e) with the smallest decay of a set of
-    ///   distances: as a function of n this is largest at n = 1/(ln 2·(decay − e)). Octaves beyond the
-    ///   first have the same distances and larger decays; the first of them is the worst.
-    /// - The table stands for the middle of what is cut to one operand: half of that is its ln 2 times; and the table's own
-    ///   error. The shift makes both smaller.
-    /// - f is rounded, or saturated just below 1.0: an ulp. Where the integer of n·decay is F + 2 or more, nothing of f is left,
+    ///   |2^−z − 2^−y| ≤ ln 2·n·e·2^−min(y, z), and min(y, z) ≥ n·(decay − e) with the smallest decay of a set of distances.
+    ///   As a function of n this is largest at n = 1/(ln 2·(decay − e)). Octaves beyond the first have the same distances and
+    ///   larger decays; the first of them is the worst.
+    /// - The table of 2^−x has the value in the middle of the arguments that are cut to one operand. Half of the cut counts
+    ///   ln 2 times, and the table's own error is added. The shift makes both smaller.
+    /// - f is rounded, or saturated just below 1.0: an ulp. If the integer of n·decay is F + 2 or more, nothing of f is left,
     ///   which is less than that ulp too.
-    /// - The output adds its own rounding; it cannot exceed the largest colour, for f < 1.
+    /// - The output adds its own rounding. It cannot exceed the largest colour, because f < 1.
     fn shares(&self) -> Vec<ErrorShare> {
         let octaves: &[f64] = match self.of {
             Decay::Logarithm => &[0.0, 1.0],

@@ -1,7 +1,7 @@
-//! Makes the golden model and the accuracy contract of a device from what each of its microinstructions does.
+//! Makes the golden model and the accuracy contract of a device from the operations of its microinstructions.
 //!
-//! The results of the contract are those of the model. Names, formats and the arithmetic stand once, in the [`Frame`]
-//! and the microinstructions. What is left to say is the formula, and how far off the device may be.
+//! The contract takes its results from the model, so the [`Frame`] and the microinstructions state names, formats and
+//! arithmetic only once. A device only adds its formula and a bound on its error. For example:
 //!
 //! ```
 //! use glint_base::fixed::Format;
@@ -16,7 +16,7 @@
 //!         vec![x[0] * x[0]]
 //!     }
 //!
-//!     /// What is cut is less than the last place.
+//!     /// The cut loses less than the last place.
 //!     fn terms(&self) -> Vec<Term> {
 //!         vec![Term { key: "width", what: "the square is cut", units: 1.0 - 1.0 / 16.0 }]
 //!     }
@@ -102,7 +102,7 @@ impl Device {
         self
     }
 
-    /// Returns its contract. Results are those of the model.
+    /// Returns the contract of the device. The model computes the results of the contract.
     pub fn contract(self, formula: impl Formula + 'static) -> Box<dyn Contract> {
         let shown = |output: &Output| self.model.signals().iter().position(|it| *it == output.name);
         let shown = self.outputs.iter().filter_map(shown).collect();
@@ -160,7 +160,7 @@ pub trait Formula: Send + Sync {
     }
 }
 
-/// A contract whose results are those of a model.
+/// A contract whose results a model computes.
 struct OfModel<F> {
     device: Device,
     /// Where the outputs are among the signals of the model.

@@ -68,11 +68,11 @@ pub fn contract(config: &Config) -> Box<dyn Contract> {
     device(config).contract(Cosine::new(config))
 }
 
-/// The formula: N.H, at least 0 and at most 1, of a normal of any length.
+/// The formula: N·H, limited to 0 … 1, for a normal N of any length.
 struct Cosine {
     keys: Keys,
     root: Root,
-    /// From the products of both vectors, shifted, half of which it is.
+    /// Computes the distance from the products of both vectors, which are shifted. The distance is half of the products.
     distance: Narrow,
     shortened: Narrow,
     rounded: Narrow,
@@ -100,10 +100,13 @@ impl Cosine {
 
     /// Returns the errors, as values, of a cosine by the inverse root, by its factors, and by its rounding.
     ///
-    /// Let m be the squares shifted to 1 ≤ m < 4, f = 1/√m, and t the products as far, of which the cosine is t·f. What
-    /// stands for f is off by `Root::error`, which counts √m times, and by what its own rounding leaves, half a place
-    /// below √m < 2 times. What stands for t is off by half a place, and for a t of 2.0 by a whole one, where f is a half; f is
-    /// at most 1. Beyond t = √m the cosine stays 1, and what is computed does not fall.
+    /// Let m be the squares, shifted to 1 ≤ m < 4, let f = 1/√m, and let t be the products, shifted as far. The cosine is
+    /// t·f.
+    ///
+    /// - The hardware's f is off by `Root::error`, which counts √m times. Its own rounding adds half a place, which counts
+    ///   √m < 2 times.
+    /// - The hardware's t is off by half a place. A t of 2.0 is off by a whole place, but f is a half there. f is at most 1.
+    /// - Beyond t = √m the cosine stays 1, and the computed value does not fall.
     fn errors(&self) -> [f64; 3] {
         let Keys { factor, kept, rounding, .. } = self.keys;
         let (root, place) = (self.root.error(), exp2(-(factor as i32)));
@@ -138,7 +141,8 @@ impl Formula for Cosine {
         let off = centred();
         let along: f64 = (0..3).map(|axis| normal[axis] * off[axis]).sum();
         let across = unit_vector([0, 1, 2].map(|axis| off[axis] - along * normal[axis]));
-        // The smaller of the two angles between them and what they are close to, by octaves.
+        // `small` is about the angle between `half` and its target, drawn evenly over octaves. The target is `normal` if `near`,
+        // otherwise `across`.
         let (near, small) = (unit() < 0.5, exp2(-(unit() * f64::from(self.keys.fraction)) as i32));
         let half = [0, 1, 2].map(|axis| {
             if near {

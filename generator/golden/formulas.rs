@@ -1,8 +1,8 @@
-//! The formulas of the seeds (the documents that the devices come from) in f64: what the hardware
-//! approximates, unrounded.
+//! The formulas of the seeds (the documents that the devices come from), computed in f64 without rounding to fixed point. The
+//! hardware approximates these formulas.
 //!
-//! Operands are plain numbers; angles are in radians. A reflectance `f` is in 0 … 1; a surface that faces away
-//! (`c ≤ 0`) reflects nothing. Transcendentals come from `libm`, so a figure is the same on every machine.
+//! Operands are plain numbers; angles are in radians. A reflectance `f` is in 0 … 1. A surface that faces away (`c ≤ 0`)
+//! reflects nothing. Transcendental functions come from `libm`, so a figure is the same on every machine.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -55,7 +55,7 @@ pub fn rough_unclamped(c: f64, cd: f64, dgamma_negative: bool, n: f64) -> f64 {
     (base * base).min(1.0)
 }
 
-/// Returns `(n/2·(c − 1) + 1)²`, 0 where the base is negative: what UA 30041 (seed 001) compares with its level.
+/// Returns `(n/2·(c − 1) + 1)²`, or 0 if the base is negative. UA 30041 (seed 001) compares this value with its level.
 #[inline]
 pub fn parabola(c: f64, n: f64) -> f64 {
     rough(c, 1.0, false, n)
@@ -132,8 +132,8 @@ pub fn quad_cosine(delta: f64, n: i64) -> f64 {
     lobe((n as f64 / f64::from(k)).sqrt() * delta, k)
 }
 
-/// Returns Abbas, Szirmay-Kalos and Horváth's `cos²(a·δ)` (seed 000), of the stretched angle `a·δ` in radians; 0 where it is a
-/// right angle or more.
+/// Returns Abbas, Szirmay-Kalos and Horváth's `cos²(a·δ)` (seed 000) for the stretched angle `a·δ` in radians. It is 0 if the
+/// angle is a right angle or more.
 #[inline]
 pub fn cosine_squared(stretched: f64) -> f64 {
     lobe(stretched, 2)
@@ -152,7 +152,7 @@ pub fn gauss(c: f64, n: f64) -> f64 {
 /// Returns Schlick's function (seed 002): `c / (n − n·c + c)`, 0 where `c ≤ 0`, `n = 0` included.
 #[inline]
 pub fn schlick(c: f64, n: f64) -> f64 {
-    // n·(1 − c) keeps what n − n·c loses to cancellation where c is near 1.
+    // Near c = 1, n − n·c loses digits to cancellation, and n·(1 − c) does not.
     if c <= 0.0 { 0.0 } else { c / (n * (1.0 - c) + c) }
 }
 

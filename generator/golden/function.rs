@@ -16,8 +16,8 @@ use glint_keys::function::found;
 /// The pieces of a domain in which a slope is enclosed: a power of two, so that their ends are exact.
 const PIECES: u32 = 4096;
 
-/// Makes the device. Its registers are the operand, the sums from each coefficient on, of which the first is the result, or the
-/// polynomial from which the result comes.
+/// Makes the device. Its registers are the operand and the sums from each coefficient on. The first sum is the result, or the
+/// polynomial from which the result is restored.
 fn device(it: &Arc<Piecewise>) -> device::Device {
     let (first, last) = it.domain;
     let mut frame = Frame::default();

@@ -1,6 +1,6 @@
 //! The golden model and the accuracy contract of `gauss`: exp(−n·γ²/2) (seed 002).
 //!
-//! Both are those of [`decay`]: 2^(−n·decay) with the decay γ²/(2 ln 2).
+//! [`decay`] makes both: they compute 2^(−n·decay) with the decay γ²/(2 ln 2).
 
 use super::decay;
 use super::{Contract, Model};

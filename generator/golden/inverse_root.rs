@@ -18,8 +18,8 @@ pub(super) struct Root {
 }
 
 impl Root {
-    /// Returns the table for components with so many fraction bits: `address` leading bits of the sum choose a segment, and an
-    /// inverse root has `fraction` fraction bits.
+    /// Returns the table for components with `components` fraction bits: `address` leading bits of the sum choose a segment,
+    /// and an inverse root has `fraction` fraction bits.
     pub fn new(components: u32, address: u32, fraction: u32) -> Self {
         let segments = 1i64 << address;
         let scale = exp2(fraction as i32);
@@ -60,14 +60,15 @@ impl Root {
         self.ends[at] - (((self.ends[at] - self.ends[at + 1]) * rest) >> along)
     }
 
-    /// Returns the errors of √m·f by the chords and by roundings, as values. Let m be the mantissa, 1 ≤ m < 4, f = 1/√m and r
-    /// what stands for it, u the last place of r.
+    /// Returns the errors of √m·f by the chords and by roundings, as values. Let m be the mantissa, 1 ≤ m < 4, and f = 1/√m.
+    /// Let r be the hardware's value of f, and u the last place of r.
     ///
     /// - f is convex, so that a chord lies above it, by at most h²/8·max f″ = h²/8·¾·a^(−5/2) in the segment from
     ///   a on, of length h.
-    /// - The ends of the chord are rounded: ½u. What is cut of the way along the segment is at most a part
-    ///   2^−(R − A + 2) of a fall of at most h/2 = 2^(1 − A): ½u. The fall is truncated: u. In all 2u.
-    /// - That counts √m times, which is below 2: 4u for the rounding, and the chord's times the root of the end of the segment.
+    /// - The ends of the chord are rounded: ½u. The cut of the way along the segment is at most a part 2^−(R − A + 2) of a fall
+    ///   of at most h/2 = 2^(1 − A): ½u. The fall is truncated: u. The sum is 2u.
+    /// - The rounding error counts √m times, which is below 2: 4u. The error of the chord counts as often as the root of the
+    ///   segment's end.
     pub fn error(&self) -> [f64; 2] {
         let h = 4.0 / exp2(self.address as i32);
         let chord = (1 << (self.address - 2)..1u32 << self.address)

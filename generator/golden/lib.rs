@@ -1,11 +1,11 @@
-//! The golden models and the accuracy contracts of the devices. A golden model is a second implementation of a device,
-//! from its formula and the source's narrative.
+//! The golden models and the accuracy contracts of the devices. A golden model is a second implementation of a device, from
+//! its formula and the source's narrative.
 //!
-//! A golden model uses [`glint_base::fixed`] and [`glint_config`] alone. It never sees the description,
-//! the netlist or the microcode, and it computes its own tables; that is what makes the comparison
-//! with the simulated hardware worth something. Three devices are exceptions: description and golden
-//! model of `function`, `blinn` and `gauss` read the same polynomials ([`glint_keys::function`],
-//! [`glint_keys::decay`]). What vouches for these is the comparison of every control operand with the formula.
+//! A golden model uses only [`glint_base::fixed`] and [`glint_config`]. It never sees the description, the netlist or the
+//! microcode, and it computes its own tables. This independence makes the comparison with the simulated hardware meaningful.
+//! Three devices are exceptions: description and golden model of `function`, `blinn` and `gauss` read the same polynomials
+//! ([`glint_keys::function`], [`glint_keys::decay`]). The comparison of every control operand with the formula checks these
+//! polynomials.
 
 pub mod blinn;
 pub mod contract;
@@ -59,7 +59,7 @@ pub trait Model: CloneModel + Send + Sync {
     /// block (pipeline stages, synchronous ROMs) need not be there.
     fn signals(&self) -> &[String];
 
-    /// Takes one rising edge, with the inputs as they stand just before it.
+    /// Takes one rising edge. `inputs` are the values just before the edge.
     fn clock(&mut self, inputs: &[u64]);
 
     /// Returns the device at power-up with a register `<output>_reg` behind each result that is logic, loaded in the
@@ -71,11 +71,12 @@ pub trait Model: CloneModel + Send + Sync {
         None
     }
 
-    /// Returns the device at power-up with a register `<operand>_buffer` in front of each operand register. Writes go there
-    /// at any time. `start` loads the operand registers, with what is written in the same clock where something is,
-    /// and is heard in the last clock of a computation too: the next one follows at once.
+    /// Returns the device at power-up with a register `<operand>_buffer` in front of each operand register. The environment
+    /// may write the buffers at any time. `start` loads the operand registers from the buffers; an operand that is written in
+    /// the same clock gets the new value. The last clock of a computation also accepts `start`, so that the next computation
+    /// follows at once.
     ///
-    /// A device of a [`frame::Frame`] has it; for any other its author writes it, or there is none.
+    /// A device of a [`frame::Frame`] has this model. For any other device its author must write it, or there is none.
     fn with_operand_buffers(&self) -> Option<Box<dyn Model>> {
         None
     }
@@ -124,7 +125,7 @@ pub struct Operand {
     pub domain: (i64, i64),
     /// A colour operand of a highlight multiplies `f`; the others determine it.
     pub colour: bool,
-    /// One line: what it is.
+    /// The meaning of the operand, in one line.
     pub doc: String,
 }
 
@@ -155,14 +156,14 @@ pub trait Contract: Send + Sync {
     /// Refuses a contract whose results are never shown.
     ///
     /// # Errors
-    /// Why, with a remedy.
+    /// Fails if the results are never shown. The error says why, with a remedy.
     fn check(&self) -> Result<(), String> {
         Ok(())
     }
 
-    /// Appends for each output what the formula says in f64, unrounded, at the raw (that is, quantised) operands, twice. Where
-    /// the formula jumps and fixed point may come out on its other side, these are the values on both sides. An error is taken
-    /// from the nearer.
+    /// Appends a pair of values for each output: the formula in f64, unrounded, at the raw (that is, quantised) operands.
+    /// Both values are normally the same. If the formula jumps and fixed point may come out on its other side, they are the
+    /// values on both sides. An error is measured from the nearer value.
     fn exact(&self, operands: &[i64], index: u64, values: &mut Vec<[f64; 2]>);
 
     /// Returns a proven bound on the error, stated before anything is simulated. One without terms is not stated:
@@ -180,11 +181,11 @@ pub trait Contract: Send + Sync {
         None
     }
 
-    /// Returns operands at which results say much: where the formula is steep, bends or ends. Half of the points of a test are
-    /// such. `unit` gives numbers from 0 to below 1, drawn evenly; what is outside the domain is moved to its end.
+    /// Returns operands at which results say much: where the formula is steep, bends or ends. Half of the points of a test
+    /// are such points. `unit` gives numbers from 0 to below 1, drawn evenly. A value outside the domain is moved to its end.
     ///
-    /// `None`: points are drawn over the domain alone, its ends more often than the rest. Those of a [`Highlight`]
-    /// are drawn by the value of its formula.
+    /// `None`: points are drawn over the whole domain, its ends more often than the rest. The points of a [`Highlight`] are
+    /// drawn by the value of its formula.
     fn hint(&self, unit: &mut dyn FnMut() -> f64) -> Option<Vec<i64>> {
         let _ = unit;
         None
@@ -219,27 +220,27 @@ pub trait Contract: Send + Sync {
         errors.fold(0.0, f64::max)
     }
 
-    /// Returns facts about the formula itself that a user of this configuration should know, with figures: where in the domain
-    /// another choice of the same device would come closer to what it stands for.
+    /// Returns facts about the formula itself that a user of this configuration should know, with figures. For example,
+    /// another choice of the same device may come closer to the function that it approximates in some part of the domain.
     fn remarks(&self) -> Vec<String> {
         Vec::new()
     }
 }
 
-/// Returns the distance of `value` from the nearer of two values that are right; infinite where either is no finite number,
-/// since a formula without a value vouches for no result.
+/// Returns the distance of `value` from the nearer of two right values. It is infinite if either is no finite number, since a
+/// formula without a value cannot confirm a result.
 #[inline]
 pub fn nearer(value: f64, right: [f64; 2]) -> f64 {
     let [a, b] = right.map(|right| (value - right).abs());
-    // What is not finite differs from itself by NaN.
+    // A difference from a number that is not finite is not finite either.
     if a.is_finite() && b.is_finite() { a.min(b) } else { f64::INFINITY }
 }
 
 /// The places that an exhaustive check visits: the product of its axes.
 ///
-/// A device with too many operands for all combinations names what determines the result, or of a highlight `f` (a word in
-/// between, say, with [`Contract::sweep_error`] taking the worst over what rounds to it), or a list of
-/// settings, and says in `omits` what is left to random points.
+/// A device with too many operands for all combinations may name the values that determine the result (in a highlight, `f`).
+/// For example, an axis may be an intermediate word, if [`Contract::sweep_error`] takes the worst error over everything that
+/// rounds to it. An axis may also be a list of settings. `omits` must say which operands are left to random points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sweep {
     /// The outermost first.
@@ -251,7 +252,7 @@ pub struct Sweep {
 /// One axis of a [`Sweep`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
-    /// The operand, or what stands for it.
+    /// The operand, or the value that replaces it.
     pub name: String,
     /// Its values.
     pub values: Values,
@@ -318,14 +319,16 @@ impl Values {
     }
 }
 
-/// A bound on the error of an output over the domain, and what it is made of.
+/// A bound on the error of an output over the domain, and its contributions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bound {
-    /// On what a sweep measures: the error of `f` of a highlight, otherwise that of an output, in units.
+    /// The bound on the quantity that a sweep measures: the error of `f` of a highlight, otherwise the error of an output, in
+    /// units.
     pub f: f64,
-    /// On the error of an output, in its units; of a highlight, for the largest colour operand.
+    /// The bound on the error of an output, in its units. A highlight states it for the largest colour operand.
     pub units: f64,
-    /// The error, in units, below which the accuracy contract wants it: 1, or what a configuration asks for.
+    /// The accuracy contract is kept if `units` is below this limit, in units. It is 1, or the error that a configuration
+    /// allows.
     pub limit: f64,
     /// The contributions, in output units, each with the configuration key that governs it. They
     /// add up to `units`.
@@ -347,7 +350,7 @@ impl Bound {
     /// Makes the bound of a device that is no highlight: the sum of its terms; infinite without any.
     pub fn of(terms: Vec<Term>) -> Self {
         let sum: f64 = terms.iter().map(|term| term.units).sum();
-        // What is no number limits nothing.
+        // A sum that is NaN limits nothing.
         let units = if terms.is_empty() || sum.is_nan() { f64::INFINITY } else { sum };
         Self { f: units, units, limit: 1.0, terms }
     }

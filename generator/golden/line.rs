@@ -1,4 +1,4 @@
-//! Models what the devices of seed 000 share: the walk along a scan line, and tables of powers of a cosine.
+//! Models the parts that the devices of seed 000 share: the walk along a scan line, and tables of powers of a cosine.
 //!
 //! Angles are in right angles: a raw value of `2^F` is 90°.
 

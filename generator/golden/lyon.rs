@@ -62,7 +62,7 @@ impl Keys {
         (self.scale_operand(self.domain.least), self.scale_operand(self.domain.most))
     }
 
-    /// Returns the exponent that an operand `shift` or `exponent` stands for.
+    /// Returns the exponent that an operand `shift` or `exponent` denotes.
     fn exponent(&self, operand: i64) -> i64 {
         match self.scale {
             Scale::Shift => 1 << operand,

@@ -1,6 +1,6 @@
-//! Rounds raw values to a format and saturates them, with constants that are computed beforehand.
+//! Rounds raw values to a format and saturates them. The constants of a conversion are computed beforehand.
 //!
-//! It is the inner loop of the golden models.
+//! The golden models call it in their inner loop.
 
 use glint_base::fixed::{Format, Rounding};
 

@@ -104,11 +104,11 @@ impl Formula for Normaliser {
         unit_vector([vector[0], vector[1], vector[2]]).into()
     }
 
-    /// Returns the terms of a component's error. The shifted component x has x² ≤ m, so that the error of the product is at most
-    /// √m times that of r: [`Root::error`]. The product is rounded once. It does not saturate: |x·f| ≤ 1, and the rest is far
-    /// below 1.
+    /// Returns the terms of a component's error. The shifted component x has x² ≤ m, so the error of the product is at most
+    /// √m times the error of r: [`Root::error`]. The product is rounded once. It does not saturate: |x·f| ≤ 1, and the other
+    /// errors are far below 1.
     ///
-    /// The zero vector has zeros, as the formula has it here.
+    /// The zero vector gives zeros, as the formula defines here.
     fn terms(&self) -> Vec<Term> {
         let [chord, root] = self.root.error();
         let units = exp2(self.keys.kept as i32);

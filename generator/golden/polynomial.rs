@@ -1,7 +1,7 @@
 //! Computes a piecewise polynomial in a golden model: by Horner's rule in integers, with a register for each sum.
 //!
-//! The table of coefficients is data: what vouches for it is that every operand was computed and set against the
-//! formula.
+//! The hardware uses the same table of coefficients. The proof of the approximation checks this table: it compares
+//! the result of every operand with the formula.
 
 use std::sync::Arc;
 
@@ -28,7 +28,7 @@ impl Polynomial {
         self.sums[0]
     }
 
-    /// Returns what each step does, in their order; `raw` is the raw operand of the table.
+    /// Returns the operations of the steps, in their order. `raw` gives the raw operand of the table.
     pub fn steps<R>(
         &self,
         raw: R,

@@ -98,7 +98,7 @@ pub fn model(config: &Config) -> Box<dyn Model> {
     let Keys { length_bits, stages, exponent_bits, .. } = keys;
     let (angle, program) = line::walker(&mut frame, keys.angle_format(), length_bits, stages);
     let exponent = frame.operand("exponent", Format::unsigned(exponent_bits as i32, 0));
-    // What ROM 9 and ROM 12 read at the latest edge.
+    // The words that ROM 9 and ROM 12 read at the latest edge.
     let (root, cosine) = (frame.hidden(), frame.hidden());
     let products = products(&keys);
     let it = Arithmetic::new(keys);
@@ -115,7 +115,7 @@ pub fn model(config: &Config) -> Box<dyn Model> {
     // The address of ROM 12: the range of n, and the step. Then its word.
     let [range, step, held] = [(); 3].map(|()| frame.hidden());
     products.slots(&mut frame, held);
-    // From the output back to the angle: each takes what the one before it held.
+    // From the output back to the angle: each slot takes the value that the slot before it in the pipeline held.
     frame.every_edge(move |s| {
         s[held] = s[cosine];
         s[cosine] = it.tables[s[range] as usize].words[s[step] as usize];

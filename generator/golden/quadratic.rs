@@ -152,7 +152,7 @@ impl Reflectance for Arithmetic {
         ]
     }
 
-    /// Returns the error by n − 1 beside that of the minimax table.
+    /// Compares the error of the formula with a(n) = n − 1 with its error with the minimax table.
     fn remarks(&self) -> Vec<String> {
         if self.keys.scheme != Scheme::Taylor {
             return Vec::new();

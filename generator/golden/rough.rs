@@ -186,9 +186,9 @@ impl Arithmetic {
 
     /// Computes adder 15: cos(γ ± dγ) − 1.0 from registers 11 and 12.
     ///
-    /// In the patent's words the 1.0 is the integer position that they lack. Mux 14 offers the inverse
-    /// of register 12, which without a carry subtracts an ulp too much, or (trigger 4) what adder 31
-    /// makes of it, an ulp too little, which trigger 4 as the carry-in brings back.
+    /// The patent's words lack the integer position, so the 1.0 is subtracted by dropping it. Mux 14 offers the inverse of
+    /// register 12 if `dgamma_negative` is 0; without a carry it subtracts an ulp too much. Otherwise (trigger 4) mux 14
+    /// offers the output of adder 31, an ulp too little. Trigger 4 as the carry-in adds that ulp again.
     #[inline]
     fn adder_15(&self, cos_cos: i64, sin_sin: i64, dgamma_negative: i64) -> i64 {
         match &self.kind {

@@ -39,8 +39,8 @@ fn products(keys: &Keys) -> Products {
 
 /// Returns the golden model.
 ///
-/// The divider's registers are predicted from the division as a whole: after k steps the quotient ends
-/// in the first k bits of the true one, and the remainder is what these leave.
+/// The divider's registers are predicted from the division as a whole. After k steps the quotient register ends in the first
+/// k bits of the true quotient, and the remainder register holds the remainder after these bits.
 pub fn model(config: &Config) -> Box<dyn Model> {
     let it = Arithmetic(Keys::of(config));
     let (bits, cosine_fraction) = (it.0.fraction, it.0.operands.cosine.fraction);
@@ -54,7 +54,7 @@ pub fn model(config: &Config) -> Box<dyn Model> {
     let remainder = frame.register("quotient_remainder", format);
     let counter = Format::unsigned((bits - 1).ilog2() as i32 + 1, 0);
     let remaining = frame.register("quotient_remaining", counter);
-    // Bits found, and what the quotient's register held before.
+    // The number of bits found, and the value that the quotient's register held before the division.
     let (found, before) = (frame.hidden(), frame.hidden());
     // The divider takes cos γ and n − n·cos γ + cos γ.
     let begin = step(move |s| {

@@ -1,5 +1,5 @@
-//! The golden model and the accuracy contract of `shading`: ambient, diffuse and specular light of a normal of any
-//! length. Both build on those of its parts.
+//! The golden model and the accuracy contract of `shading`: ambient, diffuse and specular light of a normal of any length.
+//! Both are built from the models and contracts of the parts.
 
 use std::sync::Arc;
 

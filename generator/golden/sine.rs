@@ -13,8 +13,8 @@ pub enum TableScheme {
         /// Address bits, A.
         address: u32,
     },
-    /// Ranges of `u = 1.0 − x`, each a quarter of the one before, cut uniformly and interpolated
-    /// linearly; what remains next to u = 0 has an entry for every operand.
+    /// Ranges of `u = 1.0 − x`, each a quarter of the range before it, cut uniformly and interpolated linearly. The rest,
+    /// next to u = 0, has an entry for every operand.
     Segmented {
         /// log₂ of the number of prefixes in each range, k_j; a quarter of them lies below it.
         segments: Vec<u32>,

@@ -46,8 +46,8 @@ impl Arithmetic {
         it
     }
 
-    /// Returns the least word of f that is shown, an entry an octave of n: `levels / 100` units, rounded up to a
-    /// word. There is none above 1.0 − ulp.
+    /// Returns the least word of f that is shown, one entry for each octave of n: `levels / 100` units, rounded up to a word.
+    /// A word is at most 1.0 − ulp.
     fn thresholds(keys: &Keys) -> Vec<i64> {
         // 100 · largest · word ≥ level · 2^F, for the least word; less than 2^30 · 2^24.
         let unit = 100 * ((1 << keys.operands.colours.bits) - 1);
@@ -158,7 +158,7 @@ impl Reflectance for Arithmetic {
         }
     }
 
-    /// Returns the formula on either side of its jump, with ROM(n) as it stands.
+    /// Returns the formula on either side of its jump, with the actual words of ROM(n).
     fn expressions(&self) -> Vec<String> {
         let square =
             format!("{} ** 2", contract::clamped_at_0("exponent / 2 * (cos_gamma - 1) + 1"));
@@ -190,7 +190,7 @@ impl Reflectance for Arithmetic {
         ]
     }
 
-    /// Warns of a level above what rounds to 0, which is seen as an edge around the highlight.
+    /// Warns of a level that hides outputs above 0. Such a level is visible as an edge around the highlight.
     fn remarks(&self) -> Vec<String> {
         let (f, colour_bits) = (&self.keys.f, self.keys.operands.colours.bits);
         let largest = (1 << colour_bits) - 1;
@@ -198,7 +198,7 @@ impl Reflectance for Arithmetic {
         let colour = Format::unsigned(colour_bits as i32, 0);
         let output = Narrow::new(f.fraction, colour, f.output_rounding);
         let hidden = |n: i64| self.threshold(n) - 1;
-        // One n of each octave stands for all.
+        // One n of each octave represents the octave.
         let Some((n, word)) = (0..=12)
             .map(|octave| (1i64 << octave).clamp(first, last))
             .map(|n| (n, hidden(n)))

@@ -1,4 +1,4 @@
-//! Declares the configuration keys of `blinn`: those of [`super::decay`], checked for its decay −log₂ c.
+//! Declares the configuration keys of `blinn`: the keys of [`super::decay`], checked for the decay −log₂ c of this device.
 
 pub use super::decay::Keys;
 

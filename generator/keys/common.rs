@@ -231,7 +231,7 @@ pub fn check_exponents(domain: &Domain, bits: u32, problems: &mut Problems) {
 /// The most bits of a ROM: a megabit.
 const ROM_LIMIT: i64 = 1 << 20;
 
-/// Checks that a ROM with so many address bits and bits in a word is not too large. `key` governs it.
+/// Checks that a ROM with this number of address bits and bits in a word is not too large. `key` governs its size.
 pub fn check_rom_size(
     key: &str,
     rom: &str,

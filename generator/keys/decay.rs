@@ -41,7 +41,7 @@ fn degree(name: &'static str) -> Key {
 /// The decay as a function of c = cos γ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Decay {
-    /// `blinn`: −log₂ c, of a cosine from one half on; octaves below it add as many whole numbers.
+    /// `blinn`: −log₂ c, for a cosine from one half on. Each octave below one half adds 1 to it.
     Logarithm,
     /// `gauss`: γ²/(2 ln 2).
     Angle,
@@ -65,7 +65,7 @@ impl Decay {
         }
     }
 
-    /// Returns the number of bits of the distance, of which the first is always 0.
+    /// Returns the number of leading bits of the distance that are always 0: 1 for `blinn`, 0 for `gauss`.
     fn known(self) -> u32 {
         u32::from(self == Self::Logarithm)
     }
@@ -77,19 +77,19 @@ impl Keys {
         self.operands.cosine.fraction - decay.known()
     }
 
-    /// Returns the format of the decay, or of what octaves add to: below 2.0.
+    /// Returns the format of the decay, or of the part to which octaves are added. Its values are below 2.0.
     pub fn decay_format(&self) -> Format {
         Format::unsigned(1, self.decay_fraction as i32)
     }
 
-    /// Returns the number of bits of the integer of a decay: of the number of an octave, and one more.
+    /// Returns the number of bits of the integer of a decay: the bits of the number of an octave, and one more.
     fn whole_bits(&self, decay: Decay) -> u32 {
         let octave = (self.operands.cosine.fraction - 1).ilog2() + 1;
         1 + octave * decay.known()
     }
 
-    /// Returns the number of bits of a decay as a factor: of a small one, below ¼, all that are not 0, of others the
-    /// integer and the coarse fraction.
+    /// Returns the number of bits of a decay as a factor. A small decay, below ¼, keeps all bits that are not 0. A larger
+    /// decay keeps the integer and the coarse fraction.
     pub fn factor_bits(&self, decay: Decay) -> u32 {
         (self.decay_fraction - 2).max(self.whole_bits(decay) + self.coarse_fraction)
     }
@@ -100,16 +100,17 @@ impl Keys {
         Format::unsigned(whole as i32, self.argument as i32)
     }
 
-    /// Returns the low bits of u that the table of the ratio does not see: of 1 − c it takes a bit more than the ratio has.
+    /// Returns the number of low bits of u that the table of the ratio does not read. The table reads one bit more of 1 − c
+    /// than the ratio has.
     pub fn unseen(&self) -> u32 {
         self.operands.cosine.fraction.saturating_sub(self.ratio_fraction + 1)
     }
 
-    /// Returns the table of the decay over the distance, whose operand is u without the bits that are not seen: a value for the
-    /// middle of the distances that it stands for.
+    /// Returns the table of the decay over the distance. Its operand is u without the low bits that the table does not read.
+    /// Its value is the value in the middle of the distances that share an operand.
     ///
     /// # Errors
-    /// Why there is none.
+    /// Fails if no approximation can be found. The error says why.
     pub fn ratio(&self, decay: Decay) -> Result<Arc<Piecewise>, Refusal> {
         let unseen = self.unseen();
         let fraction = self.operands.cosine.fraction - unseen;
@@ -121,10 +122,11 @@ impl Keys {
         table(&formula, (last, of), self.ratio_fraction, &self.ratio_degree, "ratio.fraction")
     }
 
-    /// Returns the table of 2^−x of the fraction x of n·decay: a value for the middle of what is cut to x.
+    /// Returns the table of 2^−x for the fraction x of n·decay. Its value is the value in the middle of the fractions that
+    /// are cut to x.
     ///
     /// # Errors
-    /// Why there is none.
+    /// Fails if no approximation can be found. The error says why.
     pub fn power(&self) -> Result<Arc<Piecewise>, Refusal> {
         let formula = format!("exp2(-x - 1/2^{})", self.argument + 1);
         let (last, of) = ((1 << self.argument) - 1, (0, self.argument as i32));
@@ -132,7 +134,8 @@ impl Keys {
     }
 }
 
-/// Returns the approximation of a formula over operands from 0 to the last, of so many bits before and behind the point.
+/// Returns the approximation of a formula over operands from 0 to `last`, with `int` bits before and `frac` bits behind the
+/// point.
 fn table(
     formula: &str,
     (last, (int, frac)): (i64, (i32, i32)),

@@ -73,7 +73,7 @@ fn check(config: &Config, problems: &mut Problems) {
 /// Returns the function that a configuration states, and its approximation.
 ///
 /// # Errors
-/// A formula or domain that is wrong, or no approximation, with the reason.
+/// Fails if the formula or the domain is wrong, or if there is no approximation. The error says why.
 pub fn found(config: &Config) -> Result<(Function, Arc<Piecewise>), Refusal> {
     let keys = Keys::of(config);
     let function = function(&keys)?;

@@ -1,4 +1,5 @@
-//! Declares the configuration keys of `gauss`: those of [`super::decay`], checked for its decay γ²/(2 ln 2).
+//! Declares the configuration keys of `gauss`: the keys of [`super::decay`], checked for the decay γ²/(2 ln 2) of this
+//! device.
 
 pub use super::decay::Keys;
 

@@ -1,5 +1,6 @@
-//! Declares the configuration keys of the devices of the seeds, a file each: what a configuration can say of a device,
-//! and which combinations make one. Description and golden model both read them; they are the specification of both.
+//! Declares the configuration keys of the seed devices, one file for each device. A file says which keys a configuration may
+//! set and which combinations of values are valid. The hardware description and the golden model both read these keys, which
+//! are the specification of both.
 
 pub mod blinn;
 pub mod common;

@@ -42,7 +42,7 @@ fn check(config: &Config, problems: &mut Problems) {
     }
 }
 
-/// Checks the table of inverse roots for components with so many fraction bits.
+/// Checks the table of inverse roots for components with `fraction` fraction bits.
 pub(super) fn check_root(fraction: u32, address: u32, inverse: u32, problems: &mut Problems) {
     let sum = 2 * fraction + 4;
     if address >= sum {

@@ -5,7 +5,8 @@ use glint_config::Value;
 /// The device that they are configurations of.
 pub const DEVICE: &str = "function";
 
-/// A name; the formula; the domain's ends; what is outside; fraction bits of operand and result; the range reduction.
+/// The name, the formula, the ends of the domain, the value of `outside`, the fraction bits of operand and result, and the
+/// range reduction.
 type Preset = (&'static str, &'static str, [&'static str; 2], &'static str, [i64; 2], &'static str);
 
 /// Whole formats, but for functions that have no identity: these are between their flat tails.

@@ -78,7 +78,8 @@ fn check(config: &Config, problems: &mut Problems) {
             format!("its part `{part}` cannot be made: {}: {}", problem.key, problem.message);
         return problems.push("highlight", message, "other widths");
     }
-    // The keys of the part are not those of this file: of them it has the formula alone, and makes the others of its own.
+    // The keys of the part are not the keys of this file. The part shares only the formula with this file, and makes its
+    // other keys itself.
     let message = problem.message.clone();
     if problem.key == FORMULA {
         let remedy = problem
@@ -161,7 +162,7 @@ impl Keys {
     /// Returns the parts.
     ///
     /// # Errors
-    /// The part that refuses its configuration, and why.
+    /// Fails if a part refuses its configuration. The error names the part and says why.
     pub fn parts(&self) -> Result<Parts, (&'static str, Box<Problems>)> {
         let make = |schema: Schema, keys: Vec<(&str, Value)>| {
             let keys = keys.into_iter().map(|(key, value)| (key.to_owned(), value)).collect();

@@ -31,7 +31,7 @@ impl Verilog {
     /// build, and on each list of points.
     ///
     /// # Errors
-    /// As of [`BuiltBench::build`], and a contract that speaks of other ports than the design's.
+    /// Fails if [`BuiltBench::build`] fails, or if the contract names ports that the design does not have.
     pub fn new(
         simulator: Simulator,
         design: &Design,

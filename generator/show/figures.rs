@@ -45,7 +45,7 @@ impl Target {
         self.family().map_or("0.18 µm cells", |family| family.title)
     }
 
-    /// Returns the family as Yosys knows it; none of standard cells.
+    /// Returns the family as Yosys knows it; `None` for standard cells.
     pub fn family(self) -> Option<&'static Family> {
         FAMILIES.iter().find(|family| family.name() == self.name())
     }
@@ -79,7 +79,7 @@ pub struct Figures {
     /// How fast it is, with the registers around it; not of every target.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub frequency: Option<Frequency>,
-    /// The longest path between registers, by names of the description; of the median run.
+    /// The longest path between registers in the median run, by names of the description.
     #[serde(skip_serializing_if = "Vec::is_empty", default)]
     pub critical_path: Vec<Step>,
     /// Why there is no frequency.
@@ -117,7 +117,7 @@ pub struct Area {
 pub struct Frequency {
     /// The frequency of the slowest run.
     pub lowest: f64,
-    /// The frequency of the run in the middle; of an even number of runs the slower of two.
+    /// The frequency of the run in the middle. For an even number of runs, it is the slower of the two.
     pub median: f64,
     /// The frequency of the fastest run.
     pub highest: f64,
@@ -128,7 +128,7 @@ pub struct Frequency {
 /// A point of a path.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Step {
-    /// The net, as the description names it; `ROM` before that of a ROM.
+    /// The net, as the description names it. The name of a ROM has `ROM` before it.
     pub name: String,
     /// When it settles, after the clock's edge, in nanoseconds.
     pub ns: f64,
@@ -171,7 +171,7 @@ impl Figures {
 }
 
 impl Area {
-    /// Returns the FPGA's resources; none of cells.
+    /// Returns the FPGA's resources; `None` for standard cells.
     pub fn usage(&self) -> Option<Usage> {
         let flip_flops = self.flip_flops;
         let (luts, dsps, block_rams) = (self.luts?, self.dsps?, self.block_rams?);

@@ -51,15 +51,14 @@ impl fmt::Display for Simulator {
     }
 }
 
-/// Builds the bench `top` from `files`, pairs of a plain file name and contents, in a temporary
-/// directory and runs it there. Files that end in `.v` or `.sv` are compiled, in the given order;
-/// others, such as `.mem`, only stand beside. The bench ends by itself after a line that begins with
-/// `PASS` or `FAIL`.
+/// Builds the bench `top` from `files`, pairs of a plain file name and contents, in a temporary directory and runs it
+/// there. Files that end in `.v` or `.sv` are compiled, in the given order. Other files, such as `.mem`, only lie
+/// beside them. The bench must end by itself after a line that begins with `PASS` or `FAIL`.
 ///
 /// # Errors
-/// The simulator is missing; it rejects the sources (Verilator: or warns of them); building and
-/// running take more than `limit` in all; the bench crashes, or ends without a verdict. A bench
-/// that fails is no error but an outcome.
+/// Fails if the simulator is missing or rejects the sources (Verilator: or warns of them). Fails if building and
+/// running take more than `limit` in all, or if the bench crashes or ends without a verdict. A bench that fails is no
+/// error but an outcome.
 pub fn run_bench<N: AsRef<str>, C: AsRef<[u8]>>(
     simulator: Simulator,
     files: &[(N, C)],
@@ -70,7 +69,7 @@ pub fn run_bench<N: AsRef<str>, C: AsRef<[u8]>>(
     run_bench_in(&search, simulator, files, top, limit)
 }
 
-/// Does what [`run_bench`] does, with another search path than `PATH` for the simulator.
+/// Does the same as [`run_bench`], with another search path than `PATH` for the simulator.
 pub(super) fn run_bench_in<N: AsRef<str>, C: AsRef<[u8]>>(
     search: &OsStr,
     simulator: Simulator,
@@ -98,8 +97,8 @@ impl BuiltBench {
     /// Builds a bench, with `files` as in [`run_bench`].
     ///
     /// # Errors
-    /// The simulator is missing; it rejects the sources (Verilator: or warns of them); that takes more
-    /// than `limit`.
+    /// Fails if the simulator is missing or rejects the sources (Verilator: or warns of them), or if building takes
+    /// more than `limit`.
     pub fn build<N: AsRef<str>, C: AsRef<[u8]>>(
         simulator: Simulator,
         files: &[(N, C)],
@@ -133,7 +132,7 @@ impl BuiltBench {
         let mut arguments: Vec<&str> = match simulator {
             Simulator::Icarus => vec!["-g2012", "-Wall", "-s", top, "-o", "bench.vvp"],
             Simulator::Verilator => {
-                // The time scale is for sources without one, which may stand beside some that have it.
+                // The time scale is for sources without one, if other sources have one.
                 let options = "--binary --timing --timescale 1ns/1ps -j 1 --Mdir build -o bench";
                 options.split(' ').chain(["--top-module", top]).collect()
             }
@@ -162,7 +161,7 @@ impl BuiltBench {
         Ok(Self { simulator, top: top.to_owned(), program, build, dir })
     }
 
-    /// Returns where it runs: beside its files, and those that it writes.
+    /// Returns the directory in which the bench runs: it has the bench's files, and the files that the bench writes.
     pub fn directory(&self) -> &Path {
         self.dir.path()
     }
@@ -170,8 +169,8 @@ impl BuiltBench {
     /// Runs the bench.
     ///
     /// # Errors
-    /// It takes more than `limit`, crashes, or ends without a verdict. A bench that fails is no error but
-    /// an outcome.
+    /// Fails if the bench takes more than `limit`, crashes, or ends without a verdict. A bench that fails is no error
+    /// but an outcome.
     pub fn run(&self, limit: Duration) -> Result<BenchOutcome> {
         let (top, simulator) = (&self.top, self.simulator);
         let (program, arguments) = &self.program;
@@ -198,7 +197,7 @@ impl BuiltBench {
     }
 }
 
-/// Writes the files and returns the names of those to compile.
+/// Writes the files, and returns the names of the files to compile.
 fn write_files<'a, N: AsRef<str>, C: AsRef<[u8]>>(
     directory: &Path,
     files: &'a [(N, C)],

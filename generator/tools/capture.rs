@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 /// The bytes that are kept of the beginning of a long output ...
 const KEEP_FIRST: usize = 64 << 10;
-/// ... and this many of the end, where verdicts and errors stand.
+/// ... and this many of the end, which has verdicts and errors.
 const KEEP_LAST: usize = 1 << 20;
 /// Lines of output that an error quotes.
 const QUOTED_LINES: usize = 12;
@@ -46,7 +46,7 @@ impl Capture {
         String::from_utf8_lossy(&bytes).into_owned()
     }
 
-    /// Returns the end of what has been kept, as [`quote`] gives it.
+    /// Returns the end of the kept output, as [`quote`] gives it.
     pub(super) fn quote(&self) -> String {
         quote(&self.text())
     }

@@ -25,7 +25,7 @@ pub struct BenchDifference {
 }
 
 impl BenchDifference {
-    /// Returns the first in what a bench printed, if there is one.
+    /// Returns the first difference in the transcript of a bench, if there is one.
     pub fn first(transcript: &str) -> Option<Self> {
         transcript.lines().find_map(Self::of_line)
     }
@@ -54,7 +54,7 @@ impl BenchDifference {
 /// clocks `from` to `to`.
 ///
 /// # Errors
-/// As of [`super::run_bench`]; there is no waveform.
+/// Fails as [`super::run_bench`] does, or if there is no waveform.
 pub fn bench_waveform(
     simulator: Simulator,
     files: &[(String, String)],

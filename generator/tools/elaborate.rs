@@ -8,11 +8,12 @@ use serde_json::Value;
 use super::Tool;
 use super::sources::Sources;
 
-/// Reads Verilog and memory files, pairs of a plain name and contents, and returns the module `top` with everything that it
-/// instantiates: word-level cells, registers and memories, nothing optimised but what nothing reads.
+/// Reads Verilog and memory files, pairs of a plain name and contents, and returns the module `top` with everything
+/// that it instantiates. The result has word-level cells, registers and memories. Only logic that nothing reads is
+/// optimised away.
 ///
 /// # Errors
-/// Yosys refuses the files, takes longer than `limit`, or writes no netlist.
+/// Fails if Yosys refuses the files, takes longer than `limit`, or writes no netlist.
 pub fn elaborate(
     yosys: &Tool,
     files: &[(String, String)],

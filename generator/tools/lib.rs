@@ -1,8 +1,8 @@
 //! Runs outside tools as child processes: simulators, synthesis, provers.
 //!
-//! A [`Tool`] is a program found on a search path; every run has a time limit, after which it is killed with all that it has started.
-//! Output is drained to the end but kept only in part, and errors quote its last lines. [`run_bench`] builds and runs a self-checking
-//! Verilog bench; a [`BuiltBench`] can be run repeatedly.
+//! A [`Tool`] is a program found on a search path. Every run has a time limit; then the run is killed with everything
+//! that it has started. Output is drained to the end but kept only in part, and errors quote its last lines.
+//! [`run_bench`] builds and runs a self-checking Verilog bench; a [`BuiltBench`] can be run repeatedly.
 
 use std::env;
 use std::ffi::OsStr;
@@ -90,7 +90,7 @@ impl Tool {
     /// Finds the tool `name` on `PATH`.
     ///
     /// # Errors
-    /// It is not there; the message says how to install it.
+    /// Fails if the tool is not there; the message says how to install it.
     pub fn find(name: &str) -> Result<Self> {
         Self::find_in(name, &env::var_os("PATH").unwrap_or_default())
     }
@@ -98,7 +98,7 @@ impl Tool {
     /// Finds the tool `name` on the search path `search`, which is written as `PATH` is.
     ///
     /// # Errors
-    /// It is not there; the message says how to install it.
+    /// Fails if the tool is not there; the message says how to install it.
     pub fn find_in(name: &str, search: &OsStr) -> Result<Self> {
         let file = format!("{name}{}", env::consts::EXE_SUFFIX);
         env::split_paths(search)
@@ -113,15 +113,15 @@ impl Tool {
         &self.name
     }
 
-    /// Returns where it was found.
+    /// Returns the path of the tool.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Returns the first line of what the tool says of its version.
+    /// Returns the first line of the tool's answer to the question for its version.
     ///
     /// # Errors
-    /// The tool does not start, does not end, fails, or says nothing.
+    /// Fails if the tool does not start, does not end, fails, or says nothing.
     pub fn version(&self) -> Result<String> {
         // Icarus Verilog knows no long options.
         let flag = match self.name.as_str() {
@@ -138,8 +138,8 @@ impl Tool {
     /// everything that writes to its output has too.
     ///
     /// # Errors
-    /// It does not start, or takes longer than its limit; then it and the processes that it started
-    /// are killed, and the error is [`LimitReached`].
+    /// Fails if the tool does not start. Fails with [`LimitReached`] if it takes longer than its limit; then the tool
+    /// and the processes that it started are killed.
     pub fn run<A: AsRef<OsStr>>(
         &self,
         arguments: impl IntoIterator<Item = A>,
@@ -158,7 +158,7 @@ impl Tool {
             .stdout(writer.try_clone().context("cannot make a pipe")?)
             .stderr(writer);
         if directory.is_absolute() {
-            // What a tool that is killed leaves of its temporary files goes with the directory.
+            // The temporary files of a tool that is killed are deleted with the directory.
             command.env("TMPDIR", directory);
         }
         let deadline = Instant::now() + limit;
@@ -197,7 +197,7 @@ impl Tool {
     /// Runs a tool as [`Tool::run`] does, but expects it to succeed; returns its output.
     ///
     /// # Errors
-    /// As of [`Tool::run`], and any exit status but 0.
+    /// Fails if [`Tool::run`] fails, or if the exit status is not 0.
     pub fn run_to_success<A: AsRef<OsStr>>(
         &self,
         arguments: impl IntoIterator<Item = A>,
@@ -245,7 +245,7 @@ fn limit_memory(process: u32, bytes: u64) {
 #[cfg(not(target_os = "linux"))]
 fn limit_memory(_process: u32, _bytes: u64) {}
 
-/// Returns how to install a tool, for those who have no checkout of Glint and for those who have.
+/// Returns how to install a tool, for users with a checkout of Glint and for users without.
 fn remedy(name: &str) -> String {
     let package = match name {
         "vvp" => "iverilog",

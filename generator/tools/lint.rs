@@ -11,7 +11,7 @@ use super::Tool;
 /// directory: nothing, if they are clean.
 ///
 /// # Errors
-/// The tool is neither; it rejects the sources, or takes longer than `limit`.
+/// Fails if the tool is neither of these, rejects the sources, or takes longer than `limit`.
 pub fn lint(
     tool: &Tool,
     directory: &Path,

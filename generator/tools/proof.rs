@@ -11,12 +11,12 @@ use super::{LimitReached, Limits, Tool, capture};
 /// The limits of each command of a proof, unless less is asked for.
 pub const PROOF_LIMITS: Limits = Limits { time: Duration::from_secs(300), memory: Some(4 << 30) };
 
-/// Runs the commands that the head of the wrapper `<name>_formal.sv` gives, in the directory that has it and
-/// the files of its device: what users are told to run is what is run.
+/// Runs the commands that the head of the wrapper `<name>_formal.sv` gives to users. `directory` must have the
+/// wrapper and the files of its device.
 ///
 /// # Errors
-/// The proof does not succeed; a tool is missing; a command takes more than its limits, which is
-/// [`LimitReached`] and says nothing about the properties.
+/// Fails if the proof does not succeed, or if a tool is missing. Fails with [`LimitReached`], which says nothing
+/// about the properties, if a command takes more than its limits.
 pub fn prove(directory: &Path, name: &str, limits: impl Into<Limits>) -> Result<()> {
     let limits = limits.into();
     let file = directory.join(format!("{name}_formal.sv"));
@@ -37,7 +37,8 @@ pub fn prove(directory: &Path, name: &str, limits: impl Into<Limits>) -> Result<
     for command in commands {
         let tool = Tool::find(command[0])?;
         let run = tool.run(&command[1..], directory, limits).with_context(|| command.join(" "))?;
-        // Yosys writes the problem, without which the solver's front end fails; that says what it has shown.
+        // Yosys writes the problem, without which the solver's front end fails. The front end says whether the proof
+        // succeeded.
         let says = command[0] == "yosys" || run.output.contains("Status: PASSED");
         if run.status.success() && says {
             continue;

@@ -19,11 +19,11 @@ pub struct Sources<'a> {
 }
 
 impl<'a> Sources<'a> {
-    /// Writes files, pairs of a plain name and contents, of which Yosys reads those that end in `.v`. No run of it takes longer
-    /// than `limit`.
+    /// Writes `files`, pairs of a plain name and contents. Yosys reads the files that end in `.v`. No run of Yosys
+    /// takes longer than `limit`.
     ///
     /// # Errors
-    /// They cannot be written.
+    /// Fails if the files cannot be written.
     pub fn new(yosys: &'a Tool, files: &[(String, String)], limit: Duration) -> Result<Self> {
         let directory = Directory::new().context("cannot make a directory for synthesis")?;
         let names = files.iter().map(|(name, _)| name.as_str());
@@ -36,7 +36,7 @@ impl<'a> Sources<'a> {
     /// Writes another file beside them.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// Fails if the file cannot be written.
     pub fn write(&self, name: &str, contents: &str) -> Result<()> {
         fs::write(self.path().join(name), contents)
             .with_context(|| format!("cannot write `{name}` for synthesis"))
@@ -50,7 +50,7 @@ impl<'a> Sources<'a> {
     /// Has Yosys read the Verilog and run commands.
     ///
     /// # Errors
-    /// It fails, or takes too long.
+    /// Fails if Yosys fails or takes too long.
     pub fn run(&self, commands: &str) -> Result<()> {
         let script = format!("read_verilog {}; {commands}", self.verilog);
         self.yosys.run_to_success(["-q", "-p", &script], self.path(), self.limit)?;
@@ -60,7 +60,7 @@ impl<'a> Sources<'a> {
     /// Reads a file that a tool has left.
     ///
     /// # Errors
-    /// It is not there.
+    /// Fails if the file is not there.
     pub fn text(&self, name: &str) -> Result<String> {
         fs::read_to_string(self.path().join(name))
             .with_context(|| format!("a tool wrote no `{name}`"))
@@ -69,7 +69,7 @@ impl<'a> Sources<'a> {
     /// Reads a JSON file that a tool has left.
     ///
     /// # Errors
-    /// It is not there, or no JSON.
+    /// Fails if the file is not there, or is no JSON.
     pub fn json(&self, name: &str) -> Result<Value> {
         let text = self.text(name)?;
         serde_json::from_str(&text).with_context(|| format!("`{name}` of a tool is no JSON"))

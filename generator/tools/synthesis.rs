@@ -1,4 +1,4 @@
-//! Synthesises a design with Yosys, and counts what it takes of an FPGA.
+//! Synthesises a design with Yosys, and counts the cells of an FPGA that it takes.
 
 use std::time::Duration;
 
@@ -13,8 +13,8 @@ use glint_base::target::{Family, Kinds};
 /// Synthesises the module `top` of Verilog and memory files, pairs of a plain name and contents.
 ///
 /// # Errors
-/// The files cannot be written; Yosys fails, or takes longer than `limit`; it does not say what the
-/// design takes.
+/// Fails if the files cannot be written, if Yosys fails or takes longer than `limit`, or if it does not say which
+/// cells the design takes.
 pub fn synthesise(
     yosys: &Tool,
     files: &[(String, String)],
@@ -31,10 +31,10 @@ pub fn synthesise(
 /// The command of Yosys whose result [`usage`] reads.
 pub const STATISTICS_COMMAND: &str = "tee -q -o statistics.json stat -json";
 
-/// Reads what [`STATISTICS_COMMAND`] has written.
+/// Reads the statistics that [`STATISTICS_COMMAND`] has written.
 ///
 /// # Errors
-/// It is not there, or does not tell the cells of the module `top`.
+/// Fails if the file is not there, or does not tell the cells of the module `top`.
 pub fn usage(sources: &Sources, top: &str, family: &Family) -> Result<Usage> {
     let text = sources.text("statistics.json").context("`yosys` wrote no statistics")?;
     let statistics: Value =

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use super::bench::run_bench_in;
 use super::*;
 
-/// A directory of scripts that stands for `PATH`.
+/// A directory of scripts that serves as `PATH`.
 struct Fakes(tempfile::TempDir);
 
 impl Fakes {

@@ -1,7 +1,7 @@
 //! Shows that a tool works: given something wrong, it must say so.
 //!
-//! A proof and a lint rest on what a tool does not say, or on its exit status alone. One that is silent and exits with 0,
-//! whatever it is given, is found here.
+//! A proof and a lint rest on the silence of a tool, or on its exit status alone. This test finds a tool that is
+//! silent and exits with 0 whatever it is given.
 
 use std::fs;
 use std::time::Duration;
@@ -12,7 +12,7 @@ use serde::Deserialize;
 use super::Tool;
 use crate::transient::Directory;
 
-/// A task for a tool, with what it must say of it.
+/// A task for a tool, and the text that the tool must print about it.
 #[derive(Deserialize)]
 struct Trial {
     tool: String,
@@ -33,10 +33,10 @@ struct Trials {
 }
 
 impl Tool {
-    /// Gives the tool what is known to be wrong, and what is known to be right where its exit status is all that it says.
+    /// Gives the tool a wrong input. If the exit status is all that the tool says, it also gets a right input.
     ///
     /// # Errors
-    /// It does not tell them apart; it does not run.
+    /// Fails if the tool does not tell them apart, or if it does not run.
     pub fn ensure_works(&self, limit: Duration) -> Result<()> {
         let Trials { trial: trials } = toml::from_str(include_str!("trials.toml"))?;
         for trial in trials.iter().filter(|trial| trial.tool == self.name) {

@@ -13,7 +13,7 @@ const CLOCK: u64 = 10;
 /// waveform of clocks `from` to `to` to [`WINDOW_FILE`], and ends the run as one that fails.
 ///
 /// # Errors
-/// The template fails, which would be a bug.
+/// Fails if the template fails, which would be a bug.
 pub fn window(name: &str, bench: &str, from: u64, to: u64) -> Result<String> {
     // Not at the very beginning: the bench has set its variables then.
     let begin = from * CLOCK + 1;

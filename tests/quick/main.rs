@@ -38,6 +38,7 @@ mod spread;
 mod streams;
 mod tables;
 mod tune;
+mod words;
 mod worst;
 
 use cli::{refusals, workspace};

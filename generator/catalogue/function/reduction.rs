@@ -24,7 +24,7 @@ fn integer(bits: u32) -> Format {
     Format::unsigned(bits as i32, 0)
 }
 
-/// Returns the number of an operand, and what makes its result of the polynomial.
+/// Returns the number of an operand, and the steps that restore the operand's result from the polynomial.
 pub(super) fn reduced<'d>(
     d: &'d Designer,
     x: Signal<'d>,

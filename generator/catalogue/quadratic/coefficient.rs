@@ -1,7 +1,8 @@
 //! Computes the coefficient a(n) of `quadratic`, with which `max(0, c + a·(c² − c))` is near `cⁿ`.
 //!
-//! With x = 1 − c the parabola is `(1 − x)·(1 − a·x)`, zero at x = 1/a. For 1 < a < n − 1 it is above cⁿ
-//! near the peak, by the most where the slopes agree, and below it beyond, by the most at its own zero.
+//! With x = 1 − c the parabola is `(1 − x)·(1 − a·x)`, zero at x = 1/a. For 1 < a < n − 1 the parabola is above cⁿ near the
+//! peak; the distance is largest where the slopes agree. Farther away it is below cⁿ; the distance is largest at the
+//! parabola's own zero.
 
 /// Returns n − 1: value and slope agree with cⁿ at c = 1. For n = 0, where that is negative, 0.
 pub fn taylor(n: u32) -> f64 {

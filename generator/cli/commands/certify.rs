@@ -50,13 +50,14 @@ pub struct Arguments {
 /// The first words of a script that Glint wrote: nothing else is overwritten.
 const MARKER: &str = "# Certificate by Glint: ";
 
-/// The text before the digest of a script, in the line after that of the marker.
+/// The text before the digest of a script, in the line after the marker's line.
 const DIGEST: &str = "# SHA-256 of the script below: ";
 
 /// The text before a point at which the hypotheses hold, in the next line.
 const WITNESS: &str = "# The hypotheses hold at ";
 
-/// Prints the terms of a bound that the contract states; of a device that is made of parts, the bounds of the parts are among them.
+/// Prints the terms of a bound that the contract states. If a device is made of parts, the bounds of the parts are
+/// among the terms.
 fn tell_terms(bound: &Bound) {
     if bound.is_stated() {
         say!("  the contract states {} units, which nothing here has checked:", bound.words());
@@ -236,9 +237,10 @@ fn found(
     Ok(bound.map(|bound| (asked.iter().map(|one| one.within(bound)).collect(), bound)))
 }
 
-/// Writes the scripts, each in a file: the accepted one, or of what is open the first. Those of an earlier run with
-/// more statements go, under the names that they have in their first line: a copy under another name, or an edited one,
-/// is the user's.
+/// Writes the scripts, each in a file: the accepted script of a proved statement, or the first script of an open one.
+///
+/// Scripts of an earlier run with more statements are deleted if they have the name that is in their first line. A
+/// copy under another name, or an edited script, belongs to the user and stays.
 fn write(
     directory: &Path,
     config: &str,
@@ -267,7 +269,8 @@ fn write(
         let script = &scripts[chosen];
         let digest = digest(script.as_bytes());
         let text = format!("{head} To check: gappa {name}\n{DIGEST}{digest}\n{witness}\n{script}");
-        // All are opened before the first is written: what is not of Glint's making is refused with nothing changed.
+        // All files are opened before the first is written. A file that Glint did not write is refused with nothing
+        // changed.
         let file = OwnFile::new(directory, &name, MARKER)?;
         let path = directory.join(&name);
         if std::fs::read_to_string(&path).is_ok_and(|text| !is_unedited(&text)) {

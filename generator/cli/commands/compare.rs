@@ -71,7 +71,7 @@ struct Entry {
     label: String,
     core: Core,
     figures: Figures,
-    /// By family; empty where nothing is known.
+    /// By family; empty if nothing is known.
     usage: Vec<Result<Usage, String>>,
     /// The record of `synth`.
     record: Option<Record>,
@@ -167,7 +167,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     Ok(failures.is_empty())
 }
 
-/// Returns the device's defaults with these keys replaced, where it has them and accepts the value.
+/// Returns the device's defaults with these keys replaced, if the device has them and accepts the value.
 fn with_widths(device: &Device, widths: &[(&str, Option<i64>)], notes: &mut Vec<String>) -> Config {
     let schema: Schema = (device.schema)();
     let name = schema.module();
@@ -208,7 +208,7 @@ fn figures(core: &Core, n: f64) -> Result<Figures> {
     })
 }
 
-/// Returns a record's usage of every family; nothing where it leaves one out.
+/// Returns a record's usage of every family; empty if the record leaves one out.
 fn recorded(record: Option<&Record>) -> Vec<Result<Usage, String>> {
     let usage = |family: &Family| {
         let mut targets = record?.targets.iter();

@@ -212,7 +212,7 @@ pub(super) fn terms(bound: &Bound) -> Vec<Value> {
     bound.terms.iter().map(one).collect()
 }
 
-/// Returns an outcome for scripts. What differs leaves a waveform.
+/// Returns an outcome for scripts. A difference leaves a waveform.
 pub fn as_json(one: &Loaded, outcome: &Outcome, bound: &Bound, failed: &[String]) -> Result<Value> {
     let mismatch = outcome.mismatch.as_ref().map(|mismatch| {
         let reproducer = Reproducer::of_run(one, mismatch)?;

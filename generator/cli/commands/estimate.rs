@@ -30,7 +30,7 @@ pub struct Arguments {
 struct Row {
     target: Target,
     cost: Cost,
-    /// What the smallest chip of the family lacks, in words; empty if the core fits.
+    /// The resources that the smallest chip of the family lacks, in words; empty if the core fits.
     excess: String,
 }
 

@@ -1,4 +1,4 @@
-//! `glint eval`: computes one point, or those of a CSV file: golden registers, outputs and the formula in f64.
+//! `glint eval`: computes one point, or the points of a CSV file: golden registers, outputs and the formula in f64.
 
 mod batch;
 mod operands;
@@ -92,8 +92,8 @@ fn point(output: Output, one: &Loaded, given: &[Option<i64>], typical: bool) -> 
     let mut signals = signals(model, operands, &raw)?;
     let outside = outside(operands, &raw);
     let results = results(contract, &raw);
-    // The golden model of a pipeline is that of its sequential core: formats are those of its nets, and of the rest of it
-    // nothing is in the pipeline.
+    // The golden model of a pipeline is the model of its sequential core. Formats are the formats of the core's nets,
+    // and signals of the core that the pipeline does not have are left out.
     let pipeline = one.core.design.pipeline.as_ref();
     let sequential = pipeline.map(|_| one.core.device.sequential(&one.core.config)).transpose()?;
     if let Some(pipeline) = pipeline {
@@ -144,7 +144,7 @@ struct Computed {
     name: String,
     value: f64,
     exact: f64,
-    /// In last places of the result, from the nearer side where the formula jumps.
+    /// The error in last places of the result. At a jump of the formula, it is measured from the nearer side.
     error: f64,
 }
 

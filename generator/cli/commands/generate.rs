@@ -114,7 +114,7 @@ fn print_next_step(out: &Path, loaded: &[Loaded], with_bench: bool) {
     );
 }
 
-/// Returns what the chip that a pipeline is scheduled for lacks, in words; `None` if the core fits, or has no target.
+/// Returns the resources that a pipeline's chip lacks, in words. Returns `None` if the core fits, or has no target.
 fn misfit(one: &Loaded) -> Option<String> {
     let pipeline = one.core.design.pipeline.as_ref()?;
     let target = TARGETS.into_iter().find(|target| target.name() == pipeline.target)?;
@@ -161,7 +161,7 @@ fn files(one: &Loaded, known: &Known, with_bench: bool) -> Result<Made> {
 pub fn write(out: &Path, one: &Loaded, files: &[OutputFile], force: bool) -> Result<Written> {
     let driver = package::driver();
     let path = out.join(&driver.path);
-    // Before anything is written; what else is in the way shows in writing.
+    // This comes before anything is written. Other obstacles show in writing.
     if path.is_file() {
         store::may_write(&path, Seal::Python, force)?;
     }
@@ -171,7 +171,7 @@ pub fn write(out: &Path, one: &Loaded, files: &[OutputFile], force: bool) -> Res
     Ok(written)
 }
 
-/// Runs `--check`: returns whether what is there is what would be written.
+/// Runs `--check`: returns whether the files that are there equal the files that `generate` would write.
 fn compare(output: Output, out: &Path, loaded: &[Loaded], made: &[Made]) -> Result<bool> {
     let mut all = Vec::new();
     let driver = package::driver();

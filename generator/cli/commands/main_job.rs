@@ -1,4 +1,4 @@
-//! Does the main job: generates everything, co-simulates everything, and says what was found.
+//! Does the main job: generates everything, co-simulates everything, and reports the results.
 
 use std::path::Path;
 
@@ -25,7 +25,8 @@ struct Finding {
     failures: Vec<String>,
 }
 
-/// Returns the main job. With `details` it says of each configuration where the largest error is, and what its formula is no good for.
+/// Runs the main job. With `details` it says for each configuration where the largest error is, and prints the
+/// remarks on its formula.
 pub fn run(registry: &Registry, output: Output, details: bool) -> Result<bool> {
     let loaded = load(registry, &[])?;
     for one in &loaded {
@@ -55,7 +56,7 @@ fn finding(one: &Loaded, bar: &indicatif::ProgressBar) -> Result<Finding> {
     Ok(Finding { timing: one.core.timing()?, bound, outcome, failures })
 }
 
-/// The columns of the table, which is the last thing on the screen but for the line that counts.
+/// The columns of the table, which is the last thing on the screen except for the line that counts.
 const COLUMNS: &str = "configuration | device;6 | clocks/point:2 | points:4 | clocks:7 | registers, outputs:8 | ROM bits:3 | \
                        bound:1 | largest error: | verdict";
 

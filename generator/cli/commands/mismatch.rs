@@ -18,7 +18,7 @@ use glint_rtl::sim::views;
 /// Clocks in the waveform that ends with a difference.
 const WINDOW: u64 = 64;
 
-/// Where a difference can be seen, and had again.
+/// The means to see a difference again.
 pub struct Reproducer {
     /// The waveform of the clocks before it.
     vcd: PathBuf,
@@ -32,7 +32,7 @@ impl Reproducer {
     /// Writes the waveform of the clocks before a difference into the working directory.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// Fails if the waveform cannot be written.
     pub fn of_run(one: &Loaded, mismatch: &Mismatch) -> Result<Self> {
         let (vcd, from) = window(one, mismatch);
         let lockstep = one.core.lockstep(mismatch.seed)?;
@@ -52,7 +52,7 @@ impl Reproducer {
     /// Writes the waveform of the clocks before a difference of a combination of operands.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// Fails if the waveform cannot be written.
     pub fn of_combination(
         one: &Loaded,
         clocks: &Clocks<'_>,
@@ -63,7 +63,7 @@ impl Reproducer {
         Ok(Self { vcd, from, command: format!("{Program} cosim {} --exhaustive", one.path) })
     }
 
-    /// Tells people where a difference is and how to have it again.
+    /// Tells people the place of a difference, and how to have it again.
     pub fn text(&self, mismatch: &Mismatch) -> String {
         format!(
             "`{}` shows clocks {} to {}; all of them: {}",
@@ -74,7 +74,7 @@ impl Reproducer {
         )
     }
 
-    /// Tells scripts where a difference is and how to have it again.
+    /// Tells scripts the place of a difference, and how to have it again.
     pub fn json(&self, mismatch: &Mismatch) -> Value {
         let mut value = as_json(mismatch);
         value["vcd"] = json!(self.vcd.display().to_string());
@@ -114,7 +114,7 @@ pub fn first_clock(clock: u64) -> u64 {
 /// Returns a run with a waveform from clock `from` on: written beside its place and moved there when it is whole.
 ///
 /// # Errors
-/// As of [`Lockstep::trace`]; the file cannot be written.
+/// Fails if [`Lockstep::trace`] fails, or if the file cannot be written.
 pub fn traced(
     one: &Loaded,
     lockstep: &Lockstep<'_>,
@@ -125,8 +125,8 @@ pub fn traced(
     write(one, destination, |file| lockstep.trace(points, from, file))
 }
 
-/// Has a waveform written beside its place, and moves it there when it is whole. The files of viewers that are not there yet
-/// are written with it; those that are may be the user's.
+/// Lets `trace` write a waveform beside its place, and moves it there when it is whole. Files for viewers are written
+/// with it if they are not there yet; files that are there may be the user's.
 fn write<T>(
     one: &Loaded,
     destination: Destination,
@@ -149,7 +149,7 @@ fn write<T>(
                     ));
                 }
             } else if let Err(error) = Destination::open(&view).and_then(|it| it.write(text)) {
-                // The waveform is there, and is what was asked for.
+                // The waveform was asked for, and it is there.
                 failure::warn(&format!("{error:#}"));
             }
         }

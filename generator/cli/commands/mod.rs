@@ -1,4 +1,5 @@
-//! The commands of the command line, a module each, and what they share: loading configurations, and their verdicts.
+//! The commands of the command line, a module each, and the code that they share: loading configurations, and their
+//! verdicts.
 //!
 //! A command returns whether everything that it checks holds.
 
@@ -48,10 +49,10 @@ use glint_golden::Bound;
 use glint_show::evidence::advice;
 use glint_tools::Tool;
 
-/// Where configurations are when none are named.
+/// The directory of the configurations if none are named.
 const CONFIGS: &str = "configs";
 
-/// A configuration file with what it asks for.
+/// A configuration file, and the core that it describes.
 pub struct Loaded {
     /// As the command line names it, with `/`.
     path: String,
@@ -84,7 +85,7 @@ fn paths(named: &[PathBuf]) -> Result<Vec<PathBuf>> {
 
 /// Reads configurations and builds their designs.
 ///
-/// The problems of all files are reported, not only those of the first.
+/// It reports the problems of all files, not only the problems of the first file.
 fn load(registry: &Registry, named: &[PathBuf]) -> Result<Vec<Loaded>> {
     if named.iter().filter(|path| path.as_path() == Path::new(input::STDIN)).count() > 1 {
         wrong_usage!("standard input, `-`, is read once: name it once");
@@ -113,7 +114,7 @@ fn load(registry: &Registry, named: &[PathBuf]) -> Result<Vec<Loaded>> {
     if failed.is_empty() { Ok(loaded) } else { Err(Several(failed).into()) }
 }
 
-/// Loads what [`load`] loads, for a command that speaks of microprograms: pipelines are left out unless they are named.
+/// Does the same as [`load`], for a command about microprograms: pipelines are left out unless they are named.
 fn load_sequential(registry: &Registry, named: &[PathBuf], command: &str) -> Result<Vec<Loaded>> {
     let (pipelines, loaded): (Vec<Loaded>, Vec<Loaded>) =
         load(registry, named)?.into_iter().partition(|one| one.core.design.pipeline.is_some());
@@ -150,7 +151,8 @@ fn load_one(registry: &Registry, schemas: &[config::Schema], path: &Path) -> Res
         Core::new(*device, config)
     };
     let core = Core::new(*device, config.clone()).or_else(follow).map_err(|error| {
-        // What the configuration asks for and the description cannot give is a mistake in the configuration.
+        // If the description cannot give something that the configuration asks for, the mistake is in the
+        // configuration.
         let mut problems = locations.clone();
         if let Some(unfit) = error.downcast_ref::<Unfit>() {
             problems.push(unfit.key, &unfit.message, &unfit.remedy);
@@ -171,14 +173,15 @@ fn load_one(registry: &Registry, schemas: &[config::Schema], path: &Path) -> Res
     Ok(Loaded { path: name, core, locations })
 }
 
-/// Returns what is said of a name that is none of `names`, which are called `what`: the nearest, and all of them.
+/// Returns a text about a name that is none of `names`: the nearest name, and all of them. `what` is the word for
+/// such names.
 fn none_of(name: &str, what: &str, names: &[&str]) -> String {
     let near = config::nearest(name, names.iter().copied())
         .map_or_else(|| ".".to_owned(), |near| format!("; did you mean `{near}`?"));
     format!("{near} The {what} are: {}", names.join(", "))
 }
 
-/// Finds Yosys; where it is missing a note says so, and what there is without it.
+/// Finds Yosys. If it is missing, a note says so; `without` says what remains without it.
 fn yosys(without: &str, notes: &mut Vec<String>) -> Option<Tool> {
     Tool::find("yosys").map_err(|missing| notes.push(format!("{missing}: {without}"))).ok()
 }
@@ -206,7 +209,8 @@ fn verdict(bound: &Bound, failures: &[String]) -> &'static str {
 }
 
 impl Loaded {
-    /// Returns every file of the configuration. A key that asks for what the core cannot have is shown where the file gives it.
+    /// Returns every file of the configuration. If a key asks for something that the core cannot have, the error
+    /// shows the place of the key in the file.
     fn files(&self, vectors: impl Into<Option<Vectors>>) -> Result<Vec<OutputFile>> {
         self.core.files(&self.path, vectors).map_err(|error| match error.downcast_ref::<Unfit>() {
             Some(unfit) => {
@@ -218,8 +222,9 @@ impl Loaded {
         })
     }
 
-    /// Does what [`Loaded::bound`] does, and warns of what the formula is no good for, unless the device's own keys are
-    /// as the catalogue has them, whose page says it.
+    /// Does what [`Loaded::bound`] does, and warns of a module name with `__`. It also warns with the contract's
+    /// remarks on the formula, unless the device's own keys have their defaults: for these, the page of the catalogue
+    /// has the remarks.
     fn contract(&self) -> Result<()> {
         self.bound()?;
         let config = &self.core.config;

@@ -62,7 +62,7 @@ struct Scored {
     config: String,
     device: &'static str,
     netlist: Score,
-    /// The score of the emitted text, where that was asked for.
+    /// The score of the emitted text, if it was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     verilog: Option<TextScore>,
 }
@@ -163,7 +163,7 @@ fn list(output: Output, loaded: &[Loaded], faults: &[Faults]) -> bool {
     output.concluded(true, list)
 }
 
-/// Returns one fault, with what reproduces it.
+/// Plants one fault, and prints its verdict with the means to reproduce it.
 fn only(output: Output, one: &Loaded, id: &str) -> Result<bool> {
     let faults = Faults::of(&one.core.design);
     let Some(fault) = faults.find(id) else {
@@ -205,7 +205,7 @@ fn only(output: Output, one: &Loaded, id: &str) -> Result<bool> {
     Ok(*verdict != Verdict::Undecided)
 }
 
-/// Tells where a mutant differs, and in what.
+/// Describes where and how a mutant differs.
 fn shown_by(Difference { held, mismatch }: &Difference) -> String {
     let operands: Vec<String> = held.iter().map(|(name, raw)| format!(" {name}=#{raw}")).collect();
     let holding = if operands.is_empty() { "" } else { ", with" };

@@ -233,7 +233,7 @@ fn scene(arguments: &Arguments, coarse: bool) -> Result<Scene> {
             ("--height-depth", arguments.height_depth),
             ("--height-repeat", arguments.height_repeat),
         ] {
-            // Far beyond what can be seen, and far from what overflows.
+            // Far beyond anything visible, and far from an overflow.
             if !(-1e6..=1e6).contains(&value) {
                 wrong_usage!("{option} {value}: not beyond a million");
             }
@@ -257,7 +257,7 @@ fn read(path: &Path) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Says what came of it.
+/// Prints the result.
 fn tell(
     output: Output,
     arguments: &Arguments,

@@ -11,7 +11,8 @@ use glint_base::input;
 /// Applies `of_row` to the rows of a file, or of standard input for `-`; `columns` understands the headings.
 ///
 /// # Errors
-/// The file cannot be read, or has no row below the headings; what `columns` and `of_row` refuse, with the place.
+/// Fails if the file cannot be read, or has no row below the headings. Fails with the place if `columns` or `of_row`
+/// fails.
 pub fn read<C, T>(
     path: &Path,
     columns: impl FnOnce(&StringRecord) -> Result<C>,
@@ -46,7 +47,7 @@ pub fn read<C, T>(
     Ok(rows)
 }
 
-/// Returns the line of a record that is said to begin here: empty lines before it count as a part of it.
+/// Returns the line of a record that begins at `start`. Empty lines before the record count as a part of it.
 fn line(text: &str, start: usize) -> usize {
     let record = text[start..].trim_start_matches(['\r', '\n']);
     1 + text[..text.len() - record.len()].matches('\n').count()

@@ -15,7 +15,7 @@ use glint_core::registry::Registry;
 use glint_show::render::setup::{Arc, direction, half};
 use glint_show::render::{self, Feed, Point, Vector};
 
-/// With what the columns begin in which `setup` writes real values, and which `eval` leaves alone.
+/// The prefix of the columns in which `setup` writes real values. `eval` ignores these columns.
 pub const REAL: &str = "real_";
 
 /// Compute a device's operands from vectors or angles, as a host does before it starts
@@ -92,7 +92,7 @@ const OF_LINE: [&str; 2] = [
 const OF_POINT: [&str; 2] =
     ["normal perturbed half light view", "gamma dgamma exponent red green blue"];
 
-/// The inputs of a device, and what they are worth to it.
+/// The inputs of a device, and the operands that they determine.
 struct Host<'a> {
     one: &'a Loaded,
     feed: Feed,
@@ -106,7 +106,7 @@ type Given = Vec<[Option<f64>; 3]>;
 
 /// The operands that come out.
 struct SetUp {
-    /// Quantities of the formulas, in their order: a name, where it comes from, the number, its unit.
+    /// Quantities of the formulas, in their order: a name, its origin, the number, its unit.
     quantities: Vec<(&'static str, &'static str, f64, &'static str)>,
     raw: Vec<i64>,
     real: Vec<f64>,
@@ -180,7 +180,8 @@ impl<'a> Host<'a> {
         }
     }
 
-    /// Returns the place of an input, and of a component where the name is that of one.
+    /// Returns the index of an input. If `name` is the name of a vector's component, it returns the index of the
+    /// component too.
     fn place(&self, name: &str) -> Result<(usize, Option<usize>), String> {
         let all = &self.inputs;
         let at = |name: &str| all.iter().position(|it| it.name == name && self.concerns(name));
@@ -199,7 +200,7 @@ impl<'a> Host<'a> {
         Err(format!("there is no input `{name}` of `{device}`{}", none_of(name, "inputs", &names)))
     }
 
-    /// Takes what a text gives to an input, which has nothing yet.
+    /// Stores the numbers that a text gives to an input, which must not have any yet.
     fn put(
         &self,
         given: &mut Given,
@@ -278,8 +279,8 @@ impl<'a> Host<'a> {
         }
     }
 
-    /// Returns normal and half vector, of any length; the names are theirs and those of the directions toward light and
-    /// viewer.
+    /// Returns the normal and the half vector, of any length. The names are the names of these two vectors, and of
+    /// the directions toward light and viewer.
     fn pair(
         &self,
         given: &Given,
@@ -302,7 +303,7 @@ impl<'a> Host<'a> {
         Ok((normal, toward))
     }
 
-    /// Returns whether angles are given; an error where vectors are, too.
+    /// Returns whether angles are given. Fails if vectors are given too.
     fn by_angles(&self, given: &Given, angles: &[&str]) -> Result<bool, String> {
         let angle = angles.iter().find(|name| self.number(given, name).is_some());
         let mut vectors = self.inputs.iter().zip(given).filter(|(input, _)| input.vector);
@@ -363,7 +364,7 @@ impl<'a> Host<'a> {
         if !self.feed.takes_exponent() {
             quantities.push(("a", "(11) with k = 2", line.stretch(), ""));
         }
-        // What fits no format is told by its name before it saturates.
+        // A value that fits no format is reported by its name before it saturates.
         let real: Vec<f64> = self.feed.line_values(&line).collect();
         let raw = self.feed.line(&line).map_err(|error| error.to_string())?;
         Ok(SetUp { quantities, raw, real })

@@ -20,7 +20,7 @@ use glint_prove::tune::{Cost, Features};
 use glint_show::evidence::comparison;
 use glint_tools::gates::cells::LIBERTY;
 
-/// The exponent at which the clocks of a device are counted where they depend on it.
+/// The exponent at which the clocks of a device are counted if they depend on it.
 const EXPONENT: f64 = 35.0;
 
 /// Measure area and frequency by synthesis, placement and routing
@@ -70,7 +70,7 @@ struct Measured<'a> {
     figures: Vec<Figures>,
 }
 
-/// Figures with what the netlist is made of, to which the estimates of `tune` are fitted.
+/// Figures, and the features of the netlist to which the estimates of `tune` are fitted.
 #[derive(Serialize)]
 struct Recorded<'a> {
     #[serde(flatten)]
@@ -130,7 +130,7 @@ fn targets_of_pipelines(loaded: &[Loaded]) -> Vec<Target> {
     loaded.iter().map(target).collect::<Option<Vec<Target>>>().unwrap_or_default()
 }
 
-/// Returns the tools for each target, and what is said of targets that are left out.
+/// Returns the tools for each target, and a note about each target that is left out.
 fn flows(arguments: &Arguments, loaded: &[Loaded]) -> Result<(Vec<Flow>, Vec<String>)> {
     let search = std::env::var_os("PATH").unwrap_or_default();
     let find = |target: Target| {

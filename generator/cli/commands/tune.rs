@@ -167,12 +167,12 @@ fn base(registry: &Registry, arguments: &Arguments) -> Result<(Device, Config, V
     Ok((*device, config, fixed))
 }
 
-/// Returns where the bounds come from.
+/// Returns the origin of the bounds.
 fn origin(device: &Device) -> &'static str {
     if device.proved { "proved" } else { "stated by its author" }
 }
 
-/// Returns the configuration as a file, with what led to it.
+/// Returns the configuration as a file, with the search's result in its head.
 fn toml(device: &Device, best: &Candidate, arguments: &Arguments) -> String {
     let cost = &best.cost;
     let head = format!(

@@ -41,13 +41,13 @@ pub struct Arguments {
     out: Option<PathBuf>,
 }
 
-/// The largest error of a configuration that is known: what a record holds.
+/// The largest known error of a configuration: the contents of a record.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Known {
     /// The version; a record begins with it.
     glint: String,
     config: String,
-    /// Tells what the contract depends on from others.
+    /// A digest of everything that the contract depends on.
     contract: String,
     /// The starts of the search that found it.
     starts: u64,
@@ -57,7 +57,7 @@ struct Known {
     output: String,
     /// Raw operands.
     operands: BTreeMap<String, i64>,
-    /// The output, and what the formula says, in its units.
+    /// The output, and the value of the formula, in the output's units.
     raw: i64,
     exact: f64,
 }
@@ -70,7 +70,7 @@ struct Report {
     /// The error that the contract states, in output units.
     bound: f64,
     holds: bool,
-    /// The record, where it stays because its error is no less.
+    /// The record, if it stays because its error is no less.
     recorded: Option<Known>,
 }
 

@@ -1,7 +1,7 @@
 //! Makes new files whole in a directory of its own, and then moves each into its place.
 //!
-//! The next run after one that was killed begins anew: what is generated can be generated again. Files that were moved
-//! already are as they are to be, and the manifest, which comes last, vouches for the others.
+//! The next run after one that was killed begins anew, and generates everything again. Files that were moved already
+//! have their new contents. The manifest comes last and vouches for the others.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -23,7 +23,7 @@ impl Staging {
     /// Writes the files of a configuration.
     ///
     /// # Errors
-    /// `out` cannot be written; then nothing is left of it.
+    /// Fails if `out` cannot be written; then nothing is left of it.
     pub fn new(out: &Path, files: &[OutputFile]) -> Result<Self> {
         let cannot =
             || format!("cannot write to `{}`; choose another directory with --out", out.display());
@@ -38,11 +38,12 @@ impl Staging {
         Ok(Self { directory, made: files.iter().map(|file| file.path.clone()).collect() })
     }
 
-    /// Deletes the files `stale`, which the configuration no longer asks for, and moves the new ones into their places, where
-    /// nothing may stand any more that is not to be replaced.
+    /// Deletes the files `stale`, which the configuration no longer asks for, and moves the new ones into their
+    /// places. By then, only files that may be replaced are in these places.
     ///
     /// # Errors
-    /// A directory cannot be made; then nothing was changed. A file cannot be moved; then the next run writes the rest.
+    /// Fails if a directory cannot be made, or is a symbolic link; then nothing was changed. Fails if a file cannot be
+    /// moved; then the next run writes the rest.
     pub fn place(self, out: &Path, stale: &[PathBuf]) -> Result<()> {
         for path in &self.made {
             // `rtl_out/<name>/…`
@@ -61,7 +62,8 @@ impl Staging {
             for path in stale {
                 fs::remove_file(path)
                     .with_context(|| format!("cannot delete `{}`", path.display()))?;
-                // The directories of a configuration go with their last file, and not those above.
+                // The directories of a configuration are deleted with their last file. The directories above them are
+                // not.
                 let parents = path.ancestors().skip(1);
                 let below = parents
                     .take_while(|it| it.strip_prefix(out).is_ok_and(|it| it.iter().count() > 1));
@@ -72,7 +74,7 @@ impl Staging {
     }
 }
 
-/// Moves what is in `staging` into its place. The manifest, which vouches for the others, comes last.
+/// Moves the files in `staging` into their places. The manifest, which vouches for the others, comes last.
 fn place(out: &Path, staging: &Path, made: &[String]) -> Result<()> {
     for path in made {
         let (new, place) = (staging.join(path), out.join(path));
@@ -84,7 +86,8 @@ fn place(out: &Path, staging: &Path, made: &[String]) -> Result<()> {
     Ok(())
 }
 
-/// Deletes what is in the way of a file: a directory in its place, and what is no directory where one is to be.
+/// Deletes whatever is in the way of a file: a directory in its place, or a file in the place of one of its
+/// directories.
 fn make_room(out: &Path, path: &str) -> Result<()> {
     let cannot = |path: &Path| format!("cannot delete `{}`, which is in the way", path.display());
     let ends = path.match_indices('/').map(|(at, _)| at).skip(1);

@@ -13,7 +13,7 @@ use super::{differs, directories};
 use glint_core::package::{OutputFile, digest};
 use glint_tools::transient::{files_below, relative_name};
 
-/// The files that are there, held against those that are to be there. All lists are sorted.
+/// Compares the files that are there with the files that should be there. All lists are sorted.
 pub struct Survey {
     /// Names of files that are to be written, replaced, or deleted because Glint wrote them once.
     pub different: Vec<String>,
@@ -24,10 +24,10 @@ pub struct Survey {
 }
 
 impl Survey {
-    /// Surveys the configuration `name` below `out`, of which `files` are to be there.
+    /// Surveys the configuration `name` below `out`, which should have `files`.
     ///
     /// # Errors
-    /// A file or a directory that cannot be read.
+    /// Fails if a file or a directory cannot be read.
     pub fn new(out: &Path, name: &str, files: &[OutputFile]) -> Result<Self> {
         let manifest = out.join("rtl_out").join(name).join(format!("{name}.json"));
         let digests = Digests::read(&manifest, out);
@@ -94,7 +94,7 @@ impl Digests {
         Self { manifest: relative_name(out, manifest), digests: parsed(manifest) }
     }
 
-    /// Returns the owner of the file `relative`, which stands at `path`.
+    /// Returns the owner of the file `relative`, whose path is `path`.
     fn owner(&self, relative: &str, path: &Path) -> Owner {
         let Some(digests) = &self.digests else {
             return Owner::Other;

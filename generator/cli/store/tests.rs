@@ -67,7 +67,7 @@ fn a_run_that_was_killed_between_the_moves_is_done_again() {
     }
 }
 
-/// A file that is no longer asked for goes; with `force` so does what is in the way, and nothing else.
+/// A file that is no longer asked for is deleted. With `force`, anything in the way is deleted too, and nothing else.
 #[test]
 fn what_is_stale_goes_and_what_is_foreign_stays() {
     let dir = written("old");

@@ -1,7 +1,7 @@
 //! Computes many points at once, with the golden model, the built-in simulator or the emitted Verilog.
 //!
-//! The three engines take the same [`Points`] and give the same results: that they do is what the rest of
-//! Glint proves, and what makes it no matter which of them computes a picture.
+//! The three engines take the same [`Points`] and give the same results. The rest of Glint proves that they do, so any of
+//! them may compute a picture.
 
 mod lanes;
 
@@ -28,7 +28,7 @@ pub struct Points {
 }
 
 impl Points {
-    /// Makes an empty list of points, each of `operands` operands, those of a [`Contract`] in its order.
+    /// Makes an empty list of points. Each point has `operands` operands, in the order of the [`Contract`].
     pub fn new(operands: usize) -> Self {
         Self { operands, values: Vec::new(), results: vec![0] }
     }
@@ -70,7 +70,7 @@ impl Points {
         &self.values[at * self.operands..(at + 1) * self.operands]
     }
 
-    /// Returns the number of results before those of computation number `at`.
+    /// Returns the number of results of all computations before computation number `at`.
     pub fn results_before(&self, at: usize) -> usize {
         self.results[at]
     }
@@ -83,10 +83,10 @@ impl Points {
 
 /// An engine that computes points.
 pub trait Engine {
-    /// Returns the raw outputs, those of a [`Contract`] in its order, result after result.
+    /// Returns the raw outputs, in the order of the [`Contract`], result after result.
     ///
     /// # Errors
-    /// The device does not end, or shows more or fewer results than expected; an outside tool fails.
+    /// Fails if the device does not end, if it shows more or fewer results than expected, or if an outside tool fails.
     fn compute(&mut self, points: &Points) -> Result<Vec<i64>>;
 }
 

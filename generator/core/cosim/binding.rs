@@ -1,4 +1,4 @@
-//! The binding of a golden model to a design: which port or register each signal of the model is.
+//! Binds a golden model to a design: finds the port or register of the design for each signal of the model.
 
 use std::sync::Arc;
 
@@ -42,7 +42,7 @@ impl<'a> Binding<'a> {
     /// Pairs them.
     ///
     /// # Errors
-    /// A name of one side that the other does not have.
+    /// Fails if one side has a name that the other does not have.
     pub(super) fn new(
         design: &'a Design,
         model: Box<dyn Model>,

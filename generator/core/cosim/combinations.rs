@@ -1,9 +1,8 @@
 //! Drives a device with every combination of the bit patterns of all operands, one computation after another.
 //!
-//! A combination is the bits of all operands side by side. They come in an order in which one has little in
-//! common with the one before it, so that a register that should have been loaded and was not seldom holds
-//! what was wanted by chance: *place* p has the combination p·k mod 2^bits for an odd constant k. Operands
-//! that are held are no part of it.
+//! A combination is the bits of all operands side by side. Consecutive combinations have little in common. A register that
+//! should have been loaded, and was not, therefore seldom holds the right value by chance. *Place* p has the combination p·k
+//! mod 2^bits for an odd constant k. Operands that are held at a value are no part of the combination.
 
 use std::sync::Arc;
 
@@ -19,7 +18,8 @@ pub(super) struct Space {
     ports: Arc<Ports>,
     /// For each port the bit pattern of its operand, where it is the same in all combinations.
     held: Vec<Option<u64>>,
-    /// The raw operands at the first places, where they are given; those of the others are made of the place.
+    /// The raw operands at the first places, where they are listed. At all other places the operands are computed from the
+    /// place.
     listed: Vec<Vec<i64>>,
 }
 
@@ -52,8 +52,8 @@ impl Space {
         free.map(|(port, _)| port.format.width()).sum()
     }
 
-    /// Returns the operand ports in their order, each with its bit pattern at a place: what is listed for the place, or
-    /// else the value at which the operand is held, or its bits of the combination.
+    /// Returns the operand ports in their order, each with its bit pattern at a place. The pattern is the listed value for
+    /// the place, or else the value at which the operand is held, or the operand's bits of the combination.
     fn at(&self, place: u64) -> impl Iterator<Item = (&OperandPort, u64)> {
         let mut bits = place.wrapping_mul(SCATTER);
         let listed = usize::try_from(place).ok().and_then(|place| self.listed.get(place));
@@ -78,9 +78,9 @@ impl Space {
     }
 }
 
-/// The inputs of a device that goes through combinations, clock by clock: one clock of reset; then all
-/// operands are written in the clock of `start`, and the next computation starts in the first clock in
-/// which the device is not busy, or a pipeline ready. While it is, the data show the complement of what was written.
+/// The inputs of a device that goes through combinations, clock by clock. After one clock of reset, all operands are written
+/// in the clock of `start`. The next computation starts in the first clock in which the device is not busy, or a pipeline is
+/// ready. Until then, the data ports show the complement of the written values.
 pub(super) struct Combinations {
     space: Arc<Space>,
     first: u64,

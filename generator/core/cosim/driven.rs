@@ -21,7 +21,7 @@ impl Driven {
     /// Takes a model at power-up, and finds its inputs of the handshake and of the operands that are named.
     ///
     /// # Errors
-    /// A name that the model does not have.
+    /// Fails if the model does not have one of the names.
     pub fn new<'n>(model: Box<dyn Model>, operands: impl Iterator<Item = &'n str>) -> Result<Self> {
         let input = |name: &str| {
             let at = model.inputs().iter().position(|other| other == name);

@@ -1,4 +1,5 @@
-//! Counts the results of a run by the value of `f` that they are made of, in classes.
+//! Counts the results of a run in classes by their `f`. For example, the class `<0.1` has the results with f from 0.01 to
+//! below 0.1.
 
 use glint_base::fixed::Format;
 
@@ -35,7 +36,7 @@ impl Histogram {
         self.counts[CLASSES.len() - 1] += 1;
     }
 
-    /// Adds those of another.
+    /// Adds the counts of another histogram.
     pub(super) fn merge(&mut self, other: &Self) {
         self.counts.iter_mut().zip(&other.counts).for_each(|(sum, count)| *sum += count);
     }

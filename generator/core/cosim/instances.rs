@@ -32,7 +32,7 @@ impl<const LANES: usize> Instances<LANES> {
     pub(super) fn offer(&mut self, computations: [Option<&[i64]>; LANES]) {
         let taking = computations.map(|raw| u64::from(raw.is_some()));
         for port in &self.ports.operands {
-            // The data of those that take none do not matter: their strobe is low.
+            // The data of lanes that take no computation do not matter, because their strobe is low.
             let bits = computations.map(|raw| raw.map_or(0, |raw| port.pattern(raw)));
             self.simulator.set_lanes(port.data, bits);
             self.simulator.set_lanes(port.strobe, taking);

@@ -1,11 +1,10 @@
 //! Runs golden model and simulated hardware side by side, whatever the architecture, and compares every signal on every
 //! clock.
 //!
-//! A run is divided into *streams*: each starts at power-up, with a stimulus of its own. How many there
-//! are, their seeds and their points depend on the seed and the points of the run alone. Up to [`LANES`] of
-//! them go through one simulator together, and as many simulators run as there are threads; neither
-//! has any influence on what is found. What counts is what streams showed in their order up to the
-//! first that differs.
+//! A run is divided into *streams*. Each stream starts at power-up, and has its own stimulus. The number of streams, their
+//! seeds and their points depend only on the seed and the points of the run. Up to [`LANES`] streams go through one simulator
+//! together, and there is one simulator for each thread; neither number influences the result. The result is made of all
+//! streams in their order, up to the first stream that differs.
 
 use std::io::Write;
 use std::ops::Range;
@@ -46,7 +45,7 @@ const FEWEST_STREAMS: u64 = 8;
 const PIPELINE_POINTS: u64 = 2048;
 const FEWEST_PIPELINES: u64 = 4;
 
-/// Points after which progress is told.
+/// The number of points after which the progress is reported.
 const TOLD: u64 = 1024;
 
 /// Golden model and simulator of one design.
@@ -59,7 +58,7 @@ impl<'a> Lockstep<'a> {
     /// Pairs the model and the simulator of a design by the names of ports and registers.
     ///
     /// # Errors
-    /// A name of one side that the other does not have.
+    /// Fails if one side has a name that the other does not have.
     pub fn new(
         design: &'a Design,
         model: Box<dyn Model>,
@@ -87,7 +86,7 @@ impl<'a> Lockstep<'a> {
     /// `progress` is called now and then with the number of points since its last call.
     ///
     /// # Errors
-    /// A design that cannot be simulated, or does not settle.
+    /// Fails if the design cannot be simulated, or does not settle.
     pub fn run(&self, points: u64, progress: &(dyn Fn(u64) + Sync)) -> Result<Outcome> {
         let streams = self.streams(points);
         // The first stream known to differ: those after it are of no interest.
@@ -135,7 +134,7 @@ impl<'a> Lockstep<'a> {
         group.into_seen()
     }
 
-    /// Runs what [`Lockstep::run`] runs, in one stream.
+    /// Runs the same as [`Lockstep::run`], but in one stream.
     ///
     /// # Errors
     /// As of [`Lockstep::run`].
@@ -145,8 +144,8 @@ impl<'a> Lockstep<'a> {
         Ok(self.outcome(alone.into_seen()?))
     }
 
-    /// Goes through the streams of a run of `points` results, each alone. `begin` makes what watches a stream,
-    /// of its seed; after each clock `note` shows it the results so far and the simulator. They come back
+    /// Goes through the streams of a run of `points` results, each alone. `begin` makes the watch of a stream from the
+    /// stream's seed. After each clock `note` shows the watch the results so far and the simulator. The watches are returned
     /// in the order of the streams.
     ///
     /// # Errors
@@ -174,12 +173,12 @@ impl<'a> Lockstep<'a> {
             .collect()
     }
 
-    /// Makes stimulus and expected outputs for a bench: the inputs of every clock of one stream of `points` results,
-    /// and the outputs before its edge; then those of computations with these raw operands, in the order of the
-    /// contract, one after another.
+    /// Makes stimulus and expected outputs for a bench: the inputs of every clock of one stream of `points` results, and the
+    /// outputs before the clock's edge. The clocks of `computations`, one after another, follow; their raw operands are in
+    /// the order of the contract.
     ///
     /// # Errors
-    /// Golden model and simulation differ; a design that cannot be simulated, or does not settle.
+    /// Fails if golden model and simulation differ, or if the design cannot be simulated or does not settle.
     pub fn record(&self, points: u64, computations: &[Vec<i64>]) -> Result<Vectors> {
         let mut alone = self.alone(points)?;
         let mut vectors = Vectors::default();
@@ -203,7 +202,7 @@ impl<'a> Lockstep<'a> {
             vectors.expected.push(outputs.map(|&net| alone.simulator.value(net)).collect());
             vectors.inputs.push(alone.first().inputs().to_vec());
             alone.simulate()?;
-            // Nothing is left of the power-up: of a core from the first result on, of a pipeline from the clock after it.
+            // Nothing is left of the power-up: in a core from the first result on, in a pipeline from the clock after it.
             let shown = if self.binding.is_pipeline() { before } else { shows(alone) };
             if vectors.known_from == 0 && shown {
                 vectors.known_from = vectors.expected.len();
@@ -219,8 +218,8 @@ impl<'a> Lockstep<'a> {
         Ok(())
     }
 
-    /// Runs golden model and simulation from power-up on under recorded inputs, say those of [`Lockstep::record`]: by
-    /// stream, then by clock, then by input. Each stream is gone through for `clocks` clocks, again from its beginning
+    /// Runs golden model and simulation from power-up on under recorded inputs, for example the inputs of
+    /// [`Lockstep::record`]: by stream, then by clock, then by input. Each stream runs for `clocks` clocks, and begins again
     /// after its end. Results are compared with the golden model, and not with the formula.
     ///
     /// # Errors
@@ -249,7 +248,8 @@ impl<'a> Lockstep<'a> {
         Ok(self.outcome(groups.into_iter().flatten()))
     }
 
-    /// Runs what [`Lockstep::run`] runs, in one stream, of which `file` takes the waveform from clock `from` on.
+    /// Runs the same as [`Lockstep::run`], but in one stream. `file` receives the waveform of the stream from clock `from`
+    /// on.
     ///
     /// # Errors
     /// As of [`Lockstep::run`]; the file cannot be written.

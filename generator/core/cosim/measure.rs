@@ -1,4 +1,4 @@
-//! Measures results against the formula in f64.
+//! Measures the error of results against the formula in f64.
 
 use anyhow::{Context, Result, ensure};
 
@@ -39,7 +39,7 @@ impl<'a> Measure<'a> {
     /// Finds the outputs of the contract among these nets, whose values are measured.
     ///
     /// # Errors
-    /// An output that is not there, or has another format in the design.
+    /// Fails if an output is missing in the design, or has another format there.
     pub(super) fn new(design: &Design, contract: &'a dyn Contract, nets: &[NetId]) -> Result<Self> {
         let quantity = |Output { name, format }: &Output| {
             let at = |net| Some((nets.iter().position(|&it| it == net)?, net));
@@ -59,8 +59,8 @@ impl<'a> Measure<'a> {
         pairs.all(|(operand, raw)| (operand.domain.0..=operand.domain.1).contains(raw))
     }
 
-    /// Takes note of the result among these values, number `index` of the computation with these operands of the
-    /// domain: of the word `f`, and of the largest error.
+    /// Takes note of one result: counts its word `f`, and updates the largest error. The result is in `values`, and is number
+    /// `index` of the computation with these `operands` of the domain.
     #[inline]
     pub(super) fn note(&self, seen: &mut Seen, operands: &[i64], index: u64, values: &[u64]) {
         seen.exact.clear();

@@ -1,7 +1,8 @@
 //! Offers points to a pipeline at random, clock by clock.
 //!
-//! Points come with bubbles between them, now and then one is withdrawn, results are held back, and resets drop what is on
-//! its way. How eager each side is changes from time to time. All of it is a function of the seed.
+//! Points come with bubbles between them, and now and then one is withdrawn. Results are held back at times, and resets drop
+//! the points on their way. The rate at which each side is ready changes from time to time. Everything is a function of the
+//! seed.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -65,7 +66,8 @@ impl Offers {
         &self.inputs
     }
 
-    /// Returns the inputs of the next clock; `taken`: what was offered in the latest one was taken.
+    /// Returns the inputs of the next clock. `taken` must say whether the pipeline took the point that was offered in the
+    /// latest clock.
     pub(super) fn next(&mut self, taken: bool, points: &Points<'_>) -> &[u64] {
         let Self { ports, random, offered, listed, inputs, .. } = self;
         if taken {
@@ -83,11 +85,11 @@ impl Offers {
         }
         let rst_n = self.reset_left == 0;
         self.reset_left = self.reset_left.saturating_sub(1);
-        // What is offered stays until it is taken; now and then it is withdrawn.
+        // An offered point stays until it is taken; now and then it is withdrawn.
         if drawn && offered.is_some() && random.once_in(64) {
             *offered = None;
         }
-        // Of a list nothing is lost to the end of a reset.
+        // A point of a list must not be lost, so it is not offered during a reset.
         if offered.is_none() && (drawn || rst_n) && random.once_in(self.pace.0) {
             let next = match listed {
                 Some(listed) => listed.pop_front(),

@@ -126,12 +126,12 @@ pub(super) struct Seen {
     pub(super) worst: Option<Worst>,
     pub(super) histogram: Histogram,
     pub(super) mismatch: Option<Mismatch>,
-    /// The control operands of the latest result, and what the formula says of it.
+    /// The control operands of the latest result. `exact` has the formula's values there.
     pub(super) point: Vec<i64>,
     pub(super) exact: Vec<[f64; 2]>,
 }
 
-/// Returns the seed of a stream; the first has that of the run.
+/// Returns the seed of a stream. The first stream has the seed of the run.
 pub(super) fn stream_seed(seed: u64, number: u64) -> u64 {
     if number == 0 {
         seed

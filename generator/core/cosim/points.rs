@@ -1,12 +1,12 @@
 //! Draws the operands of computations.
 //!
-//! Of all operands of a domain most leave `f` at 0 and some at 1: a highlight is narrow. Three of four points are
-//! therefore drawn *by the value of the formula*: the control operands are drawn, and moved along the straight line
-//! from the peak of `f` to where the formula has a value that is drawn too, half of the time evenly, half by
-//! decades. One in eight of these is taken to the very step at which the formula crosses that value, or leaves 0. The
-//! others are corners of the domain, evenly drawn, or any bits at all.
+//! A highlight is narrow: most operands of a domain leave `f` at 0, and some at 1. Three of four points are therefore drawn
+//! *by the value of the formula*. Such a point is first drawn in the domain, and then moved along the straight line from the
+//! peak of `f` until the formula has a drawn value. Half of these values are drawn evenly, and half by decades. One in eight
+//! of these points is taken to the very step at which the formula crosses that value, or leaves 0. The other points are
+//! corners of the domain, evenly drawn, or any bits at all.
 //!
-//! Of a device that is no highlight, half of the points are those that its contract hints at.
+//! If a device is no highlight, half of the points are points at which its contract hints.
 
 use std::sync::LazyLock;
 
@@ -19,7 +19,7 @@ use super::random::Random;
 /// others are drawn by the value of the formula.
 const KINDS: i64 = 16;
 
-/// The kind from which on a point of a device that is no highlight is one that its contract hints at.
+/// A kind above this is a hint of the contract, if the device is no highlight.
 const HINTED: i64 = 7;
 
 /// A line that is not drawn by the value of the formula has at most `SHORT` intervals, but for one in `LONG`: long
@@ -49,15 +49,16 @@ const MOVED: usize = 6;
 /// The source of a point's operands.
 pub struct Points<'a> {
     contract: &'a dyn Contract,
-    /// The highlight, of a device that multiplies by an f: without it there is no value to draw points by.
+    /// The highlight, if the device multiplies by an f. Without a highlight there is no value by which to draw points.
     highlight: Option<&'a Highlight>,
-    /// With the domains that are drawn from: those of the contract, but for operands that are held.
+    /// The operands with the domains from which they are drawn: the contract's domains, except for operands that are held.
     operands: Vec<Operand>,
     /// The number of the first operands, which determine `f`.
     control: usize,
     /// The operand that says how many results a computation has.
     length: Option<usize>,
-    /// Where `f` is largest, of the control operands that lead there; for contracts that do not say.
+    /// The place where `f` is largest, for the control operands that lead there. It is used if the contract does not say the
+    /// peak.
     peak: Vec<Option<i64>>,
 }
 
@@ -90,7 +91,7 @@ impl<'a> Points<'a> {
         }
     }
 
-    /// Clamps values to what is drawn of each operand.
+    /// Clamps values to the domains from which the operands are drawn.
     pub fn clamped(&self, mut values: Vec<i64>) -> Vec<i64> {
         values.truncate(self.operands.len());
         for (raw, operand) in values.iter_mut().zip(&self.operands) {
@@ -104,14 +105,13 @@ impl<'a> Points<'a> {
         &self.operands
     }
 
-    /// Draws new raw values for the operands whose bit is set in `free`. Of the others those change too that lead to
-    /// the peak.
+    /// Draws new raw values for the operands whose bit is set in `free`. Other operands change too if they lead to the peak.
     pub fn draw(&self, random: &mut Random, values: &mut [i64], free: u64) {
         let kind = random.within(0, KINDS - 1);
         self.draw_kind(random, values, free, kind);
     }
 
-    /// Draws new raw values for all operands, of the domain.
+    /// Draws new raw values for all operands, within the domain.
     pub fn of_domain(&self, random: &mut Random) -> Vec<i64> {
         let mut values = vec![0; self.operands.len()];
         let kind = random.within(1, KINDS - 1);
@@ -141,7 +141,7 @@ impl<'a> Points<'a> {
                 0 => self.any(random, at),
                 1 | 2 => self.one(random, at),
                 3 => random.within(domain.0, domain.1),
-                // A colour shows what f is.
+                // A large colour shows f best.
                 _ if at >= self.control && random.once_in(2) => {
                     domain.1 - random.within(0, (domain.1 - domain.0) / 8)
                 }
@@ -175,8 +175,8 @@ impl<'a> Points<'a> {
         low.wrapping_add(lengths[0].min(lengths[1]) as i64)
     }
 
-    /// Returns a raw value for one operand: half of the time any bit pattern of its format, else one that is drawn on its own or, of a
-    /// device that is no highlight, often one that is just outside the domain, where a core may saturate.
+    /// Returns a raw value for one operand. Half of the values are any bit pattern of its format, and the others are drawn on
+    /// their own. If the device is no highlight, a value is often just outside the domain, where a core may saturate.
     pub fn any(&self, random: &mut Random, at: usize) -> i64 {
         let Operand { format, domain: (low, high), .. } = self.operands[at];
         let (least, most) = (format.min_raw() as i64, format.max_raw() as i64);
@@ -192,7 +192,7 @@ impl<'a> Points<'a> {
         }
     }
 
-    /// Moves control operands to where the formula has a value; of a line, its ends.
+    /// Moves control operands to where the formula has a value. For a line, it moves both ends of the line.
     fn spread(&self, random: &mut Random, control: &mut [i64]) {
         let Some((length, highlight)) = self.length.zip(self.highlight) else {
             self.aim(random, control);
@@ -230,8 +230,8 @@ impl<'a> Points<'a> {
         way.go(scale, far);
     }
 
-    /// Returns the last control operands on the way from the peak to these for which the formula is above what it is at its
-    /// foot (0, say), and the first for which it is not.
+    /// Finds the edge of the highlight on the way from the peak to `control`. Returns the last control operands at which the
+    /// formula is above its value at the far end (for example 0), and the first at which it is not.
     pub fn edge(&self, control: &[i64]) -> Option<[Vec<i64>; 2]> {
         let (way, highlight) = self.way(control).zip(self.highlight)?;
         let target = way.bottom + f64::MIN_POSITIVE;
@@ -295,8 +295,8 @@ impl<'a> Points<'a> {
         self.clamped(said)
     }
 
-    /// Looks for the peak among the ends of the domain, and 0: of the operands with a fraction (a cosine, an angle,
-    /// the components of a vector), or of all if none has one.
+    /// Looks for the peak among the ends of the domain and 0. It varies the first operands with a fraction (a cosine, an
+    /// angle, the components of a vector), or the first operands if none has a fraction.
     fn search(&self, highlight: &Highlight) -> Vec<Option<i64>> {
         let control = &self.operands[..self.control];
         let moves = |at: &usize| self.length != Some(*at);
@@ -383,7 +383,7 @@ impl Way {
         let span = spans.max().unwrap_or(1);
         let octaves = (64 - span.leading_zeros()) as usize + 1;
         let (mut inner, mut outer) = (PARTS, 0);
-        // Two halvings at once: of three places none waits for what another says.
+        // Two halvings at once: the three places are independent, so none waits for the result of another.
         while inner - outer > 1 {
             let middle = usize::midpoint(inner, outer);
             let [near, far] = [inner, outer].map(|end| usize::midpoint(end, middle));
@@ -405,7 +405,7 @@ impl Way {
     }
 }
 
-/// Returns 2 to the power of minus so many parts of an octave: exactly what [`libm::exp2`] says of it.
+/// Returns 2 to the power of minus `parts` parts of an octave, exactly as [`libm::exp2`] computes it.
 #[inline]
 fn power(parts: usize) -> f64 {
     POWERS[parts % PARTS] * exp2(-((parts / PARTS) as i32))
@@ -504,7 +504,7 @@ pub(super) mod tests {
         }
     }
 
-    /// Halved once a step, each by what the formula says in the middle.
+    /// Single halvings: each step compares the formula in the middle.
     #[test]
     fn a_crossing_is_where_single_halvings_lead() {
         let pulse = Pulse::pair(true);
@@ -525,7 +525,7 @@ pub(super) mod tests {
 
     #[test]
     fn a_device_of_any_formula_says_where_it_is_largest() {
-        // Of the operands drawn on their own one in 130 000 is within the pulse, but for those near 0.
+        // If the operands were drawn on their own, one in 130 000 would be within the pulse, except for operands near 0.
         assert!(share(&Pulse::pair(true)) > 0.6);
         // Moved to where both are 0, x passes through the pulse there.
         assert!(share(&Pulse::pair(false)) > 0.4);

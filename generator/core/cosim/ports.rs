@@ -12,7 +12,7 @@ pub(super) struct Ports {
     /// How many inputs there are.
     pub(super) inputs: usize,
     pub(super) reset: usize,
-    /// `start`; of a pipeline `in_valid`.
+    /// The port `start`, or `in_valid` if the design is a pipeline.
     pub(super) start: usize,
     pub(super) out_ready: Option<usize>,
     /// With the mask of its bits.
@@ -35,7 +35,7 @@ pub(super) struct Ports {
 pub(super) struct OperandPort {
     pub(super) name: String,
     pub(super) data: usize,
-    /// Its strobe; of a pipeline, which takes all operands at once, `in_valid`.
+    /// The strobe of the operand. A pipeline takes all operands at once, so this is `in_valid` there.
     pub(super) strobe: usize,
     pub(super) format: Format,
     /// Its position among the operands of the contract.
@@ -60,8 +60,8 @@ impl Ports {
     /// Finds the ports of a design.
     ///
     /// # Errors
-    /// The design lacks a port of the handshake, or has a strobe that is no input; design and contract do not have the
-    /// same operands, or the design lacks an output.
+    /// Fails if the design lacks a port of the handshake or an output, or has a strobe that is no input. Fails also if design
+    /// and contract do not have the same operands.
     pub(super) fn new(design: &Design, contract: &dyn Contract) -> Result<Self> {
         let pipelined = design.pipeline.is_some();
         let find = |role: Role| design.port(|other| other == role).map(|port| port.net);

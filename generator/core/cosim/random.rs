@@ -8,11 +8,11 @@ use glint_golden::Operand;
 #[derive(Clone, Debug)]
 pub struct Random(u64);
 
-/// From the state of one number to that of the next.
+/// The difference between the states of consecutive numbers.
 const STEP: u64 = 0x9e37_79b9_7f4a_7c15;
 
-/// The values among those of [`Random::of_domain`] that each of its choices takes, of a domain on both sides of 0 and
-/// of any other.
+/// [`Random::of_domain`] makes a list of values, and chooses one by an entry of these tables. The first table is for a domain
+/// on both sides of 0, the second for any other domain.
 const AROUND_ZERO: [usize; 16] = [0, 1, 2, 3, 3, 6, 5, 6, 5, 6, 5, 6, 5, 6, 2, 2];
 const TO_ONE_SIDE: [usize; 16] = [0, 1, 2, 3, 3, 4, 4, 4, 4, 2, 2, 2, 2, 2, 2, 2];
 
@@ -49,7 +49,7 @@ impl Random {
         bits
     }
 
-    /// Returns the bits that come after so many more, 1 for the next.
+    /// Returns the bits of the number that comes after `draws` draws, 1 for the next.
     #[inline]
     fn ahead(&self, draws: u64) -> u64 {
         let mut z = self.0.wrapping_add(STEP.wrapping_mul(draws));
@@ -81,8 +81,8 @@ impl Random {
     /// Returns a raw value from `low` to `high`: often one of its ends or close to one (or to 0, which is as good as an
     /// end).
     ///
-    /// The choice cannot be foreseen: all are worked out, and one is taken without a branch. It is as though only
-    /// what that one needs had been drawn.
+    /// A branch on the choice could not be predicted. The function therefore computes all values and takes one without a
+    /// branch. The generator advances only by the draws that this value needs.
     #[inline]
     pub fn of_domain(&mut self, (low, high): (i64, i64)) -> i64 {
         let [choice, first, second] = [1, 2, 3].map(|draws| self.ahead(draws));

@@ -1,4 +1,4 @@
-//! Replays recorded inputs clock by clock, from the beginning again after the end.
+//! Replays recorded inputs clock by clock. After the last clock it begins again with the first.
 
 use std::sync::Arc;
 
@@ -20,7 +20,7 @@ impl Recording {
 /// A stream of recorded inputs.
 pub(super) struct Recorded {
     recording: Arc<Recording>,
-    /// Where those of the next clock begin.
+    /// The position at which the inputs of the next clock begin.
     next: usize,
 }
 
@@ -52,7 +52,7 @@ mod tests {
     use crate::registry::Registry;
     use glint_config::{Config, Value};
 
-    /// The streams begin at power-up, and come to what a computation left when they begin again.
+    /// Each stream begins at power-up. When it begins again, the registers hold the values that a computation left.
     #[test]
     fn replayed_inputs_show_what_drawn_ones_do() {
         ["sequential", "pipelined"].into_iter().for_each(replayed);

@@ -10,14 +10,15 @@ use super::outcome::{Course, Seen};
 use super::stream::Stream;
 use glint_rtl::sim::Simulator;
 
-/// Clocks for which each of many streams of a core in turn is ahead of the simulator. Its model and stimulus then stay in
-/// the processor's cache and their branches are foreseen, and what they leave for the simulator still fits in.
+/// The number of clocks by which each of many streams of a core, in turn, is ahead of the simulator. The model and stimulus
+/// of one stream then stay in the processor's cache, and their branches are predicted. The clocks that wait for the simulator
+/// still fit in the cache.
 const AHEAD: usize = 4;
 
-/// As many streams as there are lanes, or fewer.
+/// Runs as many streams as there are lanes, or fewer.
 ///
-/// A stream reacts to `busy` as its model predicts it. That is what the simulation does, unless they
-/// differ. A stream that is ahead of the simulator, and in which anything differs, is gone through once more, alone.
+/// A stream reacts to the `busy` that its model predicts. The simulation has the same `busy`, unless they differ. A stream
+/// that is ahead of the simulator, and in which anything differs, is run once more, alone.
 pub(super) struct Runner<'a, const LANES: usize> {
     binding: &'a Binding<'a>,
     pub(super) simulator: Simulator<LANES>,
@@ -29,11 +30,11 @@ pub(super) struct Runner<'a, const LANES: usize> {
     ahead: Vec<Clock<LANES>>,
 }
 
-/// The inputs of a clock and what is predicted after it, for each lane.
+/// The inputs of a clock and the values predicted after it, for each lane.
 struct Clock<const LANES: usize> {
-    /// The inputs; those of a single clock are the simulator's own.
+    /// The inputs. If only a single clock is prepared, they are the simulator's own, and this list is empty.
     inputs: Vec<[u64; LANES]>,
-    /// Lanes whose inputs are those of a clock in which nothing is driven.
+    /// The lanes whose inputs drive nothing in this clock.
     idle: [bool; LANES],
     predicted: Vec<[u64; LANES]>,
     /// All ones where something is predicted; nothing of a core, where everything is.
@@ -46,7 +47,7 @@ impl<'a, const LANES: usize> Runner<'a, LANES> {
     /// Starts a stream for each course, at power-up.
     ///
     /// # Errors
-    /// A design that cannot be simulated.
+    /// Fails if the design cannot be simulated.
     pub(super) fn new(
         binding: &'a Binding<'a>,
         courses: impl IntoIterator<Item = Course>,
@@ -97,7 +98,7 @@ impl<'a, const LANES: usize> Runner<'a, LANES> {
     /// Runs some clocks of all streams that have not ended, and returns the number of results seen in them.
     ///
     /// # Errors
-    /// A simulation that does not settle, or a VCD that cannot be written; a model that does not end.
+    /// Fails if the simulation does not settle, if the VCD cannot be written, or if a model does not end.
     pub(super) fn run(&mut self) -> Result<u64> {
         let points = |streams: &[Stream]| streams.iter().map(|it| it.seen.points).sum::<u64>();
         let before = points(&self.streams);
@@ -106,10 +107,10 @@ impl<'a, const LANES: usize> Runner<'a, LANES> {
         Ok(points(&self.streams) - before)
     }
 
-    /// Has all streams that have not ended say the inputs of the next clocks, and what is predicted after each.
+    /// Lets all streams that have not ended make the inputs of the next clocks and the predictions after each.
     ///
     /// # Errors
-    /// A model that does not end.
+    /// Fails if a model does not end.
     pub(super) fn prepare(&mut self) -> Result<()> {
         let single = self.ahead.len() == 1;
         for (lane, stream) in (0..LANES).zip(&mut self.streams) {
@@ -121,7 +122,7 @@ impl<'a, const LANES: usize> Runner<'a, LANES> {
                 clock.compared[lane] = u64::MAX;
                 stream.clock(self.binding)?;
                 let was_idle = mem::replace(&mut clock.idle[lane], stream.is_idle());
-                // Most of the time nothing is driven, and stands there already.
+                // Most of the time nothing is driven, and the inputs are already in place.
                 if !(was_idle && clock.idle[lane]) {
                     let inputs =
                         if single { self.simulator.inputs_mut() } else { &mut clock.inputs[..] };
@@ -141,7 +142,7 @@ impl<'a, const LANES: usize> Runner<'a, LANES> {
     /// Simulates the clocks that are prepared, and compares everything that can be compared after each.
     ///
     /// # Errors
-    /// A simulation that does not settle, or a VCD that cannot be written.
+    /// Fails if the simulation does not settle, or if the VCD cannot be written.
     pub(super) fn simulate(&mut self) -> Result<()> {
         let single = self.ahead.len() == 1;
         let address = self.binding.address.filter(|_| single);
@@ -190,7 +191,7 @@ impl<'a, const LANES: usize> Runner<'a, LANES> {
 }
 
 impl Runner<'_, 1> {
-    /// Goes on to the end, or until so many clocks are done.
+    /// Continues to the end, or until the given number of clocks is done.
     ///
     /// # Errors
     /// As of [`Runner::run`].

@@ -1,9 +1,10 @@
 //! Searches for the operands with the largest output error by hill climbing.
 //!
-//! Random points rarely hit an input at which every rounding errs in the same direction. The search starts from random points and
-//! changes one operand, or a pair of operands with fraction bits, by powers of two while the error grows. For a highlight it first
-//! climbs the error of `f`, and then that of an output, with the worst colour. Around the highest places it tries every value of each
-//! pair of operands, since rounding makes the last steps too rough to climb. Its result is a lower bound of the true maximum, not a proof.
+//! Random points rarely hit an input at which every rounding errs in the same direction. The search starts from random points
+//! and changes one operand, or a pair of operands with fraction bits, by powers of two while the error grows. For a highlight
+//! it first climbs the error of `f`, and then the error of an output, with the worst colour. Around the highest places it
+//! tries every value of each pair of operands, since rounding makes the last steps too rough to climb. Its result is a lower
+//! bound of the true maximum, not a proof.
 
 use rayon::prelude::*;
 
@@ -93,7 +94,7 @@ pub fn worst(
     while first < starts {
         let next = first.saturating_add(BATCH).min(starts);
         let ends: Vec<End> = (first..next).into_par_iter().map(climb).collect();
-        // Of errors that are equal that of the first start, whatever the order in which they come.
+        // If errors are equal, the error of the first start wins, whatever the order in which the errors come.
         let outputs = ends.iter().filter_map(|end| Reached::at(contract, end.operands.clone()));
         climbed = climbed.into_iter().chain(outputs).reduce(larger);
         highest.extend(ends);
@@ -116,7 +117,7 @@ struct End {
     /// The largest error of f of a highlight, else of an output, and the moved operands where it is.
     height: f64,
     highest: Vec<i64>,
-    /// The operands, of a highlight with the colour of the largest error of an output that was climbed to from there.
+    /// The operands at the end of the climb. A highlight's operands have the colour with the largest error of an output.
     operands: Vec<i64>,
 }
 
@@ -175,7 +176,8 @@ impl<'a> Climber<'a> {
         control
     }
 
-    /// Returns the operands of the largest error among all values of each pair of operands around some, and around what is found so.
+    /// Tries all values of each pair of operands around the given ones, moves to the largest error, and looks around there
+    /// again. Returns the operands of the largest error.
     fn look_around(&self, mut operands: Vec<i64>) -> Vec<i64> {
         let highlight = self.contract.highlight();
         let terms = self.contract.bound().terms;

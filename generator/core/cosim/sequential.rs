@@ -35,7 +35,7 @@ impl Core {
     /// Returns the model of a core, and the nets that it predicts, in its order.
     ///
     /// # Errors
-    /// A name of one side that the other does not have.
+    /// Fails if one side has a name that the other does not have.
     pub(super) fn new(
         design: &Design,
         model: Box<dyn Model>,

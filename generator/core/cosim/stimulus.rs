@@ -1,13 +1,12 @@
 //! Draws the inputs of a core with a microprogram, clock by clock.
 //!
-//! A stimulus is a mix of everything that a device meets: points with idle gaps and back to back,
-//! operands written one after another, all at once or together with `start`, some left from the point
-//! before, writes and starts while busy, and resets in the middle of a computation. It reacts to `busy`,
-//! as a host does, and is a function of its seed.
+//! A stimulus mixes everything that a device meets: points with idle gaps and back to back; operands written one after
+//! another, all at once or together with `start`; operands left from the point before; writes and starts while busy; and
+//! resets in the middle of a computation. It reacts to `busy`, as a host does, and is a function of its seed.
 //!
-//! Whether a computation is to be reset, and when, is drawn as it starts, with short and long times alike:
-//! resets come often in the middle of a computation of ten clocks, and still let most of one of thousands
-//! come to its end.
+//! At the start of a computation, the stimulus draws whether and when it is reset. Times of every magnitude are equally
+//! likely. Resets therefore come often in the middle of a computation of ten clocks, and most computations of thousands of
+//! clocks still reach their end.
 
 use std::sync::Arc;
 
@@ -71,7 +70,7 @@ impl Stimulus {
         self.taken.as_ref().unwrap_or(&self.written)
     }
 
-    /// Returns the inputs of the next clock; `busy`: a `start` that stands before the edge is not heard.
+    /// Returns the inputs of the next clock. `busy` must say whether the device ignores a `start` at the next edge.
     pub(super) fn next(&mut self, busy: bool, points: &Points) -> &[u64] {
         if !self.idle {
             self.inputs.fill(0);
@@ -102,7 +101,7 @@ impl Stimulus {
         &self.inputs
     }
 
-    /// Returns whether the latest inputs are those of any clock in which nothing is driven.
+    /// Returns whether the latest inputs drive nothing.
     #[inline]
     pub(super) fn is_idle(&self) -> bool {
         self.idle
@@ -169,7 +168,7 @@ impl Stimulus {
         let free = drawn.fold(0, |free, (_, port)| free | 1 << port.at);
         self.next.copy_from_slice(&self.written);
         points.draw(&mut self.random, &mut self.next, free);
-        // What leads to the peak is written too.
+        // Operands that moved toward the peak are written too.
         let moved = |port: &OperandPort| self.next[port.at] != self.written[port.at];
         let moved = self.ports.operands.iter().enumerate().filter(|(_, port)| moved(port));
         Phase::Writing(moved.fold(written, |written, (at, _)| written | 1 << at))
@@ -219,7 +218,7 @@ impl Stimulus {
         }
     }
 
-    /// Notes what registers or buffers take at this edge.
+    /// Notes the values that registers or buffers take at this edge.
     fn accept(&mut self, busy: bool) {
         if self.idle || busy && self.taken.is_none() {
             return;

@@ -1,4 +1,4 @@
-//! Runs one stream: makes its inputs from power-up on, and predicts with the golden model what the hardware does.
+//! Runs one stream: makes its inputs from power-up on, and predicts the hardware's signals with the golden model.
 
 use anyhow::Result;
 
@@ -50,7 +50,7 @@ impl Source {
     }
 }
 
-/// A stream. What the simulated hardware makes of it is for others to say.
+/// A stream. It predicts signals; the caller compares them with the simulated hardware.
 pub(super) struct Stream {
     pub(super) seen: Seen,
     /// Its course, for another to go the same way.
@@ -101,7 +101,7 @@ impl Stream {
         }
     }
 
-    /// Goes on with computations of these raw operands, in the order of the contract, as the device stands.
+    /// Continues from the present state of the device, with computations of these raw operands in the order of the contract.
     pub(super) fn follow(&mut self, binding: &Binding, computations: &[Vec<i64>]) {
         let count = computations.len() as u64;
         self.course = Course::Combinations { first: 0, count };
@@ -149,14 +149,14 @@ impl Stream {
         self.source.inputs()
     }
 
-    /// Returns whether the latest inputs are those of any clock in which the stream drives nothing.
+    /// Returns whether the stream drives nothing with its latest inputs.
     #[inline]
     pub(super) fn is_idle(&self) -> bool {
         matches!(&self.source, Source::Stimulus(stimulus) if stimulus.is_idle())
     }
 
-    /// Writes what is predicted after the latest clock into a lane of `expected`, and all ones into `known` where
-    /// something is predicted at all: of a core that is everything.
+    /// Writes the predictions after the latest clock into a lane of `expected`, and all ones into `known` if a signal is
+    /// predicted at all. Every signal of a core is predicted.
     #[inline]
     pub(super) fn predict<const L: usize>(
         &self,
@@ -205,7 +205,7 @@ impl Stream {
             let from = from.map(|(place, taken)| (place, self.seen.clocks - taken));
             (simulated(net) != golden).then(|| (at, golden, from.unwrap_or((place, since))))
         });
-        // Of several points in a pipeline the first is told.
+        // If several points in a pipeline differ, the first is reported.
         let Some((at, golden, (seed, since))) = differences.min_by_key(|(.., (seed, _))| *seed)
         else {
             return;

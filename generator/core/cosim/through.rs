@@ -1,4 +1,4 @@
-//! Sends points through a pipeline in the built-in simulator, and records what its nets carry.
+//! Sends points through a pipeline in the built-in simulator, and records the values of its nets.
 
 use anyhow::{Result, bail};
 
@@ -6,12 +6,12 @@ use super::instances::Instances;
 use glint_golden::Contract;
 use glint_rtl::netlist::{Design, NetId, Role};
 
-/// Simulates points in a pipeline, and returns what `nets` carry in each clock, just before its rising edge: the points
-/// are offered one a clock, but for a bubble before the last; the first result waits for `pause` clocks, where it can.
-/// The recording ends with the last result.
+/// Simulates points in a pipeline, and returns the values of `nets` in each clock, just before its rising edge. One point is
+/// offered every clock, except for a bubble before the last point. The first result waits for `pause` clocks, if the pipeline
+/// can wait. The recording ends with the last result.
 ///
 /// # Errors
-/// A design that cannot be simulated, or shows no result within `limit` clocks.
+/// Fails if the design cannot be simulated, or if it shows no result within `limit` clocks.
 pub(super) fn record(
     design: &Design,
     contract: &dyn Contract,

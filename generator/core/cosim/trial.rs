@@ -1,5 +1,5 @@
-//! Runs one computation of a design in the built-in simulator: for its timing, a worked example, a recording, and a
-//! list of computations for whoever checks the device without a model.
+//! Runs one computation of a design in the built-in simulator. The runs give the timing, a worked example, a recording, and a
+//! list of computations for users who check the device without a model.
 
 use anyhow::{Context, Result, ensure};
 
@@ -22,7 +22,7 @@ const COMPUTATIONS: usize = 40;
 /// The longest line of a computation in a list, in intervals.
 const SHORT: i64 = 9;
 
-/// The longest line of which the clocks are measured, beyond the shortest.
+/// The longest line whose clocks are measured, in intervals beyond the shortest.
 const LONG: i64 = 1000;
 
 /// Points of a recording of a pipeline.
@@ -53,12 +53,12 @@ impl Trial {
     }
 }
 
-/// Returns the clocks between the events of the handshake, where the microprogram makes them the same for all operands
-/// that the ports take, inside the domain or not. Clocks from result to result are those of operands from the
-/// corners of the ports.
+/// Returns the clocks between the events of the handshake. A number is given only if the microprogram makes it the same for
+/// all operands that the ports take, inside the domain or not. The clocks from result to result are measured with operands
+/// from the corners of the ports.
 ///
 /// # Errors
-/// A device that never ends, or never raises `valid`.
+/// Fails if the device never ends, or never raises `valid`.
 pub fn timing(design: &Design, contract: &dyn Contract) -> Result<Timing> {
     let ports = |it: &Operand| (it.format.min_raw(), it.format.max_raw());
     let trials: Vec<Trial> = corners(contract, ports)
@@ -66,7 +66,7 @@ pub fn timing(design: &Design, contract: &dyn Contract) -> Result<Timing> {
         .map(|operands| run(design, contract, operands, &mut |_| Ok(())))
         .collect::<Result<_>>()?;
     let seen = &trials[0].timing;
-    // What the control word brings about up to this clock, no operand has an influence on.
+    // Up to the clock `decision`, no operand influences the control word or its effects.
     let decision = trials[0].decision;
     let valid = match (netlist::delay_of_valid(design), seen.start_to_valid) {
         (Some(delay), Some(clock)) if decision.is_none_or(|at| clock - delay <= at) => Some(clock),
@@ -218,8 +218,8 @@ pub fn example(design: &Design, contract: &dyn Contract) -> Result<WorkedExample
     })
 }
 
-/// Returns typical operands around those that are given: of the fractions among those of control the first that can (a
-/// cosine, an angle) is lowered until f is well inside 0 … 1.
+/// Returns typical operands; operands in `given` keep their values. The first control operand with a fraction that can do so
+/// (a cosine, an angle) is lowered until f is well inside 0 … 1.
 pub fn typical(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<i64> {
     let given = |at: usize| given.get(at).copied().flatten();
     let mut colour = 0;
@@ -235,7 +235,7 @@ pub fn typical(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<i64> {
                 colour += 1;
                 high - high * (colour - 1) / 3
             } else if operand.format.frac > 0 {
-                // Close to 1.0 for a cosine, close to 0 for what has a sign.
+                // Close to 1.0 for a cosine, close to 0 for an operand with a sign.
                 if low < 0 { high / 64 } else { high - (high - low) / 64 }
             } else {
                 20.clamp(low, high) * i64::from(high > 1)
@@ -253,7 +253,7 @@ pub fn typical(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<i64> {
         let typical = values[at];
         for step in 0..256 {
             values[at] = if low < 0 {
-                // What has a sign goes toward 0 by twentieths: its scale may be any.
+                // An operand with a sign goes toward 0 by twentieths, because its scale may be any.
                 (high as f64 * libm::pow(0.95, step as f64)) as i64
             } else {
                 high - (high - low) / 256 * step
@@ -306,9 +306,9 @@ fn hinted(contract: &dyn Contract) -> Option<Vec<i64>> {
     (0..TRIES).map_while(|_| points.hint(&mut random)).find(inside)
 }
 
-/// Returns what nets carry in each clock of the computation of [`example`], from clock 0, in which `start` is high, to
-/// the first in which the device is idle again: the bit patterns just before the clock's rising edge, in the order of
-/// `nets`, all of which are named.
+/// Returns the values of nets in each clock of the computation of [`example`]. Clock 0 is the clock in which `start` is high,
+/// and the last clock is the first in which the device is idle again. A value is the bit pattern just before the clock's
+/// rising edge, in the order of `nets`. All of these nets must have names.
 ///
 /// # Errors
 /// As of [`timing`].
@@ -322,8 +322,8 @@ pub fn record(design: &Design, contract: &dyn Contract, nets: &[NetId]) -> Resul
     Ok(clocks)
 }
 
-/// Returns what nets carry in each clock while three points go through a pipeline, the first of them that of
-/// [`example`]: one clock has no point, and the first result waits, where it can, for two.
+/// Returns the values of nets in each clock while three points go through a pipeline. The first point is the point of
+/// [`example`]. One clock has no point, and the first result waits for two clocks if the pipeline can wait.
 ///
 /// # Errors
 /// As of [`timing`].
@@ -341,7 +341,7 @@ pub fn record_points(
 /// Sees the simulator in each clock, before its rising edge.
 type Watch<'a> = &'a mut dyn FnMut(&mut Simulator) -> Result<()>;
 
-/// Runs one computation: resets, writes the operands, starts, and waits for the end; of a pipeline, for the results.
+/// Runs one computation: resets, writes the operands, starts, and waits for the end. In a pipeline it waits for the results.
 fn run(
     design: &Design,
     contract: &dyn Contract,

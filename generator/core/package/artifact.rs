@@ -1,5 +1,5 @@
-//! Collects the files of a configuration while they are made. The kind of a file says where it goes, and in which order
-//! it is listed.
+//! Collects the files of a configuration while they are made. The kind of a file decides its folder, and its place in the
+//! list of files.
 
 use super::bus::Bus;
 use super::inputs::EmitInputs;
@@ -33,11 +33,11 @@ pub enum Kind {
     WrapperProof,
     /// The proof of the core.
     Proof,
-    /// Benches in Verilog with their vectors, that of the core first.
+    /// Benches in Verilog with their vectors. The bench of the core comes first.
     Bench,
     /// The FuseSoC core of the benches.
     BenchCore,
-    /// The model in C, and what else software begins with.
+    /// The model in C, and the other files for software.
     Software,
 }
 

@@ -37,7 +37,7 @@ struct Microinstruction {
 /// Adds the bench, the stimulus and the expected outputs.
 ///
 /// # Errors
-/// Vectors that do not fit the ports.
+/// Fails if the vectors do not fit the ports.
 pub fn files(job: &Job, vectors: &Vectors, files: &mut Artifacts) -> Result<()> {
     let design = job.design;
     let inputs: Vec<_> = design.inputs().collect();
@@ -122,12 +122,13 @@ fn bench(job: &Job, vectors: &Vectors) -> Result<String> {
         // The assignment of a word of stimulus to the inputs.
         stimulus: Vec<String> = statement(12, &stimulus),
         connections: Vec<String> = connections(design),
-        // What `was_reset` begins with: without a reset there is nothing to wait for.
+        // The initial value of `was_reset`: without a reset there is nothing to wait for.
         reset_seen: &'a str = if reset.is_some() { "1'b0" } else { "1'b1" },
         reset: Option<String>,
         handshake: Vec<Output>,
         results: Vec<Output>,
-        // Of a pipeline, where the expected word says that results are those of a point: in a bubble they mean nothing.
+        // Only in a pipeline: whether the expected word says that a point's results are shown. In a bubble the results mean
+        // nothing.
         shown: Option<String>,
         // None without a microprogram.
         address: Option<String> = address.map(|address| {

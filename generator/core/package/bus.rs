@@ -1,4 +1,4 @@
-//! Describes the buses on which registers can be, as data: keys, ports, and the Verilog of each.
+//! Describes the buses that registers can be on, as data: keys, ports, and the Verilog of each bus.
 
 use anyhow::Result;
 use glint_base::fill;
@@ -14,15 +14,15 @@ pub struct Bus {
     pub suffix: &'static str,
     /// The level of the reset that resets.
     pub reset_level: u8,
-    /// The ports, clock and reset first: direction, name, the width of a vector, and of a port that LiteX connects its signal.
-    /// `#` stands for the bits of an address.
+    /// The ports, clock and reset first: direction, name, the width of a vector, and for a port that LiteX connects its
+    /// signal. `#` denotes the number of bits of an address.
     pub ports: &'static str,
     /// The interface that tools find by the names of its ports, if there is a definition of it.
     pub protocol: &'static [Protocol],
     /// The interface of LiteX.
     pub litex: &'static str,
-    /// The module on the bus, and what is proved of it: of a core with a name, the configuration that makes it, and the highest
-    /// bit of an address.
+    /// Makes the module on the bus, and its proof. Its parameters are the name of the core, the configuration that makes it,
+    /// and the highest bit of an address.
     pub module: fn(&str, &str, u32) -> Result<[String; 2]>,
 }
 
@@ -43,7 +43,7 @@ pub struct Protocol {
     pub version: &'static str,
     /// The type of an interface in Platform Designer.
     pub platform: &'static str,
-    /// The module takes what comes.
+    /// Whether the module is the receiving side of the interface.
     pub is_slave: bool,
 }
 

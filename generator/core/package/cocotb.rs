@@ -31,7 +31,7 @@ const PIPELINE: [&str; 4] = [
 /// Adds the bench of a design.
 ///
 /// # Errors
-/// A template that fails.
+/// Fails if a template fails.
 pub fn file(
     job: &Job,
     example: &WorkedExample,
@@ -51,7 +51,7 @@ pub fn file(
         name: &'a str,
         operands: Vec<String> = lines(&example.operands, |name, raw| format!("{name}={raw},")),
         outputs: Vec<String> = lines(&example.outputs, |name, raw| format!("\"{name}\": {raw},")),
-        // What is imported of the driver, sorted.
+        // The names that are imported from the driver, sorted.
         tests: Vec<&'static str>,
         pipeline: bool,
         // The results of the example.
@@ -61,7 +61,7 @@ pub fn file(
     Ok(())
 }
 
-/// Returns a line a number; where it has a fraction, with what the integer stands for.
+/// Returns one line for each number. If its value differs from the raw integer, a Python comment shows the value.
 fn lines(quantities: &[Quantity], code: fn(&str, i128) -> String) -> Vec<String> {
     let line = |quantity: &Quantity| {
         let code = code(&quantity.name, quantity.raw);
@@ -74,7 +74,7 @@ fn lines(quantities: &[Quantity], code: fn(&str, i128) -> String) -> Vec<String>
     quantities.iter().map(line).collect()
 }
 
-/// Returns the driver, with a last line that vouches for those above.
+/// Returns the driver, with a digest of its text in the last line.
 pub fn driver() -> OutputFile {
     let text = fill!("glint_cocotb.py" {}).expect("a template without fields");
     OutputFile {

@@ -98,7 +98,7 @@ pub enum Sequence<'a> {
 pub struct Rom<'a> {
     /// Its name in the description.
     pub name: &'a str,
-    /// The file of its contents, unless they stand in the Verilog.
+    /// The file of its contents, unless the Verilog contains the words.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub file: Option<&'a str>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -241,7 +241,7 @@ pub fn microprogram(design: &Design) -> Vec<Microinstruction<'_>> {
         .collect()
 }
 
-/// Returns the ROMs, that of the microprogram among them.
+/// Returns the ROMs, including the ROM of the microprogram.
 pub fn roms<'a>(design: &'a Design, naming: &'a Naming) -> Vec<Rom<'a>> {
     let in_file = !naming.style.inline;
     let entry = |(at, rom): (usize, &'a netlist::Rom)| {

@@ -1,8 +1,8 @@
 //! Generates the properties of the emitted Verilog of a core with a microprogram, which are proved by k-induction.
 //!
-//! Both units carry the invariants that a proof stands on, in a section for formal tools alone. A wrapper
-//! states what the manifest promises of the handshake, and a Yosys script makes the problem for
-//! `yosys-smtbmc`: products and the datapath's ROMs are cut out, since no property depends on them.
+//! Both units carry the invariants that the proof needs, in a section for formal tools alone. A wrapper states the manifest's
+//! promises about the handshake. A Yosys script makes the problem for `yosys-smtbmc`. It cuts out products and the datapath's
+//! ROMs, since no property depends on them.
 
 use anyhow::Result;
 use glint_base::fill;
@@ -98,7 +98,7 @@ impl Script<'_> {
     }
 }
 
-/// Returns the clocks by which `valid` follows what sets it, none in a design without it.
+/// Returns the number of clocks by which `valid` follows the signal that sets it, or 0 in a design without `valid`.
 fn valid_delay(design: &Design) -> u32 {
     let Some(valid) = design.port(|role| role == Role::Valid) else { return 0 };
     let mut at = valid.net;
@@ -119,7 +119,7 @@ fn valid_delay(design: &Design) -> u32 {
 /// Adds the wrapper and its scripts.
 ///
 /// # Errors
-/// A template that fails.
+/// Fails if a template fails.
 pub fn files(job: &Job, files: &mut Artifacts) -> Result<()> {
     let Job { design, inputs, naming, .. } = *job;
     let (timing, module) = (&inputs.timing, job.name());
@@ -134,12 +134,12 @@ pub fn files(job: &Job, files: &mut Artifacts) -> Result<()> {
     let depth = match &exact {
         // An induction that is longer than a computation has seen its start.
         Some((_, start)) => start + 2,
-        // One longer than the registers before valid knows what comes out of them.
+        // An induction longer than the registers before `valid` knows their outputs.
         None => UNROLLED.max(valid_delay(design) + 3),
     };
     let largest_age = match (&exact, &bounded) {
         (Some((_, start)), _) => Some(*start),
-        // What is left is added to it.
+        // The remaining clocks are added to the age.
         (None, Some((_, most))) => Some(2 * most),
         (None, None) => None,
     };
@@ -148,8 +148,8 @@ pub fn files(job: &Job, files: &mut Artifacts) -> Result<()> {
         width: u32::BITS - largest.leading_zeros(),
     });
     let waits = design.control.microprogram.iter().any(|it| it.sequence == Sequence::WaitStart);
-    // A few steps with much state between them z3 solves at once when they are unrolled, and those of a device that
-    // begins a computation as another ends; many it solves faster when they are not.
+    // If steps are unrolled, z3 solves a few steps with much state between them at once. The same holds for a device that
+    // begins a computation as another ends. It solves many steps faster if they are not unrolled.
     let unroll = exact.is_none() || design.control.overlaps;
     let exact = exact.zip(age.as_ref()).map(|((clocks, start), age)| Exact {
         valid: age.literal(clocks[0]),
@@ -194,7 +194,7 @@ pub fn files(job: &Job, files: &mut Artifacts) -> Result<()> {
     script.files(wrapper, depth, if unroll { "smtbmc --unroll z3" } else { "smtbmc z3" }, files)
 }
 
-/// Returns the ports of a wrapper for the clock and the inputs of a design: what a solver chooses.
+/// Returns the ports of a wrapper for the clock and the inputs of a design. A solver chooses the values of these ports.
 pub(super) fn inputs_of(design: &Design) -> Vec<String> {
     let input = |port: &Port| {
         let net = design.net(port.net);
@@ -214,8 +214,8 @@ pub(super) fn outputs_of(design: &Design) -> Vec<String> {
     Row::declarations(&design.outputs().map(output).collect::<Vec<_>>())
 }
 
-/// Returns how the end of every computation is proved: in each microinstruction the age and what is left at most are no more
-/// than the whole.
+/// Returns the proof that every computation ends: in each microinstruction, the age plus the largest number of remaining
+/// clocks is at most the whole.
 fn bounded_view(
     design: &Design,
     naming: &Naming,
@@ -268,8 +268,8 @@ fn bounded_view(
     }
 }
 
-/// Returns the clocks of `valid` and `done`, and that of the next start, where all are known, and the result is
-/// there in one clock.
+/// Returns the clocks of `valid` and `done`, and the clock of the next start. Returns `None` unless all are known and the
+/// result is there in one clock.
 fn exact(timing: &Timing) -> Option<([u32; 2], u32)> {
     let (valid, done) = (timing.start_to_valid?, timing.start_to_done?);
     // The clocks of a computation are counted to the last, whether the next one follows at once or not.

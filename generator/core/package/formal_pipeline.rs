@@ -1,8 +1,8 @@
 //! Generates the properties of the emitted Verilog of a pipeline, which are proved by k-induction.
 //!
-//! A wrapper holds a queue beside the pipeline, and states that its stages have points exactly where the
-//! queue has them. With a side channel it follows any one point, and states that its side value stays
-//! with it. No property depends on a product or a ROM, which are cut out.
+//! A wrapper contains a queue beside the pipeline, and states that the pipeline has points exactly in the stages in which the
+//! queue has them. With a side channel, it follows an arbitrary point, and states that the side value stays with this point.
+//! No property depends on a product or a ROM, so the proof cuts them out.
 
 use anyhow::Result;
 use glint_base::fill;
@@ -41,7 +41,7 @@ struct SideStage {
 /// Adds the wrapper and its scripts.
 ///
 /// # Errors
-/// A template that fails.
+/// Fails if a template fails.
 pub fn files(job: &Job, pipeline: &Pipeline, files: &mut Artifacts) -> Result<()> {
     let (module, design) = (job.name(), job.design);
     let name = format!("{module}_formal");
@@ -104,7 +104,7 @@ pub fn files(job: &Job, pipeline: &Pipeline, files: &mut Artifacts) -> Result<()
         ports: Vec<String> = separated(ports),
         outputs: Vec<String> = outputs_of(design),
         connections: Vec<String> = connections(design),
-        // What the proof sees of the inside: declarations.
+        // Declarations of the inner nets that the proof reads.
         inside: Vec<String>,
         stages: usize = latency,
         // One bit a stage, under its path.

@@ -1,5 +1,5 @@
-//! Generates FuseSoC cores (CAPI2): the device, and the bench in a core of its own, because a core may only list files
-//! beside it.
+//! Generates FuseSoC cores (CAPI2): one for the device, and one for the bench. A core may only list files beside it, so the
+//! bench has a core of its own.
 
 use anyhow::Result;
 use glint_base::fill;
@@ -10,7 +10,7 @@ use glint_rtl::verilog::text::ascii;
 /// Adds `<name>.core`, with a simulation target if there is a bench, and then `<name>_tb.core`. File names are relative to them.
 ///
 /// # Errors
-/// A template that fails to print.
+/// Fails if a template fails to print.
 pub fn files(job: &Job, files: &mut Artifacts) -> Result<()> {
     let (name, around) = (job.name(), &job.inputs.around);
     let (version, licence) = (around.version.as_str(), around.licence.as_str());
@@ -36,7 +36,7 @@ pub fn files(job: &Job, files: &mut Artifacts) -> Result<()> {
         // The benches beside the core's own, without `_tb`; none without it.
         benches: Option<Vec<String>> =
             (!benches.is_empty()).then(|| benches.iter().filter_map(wrapper).collect()),
-        // That of `<name>.xdc` and `<name>.sdc`, if there are any.
+        // The clock of `<name>.xdc` and `<name>.sdc`, if these files exist.
         clock_mhz: Option<f64> = around.clock_mhz,
         vendor: &'a str = &around.vendor,
         version: &'a str,

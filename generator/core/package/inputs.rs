@@ -1,4 +1,4 @@
-//! The inputs of emission beside the design: clocks, contract, stimulus and surroundings.
+//! The inputs of emission in addition to the design: clocks, contract, stimulus and surroundings.
 
 use super::surroundings::Surroundings;
 use crate::observation::{Computation, ContractFacts, Vectors, WorkedExample};
@@ -29,7 +29,7 @@ pub struct EmitInputs {
 }
 
 impl EmitInputs {
-    /// Returns what the header of each Verilog file says of its making.
+    /// Returns the part of each Verilog file's header that says how the file was made.
     pub(super) fn origin(&self) -> Origin<'_> {
         Origin { regenerate: &self.regenerate, timing: &self.timing }
     }

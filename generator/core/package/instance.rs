@@ -1,10 +1,10 @@
-//! Writes how a device is used from Verilog: wires for its ports, and an instance.
+//! Writes an example of a device's use in Verilog: wires for its ports, and an instance.
 
 use glint_rtl::netlist::Design;
 use glint_rtl::verilog::naming::remark;
 use glint_rtl::verilog::rows::{Row, separated};
 
-/// Writes declarations of what the ports are connected to, and an instance; the clock is there already.
+/// Writes declarations of the wires that the ports are connected to, and an instance. The clock must be declared already.
 pub fn instance(design: &Design) -> String {
     let wires: Vec<Row> = design
         .ports

@@ -14,7 +14,7 @@ use glint_rtl::verilog::text::{Names, ascii, comment, constant_name, literal};
 /// Adds the files that the configuration asks for.
 ///
 /// # Errors
-/// A template that fails.
+/// Fails if a template fails.
 pub fn files(job: &Job, tops: &[Top], files: &mut Artifacts) -> Result<()> {
     if job.inputs.around.vhdl {
         let text = vhdl(job, tops)?;
@@ -58,7 +58,7 @@ fn vhdl(job: &Job, tops: &[Top]) -> Result<String> {
         .collect();
     let generic = |(name, file): &(String, &String)| format!("{name} : string := \"{file}\"");
     let generics = listed(memories.iter().map(generic).collect());
-    // Of each result the wire to the component, its type, and the assignment.
+    // For each result: the wire to the component, its type, and the assignment.
     let mut names = Names::new(design.nets.iter().map(|net| net.name.as_str()));
     let mut outputs = Vec::new();
     let (mut ports, mut connections) = (vec!["clk : in std_logic".to_owned()], Vec::new());
@@ -96,7 +96,7 @@ fn vhdl(job: &Job, tops: &[Top]) -> Result<String> {
         regenerate: &'a str = job.regenerate(),
         components: Vec<Component<'a>> = tops.iter().map(|top| component(top, &generics)).collect(),
         generics: Vec<String>,
-        // The generics of the entity, which are those of the component.
+        // The generics of the entity. The component has the same generics.
         passed: Vec<String> =
             separated(memories.iter().map(|(name, _)| format!("{name} => {name}")).collect()),
         ports: Vec<String> = listed(ports),
@@ -136,12 +136,13 @@ fn vhdl_name(name: &str) -> String {
     let reserved = VHDL_2008.split_ascii_whitespace().any(|word| word == name.to_ascii_lowercase());
     let plain = !name.starts_with('_') && !name.ends_with('_') && !name.contains("__");
     let small = !name.chars().any(|sign| sign.is_ascii_uppercase());
-    // The generics, all of them upper case, are the only names of which case does not matter.
+    // The generics, all of them upper case, are the only names for which case does not matter.
     let generic = name.contains("_FILE") && name.to_ascii_uppercase() == name;
     if plain && !reserved && (small || generic) { name.to_owned() } else { format!("\\{name}\\") }
 }
 
-/// Returns the name of a module as that of a component: extended too where it is a name that the package uses or makes visible.
+/// Returns the name of a module as the name of a component. It is an extended name too if the package uses the name or makes
+/// it visible.
 fn module_name(name: &str) -> String {
     let used = ["ieee", "work", "std", "std_logic", "std_logic_vector", "std_ulogic", "string"];
     if used.contains(&name) { format!("\\{name}\\") } else { vhdl_name(name) }

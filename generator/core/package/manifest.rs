@@ -15,8 +15,8 @@ use crate::observation::{Computation, ContractFacts, Quantity};
 use glint_rtl::netlist::Timing;
 use glint_rtl::netlist::{Design, Pipeline, RegId};
 
-/// The version of the manifest's structure, for programs that read it: of what names mean and where they stand. It grows
-/// when something is renamed, moved, or means something else; not when something is added.
+/// The version of the manifest's structure, for programs that read it. It is increased when a name is renamed, moved, or gets
+/// another meaning, and not when a name is added.
 const SCHEMA: u32 = 1;
 
 #[derive(Serialize)]
@@ -53,7 +53,7 @@ struct Manifest<'a> {
     stream: Option<Value>,
 }
 
-/// Computations, and what the numbers of each stand for.
+/// Computations, with the names of the numbers in each.
 #[derive(Serialize)]
 struct Computations<'a> {
     /// The operands of each point, in the order of the ports.
@@ -64,7 +64,7 @@ struct Computations<'a> {
     points: Vec<Box<RawValue>>,
 }
 
-/// The names of the files that the manifest lists, by what they are for.
+/// The names of the files that the manifest lists, by purpose.
 pub struct Names(serde_json::Map<String, Value>);
 
 impl Names {
@@ -93,7 +93,7 @@ impl Names {
 /// Returns the manifest as text, with the digests of all `others`.
 ///
 /// # Errors
-/// A number that JSON cannot carry (a value that is not finite).
+/// Fails if a number is not finite, because JSON cannot represent it.
 pub fn contents(job: &Job, names: &Names, others: &[OutputFile]) -> Result<String> {
     let Job { design, inputs, naming, .. } = *job;
     let about = &design.about;

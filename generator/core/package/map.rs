@@ -1,5 +1,5 @@
-//! Gives the operands, results and status bits of a core their registers on a bus: what stands where, for the Verilog
-//! and for software.
+//! Assigns bus registers to the operands, results and status bits of a core, for the Verilog and for software. For example,
+//! the first operand is at word 8.
 
 use std::collections::BTreeSet;
 
@@ -15,7 +15,7 @@ use glint_rtl::verilog::text::ascii;
 /// Bits of a register.
 const WORD: u32 = 32;
 
-/// How many registers never change; they stand first.
+/// The number of registers that never change. They come first.
 pub const CONSTANTS: u32 = 4;
 
 /// The first register that can be written; [`INTERRUPT_ENABLE`] and [`INTERRUPT_PENDING`] follow.
@@ -125,7 +125,7 @@ impl Map {
     /// Gives the operands, results and status bits of a core their registers.
     ///
     /// # Errors
-    /// A core that is no single computation of operands to results, or names that collide in the map.
+    /// Fails if the core is no single computation of operands to results, or if names collide in the map.
     pub fn new(design: &Design, inputs: &EmitInputs) -> Result<Self> {
         let name = design.name.as_str();
         if design.pipeline.is_some() {

@@ -5,7 +5,7 @@
 //! `templates/` print views and decide nothing. Emission is pure: it returns files
 //! and writes none, and the same design gives the same bytes.
 
-/// A structure of a bench's own names, none of which a port has.
+/// Declares a structure of a bench's own names. No name is the name of a port.
 macro_rules! fresh_names {
     ($all:ident { $($name:ident),* }) => {
         struct $all {
@@ -67,11 +67,11 @@ pub use software::check_recomputation;
 pub use surroundings::{Surroundings, check_clock, check_rom_style};
 pub use unfit::Unfit;
 
-/// Returns the bench that computes a list of points, each in less than `limit` clocks: of a pipeline, or of a design with a
-/// microprogram.
+/// Returns the bench that computes a list of points, for a pipeline or for a design with a microprogram. Each point must take
+/// less than `limit` clocks.
 ///
 /// # Errors
-/// A design without its handshake, or without operands or results.
+/// Fails if the design lacks its handshake, operands or results.
 pub fn points_bench(design: &Design, limit: u32) -> Result<PointsBench> {
     match design.pipeline {
         Some(_) => points::pipeline::points_bench(design, limit),
@@ -82,7 +82,7 @@ pub fn points_bench(design: &Design, limit: u32) -> Result<PointsBench> {
 /// Returns every file of a design.
 ///
 /// # Errors
-/// The mistakes that [`Design::verify_structure`] finds; a net named `clk`; vectors that do not fit the ports.
+/// Fails if [`Design::verify_structure`] finds mistakes, if a net is named `clk`, or if vectors do not fit the ports.
 pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
     ensure!(design.find("clk").is_none(), "`clk` is the clock; no other net can have that name");
     let plan = Plan::new(design)?;
@@ -121,7 +121,7 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
     let names = manifest::Names::new(&files);
     let mut files = files.files(&design.name);
     module_names::check(&files)?;
-    // The manifest vouches for every other file.
+    // The manifest has the digests of all other files.
     let contents = manifest::contents(&job, &names, &files)?;
     files.push(OutputFile { path: format!("rtl_out/{0}/{0}.json", design.name), contents });
     Ok(files)

@@ -1,7 +1,8 @@
 //! Finds the modules that files define, and checks whether their names mean anything else in the text.
 //!
-//! Verilog keeps modules apart from what is inside them, but tools do not always: a bench that looks into
-//! instance `control` of a module `control` is not elaborated, and linters warn of a port named like its module.
+//! In Verilog a module may have the name of something inside it, but tools do not always accept that. For example, if a bench
+//! looks into instance `control` of a module `control`, it is not elaborated. Linters warn of a port that is named like its
+//! module.
 
 use std::collections::BTreeMap;
 
@@ -9,10 +10,10 @@ use anyhow::{Result, bail};
 
 use super::output_file::OutputFile;
 
-/// Makes sure that the name of every module in some files of one configuration stands for the module alone.
+/// Makes sure that in some files of one configuration the name of every module is used for the module alone.
 ///
 /// # Errors
-/// A module, and where its name is that of something else.
+/// Fails if the name of a module is also used for something else. The error names the module, the file and the line.
 pub fn check(files: &[OutputFile]) -> Result<()> {
     let sources: Vec<(&OutputFile, Vec<Token<'_>>)> =
         verilog(files).map(|file| (file, tokens(&file.contents))).collect();
@@ -33,10 +34,11 @@ pub fn check(files: &[OutputFile]) -> Result<()> {
     Ok(())
 }
 
-/// Makes sure that no two configurations define a module of the same name; each comes with what it is called.
+/// Makes sure that no two configurations define a module of the same name. `configurations` gives each with its name for
+/// messages.
 ///
 /// # Errors
-/// The module and both configurations.
+/// Fails if two configurations define the same module. The error names the module and both configurations.
 pub fn check_together<'a>(
     configurations: impl IntoIterator<Item = (&'a str, &'a [OutputFile])>,
 ) -> Result<()> {
@@ -66,8 +68,7 @@ fn defined<'a>(tokens: &[Token<'a>]) -> Vec<&'a str> {
     pairs.map(|pair| pair[1].text).collect()
 }
 
-/// Returns whether token `at`, which is the name of a module, stands for the module: where it is defined, and where it is
-/// instantiated.
+/// Returns whether token `at`, which is the name of a module, means the module: the module is defined or instantiated there.
 fn names_module(tokens: &[Token<'_>], at: usize) -> bool {
     let text = |at: usize| tokens.get(at).map_or("", |token| token.text);
     let is_defined = at > 0 && text(at - 1) == "module";
@@ -94,7 +95,7 @@ fn tokens(text: &str) -> Vec<Token<'_>> {
             let length = match first {
                 '/' if rest.starts_with("//") => rest.len(),
                 '"' => rest[1..].find('"').map_or(rest.len(), |end| end + 2),
-                // A number, a directive or a system task goes with what follows it.
+                // A number, a directive or a system task belongs together with the word after it.
                 '\'' | '`' | '$' => 1 + rest[1..].find(|c| !word(c)).unwrap_or(rest.len() - 1),
                 _ if word(first) => rest.find(|c| !word(c)).unwrap_or(rest.len()),
                 _ => first.len_utf8(),

@@ -1,7 +1,8 @@
-//! Generates `<name>_multiplier.v`: a product with a register at its output, for all tools and for those of a target.
+//! Generates `<name>_multiplier.v`: a product with a register at its output, in a form for all tools and in a form for a
+//! target.
 //!
-//! The portable form stands among the Verilog of the core. A target's own stands in a directory of the target,
-//! under the same name, and takes the place of the portable one in its flow alone.
+//! The portable form is among the Verilog files of the core. The target's own form has the same name, in a directory of the
+//! target. In the flow of that target, and only there, it replaces the portable form.
 
 use anyhow::Result;
 use glint_base::fill;
@@ -20,11 +21,11 @@ const PORTABLE: &str = "The portable form, for simulators and synthesis alike. O
 const ECP5: &str = "For ECP5: a DSP block with its output register and no other. nextpnr-ecp5 times the ways into the \
                     block, which end in that register, and those from it. The portable form is in the directory above.";
 
-/// Adds the module of a design's products, if any of its registers is inside a multiplier: the portable form, and that of the
-/// target.
+/// Adds the module of a design's products, if any of its registers is inside a multiplier: the portable form, and the form of
+/// the target.
 ///
 /// # Errors
-/// A template that fails to print.
+/// Fails if a template fails to print.
 pub fn files(job: &Job, files: &mut Artifacts) -> Result<()> {
     let Some(pipeline) = job.design.pipeline.as_ref().filter(|it| !it.registered.is_empty()) else {
         return Ok(());

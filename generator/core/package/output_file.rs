@@ -1,4 +1,4 @@
-//! The files that emission returns: their paths, what of them tools read, and their digests.
+//! The files that emission returns: their paths, their digests, and the selection that tools read.
 
 use sha2::{Digest, Sha256};
 
@@ -17,7 +17,8 @@ impl OutputFile {
         self.path.rsplit('/').next().unwrap_or(&self.path)
     }
 
-    /// Returns the target that the file is for, of one that stands in its directory: `rtl_out/<name>/<target>/…`.
+    /// Returns the target of a file that is in a target's directory, `rtl_out/<name>/<target>/…`, and `None` for any other
+    /// file.
     fn target(&self) -> Option<&str> {
         match self.path.split('/').collect::<Vec<_>>()[..] {
             [_, _, target, _] => Some(target),

@@ -80,7 +80,7 @@ impl List {
         }
     }
 
-    /// Returns the bench of which this is the text.
+    /// Returns the bench with this text.
     fn bench(self, text: String) -> PointsBench {
         PointsBench { name: self.name, text, operands: self.operands, results: self.results }
     }
@@ -91,7 +91,7 @@ fresh_names!(Variables { points, results, read, clocks, total, tick, dut });
 /// Returns the bench of a design with a microprogram, whose computations take less than `limit` clocks each.
 ///
 /// # Errors
-/// A design without the common handshake, or without operands or results.
+/// Fails if the design lacks the common handshake, operands or results.
 pub fn points_bench(design: &Design, limit: u32) -> Result<PointsBench> {
     let handshake = design.handshake()?;
     let name_of = |net: NetId| design.net(net).name.clone();

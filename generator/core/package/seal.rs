@@ -1,5 +1,5 @@
-//! Writes and checks a digest in files that are in no manifest, in their last line or as a member of JSON: it shows
-//! that a file is as Glint wrote it.
+//! Writes and checks a digest in files that no manifest lists. The digest is in the last line, or is a member of JSON. It
+//! shows whether a file was changed since Glint wrote it.
 
 use anyhow::{Context, Result};
 use serde_json::Value;
@@ -17,11 +17,11 @@ pub enum Seal {
     Json,
 }
 
-/// The member of sealed JSON that vouches for the others.
+/// The member of sealed JSON with the digest of the other members.
 const MEMBER: &str = "sha256";
 
-/// Returns the text, which ends with a newline, and a last line that vouches for it. JSON has none, and is left as it
-/// is: see [`sealed_json`].
+/// Returns the text, which must end with a newline, with a last line that has the digest of the text. JSON has no such line,
+/// and stays as it is: see [`sealed_json`].
 pub fn sealed(text: String, seal: Seal) -> String {
     let line = last_line(text.as_bytes(), seal);
     text + &line
@@ -35,10 +35,10 @@ fn last_line(above: &[u8], seal: Seal) -> String {
     }
 }
 
-/// Returns the text of a JSON object with a member that vouches for the others; it ends with a newline.
+/// Returns the text of a JSON object with a member that has the digest of the others. The text ends with a newline.
 ///
 /// # Errors
-/// The value is no object.
+/// Fails if the value is no object.
 pub fn sealed_json(mut value: Value) -> Result<String> {
     let digest = digest(value.to_string().as_bytes());
     let members = value.as_object_mut().context("no object")?;

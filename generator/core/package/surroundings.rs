@@ -1,4 +1,5 @@
-//! Reads from the keys of a configuration what stands around a core, and checks whether the core allows it.
+//! Reads from the keys of a configuration the surroundings of a core, for example wrappers and software, and checks whether
+//! the core allows them.
 
 use super::bus::{BUSES, Bus};
 use super::unfit::Unfit;
@@ -15,10 +16,10 @@ const CLOCK: &str = "package.clock_mhz";
 /// The key that says where ROMs are to be.
 const ROM_STYLE: &str = "package.rom_style";
 
-/// Checks that constraints do not ask more of a pipeline than it is made for.
+/// Checks that constraints do not ask for a faster clock than the pipeline is made for.
 ///
 /// # Errors
-/// A clock of constraints above that of the stages.
+/// Fails if the clock of the constraints is faster than the clock of the stages.
 pub fn check_clock(config: &Config, pipeline: &Pipeline) -> Result<(), Unfit> {
     let (asked, made_for) = (config.number(CLOCK), pipeline.clock_mhz);
     if asked <= made_for {
@@ -120,7 +121,7 @@ impl Default for Surroundings {
 }
 
 impl Surroundings {
-    /// Reads the keys that every device shares; of a pipeline, with the clock that it is made for.
+    /// Reads the keys that every device shares. A pipeline adds the clock that it is made for.
     pub fn new(config: &Config, pipeline: Option<&Pipeline>) -> Self {
         let keys = Shared::of(config);
         Self {

@@ -87,7 +87,7 @@ impl Top {
 /// Returns the modules of a configuration, the core first.
 ///
 /// # Errors
-/// A stream around a core without operands or results.
+/// Fails if a stream surrounds a core without operands or results.
 pub fn tops(job: &Job, files: &Artifacts) -> Result<Vec<Top>> {
     let (name, design) = (job.name(), job.design);
     let reset = design.port(|role| role == Role::Reset);
@@ -103,7 +103,7 @@ pub fn tops(job: &Job, files: &Artifacts) -> Result<Vec<Top>> {
         verilog: files.names(&[Kind::Rtl]),
     }];
     let mut add = |suffix: &str, face: Face, what: String, level: u8, ports: Vec<TopPort>| {
-        // The files of the stream, with that of its buffer, or those of the registers and their bus.
+        // The files of the stream with its buffer, or the files of the registers with their bus.
         let streamed = format!("{name}_axis");
         let of_core = |file: &String| file.starts_with(&streamed) == (face == Face::Stream);
         let own = files.names(&[Kind::Wrapper]).into_iter().filter(of_core);

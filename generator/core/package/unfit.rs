@@ -1,8 +1,9 @@
-//! The error of a key that asks for what a core cannot have.
+//! Defines the error of a key that asks for something that the core cannot have.
 
 use std::fmt;
 
-/// A key that asks for what the core cannot have. Whoever knows the file of the configuration can say where.
+/// A key that asks for something that the core cannot have. A caller who knows the configuration file can add the line of the
+/// key.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Unfit {
     /// The dotted name of the key.
@@ -14,7 +15,7 @@ pub struct Unfit {
 }
 
 impl Unfit {
-    /// Takes a key, what is wrong with it, and what to do about it.
+    /// Makes the error from a key, the fault, and the remedy.
     pub fn new(key: &'static str, message: impl Into<String>, remedy: impl Into<String>) -> Self {
         Self { key, message: message.into(), remedy: remedy.into() }
     }

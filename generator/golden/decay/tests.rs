@@ -36,7 +36,7 @@ fn words_by_hand() {
     // 2^−¼ is 53.8 in 1/64; shifted by 2: 13. All is shifted out from y = 7 on.
     assert_eq!(it.reflectance(14, 2 << 2 | 1, 54), 13);
     assert_eq!(it.reflectance(14, 7 << 2, 64), 0);
-    // At the ends; what rounds to 1.0 is an ulp below it.
+    // At the ends. A result that would round to 1.0 is an ulp below it.
     assert_eq!([16, 0].map(|cosine| it.reflectance(cosine, 0, 54)), [63, 0]);
     assert_eq!(it.reflectance(14, 0, 64), 63);
 }

@@ -7,7 +7,7 @@ use super::{Does, Frame, Microinstruction, Next, Operand, Slot, State, Value, id
 use crate::Model;
 use glint_base::fixed::mask;
 
-/// The handshake's own signals, which stand before the device's.
+/// The signals of the handshake, which come before the signals of the device.
 const HANDSHAKE: [&str; 5] = ["valid", "busy", "done", "run", "word_address"];
 
 /// The constant part of a model.
@@ -100,7 +100,7 @@ impl Fixed {
 }
 
 impl Clocked {
-    /// Makes the device at power-up, with so many slots, all 0.
+    /// Makes the device at power-up, with this number of slots, all 0.
     fn at_power_up(fixed: Fixed, slots: usize) -> Self {
         let mut model = Self {
             run: false,
@@ -149,7 +149,7 @@ impl Clocked {
         Some(Self::at_power_up(it, slots))
     }
 
-    /// Updates the visible values; skips those that follow the registers if they are `still`.
+    /// Updates the visible values. If `still`, it skips the values that depend on the registers.
     #[inline]
     fn settle(&mut self, still: bool) {
         let it = &*self.fixed;

@@ -1,9 +1,9 @@
-//! Builds golden models that run clock by clock. It supplies what every device has: reset, `start`, strobes, the
-//! sequence of microinstructions, `busy`, `valid`, `done`.
+//! Builds golden models that run clock by clock. It supplies the parts that every device has: reset, `start`, strobes, the
+//! sequence of microinstructions, `busy`, `valid` and `done`.
 //!
-//! A device names its operands, registers and outputs once, in a [`Frame`], and gets a [`Slot`] for each. It
-//! says what each microinstruction does to them ([`step`]) and what its outputs show; the
-//! order of the microinstructions numbers them. [`Frame::model`] makes a [`Model`](super::Model) of that.
+//! A device names its operands, registers and outputs once, in a [`Frame`], and gets a [`Slot`] for each. It defines the
+//! operation of each microinstruction on them ([`step`]) and the values of its outputs. The order of the microinstructions
+//! numbers them. [`Frame::model`] makes a [`Model`](super::Model) from the frame.
 //!
 //! ```
 //! use glint_base::fixed::Format;
@@ -42,7 +42,8 @@ use glint_base::fixed::Format;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Slot(usize);
 
-/// The raw values of operands, registers and outputs. Those of a part stand together, in the order of its own model.
+/// The raw values of operands, registers and outputs. The values of a part are adjacent, in the order of the part's own
+/// model.
 pub type State = [i64];
 
 impl Index<Slot> for State {
@@ -96,7 +97,7 @@ pub fn idle() -> Microinstruction {
     }
 }
 
-/// Returns a microinstruction by what its rising edge does to the registers.
+/// Returns a microinstruction whose rising edge applies `does` to the registers.
 pub fn step(does: impl Fn(&mut State) + Send + Sync + 'static) -> Microinstruction {
     Microinstruction { does: Some(Arc::new(does)), ..idle() }
 }
@@ -195,7 +196,7 @@ impl Frame {
         slot
     }
 
-    /// Adds a register, of which the low bits that `format` has are shown.
+    /// Adds a register. The outside sees its low bits, as many as `format` has.
     pub fn register(&mut self, name: &str, format: Format) -> Slot {
         self.shown(name.to_owned(), format, false)
     }
@@ -214,7 +215,7 @@ impl Frame {
     /// Adds an output that shows a register.
     ///
     /// # Panics
-    /// If the slot is not that of a register.
+    /// If the slot is no register.
     pub fn shows(&mut self, name: &str, register: Slot) {
         let of = self.shown.iter().find(|shown| shown.slot == register);
         let format = of.expect("a register that is shown").format;
@@ -233,15 +234,16 @@ impl Frame {
         self.clamped(name, format, format.min_raw() as i64, format.max_raw() as i64)
     }
 
-    /// Adds an operand whose register moves what it loads into `min ..= max`, raw.
+    /// Adds an operand whose register clamps each loaded value to `min ..= max`, raw.
     pub fn clamped(&mut self, name: &str, format: Format, min: i64, max: i64) -> Slot {
         let slot = self.shown(format!("{name}_reg"), format, false);
         self.operands.push(Operand { name: name.to_owned(), slot, format, min, max });
         slot
     }
 
-    /// Adds an operation of every rising edge, whatever microinstruction is in force: a synchronous ROM reads. It comes
-    /// before the microinstruction and after what was stated earlier, and sees the values before the edge.
+    /// Adds an operation of every rising edge, whatever microinstruction is in force: for example, a synchronous ROM reads.
+    /// It runs before the operation of the microinstruction and after the operations of earlier calls. It sees the values
+    /// before the edge, except for slots that were already written at this edge.
     pub fn every_edge(&mut self, does: impl Fn(&mut State) + Send + Sync + 'static) {
         self.edges.push(Arc::new(does));
     }

@@ -1,7 +1,8 @@
-//! Makes a golden model of the models of its parts, which share one state and one microprogram.
+//! Builds a golden model from the models of its parts. The parts share one state and one microprogram.
 //!
-//! A part executes its own microinstructions on its own registers, one part after the other. Its operand registers are
-//! loaded in the microinstruction before its first, and its results are in registers from its last on.
+//! The parts run one after the other, and each executes its own microinstructions on its own registers. A part's
+//! operand registers are loaded in the microinstruction before its first. Its results are in registers from its last
+//! microinstruction on. For example:
 //!
 //! ```
 //! use glint_base::fixed::Format;
@@ -51,11 +52,11 @@ impl Part {
 }
 
 impl Frame {
-    /// Returns a part with its operands, each by its name, as functions of what was computed before. Its registers have their own
-    /// names behind `name`.
+    /// Returns a part. `operands` gives each operand of the part by its name, as a function of values that were computed
+    /// before. The names of the part's registers get `name` in front.
     ///
     /// # Panics
-    /// If the model is not that of a [`Frame`], gives several results, or has no operand of one of the names.
+    /// If the model was not made by a [`Frame`], gives several results, or has no operand of one of the names.
     pub fn part<V>(
         &mut self,
         name: &str,
@@ -134,7 +135,7 @@ fn within(base: usize, does: &Does) -> Does {
     Arc::new(move |s| does(&mut s[base..]))
 }
 
-/// Returns the first operation, and the second after it: they must not read what the other writes.
+/// Returns an operation that does `first` and then `second`. Neither may read a slot that the other writes.
 fn then(first: Does, second: Option<Does>) -> Does {
     let Some(second) = second else { return first };
     Arc::new(move |s| {

@@ -1,8 +1,8 @@
 use super::*;
 use crate::Model;
 
-/// Returns an operand that counts down by ones, or not at all where it is 0 (s1.2, clamped to 0 … 1.0): its slot and that of the
-/// count.
+/// Adds an operand that counts down by ones, or not at all if it is 0 (s1.2, clamped to 0 … 1.0). Returns the slots of the
+/// operand and of the count.
 fn countdown(frame: &mut Frame) -> (Slot, Slot) {
     let from = frame.clamped("from", Format::signed(1, 2), 0, 4);
     let count = frame.register("count", Format::unsigned(3, 0));
@@ -177,12 +177,13 @@ fn no_registers_behind_a_result_that_decides() {
     assert!(model.with_output_registers().is_none());
 }
 
-/// A buffer takes writes at any time; a start in the last microinstruction is heard, and takes what is written in its clock.
+/// A buffer takes writes at any time. A start in the last microinstruction is heard, and takes the value that is written in
+/// the same clock.
 #[test]
 fn operands_in_buffers() {
     let mut model = model(0).with_operand_buffers().expect("a frame's");
     let names = ["run", "word_address", "from_buffer", "from_reg", "count"];
-    // rst_n, start, from, write; then what is there after the edge.
+    // rst_n, start, from, write; then the values after the edge.
     let course = [
         ([1, 0, 1, 1], [0, 0, 1, 0, 0]),
         ([1, 1, 9, 0], [1, 0, 1, 1, 0]),

@@ -32,16 +32,16 @@ pub trait Reflectance: Send + Sync {
     /// Returns the values of [`Reflectance::references`] as expressions of Python, for benches that have no other second
     /// opinion; none where nobody wrote them.
     ///
-    /// They speak of the control operands by name, as values and not raw, of the result's number (from 0) as
-    /// `index`, of the words of a ROM as values by its name, and of `math`'s functions.
+    /// The expressions may use the control operands by name, as values and not raw, the result's number (from 0) as `index`,
+    /// the words of a ROM as values by its name, and the functions of `math`.
     fn expressions(&self) -> Vec<String> {
         Vec::new()
     }
 
-    /// Moves control operands to those of the one point that result number `index` (from 0) of a computation shows.
+    /// Moves the control operands to the point that result number `index` (from 0) of a computation shows.
     ///
-    /// A device with one result per `start` shows the point of its operands. One that walks a line of
-    /// points from one `start` says here where the walk has come to.
+    /// A device with one result per `start` shows the point of its operands. A device that walks a line of points from one
+    /// `start` must say here where the walk is at that result.
     fn point(&self, control: &mut [i64], index: u64) {
         let _ = (control, index);
     }
@@ -66,7 +66,8 @@ pub trait Reflectance: Send + Sync {
         first.to_vec()
     }
 
-    /// Returns the formula at a cosine that is not quantised, and a raw exponent; none of a device with other control operands.
+    /// Returns the formula at a cosine that is not quantised, and a raw exponent. Returns `None` if the device has other
+    /// control operands.
     fn at_cosine(&self, cosine: f64, exponent: i64) -> Option<f64> {
         let _ = (cosine, exponent);
         None
@@ -83,18 +84,17 @@ pub trait Reflectance: Send + Sync {
     }
 
     /// Returns the control operands, as [`Reflectance::f`] takes them, that come nearest to the angle `gamma`, in radians
-    /// from 0 to π/2, and the exponent `n`; `None` where no operands of the domain stand for that exponent.
-    /// `operands` are those of the contract.
+    /// from 0 to π/2, and the exponent `n`. Returns `None` if no operands of the domain denote that exponent. `operands` are
+    /// the operands of the contract.
     ///
-    /// By default these are the operands `cos_gamma` and `exponent`, if the device has them; any other is
-    /// as near to 0 as its domain allows. A device with other operands, or for whose operands 0 means
-    /// something, says so here.
+    /// By default these are the operands `cos_gamma` and `exponent`, if the device has them. Any other operand is as near to
+    /// 0 as its domain allows. A device with other operands, or for whose operands 0 means something, must say so here.
     fn at(&self, operands: &[Operand], gamma: f64, n: f64) -> Option<Vec<i64>> {
         contract::operands_at(operands, gamma, n, &[])
     }
 
-    /// Returns the cosine of the angle γ that control operands denote once they are quantised: by default the operand
-    /// `cos_gamma`, if the device has one. `operands` are those of the contract.
+    /// Returns the cosine of the angle γ that the control operands denote once they are quantised. By default this is the
+    /// operand `cos_gamma`, if the device has one. `operands` are the operands of the contract.
     fn cosine(&self, operands: &[Operand], control: &[i64]) -> Option<f64> {
         let (operand, raw) =
             operands.iter().zip(control).find(|(operand, _)| operand.name == COSINE)?;
@@ -130,7 +130,7 @@ pub trait Reflectance: Send + Sync {
 pub struct Variation {
     /// The largest slope beside the jump.
     pub slope: f64,
-    /// The largest jump: of most formulas what they have at a right angle, beyond which they are 0.
+    /// The largest jump. Most formulas jump at a right angle, from their value there to 0 beyond it.
     pub jump: f64,
 }
 
@@ -199,8 +199,8 @@ impl Highlight {
         point
     }
 
-    /// Returns the f of result number `index` (from 0) of raw operands; `exact` takes what [`Contract::exact`] says of it.
-    /// `point` is room for its control operands.
+    /// Returns the f of result number `index` (from 0) of raw operands. It writes the values of [`Contract::exact`] into
+    /// `exact`, and the control operands of the point into `point`.
     #[inline]
     pub fn measured(
         &self,

@@ -114,8 +114,8 @@ impl Products {
         program
     }
 
-    /// Returns the device at power-up: the products of what `program` leaves in the slot f are made, and shown in its last
-    /// microinstruction.
+    /// Returns the device at power-up. The products of the value that `program` leaves in the slot `f` are made and shown in
+    /// the last microinstruction.
     pub fn behind(&self, mut frame: Frame, f: Slot, mut program: Vec<Microinstruction>) -> Clocked {
         program.extend(self.slots(&mut frame, f));
         program.push(idle().valid().end());

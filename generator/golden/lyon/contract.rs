@@ -43,7 +43,7 @@ impl Arithmetic {
         squares.sum::<i64>() as f64 * exp2(-2 * self.keys.vector_fraction as i32)
     }
 
-    /// Returns the formula at a D², with the β that the operand stands for.
+    /// Returns the formula at a D², with the β that the operand denotes.
     #[inline]
     fn formula(&self, distance: f64, operand: i64) -> f64 {
         let power = self.keys.power;
@@ -134,12 +134,12 @@ impl Reflectance for Arithmetic {
     /// an error ε before a power p grows to at most p·ε.
     ///
     /// - An error of D² is multiplied by β = n/(2·m), and raised to m: n/2 in all.
-    /// - Base: as in `cosine-power`, the inverse stands for 1.0 − ulp − t where 1.0 − t is meant. With t
-    ///   truncated the base is low by at most an ulp; to the nearest, by 3/2.
+    /// - Base: as in `cosine-power`, the hardware uses the inverse, 1.0 − ulp − t, instead of 1.0 − t. If t is truncated, the
+    ///   base is low by at most an ulp; if t is rounded to the nearest, by 3/2.
     /// - The result of squaring number i is rounded, and then raised to m/2^i: m − 1 in sum.
     ///
-    /// Where all of them truncate, D² makes f too large and the others make it too small, by so much at
-    /// most: only the larger of the two counts.
+    /// If all of them truncate, D² makes f too large and the others make it too small, by so much at most. Only the larger of
+    /// the two counts then.
     fn shares(&self) -> Vec<ErrorShare> {
         let keys = &self.keys;
         let (f, power) = (keys.f.fraction, f64::from(keys.power));

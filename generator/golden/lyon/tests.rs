@@ -42,7 +42,7 @@ fn operands_of_an_angle() {
     assert_eq!([0.0, 2.5, 16.0].map(|n| contract.at(third, n)), [const { None }; 3]);
 }
 
-/// The sweep's error is the worst over what rounds to a word.
+/// The sweep's error is the worst error over all distances that round to a word.
 #[test]
 fn a_word_stands_for_an_interval() {
     let contract = of_keys(small(2, Scale::Multiplier));

@@ -11,8 +11,8 @@ use crate::{Contract, Operand, Sweep};
 use glint_base::fixed::{Format, exp2};
 use glint_config::Config;
 
-/// Returns the accuracy contract. Control operands: `delta_zeta`, `zeta_start`, `exponent`, `length`; those of a
-/// point have its angle for `zeta_start`.
+/// Returns the accuracy contract. The control operands are `delta_zeta`, `zeta_start`, `exponent` and `length`. For a point
+/// on a line, `zeta_start` is the angle of that point.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     let keys = Keys::of(config);
     let mut operands = line::angle_operands(keys.angle_format()).to_vec();
@@ -26,12 +26,12 @@ pub fn contract(config: &Config) -> Box<dyn Contract> {
 }
 
 impl Arithmetic {
-    /// Returns the largest error of the stretched angle for n, in right angles, from what multiplier 11 takes of
-    /// the angle and from ROM 9's rounding.
+    /// Returns the largest error of the stretched angle for n, in right angles. The first error is that multiplier 11 takes
+    /// only the leading bits of the angle, and the second is ROM 9's rounding.
     ///
-    /// The magnitude m stands for angles from m to m + u. With s = √(n/k) and s' = ROM 9's word, s'·m is less than
-    /// s·(m + u) by at most s·u + (s − s')·m, and more than s·m by at most (s' − s)·m. An angle beyond
-    /// 1/s is in the table's last word anyway, and so is one beyond 1/s'.
+    /// The magnitude m denotes angles from m to m + u. With s = √(n/k) and s' = ROM 9's word, s'·m is less than s·(m + u) by
+    /// at most s·u + (s − s')·m, and more than s·m by at most (s' − s)·m. An angle beyond 1/s is in the table's last word
+    /// anyway, and so is an angle beyond 1/s'.
     fn stretching(&self, n: i64) -> (f64, f64) {
         let s = (n as f64 / POWERS[range_of(n)] as f64).sqrt();
         let word = self.root(n) as f64 * exp2(-(self.keys.root_fraction as i32));
@@ -91,8 +91,8 @@ impl Reflectance for Arithmetic {
         Some("length")
     }
 
-    /// Returns every angle that a line can come to, by what multiplier 11 takes of it, and every n. Where the surface
-    /// faces away the word is the table's last, 0, for every n, and so is the formula.
+    /// Returns every angle that a line can reach, by the bits that multiplier 11 takes, and every n. If the surface faces away,
+    /// the word is the table's last, 0, for every n, and so is the formula.
     fn sweep(&self) -> Option<Sweep> {
         let magnitudes = 1i64 << self.keys.angle_multiplied;
         Some(Sweep::ranges([

@@ -100,9 +100,11 @@ pub struct Analysis {
     pub weights: Vec<Weight>,
     /// The last bin of dγ.
     deviation: usize,
-    /// The rounding of registers 11 and 12 together, and of register 13: of the base, and an ulp of the square.
+    /// The rounding of registers 11 and 12 together.
     pub products: f64,
+    /// The rounding of the base in register 13.
     pub base: f64,
+    /// An ulp of the square in register 13.
     pub ulp: f64,
     /// The largest error of the base before its rounding, where the square is not constant.
     pub square: f64,
@@ -119,7 +121,7 @@ impl Analysis {
         let mut sin_sin = rounding_error(2 * keys.sine_fraction, p, rounding);
         let largest_product = errors.sines[deviation] + errors.errors[deviation].0;
         if rounding == Rounding::Nearest && largest_product >= 1.0 - exp2(-(p as i32)) {
-            // What would round to 1.0 saturates to 1.0 − ulp.
+            // A product that would round to 1.0 saturates to 1.0 − ulp.
             sin_sin = sin_sin.max(exp2(-(p as i32)));
         }
         let base = rounding_error(p + 1, f, keys.f.rounding);
@@ -165,7 +167,7 @@ impl Analysis {
         self.rounded(self.weights[apart].linear * (error + self.products))
     }
 
-    /// Returns the largest error of f where what adder 15 is off by makes n·b times as much.
+    /// Returns the largest error of f. `linear` is n·b times the error of adder 15.
     pub fn rounded(&self, linear: f64) -> f64 {
         let base = self.square + self.base;
         linear + 2.0 * self.base + self.ulp + base * base

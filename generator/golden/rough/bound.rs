@@ -15,11 +15,11 @@
 //! are far apart: there the table may be coarse. Without the clamp |b| ≤ 1 and n·q/2 ≤ 2 + E count
 //! instead. Register 13 rounds the square by less than an ulp, or saturates 1.0 to 1.0 − ulp.
 //!
-//! **The maximum.** The quarter circle is cut into equal bins, in each of which the largest error of the
-//! table's entries is known; the smallest γ − dγ of two bins depends on their distance alone, the smallest γ + dγ on the
-//! sum of their numbers. All pairs of bins are tried. With the clamp, [`super::pairs`] looks into those whose bound is
-//! largest: there what a table's error and roundings allow for does not come together at any operands. The terms are those of
-//! the pair of bins, in proportion.
+//! **The maximum.** The quarter circle is cut into equal bins, and the largest error of the table's entries is known in each
+//! bin. The smallest γ − dγ of two bins depends only on their distance, and the smallest γ + dγ only on the sum of their
+//! numbers. All pairs of bins are tried. With the clamp, [`super::pairs`] examines the pairs with the largest bounds: there
+//! the largest errors of the table and of the roundings do not occur together at any operands. The terms are the terms of the
+//! worst pair of bins, in proportion.
 
 use super::analysis::Analysis;
 use super::{Arithmetic, Keys, Kind, Scheme, pairs};
@@ -86,8 +86,8 @@ fn sine_terms(keys: &Keys) -> &'static [(&'static str, &'static str)] {
     }
 }
 
-/// Returns an entry's error, which is known as a whole, in parts that add up to it: in proportion to what
-/// rounding (with the floor after interpolation), the shape and the slope's rounding could cost at most.
+/// Splits the error of an entry into parts that add up to it. The parts are in proportion to the largest possible errors of
+/// the rounding (with the floor after interpolation), the shape and the slope's rounding.
 fn split(keys: &Keys, error: f64, shape: f64) -> [f64; 3] {
     let ulp = exp2(-(keys.sine_fraction as i32));
     let most = match keys.scheme {

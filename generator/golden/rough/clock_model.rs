@@ -33,7 +33,7 @@ pub fn model(config: &Config) -> Box<dyn Model> {
     let reg13 = frame.register("reg13_result", keys.result_format());
     // f, as it is read from register 13.
     let reflectance = frame.hidden();
-    // Each odd microinstruction captures what the one before it let settle.
+    // Each odd microinstruction captures the values that settled in the microinstruction before it.
     let mut program = vec![
         idle(),
         step_by(&it, move |it, s| {

@@ -29,7 +29,8 @@ impl Reflectance for Arithmetic {
         it.f_of(it.squared(scaled, cos_gamma))
     }
 
-    /// Returns the clamped formula for the patent's arithmetic too, which shows what it costs.
+    /// Returns the formula. The patent's arithmetic is compared with the clamped formula too, so that its error shows the
+    /// cost of that arithmetic.
     #[inline]
     fn reference(&self, control: &[i64]) -> f64 {
         let cosine = |raw| self.keys.clamped(raw) as f64 * self.keys.ulp();

@@ -1,13 +1,14 @@
 //! Finds a bound on the error of f of `rough`, by branch and bound over pairs of angles.
 //!
-//! **Bounds.** A pair of bins has the bound of the analysis in [`super::bound`]. A pair of operands in them has that with the
-//! errors that the table has at these very operands. Where adder 15 is computed too, its distance D from
-//! cos(γ ± dγ) − 1 is known, and the error of f is at most n·b·D and what the roundings of register 13 add; n·b is largest
-//! at n = 1/q, or at an end of the domain. Of a pair with an n the error itself is computed, as the hardware rounds.
+//! **Bounds.** A pair of bins has the bound of the analysis in [`super::bound`]. A pair of operands in these bins has the
+//! same bound, but with the errors of the table at these very operands. If adder 15 is computed too, its distance D from
+//! cos(γ ± dγ) − 1 is known. The error of f is then at most n·b·D and the roundings of register 13; n·b is largest
+//! at n = 1/q, or at an end of the domain. For a pair of operands with an n the error itself is computed, with the
+//! hardware's roundings.
 //!
-//! **The search.** What has a bound no larger than an error that was met is left, for it holds nothing larger; all else
-//! is looked into. When that takes too many steps, the largest bound of what is left is the answer. The answer is never below half
-//! of the bound that the search begins with: looking for less is not worth the time.
+//! **The search.** The search skips every pair whose bound is no larger than an error that it has met, because no larger
+//! error is there. It looks into all other pairs. If that takes too many steps, the answer is the largest bound of the
+//! remaining pairs. The answer is never below half of the first bound: the search does not spend time on smaller errors.
 
 use std::collections::BTreeMap;
 
@@ -28,7 +29,7 @@ const F64: f64 = 1e-15;
 /// A raw cosine.
 struct Cosine {
     raw: i64,
-    /// Its sine, and how far that of the table is from it.
+    /// Its exact sine, and the distance of the table's sine from it.
     sine: f64,
     error: f64,
 }
@@ -37,7 +38,7 @@ struct Cosine {
 struct Pair {
     bound: f64,
     control: [i64; 4],
-    /// How far adder 15 is from what it should be, and what that is below 0.
+    /// The distance of adder 15 from its exact value, and the amount by which the exact value is below 0.
     distance: f64,
     below: f64,
 }
@@ -106,7 +107,7 @@ impl Search<'_> {
             for y in cosines[&j].iter().filter(|y| y.raw >= lowest) {
                 let error = x.sine * y.error + (analysis.sine(j) + y.error) * x.error;
                 if analysis.bound_of(i, j, negative == 1, error) <= self.largest {
-                    // The errors of those that follow are no larger.
+                    // The cosines that follow have errors that are no larger.
                     break;
                 }
                 if self.steps == 0 {

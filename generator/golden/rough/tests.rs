@@ -25,7 +25,8 @@ fn small() -> Keys {
     }
 }
 
-/// The bound is that of every operand, one by one: never below the largest error, and where the search has found that, it.
+/// The bound holds for every operand, one by one. It is never below the largest error, and equals the largest error if the
+/// search has found it.
 #[test]
 fn the_bound_is_the_largest_error_of_all_operands() {
     let mut wide = Keys {

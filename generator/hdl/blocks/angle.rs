@@ -1,7 +1,7 @@
 //! Folds signed angles to magnitudes, and makes tables of powers of their cosine. The unit is the right angle.
 //!
-//! The unit makes the binary point do the work: a signed angle has left −90° … 90° when its integer bits
-//! differ from its sign, and the fraction bits of its magnitude are an address as they stand.
+//! With this unit, the binary point does the work. A signed angle is outside −90° … 90° if its integer bits differ
+//! from its sign. The fraction bits of its magnitude are an address without any conversion.
 
 use crate::dsl::{Designer, Signal};
 use glint_base::fixed::{Format, Overflow, Rounding, exp2};
@@ -42,7 +42,8 @@ pub fn fold<'d>(d: &'d Designer, angle: Signal<'d>, fraction: i32) -> Folded<'d>
 }
 
 /// Returns the address of a [`cosine_power_table`] for the angle `scaled`, unsigned, in right angles: its `bits`
-/// leading fraction bits; the last word where it is a right angle or more, or `within` is 0.
+/// leading fraction bits. If the angle is a right angle or more, or `within` is 0, it is the address of the last
+/// word.
 #[track_caller]
 pub fn address<'d>(
     d: &'d Designer,
@@ -58,8 +59,10 @@ pub fn address<'d>(
     d.choose(name, within, [last, step])
 }
 
-/// Returns the words of a table of `cosᵏ` over a right angle in 2^`bits` steps, in `u0.fraction`: for each step the
-/// middle of the values at its ends. The last word is 0, because it also stands for all angles beyond.
+/// Returns the words of a table of `cosᵏ` over a right angle, in `u0.fraction`, for the power k = `power`.
+///
+/// The table has 2^`bits` steps. A word is the mean of the values at the two ends of its step. The last word is 0,
+/// because it also serves all larger angles.
 pub fn cosine_power_table(power: u32, bits: i32, fraction: i32) -> Vec<i128> {
     let format = Format::unsigned(0, fraction);
     let steps = 1u32 << bits;
@@ -72,7 +75,7 @@ pub fn cosine_power_table(power: u32, bits: i32, fraction: i32) -> Vec<i128> {
     (0..steps - 1).map(middle).chain([0]).collect()
 }
 
-/// Returns the comments of such a table: for each word the angles that it stands for.
+/// Returns the comments of a table from [`cosine_power_table`]: for each word, the angle at which its step begins.
 pub fn step_comments(power: u32, bits: i32) -> Vec<String> {
     let degrees = |step: u32| f64::from(step) * exp2(-bits) * 90.0;
     let steps = 1u32 << bits;

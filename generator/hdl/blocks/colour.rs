@@ -33,7 +33,8 @@ struct Channel<'d> {
 }
 
 impl<'d> Colours<'d> {
-    /// Makes the operands `red`, `green`, `blue` of `bits` bits, with the source's numbers where it has some.
+    /// Makes the operands `red`, `green`, `blue` of `bits` bits. `blocks` are the source's numbers of them, if it has
+    /// some.
     #[track_caller]
     pub fn new(designer: &'d Designer, bits: i32, blocks: Option<[ChannelBlocks; 3]>) -> Self {
         let format = Format::unsigned(bits, 0);

@@ -1,8 +1,8 @@
 //! An iterative divider: one bit of the quotient a clock, by trial subtraction (restoring).
 //!
-//! The dividend becomes the first remainder. A step doubles the remainder and subtracts the divisor
-//! if that leaves no negative number; whether it did is the next bit of the quotient, the top bit
-//! first. What is left is the exact remainder, so the quotient is exact to its last bit.
+//! The dividend becomes the first remainder. A step doubles the remainder and subtracts the divisor if the difference
+//! is not negative. The next bit of the quotient, the top bit first, says whether the step subtracted. The last
+//! remainder is exact, so the quotient is exact to its last bit.
 
 use crate::dsl::{Counter, Designer, Mux, Register, Setting, Signal};
 use glint_base::codes;

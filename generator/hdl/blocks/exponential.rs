@@ -4,9 +4,10 @@ use super::shift;
 use crate::dsl::{Designer, Signal};
 use glint_base::fixed::{Format, Overflow, Rounding};
 
-/// Returns `power · 2^−halvings` as `u0.F`, F = `frac`, rounded as said; what rounds to 1.0 becomes the largest fraction.
+/// Returns `power · 2^−halvings` as `u0.F`, F = `frac`, with the given `rounding`. A result that rounds to 1.0
+/// becomes the largest fraction.
 ///
-/// `power` is at most 1.0, `halvings` an unsigned integer.
+/// `power` must be at most 1.0, and `halvings` an unsigned integer.
 #[track_caller]
 pub fn halved<'d>(
     d: &'d Designer,

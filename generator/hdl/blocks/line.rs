@@ -6,7 +6,7 @@
 use crate::dsl::{Counter, Designer, Mux, Register, Signal, end, jump_if, loop_while, step};
 use glint_base::fixed::Format;
 
-/// The numbers of an operand in the source's figure: data input, write strobe, and what holds it.
+/// The numbers of an operand in the source's figure: data input, write strobe, and register.
 #[derive(Clone, Copy, Debug)]
 pub struct OperandBlocks {
     /// Data input and write strobe.
@@ -40,11 +40,11 @@ pub struct LineBlocks {
     pub write: u16,
 }
 
-/// The walk: operands `delta_zeta`, `zeta_start` and `length`, the register `angle`, and the outputs
-/// `count`, `accumulate` and `write_angle` that show its control.
+/// The walk along a scan line: operands `delta_zeta`, `zeta_start` and `length`, the register `angle`, and the
+/// outputs `count`, `accumulate` and `write_angle`, which show its control.
 ///
-/// A line of `length` = l intervals has l + 1 points, one a clock. The angle is a signed word that wraps
-/// around, so its format must hold what a line may reach, or wrap where angles do.
+/// A line of `length` = l intervals has l + 1 points, one a clock. The angle is a signed word that wraps around. Its
+/// format must therefore hold every angle that a line may reach, or wrap where angles wrap.
 pub struct Line<'d> {
     designer: &'d Designer,
     start: Signal<'d>,

@@ -1,10 +1,10 @@
 //! Builds a table that approximates a function of one operand by linear interpolation, in segments that shrink toward
 //! zero.
 //!
-//! The operand u (an integer of C bits, or exactly 2^C) is cut into ranges by factors of four:
-//! range j holds u in [2^(C−2j−2), 2^(C−2j)) and is cut uniformly, by the k_j top bits of the
-//! (C−2j)-bit number. What lies below the last range has one entry a value. So the segments are fine where a function such as √u
-//! is steep, at a cost of one mux, a tree, and no shifter.
+//! The operand u (an integer of C bits, or exactly 2^C) is cut into ranges by factors of four. Range j holds u in
+//! [2^(C−2j−2), 2^(C−2j)). The k_j top bits of the (C−2j)-bit number cut it into uniform segments. Below the last
+//! range, every value of u has an entry of its own. The segments are therefore fine where a function such as √u is
+//! steep. They cost one mux, a tree, and no shifter.
 
 use crate::dsl::{Designer, Signal};
 use glint_base::fixed::{Format, Overflow, Rounding, exp2};
@@ -18,7 +18,7 @@ pub struct Segmentation {
     pub segments: Vec<u32>,
 }
 
-/// A block of entries: a range, or what lies below the last one.
+/// A block of entries: a range, or the values below the last range.
 #[derive(Clone, Copy, Debug)]
 struct Block {
     /// Bits of u within the range.
@@ -124,8 +124,8 @@ impl Segmentation {
             .unwrap_or(0)
     }
 
-    /// Returns the segment of each word of the table; `None` where no value of u leads. The word that
-    /// u = 2^C leads to has that one value.
+    /// Returns the segment of each word of the table, or `None` if no value of u leads to the word. The word to which
+    /// u = 2^C leads has only that value.
     pub fn segment_of_words(&self) -> Vec<Option<Segment>> {
         let mut words = vec![None; self.entries()];
         let blocks = self.blocks();
@@ -218,7 +218,7 @@ fn address_and_rest<'d>(
     let arm = |block: &Block| {
         let base = d.raw_constant(&format!("{name}_base_word"), i128::from(block.base), address);
         let left = block.bits - block.prefix;
-        // What remains below the last range may be the one value 0.
+        // Below the last range there may be only the one value 0.
         let word = if block.prefix == 0 {
             base
         } else {

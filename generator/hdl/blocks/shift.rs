@@ -1,6 +1,6 @@
-//! Builds shifters from rows of muxes, for numbers of places that are known at run time only.
+//! Builds shifters from rows of muxes, for shift amounts that are known only at run time.
 //!
-//! One shifts to the right by an operand; one shifts a word to the left until its top bit is 1.
+//! One shifter shifts to the right by an operand. The other shifts a word to the left until its top bit is 1.
 
 use crate::dsl::{Designer, Signal};
 use glint_base::fixed::Format;
@@ -12,7 +12,7 @@ use glint_base::fixed::Format;
 #[track_caller]
 pub fn right_by<'d>(d: &'d Designer, name: &str, x: Signal<'d>, places: Signal<'d>) -> Signal<'d> {
     let format = x.format();
-    // From the largest step down: what has become small is narrow in the rows that follow.
+    // From the largest step down: a word that a large step has made narrow stays narrow in the rows that follow.
     (0..places.format().width()).rev().fold(x, |row, bit| {
         let step = 1u32.checked_shl(bit).unwrap_or(u32::MAX);
         let width = row.format().width();
@@ -35,8 +35,10 @@ pub struct Normalised<'d> {
     pub zeros: Signal<'d>,
 }
 
-/// Returns the bits of `x` shifted left until the top one is 1, and by how many places: a row of muxes for each bit
-/// of the count, which is thereby encoded. Of a word of zeros it makes zeros, and a count of ones.
+/// Shifts `x` to the left until its top bit is 1, and returns the shifted bits and the number of places.
+///
+/// Each row of muxes gives one bit of the number, so the number needs no encoder. For a word of zeros, it returns
+/// zeros and a number whose bits are all ones.
 #[track_caller]
 pub fn normalise<'d>(d: &'d Designer, name: &str, x: Signal<'d>) -> Normalised<'d> {
     let width = x.format().width();

@@ -6,11 +6,11 @@
 use crate::dsl::{Counter, Designer, Mux, Register, Setting, Signal, Step, loop_while, step};
 use glint_base::fixed::Format;
 
-/// Squarings of a base, with the counter of those to come, `remaining`, where there is more than one.
+/// Squarings of a base. If there is more than one squaring, the counter `remaining` counts the squarings to come.
 pub struct Squarings<'d> {
     designer: &'d Designer,
     counter: Option<Counter<'d>>,
-    /// The start value of the counter, where it has a choice.
+    /// The start value of the counter, if there is a choice of it.
     start: Option<(Mux<'d>, Signal<'d>)>,
 }
 
@@ -53,10 +53,11 @@ impl<'d> Squarings<'d> {
         pick.into_iter().chain(load).collect()
     }
 
-    /// Returns the microinstructions: `register` takes the square of a base, then its own, until all are done.
+    /// Returns the microinstructions: `register` takes the square of a base, then its own square, until all squarings
+    /// are done.
     ///
-    /// `first` are the settings that bring the square of the base to the register, `again` those that
-    /// bring the register's own.
+    /// The settings `first` bring the square of the base to the register. The settings `again` bring the square of
+    /// the register.
     #[track_caller]
     pub fn steps(
         &self,

@@ -1,9 +1,9 @@
 //! Places a description in another one as a part, whose operands are signals, and makes the control unit of a design
 //! that consists of parts.
 //!
-//! A part is a whole design. What it is made of stands in the design that uses it, under the name of the instance. Its
-//! microinstructions are executed one part after the other, in the order of the instances; the microinstruction before its first
-//! loads its operand registers. Ports, sequencer and handshake of its own it does not have.
+//! A part is a whole design. Its nets, registers and memories become part of the design that uses it, named after the
+//! instance. The parts are executed one after the other, in the order of their instances. The microinstruction before
+//! a part's first loads the operand registers of the part. A part has no ports, sequencer or handshake of its own.
 
 use std::collections::HashMap;
 use std::panic::Location;
@@ -26,7 +26,7 @@ const DEEPEST: u32 = 8;
 pub struct Instance<'d> {
     designer: &'d Designer,
     name: String,
-    /// None where the part has mistakes, which are reported.
+    /// `None` if the part has mistakes, which have been reported.
     outputs: Option<Vec<(String, Signal<'d>)>>,
 }
 
@@ -143,15 +143,16 @@ impl Designer {
         )
     }
 
-    /// States that the parts are the microprogram: they are executed in the order of their instances, and then the outputs are
-    /// loaded into registers. What stands between parts is logic.
+    /// States that the parts are the microprogram. They are executed in the order of their instances, and then the
+    /// outputs are loaded into registers. Anything between the parts is logic.
     #[track_caller]
     pub fn dataflow(&self) {
         self.register_outputs();
         self.program(Vec::new(), true);
     }
 
-    /// Makes the parts the microprogram where [`Designer::dataflow`] asks for it; elsewhere parts are an error.
+    /// Makes the parts the microprogram if [`Designer::dataflow`] asks for it. Without `dataflow`, parts are an
+    /// error.
     pub(super) fn with_parts(&self, program: &mut Program) {
         let mut parts = self.with(|inner| std::mem::take(&mut inner.parts));
         if program.of_parts {
@@ -216,7 +217,8 @@ struct Placed<'d, 'p> {
 }
 
 impl<'d> Placed<'d, '_> {
-    /// Puts nets, registers, memories and microinstructions behind those that are there; the field `load` loads the operands.
+    /// Adds the nets, registers, memories and microinstructions of the part to the design. The field `load` loads the
+    /// part's operands.
     fn place(
         mut self,
         operands: &HashMap<NetId, NetId>,
@@ -293,7 +295,7 @@ impl<'d> Placed<'d, '_> {
                 let fields = &mut inner.design.control.fields;
                 fields.push(Field { name, net: placed, kind, lines: Vec::new() });
                 let own = FieldId(fields.len() as u32 - 1);
-                // What is not used was said of the part.
+                // The part itself has already reported choices that are not used.
                 inner.partly_used.insert(own);
                 own
             });
@@ -301,7 +303,8 @@ impl<'d> Placed<'d, '_> {
         }
     }
 
-    /// Puts the microinstructions behind those of the parts that are there, the last of which loads the operands.
+    /// Appends the microinstructions of this part. The last microinstruction of the parts before it loads the
+    /// operands.
     fn program(&self, load: FieldId, location: SourceLocation) {
         let (d, control) = (self.designer, &self.design.control);
         let named = |at: usize| format!("{}: {}", self.name, control.microprogram[at].name);
@@ -344,7 +347,7 @@ impl<'d> Placed<'d, '_> {
     }
 }
 
-/// Returns the nets on which results and the program depend, but for the handshake, in order.
+/// Returns the nets on which results and the program depend, except for the handshake, in order.
 fn kept(design: &Design, shown: &[(String, NetId)]) -> Vec<NetId> {
     let leads = |id: NetId| match design.net(id).driver {
         Driver::Field(_) => Vec::new(),

@@ -1,14 +1,13 @@
 //! The description language: datapath, microprogram and ports of a device, in Rust.
 //!
-//! A description is a function that takes a [`Designer`] and builds with it. Handles ([`Signal`],
-//! [`Register`], [`Mux`], …) are `Copy`. Every signal has a fixed-point format *and* the interval of
-//! values that it can take; both follow by rule from the operands, so that nothing can overflow
-//! unnoticed: sums and products are exact, and bits are given up only by [`Designer::narrow`], which
-//! states rounding and overflow.
+//! A description is a function that takes a [`Designer`] and builds with it. Handles ([`Signal`], [`Register`],
+//! [`Mux`], …) are `Copy`. Every signal has a fixed-point format *and* the interval of values that it can take. Both
+//! follow by rule from the operands, so that nothing can overflow unnoticed. Sums and products are exact. Only
+//! [`Designer::narrow`] gives up bits, and it states rounding and overflow.
 //!
-//! A microinstruction ([`step`]) is a list of settings, which the blocks make: [`Mux::pick`],
-//! [`Register::load`], [`Flag::raise`], [`Counter::load`] and [`Counter::count`]. Each stands for a field of
-//! the control word; fields stand there in the order in which the blocks were created.
+//! A microinstruction ([`step`]) is a list of settings, which the blocks make: [`Mux::pick`], [`Register::load`],
+//! [`Flag::raise`], [`Counter::load`] and [`Counter::count`]. Each setting gives a value to a field of the control
+//! word. The fields of the word are in the order in which the blocks were created.
 //!
 //! ```
 //! use glint_rtl::dsl::{Designer, end, step, valid};
@@ -29,8 +28,8 @@
 //! assert_eq!(design.control.microprogram.len(), 3);
 //! ```
 //!
-//! Mistakes are collected, not thrown: [`Designer::finish`] reports all of them, each with the names
-//! of the signals and the Rust source line.
+//! Mistakes are collected, not thrown: [`Designer::finish`] reports all of them, each with the names of the signals
+//! and the Rust source line.
 
 /// Adds methods by which a description documents a handle that is shown as a net.
 macro_rules! described {
@@ -50,7 +49,7 @@ macro_rules! described {
                 self
             }
 
-            /// States a comment on `topic`: where that is not the device, it is none of a pipeline's.
+            /// States a comment on `topic`. A comment on another topic than the device is left out in a pipeline.
             #[must_use]
             pub fn doc_on(self, topic: crate::netlist::Topic, line: &str) -> Self {
                 let _ = self.$net.doc_on(topic, line);
@@ -119,7 +118,7 @@ const BUFFERED_NOTE: &str = "Operands have buffers: a write at any time is for t
 /// Builds a [`Design`]; see the [module documentation](self).
 pub struct Designer {
     inner: RefCell<Inner>,
-    /// Tells its handles from those of another.
+    /// Distinguishes the handles of this designer from the handles of another.
     serial: u64,
     /// The number of descriptions that it is a part of.
     depth: u32,
@@ -133,7 +132,7 @@ pub struct Designer {
 pub(crate) struct SelectedProduct {
     /// The select field of the multiplier's operands.
     pub field: FieldId,
-    /// The values of the field under which the net means what its format says.
+    /// The values of the field under which the net has the meaning that its format says.
     pub values: Vec<u64>,
     /// How many clocks ago the field had that value: registers behind the multiplier.
     pub delay: u32,
@@ -149,7 +148,7 @@ pub(crate) struct Inner {
     placed: HashSet<NetId>,
     /// The fields that a microinstruction sets.
     picked: HashSet<FieldId>,
-    /// Select lines of which no choice need be made.
+    /// Select lines for which the microprogram may leave choices unused.
     partly_used: HashSet<FieldId>,
     /// The signal that `valid` follows, and how many clocks later, when no microinstruction raises it.
     valid: Option<(NetId, u32)>,
@@ -218,7 +217,7 @@ impl Designer {
         designer
     }
 
-    /// States what the header of the emitted Verilog, the manifest and the documentation say of the device.
+    /// States the texts about the device for the header of the emitted Verilog, the manifest and the documentation.
     pub fn about(&self, about: About) {
         self.inner.borrow_mut().design.about = about;
     }
@@ -273,9 +272,9 @@ impl Designer {
 
     /// Returns a read-only memory: word `address` of `words` (raw values of `format`).
     ///
-    /// `doc` says what an entry means. The address must be an integer that stays within the words. A
-    /// `synchronous` ROM reads on the rising edge, as block RAM does: its output belongs to the
-    /// address of the clock before.
+    /// `doc` of the returned handle adds a line about the meaning of an entry. The address must be an integer that
+    /// stays within the words. A `synchronous` ROM reads on the rising edge, as block RAM does: its output is the
+    /// word at the address of the clock before.
     #[track_caller]
     pub fn rom(
         &self,
@@ -332,8 +331,8 @@ impl Designer {
         self.signal(id)
     }
 
-    /// Sets the microprogram. Microinstruction 0 is where the device waits for `start`; it is executed once more after it, so
-    /// that operands written together with `start` have settled.
+    /// Sets the microprogram. The device waits for `start` in microinstruction 0, and executes it once more after
+    /// `start`, so that operands written together with `start` have settled.
     #[track_caller]
     pub fn microprogram(&self, steps: impl IntoIterator<Item = Step>) {
         self.program(steps.into_iter().collect(), false);
@@ -347,10 +346,12 @@ impl Designer {
         }
     }
 
-    /// Lets `valid` follow `signal`, one bit, `clocks` clocks later: for a datapath with registers between
-    /// what a microinstruction starts and the outputs, so that a result may come out in every clock. No microinstruction raises
-    /// [`valid`] then. The microinstructions that the last result needs to come out stand at the end of the
-    /// microprogram, so that the device is busy until then; a reset drops results that are on their way.
+    /// Makes `valid` follow `signal`, one bit, `clocks` clocks later.
+    ///
+    /// This serves a datapath with registers between the work that a microinstruction starts and the outputs, so that
+    /// a result may come in every clock. No microinstruction may raise [`valid`] then. The microprogram must end with
+    /// as many microinstructions as the last result needs to come out, so that the device is busy until then. A reset
+    /// drops the results on their way.
     #[track_caller]
     pub fn valid_after(&self, signal: Signal<'_>, clocks: u32) {
         let signal = self.own(signal);
@@ -375,8 +376,8 @@ impl Designer {
         self.inner.borrow_mut().registers_outputs = true;
     }
 
-    /// Leaves logic that depends on operands alone as it is described, without the registers that [`Designer::finish`] puts
-    /// into it where there is a clock to spare. The key `operands.logic` asks for it.
+    /// Leaves logic that depends on operands alone as it is described. Otherwise [`Designer::finish`] puts registers
+    /// into it if there is a clock to spare. The key `operands.logic` asks for this.
     pub fn keep_operand_logic(&self) {
         self.inner.borrow_mut().registers_operand_logic = false;
     }
@@ -399,7 +400,7 @@ impl Designer {
         self.inner.borrow_mut().taken = Some(taken);
     }
 
-    /// Puts a note in the place of what the device says of writes while it is busy.
+    /// Replaces the note about writes while the device is busy by `note`.
     fn replace_note(&self, note: &str) {
         self.with(|inner| {
             let notes = &mut inner.design.about.notes;
@@ -408,10 +409,12 @@ impl Designer {
         });
     }
 
-    /// Returns the finished design, assembled and checked. What it says and no output needs are its [`Design::warnings`].
+    /// Returns the finished design, assembled and checked. Statements that no output needs become its
+    /// [`Design::warnings`].
     ///
     /// # Errors
-    /// Every mistake of the description, each with the signals and the Rust source line.
+    /// Fails if the description has mistakes. The error lists every mistake, with the signals and the Rust source
+    /// line.
     pub fn finish(self) -> Result<Design, Diagnostics> {
         let program = self.inner.borrow_mut().program.take();
         if let Some(mut program) = program {

@@ -10,9 +10,9 @@ use glint_base::interval;
 impl Designer {
     /// Brings `a` to `format`.
     ///
-    /// Costs what it must: truncation is wiring; rounding to nearest is an incrementer; saturation is a
-    /// test of the upper bits, and of those only that the range of `a` lets differ. With
-    /// [`Overflow::Wrap`] the upper bits are dropped.
+    /// It costs only the necessary logic. Truncation is wiring. Rounding to nearest is an incrementer. Saturation
+    /// tests only those upper bits that can differ within the range of `a`. With [`Overflow::Wrap`] the upper bits
+    /// are dropped.
     #[track_caller]
     pub fn narrow<'d>(
         &'d self,

@@ -59,10 +59,10 @@ impl Designer {
 
     /// Returns the product of two buses under the same select lines.
     ///
-    /// Where one of them alone has negative inputs, the multiplier takes the bits below its sign as an
-    /// unsigned number. That is a bit less on either side than a product of signed numbers needs, and
-    /// may save DSP blocks: 18 bits fit where 19 do not. What a negative operand makes too large by it,
-    /// the other operand at the weight of the sign, is taken off in [`SharedProduct::of`].
+    /// If only one of the buses has negative inputs, the multiplier takes the bits of that bus below its sign as an
+    /// unsigned number. Each factor then needs one bit less than in a product of signed numbers, which may save DSP
+    /// blocks: for example, 18 bits fit and 19 do not. For a negative operand, this product is too large by the other
+    /// operand at the weight of the sign. [`SharedProduct::of`] subtracts that amount.
     #[track_caller]
     pub fn shared_mul<'d>(
         &'d self,
@@ -97,8 +97,8 @@ impl Designer {
         }
     }
 
-    /// Returns the product of the bits of one bus below its sign by the other bus, in the order that `ordered` says, and what is
-    /// to be taken off above them.
+    /// Returns the product of the bits of `signed` below its sign and the bus `other`, and the amount to subtract
+    /// above these bits. `ordered` puts the factors in the order of the multiplier.
     #[track_caller]
     fn unsigned_core<'d>(
         &'d self,
@@ -109,7 +109,7 @@ impl Designer {
         let low = signed.out.format().width() - 1;
         let (first, second) = ordered(signed.out.bits(0, Format::unsigned(low as i32, 0)));
         let out = self.mul(name, first, second);
-        // Of the other bus only as many bits as its inputs opposite negative ones have.
+        // The amount has only as many bits as the inputs of the other bus that are opposite negative inputs.
         let opposite = signed.inputs.iter().zip(&other.inputs);
         let most = opposite
             .filter(|(input, _)| input.range().0 < 0)
@@ -150,7 +150,7 @@ impl<'d> OperandMux<'d> {
     }
 }
 
-/// The excess of a product of unsigned numbers, where an operand is negative.
+/// The excess of a product of unsigned numbers if an operand is negative.
 #[derive(Clone, Copy)]
 struct Excess<'d> {
     /// The other operand, or 0.
@@ -173,14 +173,15 @@ pub struct SharedProduct<'d> {
 described!(SharedProduct, out);
 
 impl<'d> SharedProduct<'d> {
-    /// Returns the product of `first` and `second`, which must stand opposite each other on the two buses.
+    /// Returns the product of `first` and `second`, which must be the inputs of the two buses under the same
+    /// selection.
     #[track_caller]
     pub fn of(&self, first: Signal<'d>, second: Signal<'d>) -> Signal<'d> {
         self.of_any(&[(first, second)])
     }
 
-    /// Returns the product of any of the pairs, which must have one point: what a register takes in several
-    /// words.
+    /// Returns the product of any of the `pairs`, which must all have the same binary point. For example, a register
+    /// that takes a different product in each of several microinstructions takes this signal.
     #[track_caller]
     pub fn of_any(&self, pairs: &[(Signal<'d>, Signal<'d>)]) -> Signal<'d> {
         let d = self.out.designer();

@@ -1,7 +1,7 @@
 //! Inserts registers behind results that are combinational logic, as the key `output.registered` asks for.
 //!
-//! The microinstruction that set `valid` loads them, and one after it sets `valid`: a result comes a clock later.
-//! Where `valid` follows a signal, they take what is in front of them in every clock.
+//! The microinstruction that set `valid` loads these registers, and a new microinstruction after it sets `valid`. A
+//! result therefore comes one clock later. If `valid` follows a signal, the registers are loaded in every clock.
 
 use super::program::{Kind, Program, Step};
 use super::{Designer, Setting, hold, step, valid};
@@ -50,7 +50,7 @@ fn logic(design: &Design) -> Vec<NetId> {
     results.map(|port| port.net).filter(|&port| !is_register(port)).collect()
 }
 
-/// Puts the register `<port>_reg` between a port and what drives it.
+/// Puts the register `<port>_reg` between a port and its driver.
 fn behind(d: &Designer, port: NetId, kind: RegisterKind, enable: Option<NetId>) {
     let net = d.net(port);
     let Driver::Op(Op::Relabel(source)) = net.driver else {
@@ -109,7 +109,8 @@ impl Step {
         self
     }
 
-    /// Keeps what it does to registers, and returns a microinstruction after it with what comes then.
+    /// Keeps the settings of registers in this microinstruction, and returns a new microinstruction for the settings
+    /// that say where control goes next. `valid` is dropped.
     fn divided(&mut self) -> Self {
         let comes_then =
             |setting: &Setting| matches!(setting.kind, Kind::Next | Kind::WaitForStart | Kind::End);
@@ -119,7 +120,7 @@ impl Step {
             .filter(|setting| !matches!(setting.kind, Kind::Valid))
             .partition(comes_then);
         self.settings = own;
-        // What is selected stays so, for a microinstruction after it that holds it.
+        // The selections stay, for a microinstruction after it that holds them.
         let mut after = step(&format!("{}, in output registers", self.name), [hold()]);
         after.location = self.location;
         after.settings.extend::<Vec<Setting>>(then);

@@ -15,7 +15,7 @@ use glint_base::diagnostic::{Diagnostic, SourceLocation};
 #[derive(Clone)]
 pub struct Setting {
     pub(super) kind: Kind,
-    /// The designer whose field or condition it is; none where it has neither.
+    /// The designer that the field or the condition belongs to; `None` if there is neither.
     of: Option<Origin>,
     location: SourceLocation,
 }
@@ -59,7 +59,8 @@ impl Setting {
         Self { kind, of: None, location: Location::caller() }
     }
 
-    /// Returns the setting with which a mux passes `input` on: found by what the mux's net selects from.
+    /// Returns the setting with which `mux` passes on `input`. The inputs of the mux's net give the value of the
+    /// field.
     #[track_caller]
     pub(crate) fn pick(d: &Designer, field: FieldId, mux: &str, input: Signal<'_>) -> Self {
         let inputs = match d.with(|inner| inner.design.find(mux)).map(|id| d.net(id).driver) {
@@ -104,7 +105,8 @@ impl Setting {
     }
 }
 
-/// Returns the setting that keeps the selections of the microinstruction before, but for those that are stated.
+/// Returns the setting that keeps the selections of the previous microinstruction, except the selections that this
+/// microinstruction states.
 #[track_caller]
 pub fn hold() -> Setting {
     Setting::sequence(Kind::Hold)

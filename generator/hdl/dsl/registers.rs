@@ -49,7 +49,7 @@ impl Designer {
         })
     }
 
-    /// Makes a two-input mux of which it is known that the result stays within `range`.
+    /// Makes a two-input mux whose result is known to stay within `range`.
     #[track_caller]
     fn chosen_within<'d>(
         &'d self,
@@ -87,7 +87,7 @@ impl Designer {
                 let buffer = self.add_register(&own, data.format(), data.range(), kind);
                 self.set_doc(buffer, "for the next computation");
                 self.connect(buffer, data.id(), Some(strobe));
-                // What is written in the clock of `start` is taken at once.
+                // A value that is written in the clock of `start` is taken at once.
                 let (name, range) = (format!("{name}_next"), data.range());
                 let inputs = [self.signal(buffer), data];
                 (self.chosen_within(&name, self.signal(strobe), inputs, range), taken)
@@ -124,7 +124,8 @@ impl Designer {
         self.signal(q)
     }
 
-    /// Makes select lines that several muxes share, with a name for each value: what the muxes then pass on together.
+    /// Makes select lines that several muxes share. `choices` names each value of the lines: all inputs that the
+    /// muxes then pass on together.
     #[track_caller]
     pub fn select(&self, name: &str, choices: &[&str]) -> Select<'_> {
         let width = usize::BITS - choices.len().saturating_sub(1).leading_zeros();
@@ -133,7 +134,8 @@ impl Designer {
         Select { designer: self, field }
     }
 
-    /// Returns the select lines. Those of another designer are an error, and lines like them take their place.
+    /// Returns the select lines. If `select` belongs to another designer, this reports an error and returns new lines
+    /// with the same choices.
     #[track_caller]
     pub(crate) fn own_select<'d>(&'d self, select: Select<'d>) -> Select<'d> {
         if self.serial == select.designer.serial {
@@ -253,7 +255,7 @@ impl<'d> Register<'d> {
         self.q.designer().field_net(self.field)
     }
 
-    /// Connects the data input. Formats must agree: [`Designer::narrow`] first where bits are to go.
+    /// Connects the data input. Formats must agree; use [`Designer::narrow`] first to give up bits.
     #[track_caller]
     pub fn takes(self, data: Signal<'d>) {
         let d = self.q.designer();
@@ -301,8 +303,8 @@ impl<'d> Select<'d> {
         self
     }
 
-    /// States that the microprogram may leave choices out, of which [`Designer::finish`] warns otherwise: those of another
-    /// configuration, say.
+    /// States that the microprogram may leave choices of these lines unused, for example choices for another
+    /// configuration. Otherwise [`Designer::finish`] warns of them.
     #[must_use]
     pub fn partly_used(self) -> Self {
         self.designer.with(|inner| inner.partly_used.insert(self.field));

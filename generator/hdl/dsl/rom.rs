@@ -24,7 +24,7 @@ impl<'d> Rom<'d> {
         self
     }
 
-    /// Adds a line to the ROM's comment: what an entry means.
+    /// Adds a line to the ROM's comment, about the meaning of an entry.
     #[must_use]
     pub fn doc(self, line: &str) -> Self {
         self.designer.with(|inner| inner.design.roms[self.id.index()].doc.push(line.to_owned()));

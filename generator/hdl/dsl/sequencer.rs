@@ -26,7 +26,7 @@ pub struct Sequencer {
     pub fields: SequenceFields,
     /// The conditions of loops, each once.
     pub conditions: Vec<NetId>,
-    /// Where they lead, each once.
+    /// The microinstructions to which the loops lead, each once.
     pub targets: Vec<usize>,
     /// Bits of the address.
     pub address_width: u32,
@@ -129,7 +129,8 @@ impl Sequencer {
     }
 }
 
-/// Returns the signal that `valid` follows, as many clocks later as was said. A reset drops what is on its way.
+/// Returns the net that drives `valid`: the signal of [`Designer::valid_after`], delayed by its number of clocks, or
+/// the run flag without such a signal. A reset drops the results on their way.
 fn valid_line(d: &Designer) -> NetId {
     let Some((mut source, clocks)) = d.with(|inner| inner.valid) else {
         return d.run;

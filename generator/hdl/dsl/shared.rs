@@ -72,8 +72,8 @@ impl Designer {
         made
     }
 
-    /// Returns the format, if a net can have it. If not that is an error, and one bit is what to go on with, so that
-    /// the rest of the description is checked too.
+    /// Returns the format if a net can have it. Otherwise this reports an error and returns the format of one bit, so
+    /// that the rest of the description is checked too.
     #[track_caller]
     pub(crate) fn sound(&self, name: &str, format: Format) -> Format {
         let width = i64::from(format.int) + i64::from(format.frac) + i64::from(format.signed);
@@ -162,7 +162,8 @@ impl Designer {
         self.signal(net)
     }
 
-    /// Returns the signal; of another designer that is an error, and what to go on with a constant like it.
+    /// Returns the signal. If the signal belongs to another designer, this reports an error and returns a constant
+    /// with the same format, so that the rest is checked too.
     #[track_caller]
     pub(crate) fn own(&self, signal: Signal<'_>) -> Signal<'_> {
         let other = signal.designer();
@@ -193,7 +194,8 @@ impl Designer {
         own
     }
 
-    /// Returns `source` as a net of exactly `format`, or reports an error that names `what` it was for.
+    /// Returns `source` as a net of exactly `format`. Otherwise it reports an error; `what` names the purpose of the
+    /// net.
     #[track_caller]
     pub(crate) fn fitted(&self, source: Signal<'_>, format: Format, what: &str) -> Option<NetId> {
         let (low, high) = source.range();

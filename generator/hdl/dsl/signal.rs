@@ -1,4 +1,5 @@
-//! Defines signals, what can be done to their bits by wiring, and the arithmetic blocks and muxes that combine them.
+//! Defines signals, the wiring that takes and joins their bits, and the arithmetic blocks and muxes that combine
+//! them.
 
 use std::cmp::Ordering;
 
@@ -57,7 +58,7 @@ impl<'d> Signal<'d> {
         self
     }
 
-    /// States a comment on `topic`: where that is not the device, it is none of a pipeline's.
+    /// States a comment on `topic`. A comment on another topic than the device is left out in a pipeline.
     #[must_use]
     pub fn doc_on(self, topic: Topic, line: &str) -> Self {
         self.designer.with(|inner| inner.design.nets[self.id.index()].doc_topic = topic);
@@ -146,8 +147,8 @@ impl<'d> Signal<'d> {
         self.bits(at, Format::BIT)
     }
 
-    /// Returns the bits of this signal above those of `low`, read in `format` (which must be as wide as both together): what a
-    /// shift register takes.
+    /// Returns the bits of this signal above the bits of `low`, read in `format`, which must be as wide as both
+    /// together. For example, a shift register takes this signal.
     #[must_use]
     #[track_caller]
     pub fn above(self, low: Signal<'d>, format: Format) -> Self {
@@ -275,7 +276,8 @@ impl Designer {
         self.signal(self.add_net(name, format, format.range(), Driver::Op(op), true))
     }
 
-    /// Returns `a − b`, aligned as in [`Designer::add`]; unsigned where the ranges show that it is never negative.
+    /// Returns `a − b`, aligned as in [`Designer::add`]. The result is unsigned if the ranges show that it is never
+    /// negative.
     #[track_caller]
     pub fn sub<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = aligned(self.own(a), self.own(b));
@@ -503,8 +505,9 @@ impl Designer {
         (self.resized(a, format), self.resized(b, format))
     }
 
-    /// Returns `a` as a net of exactly `format`, which has the same point. Where the format does not hold the range of `a`, the
-    /// upper bits are dropped: an operand of a sum whose result the format holds.
+    /// Returns `a` as a net of exactly `format`, which must have the same binary point. If the format does not hold
+    /// the range of `a`, the upper bits are dropped. This is right for an operand of a sum whose result the format
+    /// holds.
     #[track_caller]
     pub(crate) fn resized(&self, a: Signal<'_>, format: Format) -> NetId {
         let a = self.own(a);

@@ -8,7 +8,7 @@ use glint_base::diagnostic::SourceLocation;
 use glint_base::fixed::Format;
 
 impl Design {
-    /// Makes a design of which nothing but the name is there.
+    /// Makes a design that has a name and nothing else.
     pub fn empty(name: &str) -> Self {
         Self {
             name: name.to_owned(),

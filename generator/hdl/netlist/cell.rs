@@ -2,8 +2,8 @@
 
 use super::NetId;
 
-/// A combinational cell. Widths are those of the nets; "same width" includes the result. Operands are nets of a design, or what
-/// else stands for a value.
+/// A combinational cell. Widths are the widths of the nets; "same width" includes the result. Operands are nets of a
+/// design, or other values of type `N`.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Op<N = NetId> {
     /// The operand's bits under another name or format; same width.

@@ -56,13 +56,13 @@ pub struct Microinstruction {
     pub name: String,
     /// The value of each field, in the order of [`Control::fields`].
     pub values: Vec<u64>,
-    /// Where control goes from here.
+    /// The rule for the next microinstruction.
     pub sequence: Sequence,
-    /// Where in the description it was written.
+    /// The place of the microinstruction in the description.
     pub location: SourceLocation,
 }
 
-/// Where control goes after a microinstruction.
+/// The rule that says which microinstruction follows.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Sequence {
     /// To the next microinstruction.
@@ -93,8 +93,9 @@ impl Control {
         }
     }
 
-    /// Returns the microinstructions that can follow microinstruction `at`, in ascending order; the number of
-    /// microinstructions itself where the last one does not end. Idle, the device stays in microinstruction 0.
+    /// Returns the microinstructions that can follow microinstruction `at`, in ascending order. If the last
+    /// microinstruction does not end, its successor is the number of microinstructions. An idle device stays in
+    /// microinstruction 0.
     pub fn successors(&self, at: usize) -> Vec<usize> {
         let next = at + 1;
         let mut successors = match self.microprogram[at].sequence {
@@ -122,7 +123,8 @@ impl Control {
 }
 
 impl Design {
-    /// Returns the number of the lowest bit of each field in the control word; of a pipeline, which has none, nothing.
+    /// Returns the number of the lowest bit of each field in the control word. It is empty for a pipeline, which has
+    /// no control word.
     pub fn field_positions(&self) -> Vec<u32> {
         if self.control.fields.is_empty() {
             return Vec::new();

@@ -1,8 +1,9 @@
 //! Finds the microinstructions whose successor an operand decides, and the delay from the control word to `valid`.
 //!
 //! Up to the first microinstruction whose successor an operand decides, every computation executes the same
-//! ones in the same clocks, whatever the operands: by induction over the clocks, since until then the control
-//! microinstruction is the same. It is assumed that a register which decides is loaded in each computation before it does.
+//! microinstructions in the same clocks, whatever the operands. This follows by induction over the clocks, because
+//! until then no operand decides which microinstruction follows. It is assumed that each computation loads a deciding
+//! register before the register decides.
 
 use std::collections::HashSet;
 
@@ -21,8 +22,8 @@ pub fn decided_by_data(design: &Design) -> Vec<usize> {
     decided.map(|(at, _)| at).collect()
 }
 
-/// Returns the registers between the control word and `valid`, on the shortest way; `None` if an operand decides about
-/// `valid`, or there is none.
+/// Returns the number of registers between the control word and `valid`, on the shortest way. Returns `None` if an
+/// operand decides about `valid`, or if there is no `valid`.
 pub fn delay_of_valid(design: &Design) -> Option<u32> {
     let valid = design.port(|role| role == Role::Valid)?;
     registers_from_control(design, valid.net)
@@ -72,7 +73,7 @@ fn registers_from_control(design: &Design, net: NetId) -> Option<u32> {
     Some(shortest.unwrap_or(delay))
 }
 
-/// Returns the inputs by which the environment times what the device does.
+/// Returns whether an input of this `role` lets the environment time the device.
 fn is_handshake(role: Role) -> bool {
     matches!(role, Role::Start | Role::Reset | Role::InValid | Role::OutReady)
 }
@@ -83,7 +84,8 @@ mod tests {
     use crate::dsl::{Designer, Signal, end, loop_while, step};
     use glint_base::fixed::Format;
 
-    /// Returns a counter of three bits, which starts from what is said, and `valid` two clocks after a loop's last iteration.
+    /// Returns a design with a counter of three bits that begins at `start`. The result is loaded after the last
+    /// iteration of a loop, and `valid` comes two clocks after that load.
     fn counted(start: for<'d> fn(&'d Designer, Signal<'d>) -> Signal<'d>) -> Design {
         let d = Designer::new("counted");
         let x = d.operand("x", Format::unsigned(3, 0));

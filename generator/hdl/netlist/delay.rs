@@ -12,7 +12,7 @@ pub struct DelayLine {
     pub from: usize,
     /// The stage that reads them.
     pub to: usize,
-    /// When they move on; none if they always do.
+    /// The net that says when the values move on; `None` if they always do.
     pub enable: Option<NetId>,
     /// The values, in the order of their registers.
     pub values: Vec<Delayed>,
@@ -28,7 +28,8 @@ pub struct Delayed {
 }
 
 impl DelayLine {
-    /// Returns the words of a memory that does the same: the value that comes out of it is held by a register behind it.
+    /// Returns the number of words of a memory that does the same. A register behind the memory holds the value that
+    /// comes out.
     pub fn words(&self) -> usize {
         self.values[0].passed().len()
     }
@@ -47,11 +48,12 @@ impl Delayed {
 }
 
 impl Design {
-    /// Returns the delay lines that are emitted as memories: those that take less so on a target that has small ones.
+    /// Returns the delay lines that the Verilog implements as memories: the lines that are smaller as memories, on a
+    /// target that has small memories.
     ///
-    /// Points find the same there as in these registers, whatever the enable does; a reset, which drops all points, begins with
-    /// the first word again. The side channel stays in registers: the proof by induction follows its value from stage to stage.
-    /// So does what is inside a multiplier.
+    /// Points read the same values there as in the registers, whatever the enable does. After a reset, which drops
+    /// all points, a memory begins with its first word again. The side channel stays in registers, because the proof
+    /// by induction follows its value from stage to stage. Registers inside a multiplier stay registers too.
     pub fn delay_lines(&self) -> Vec<DelayLine> {
         let Some(pipeline) = &self.pipeline else { return Vec::new() };
         let Some(memory) = pipeline.delay_memory else { return Vec::new() };

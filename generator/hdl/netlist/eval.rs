@@ -1,7 +1,7 @@
 //! Evaluates a netlist: each cell as [`Op`] documents it, and a whole design clock by clock.
 //!
-//! This is the meaning of a netlist, written for reading. The simulator, which is written for speed, shares
-//! nothing with it and is held against it.
+//! This is the definition of the meaning of a netlist, written for reading. The simulator is written for speed,
+//! shares no code with it and is compared with it.
 
 use super::{Design, Driver, NetId, Op, RomId};
 use glint_base::fixed::{Format, mask};
@@ -96,7 +96,7 @@ impl<'a> Interpreter<'a> {
     /// Makes an interpreter at power-up: inputs, registers and the outputs of synchronous ROMs are 0.
     ///
     /// # Errors
-    /// A combinational loop, as the nets along it.
+    /// Fails if there is a combinational loop. The error is the nets along the loop.
     pub fn new(design: &'a Design) -> Result<Self, Vec<NetId>> {
         Ok(Self { design, order: design.levelise()?, values: vec![[0]; design.nets.len()] })
     }
@@ -149,7 +149,7 @@ impl<'a> Interpreter<'a> {
         }
     }
 
-    /// Returns the bit pattern of a net. Those of cells belong to the latest [`Interpreter::settle`].
+    /// Returns the bit pattern of a net. The patterns of cells come from the latest [`Interpreter::settle`].
     pub fn value(&self, net: NetId) -> u64 {
         self.values[net.index()][0]
     }

@@ -30,7 +30,7 @@ impl Design {
     /// Returns the position of a net among the inputs.
     ///
     /// # Errors
-    /// The net is no input.
+    /// Fails if the net is no input.
     pub fn input_position(&self, net: NetId) -> Result<usize> {
         let at = self.inputs().position(|port| port.net == net);
         at.with_context(|| format!("`{}` is no input of `{}`", self.net(net).name, self.name))
@@ -39,7 +39,7 @@ impl Design {
     /// Returns the ports of the handshake.
     ///
     /// # Errors
-    /// The design lacks one of them.
+    /// Fails if the design lacks one of these ports.
     pub fn handshake(&self) -> Result<Handshake> {
         let net = |role: Role, name: &str| {
             let port = self.port(|other| other == role).map(|port| port.net);

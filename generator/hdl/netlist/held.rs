@@ -10,8 +10,8 @@ use std::collections::{BTreeMap, BTreeSet, HashSet};
 use super::needed::needed;
 use super::{Design, Driver, NetId, Op, RegId, RegisterKind, Sequence};
 
-/// Inserts registers, named `<name>_held`, so that the longest path from an operand becomes shortest; of equally
-/// good places those with the fewest bits.
+/// Inserts registers, named `<name>_held`, so that the longest path from an operand becomes shortest. Among equally
+/// good places, it takes the places with the fewest bits.
 ///
 /// A device that waits for `start` in the middle of its program stays as it is: its operands change there.
 pub fn register_held(design: &mut Design) {
@@ -50,19 +50,22 @@ enum Reader {
     Cell(NetId),
 }
 
-/// Where a path is cut: cells that settle by the first place are computed in clock 0, by the second in clock 1,
-/// others in clock 2. In hundredths of a nanosecond after the operands, in ascending order; the third is always 0.
+/// The two places at which a path is cut. Cells that settle by the first place are computed in clock 0, by the second
+/// in clock 1, and all others in clock 2. Places are in hundredths of a nanosecond after the operands, in ascending
+/// order; the third is always 0.
 type Places = [u32; 3];
 
 /// When a cell is computed, or a register loaded: not before clock k + 1 if place k is below number k.
 type Thresholds = [u32; 3];
 
-/// Returns the thresholds of what is computed in any clock, up to the one in which it is first needed.
+/// Returns the `thresholds` of a net that can be computed in any clock, up to the clock `needed` in which it is first
+/// used.
 fn until(needed: usize, thresholds: Thresholds) -> Thresholds {
     std::array::from_fn(|clock| if needed > clock { thresholds[clock] } else { 0 })
 }
 
-/// Returns the clock, counted from that of the first microinstruction, from which on something is computed.
+/// Returns the clock, counted from the clock of the first microinstruction, from which on a net with these thresholds
+/// is computed.
 fn clock(thresholds: Thresholds, places: Places) -> usize {
     thresholds.iter().zip(places).filter(|(limit, place)| place < *limit).count()
 }
@@ -79,7 +82,7 @@ struct Cell {
 /// The nets that depend on operands alone, and their readers.
 struct Steady<'a> {
     design: &'a Design,
-    /// All cells, each after those that it depends on within a clock.
+    /// All cells, in an order in which each follows the cells that it depends on within a clock.
     cells: Vec<Cell>,
     /// By number of the net.
     thresholds: Vec<Thresholds>,
@@ -148,7 +151,7 @@ impl<'a> Steady<'a> {
                 &design.net(cell.net).driver,
                 Driver::Op(Op::Relabel(_) | Op::Extend(_) | Op::Concat(_))
             );
-            // Wiring stands with those that read it, so that registers hold no copies.
+            // Wiring takes the thresholds of its readers, so that registers hold no copies.
             let wanted = match (steady[at], wiring) {
                 (false, _) => [u32::MAX; 3],
                 (true, true) => read[at].unwrap_or([0; 3]),
@@ -167,8 +170,8 @@ impl<'a> Steady<'a> {
         Self { design, cells, thresholds, holds, registers, places }
     }
 
-    /// Returns the best places: of all pairs while there are few, else of pairs that lie evenly, and again between the
-    /// neighbours of the best of these.
+    /// Returns the best pair of places. It tries all pairs while there are few. Otherwise it tries pairs that are
+    /// evenly spread, and then again pairs between the neighbours of the best one.
     fn best(&self) -> Places {
         let mut windows = [(0, self.places.len() - 1); 2];
         loop {
@@ -196,7 +199,7 @@ impl<'a> Steady<'a> {
         [self.places[first], self.places[second], 0]
     }
 
-    /// Returns whether a register between a net and what reads it from a clock on costs no time.
+    /// Returns whether a register costs no time between a net and its readers from clock `by` on.
     fn is_cut(&self, net: NetId, by: usize, places: Places) -> bool {
         self.holds[net.index()] && by > clock(self.thresholds[net.index()], places)
     }
@@ -231,8 +234,8 @@ impl<'a> Steady<'a> {
         (longest, nets.map(|(_, net)| net.format.width()).sum())
     }
 
-    /// Returns the nets that are followed by a register, each with the readers that take the register in its place: those
-    /// that compute in a later clock.
+    /// Returns the nets that are followed by a register, each with the readers that take the register in its place.
+    /// These readers compute in a later clock.
     fn cut(&self, places: Places) -> BTreeMap<NetId, Vec<Reader>> {
         let cells = self.cells.iter().flat_map(|cell| {
             let own = self.thresholds[cell.net.index()];
@@ -331,7 +334,7 @@ mod tests {
         };
         let mut held: Vec<u32> = design.nets.iter().filter_map(name).collect();
         held.sort_unstable();
-        // In the last clock the register takes what the third has.
+        // Register `y` takes the third register in the last clock.
         let [first, second, 2999] = held[..] else { panic!("{held:?}") };
         assert!((990..1010).contains(&first) && (1990..2010).contains(&second), "{held:?}");
     }

@@ -4,8 +4,9 @@ use super::Op;
 use glint_base::fixed::{Format, mask};
 use glint_base::interval::{Interval, hull, product, wrap};
 
-/// Returns the interval of a cell in `format` as [`Op`] documents it; all that the format has where nothing closer is known.
-/// `of` gives the interval of an operand, `format_of` its format. Two operands that are one net are a square.
+/// Returns the interval of a cell in `format` as [`Op`] documents it. If nothing closer is known, it is the range of
+/// the format. `of` gives the interval of an operand, `format_of` its format. Two operands that are one net are a
+/// square.
 pub fn of_cell<N: Copy + PartialEq>(
     op: &Op<N>,
     format: Format,
@@ -23,7 +24,8 @@ pub fn of_cell<N: Copy + PartialEq>(
         Op::Slice { of: a, low } => wrapped((of(*a).0 >> low, of(*a).1 >> low)),
         Op::Concat(parts) => wrapped(parts.iter().fold((0, 0), |(low, high), part| {
             let width = format_of(*part).width();
-            // Of a signed part the bits count, whose values are not in order; but on top of a signed number they are its sign.
+            // A signed part contributes its bits, whose values are not in order. On top of a signed number, it is the
+            // sign and stays in order.
             let is_sign = format.signed && Some(part) == parts.first();
             let own = if of(*part).0 < 0 && !is_sign { (0, mask(width).into()) } else { of(*part) };
             ((low << width) + own.0, (high << width) + own.1)

@@ -92,7 +92,7 @@ pub enum Partition {
 pub struct Net {
     /// A legal Verilog identifier, distinct in the design.
     pub name: String,
-    /// Where the binary point lies and whether the top bit is a sign.
+    /// The place of the binary point, and whether the top bit is a sign.
     pub format: Format,
     /// The smallest and the largest raw value that the net can carry.
     pub range: Interval,
@@ -104,12 +104,12 @@ pub struct Net {
     pub doc: String,
     /// The topic of that comment.
     pub doc_topic: Topic,
-    /// Named by the author of the description, so that waveforms and Verilog show it. The rest is
-    /// wiring that the DSL adds (extensions, slices, rounding), named after what it serves.
+    /// Whether the author of the description named the net, so that waveforms and Verilog show it. Other nets are
+    /// wiring that the DSL adds (extensions, slices, rounding), named after the signal that they serve.
     pub named: bool,
     /// The module that the net is in.
     pub partition: Partition,
-    /// Where in the description it was written.
+    /// The place in the description where it was written.
     pub location: SourceLocation,
 }
 
@@ -174,7 +174,7 @@ pub struct Rom {
     pub data: NetId,
     /// Reads on the rising edge (block RAM) instead of at once (logic).
     pub synchronous: bool,
-    /// One bit; a synchronous read keeps its word while it is 0. Without it every edge reads.
+    /// One bit; while it is 0, a synchronous read keeps its word. Without an enable, every edge reads.
     pub enable: Option<NetId>,
     /// Another ROM, of the same words: this is the second read port of its memory.
     pub shares: Option<RomId>,
@@ -186,7 +186,7 @@ pub struct Rom {
     pub comments: Vec<String>,
     /// The number of the block in the source's figure.
     pub block: Option<u16>,
-    /// Where in the description it was written.
+    /// The place in the description where it was written.
     pub location: SourceLocation,
 }
 
@@ -213,7 +213,7 @@ pub enum Role {
     },
     /// Input: a write strobe.
     Strobe,
-    /// Input `in_valid`: the operands are those of a point, which is taken in this clock if `in_ready`.
+    /// Input `in_valid`: the operands belong to a point, which the pipeline takes in this clock if `in_ready` is 1.
     InValid,
     /// Input: an operand of the point that is offered.
     Point,
@@ -223,7 +223,7 @@ pub enum Role {
     OutReady,
     /// Output `in_ready`.
     InReady,
-    /// Output `side_out`: what came in with the point whose results are on the outputs.
+    /// Output `side_out`: the value of the side channel that came in with the point whose results are on the outputs.
     SideOut,
     /// Output: high exactly in the microinstructions that set it; results are then on the outputs.
     Valid,
@@ -290,7 +290,7 @@ pub struct Note {
 pub enum Topic {
     /// The device, whatever its architecture.
     Device,
-    /// Parts that stand once and are used in turn: multipliers, the control ROM, the clocks of a loop.
+    /// Parts that exist once and are used in turn: multipliers, the control ROM, the clocks of a loop.
     Microprogram,
     /// Writes, and how long the outputs hold.
     Writes,
@@ -350,7 +350,8 @@ impl Design {
         &self.registers[id.index()]
     }
 
-    /// Returns whether a ROM has control words: the control ROM, or one beside it with what a word of that has no room for.
+    /// Returns whether `rom` has control words: it is the control ROM, or a ROM beside it for fields that do not fit
+    /// into the control ROM's words.
     pub fn is_control_memory(&self, rom: &Rom) -> bool {
         self.roms.get(self.control.rom.index()).is_some_and(|it| it.address == rom.address)
     }
@@ -366,7 +367,7 @@ impl Design {
         Some(NetId(at as u32))
     }
 
-    /// Returns the net that a net shows under another name; itself where it shows none.
+    /// Returns the net that a net shows under another name, or the net itself if it shows none.
     pub fn renamed(&self, id: NetId) -> NetId {
         match self.net(id).driver {
             Driver::Op(Op::Relabel(of)) => self.renamed(of),
@@ -410,10 +411,10 @@ impl Design {
         }
     }
 
-    /// Returns an order of all nets in which each stands after what it depends on within one clock.
+    /// Returns an order of all nets in which each follows the nets that it depends on within one clock.
     ///
     /// # Errors
-    /// A combinational loop, as the nets along it.
+    /// Fails if there is a combinational loop. The error is the nets along the loop.
     pub fn levelise(&self) -> Result<Vec<NetId>, Vec<NetId>> {
         #[derive(Clone, Copy, PartialEq)]
         enum Mark {

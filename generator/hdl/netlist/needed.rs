@@ -6,10 +6,11 @@ use std::collections::{HashSet, VecDeque};
 use super::{Design, Driver, Microinstruction, NetId, Op};
 use glint_base::fixed::mask;
 
-/// Returns for each net the clock, counted from that of the first microinstruction of a computation, in which its value first
-/// matters: reaches an output, the sequencer, or a register that is loaded. `usize::MAX` if it never does.
+/// Returns for each net the clock in which its value is first used: it reaches an output, the sequencer, or a
+/// register that is loaded. Clocks are counted from the clock of the first microinstruction of a computation. The
+/// result is `usize::MAX` for a net that is never used.
 ///
-/// A microinstruction that controls a mux needs its chosen input alone.
+/// If a microinstruction controls a mux, it needs only the chosen input.
 pub fn needed(design: &Design) -> Vec<usize> {
     let mut walk = Walk {
         design,
@@ -40,7 +41,8 @@ pub fn needed(design: &Design) -> Vec<usize> {
     walk.needed
 }
 
-/// Returns the value of a control line in a microinstruction: a field, or what is made of fields alone.
+/// Returns the value of a control line in a microinstruction. The line must be a field, or a function of fields
+/// alone; otherwise it returns `None`.
 pub fn setting_of(
     design: &Design,
     microinstruction: &Microinstruction,
@@ -61,8 +63,8 @@ pub fn setting_of(
     }
 }
 
-/// Returns the nets on which a net depends within the clock of a microinstruction: of a mux that it controls, the chosen input
-/// alone.
+/// Returns the nets on which a net depends within the clock of a microinstruction. If the microinstruction controls a
+/// mux, the mux depends only on its chosen input.
 pub fn passed_on(design: &Design, microinstruction: &Microinstruction, net: NetId) -> Vec<NetId> {
     if let Driver::Op(Op::Mux { select, inputs }) = &design.net(net).driver
         && let Some(chosen) = setting_of(design, microinstruction, *select)
@@ -86,7 +88,7 @@ impl Walk<'_> {
         (0..self.design.control.microprogram.len()).for_each(|at| self.from(at, net));
     }
 
-    /// Notes that `net` matters in microinstruction `at`, and what it depends on.
+    /// Notes that `net`, and every net that it depends on, is used in microinstruction `at`.
     fn from(&mut self, at: usize, net: NetId) {
         let design = self.design;
         let mut pending = vec![(at, net)];

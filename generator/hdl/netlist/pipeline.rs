@@ -1,4 +1,5 @@
-//! Holds what is known of a pipelined design beside its netlist: stages, handshake, shared multipliers and checkpoints.
+//! Holds the facts about a pipelined design that go beyond its netlist: stages, handshake, shared multipliers and
+//! checkpoints.
 
 use std::collections::BTreeMap;
 
@@ -12,9 +13,10 @@ pub struct Pipeline {
     pub target: String,
     /// The clock that they keep.
     pub clock_mhz: f64,
-    /// The fastest clock that some number of stages keeps: what the slowest operation alone allows.
+    /// The fastest clock that any number of stages can reach. The slowest operation alone limits it.
     pub most_mhz: f64,
-    /// A point is taken every so many clocks at most, in slot 0. A point is in stage s while the slot is s modulo this number.
+    /// The least number of clocks between two points, which are taken in slot 0. A point is in stage s while the slot
+    /// is s modulo this number.
     pub interval: usize,
     /// The counter of the slots, which moves on with the points; none with an interval of 1.
     pub slot: Option<NetId>,
@@ -26,12 +28,12 @@ pub struct Pipeline {
     pub stall: bool,
     /// Bits that travel with a point.
     pub side: u32,
-    /// The memory in place of registers that nothing reads, where Verilog is emitted; none if they stay.
+    /// The memory that the Verilog has in place of registers that nothing reads; `None` if these registers stay.
     pub delay_memory: Option<DelayMemory>,
     /// From the operands on. Results are behind the registers of the last: there are as many stages as
     /// clocks from a point to its results.
     pub stages: Vec<Stage>,
-    /// For each net its stage. A register of stage k holds what stage k - 1 made.
+    /// For each net, its stage. A register of stage k holds a value that stage k - 1 made.
     pub stage_of: Vec<usize>,
     /// For each net the name of its value, which is the same in every stage that has it.
     pub value_of: Vec<String>,
@@ -39,18 +41,19 @@ pub struct Pipeline {
     pub handshake: Vec<NetId>,
     /// For each stage from 1 on, to the results: whether it has a point.
     pub valid: Vec<NetId>,
-    /// For each of them, what travels with the point; none without a side channel.
+    /// For each of these stages, the net of the side channel, which travels with the point; empty without a side
+    /// channel.
     pub side_values: Vec<NetId>,
     /// The registers that are inside a multiplier, with the product that they take.
     pub registered: Vec<RegId>,
-    /// Where values are to be seen that the sequential design has in registers.
+    /// The nets that show values which the sequential design has in registers.
     pub checkpoints: Vec<Checkpoint>,
 }
 
 /// A multiplier that several operations share.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unit {
-    /// Its name, which is that of the register behind it.
+    /// Its name, which is also the name of the register behind it.
     pub name: String,
     /// The nets of its muxes, operand registers and product; the last is the register behind it.
     pub nets: Vec<NetId>,
@@ -61,7 +64,7 @@ pub struct Unit {
 /// The logic between two rows of registers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stage {
-    /// The microinstructions of the sequential design that compute what it computes.
+    /// The microinstructions of the sequential design that compute the values of this stage.
     pub microinstructions: Vec<String>,
     /// Nanoseconds that the longest way through it takes on the target.
     pub logic_ns: f64,
@@ -97,8 +100,8 @@ impl Pipeline {
         self.units.iter().any(|unit| unit.nets.contains(&net))
     }
 
-    /// Returns the named nets whose logic is in a stage, each with the name of its value, in the order of the design's nets; the
-    /// handshake is none of them.
+    /// Returns the named nets whose logic is in a stage, each with the name of its value, in the order of the
+    /// design's nets. Nets of the handshake are left out.
     pub fn computed<'a>(
         &'a self,
         design: &'a Design,

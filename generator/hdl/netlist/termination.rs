@@ -15,8 +15,10 @@ pub struct Left {
     pub counter: Option<RegId>,
 }
 
-/// Returns for each microinstruction what is left when it is executed; `None` if a microinstruction waits for `start`, or if
-/// something else than a counter decides about a loop.
+/// Returns for each microinstruction the most clocks that are left when it is executed.
+///
+/// Returns `None` if a microinstruction waits for `start`, if a loop has several microinstructions, or if anything
+/// but a counter decides about a loop.
 pub fn remaining(design: &Design) -> Option<Vec<Left>> {
     let microprogram = &design.control.microprogram;
     let mut left: Vec<Left> = Vec::with_capacity(microprogram.len());

@@ -2,20 +2,20 @@
 
 use serde::Serialize;
 
-/// Clocks between the events of the handshake; `None` where they depend on the data.
+/// Clocks between the events of the handshake; `None` if they depend on the data.
 ///
 /// The clock in which `start` is taken is number 0.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Timing {
     /// The number of the first clock in which `valid` is high.
     pub start_to_valid: Option<u32>,
-    /// Clocks from a result to the next of the same computation, where there are several.
+    /// Clocks from a result to the next one of the same computation, if it has several.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub valid_to_valid: Option<u32>,
     /// The number of the clock in which `done` is high.
     pub start_to_done: Option<u32>,
-    /// Where that depends on the data, the number of the latest clock in which `done` can be high, if the
-    /// microprogram has a bound.
+    /// If that depends on the data: the number of the latest clock in which `done` can be high, if the microprogram
+    /// has a bound.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub start_to_done_at_most: Option<u32>,
     /// The number of the first clock in which the next `start` is taken.
@@ -23,8 +23,9 @@ pub struct Timing {
 }
 
 impl Timing {
-    /// Returns the clocks from a point to the next without a pause: of a line once it is under way, where a computation has
-    /// several results; of computations back to back elsewhere. `None` where they depend on the data.
+    /// Returns the clocks from a point to the next without a pause. If a computation has several results, they are
+    /// the clocks between two points of a line under way. Otherwise they are the clocks between computations back to
+    /// back. `None` if they depend on the data.
     pub fn clocks_per_point(&self) -> Option<u32> {
         self.valid_to_valid.or(self.start_to_start)
     }

@@ -21,12 +21,12 @@ impl Design {
         found
     }
 
-    /// Returns the mistakes that keep a design from meaning anything: what is referred to and does not exist, nets
-    /// without a driver or with two, widths that do not match, combinational loops. Names and the
-    /// microprogram are not looked at.
+    /// Returns the mistakes that make a design meaningless: references to parts that do not exist, nets without a
+    /// driver or with two, widths that do not match, combinational loops. It does not check names and the
+    /// microprogram.
     pub fn verify_structure(&self) -> Vec<Diagnostic> {
         let mut found = Vec::new();
-        // Nothing later may index what is not there, or ask for a width that is none.
+        // The later checks must not index parts that do not exist, or ask for an impossible width.
         self.references(&mut found);
         if !found.is_empty() {
             return found;
@@ -61,7 +61,8 @@ impl Design {
                 Driver::Undriven | Driver::Input | Driver::Constant(_) => {}
             }
         }
-        // What is no net has no location of its own in the description.
+        // Only nets have a location of their own in the description. Mistakes of all other parts get the location of
+        // the first net.
         let Some(first) = self.nets.first().map(|net| net.location) else { return };
         let registers = self.registers.iter();
         let of_registers = registers.flat_map(|it| [Some(it.q), it.data, it.enable]).flatten();

@@ -46,10 +46,10 @@ pub fn node_delay(timing: &Timing, graph: &Graph, id: NodeId) -> f64 {
     }
 }
 
-/// Returns the nanoseconds that a register behind a node takes beyond those of any other.
+/// Returns the nanoseconds by which the setup of a register behind a node exceeds the setup of any other register.
 ///
-/// Synthesis makes a mux with a constant the set or the reset of the register behind it. Its select goes through a
-/// look-up table with the clock enable first, and then a longer way.
+/// Synthesis turns a mux with a constant input into the set or the reset of the register behind it. The select of the
+/// mux then passes through a look-up table with the clock enable, and takes a longer path after that.
 pub fn setup(timing: &Timing, graph: &Graph, id: NodeId) -> f64 {
     let constant = |input: &NodeId| graph.constant_of(*input).is_some();
     match &graph.node(id).cell {

@@ -1,15 +1,16 @@
-//! Puts gates in the place of two-input muxes of which an input has constant bits, to shorten the critical path.
+//! Replaces two-input muxes by gates if an input has constant bits, to shorten the critical path.
 //!
-//! Synthesis makes such a mux the set or the reset of the register behind it, and joins its select with the clock
-//! enable in a look-up table. The way through that to the set or reset is longer than any through a gate: too long for
-//! clocks for which products have registers of their own. It does so bit for bit, so that bits are told apart here.
+//! Synthesis turns such a mux into the set or the reset of the register behind it, and joins its select with the
+//! clock enable in a look-up table. The path from there to the set or reset is longer than any path through a gate.
+//! It is too long for clocks at which products need registers of their own. Synthesis treats every bit separately, so
+//! this pass does too.
 
 use super::graph::{Cell, Graph, Label, NodeId, Op};
 use super::rebuild::rebuilt;
 use super::unroll::Unrolled;
 use glint_base::fixed::Format;
 
-/// Returns the computation without muxes of two inputs one of which has bits that are constants.
+/// Returns the computation with gates in place of every two-input mux that has an input with constant bits.
 pub fn gated(unrolled: &Unrolled) -> Unrolled {
     rebuilt(unrolled, |graph, op, node| match op {
         Op::Mux { select, inputs } => {
@@ -33,7 +34,7 @@ pub fn gated(unrolled: &Unrolled) -> Unrolled {
     })
 }
 
-/// A bit of either input, where it is known.
+/// A bit of each input, if it is known.
 type Pair = (Option<bool>, Option<bool>);
 
 /// Returns the bits from `low` on of a mux, of whose inputs the same is known in each.

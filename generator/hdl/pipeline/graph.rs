@@ -1,7 +1,7 @@
 //! The unrolled computation: an acyclic graph of values, each made once.
 //!
-//! A node is what one net carries in one clock of the computation. Equal nodes are one node, constants
-//! fold, and wiring that changes nothing disappears, so that what remains is what a point needs.
+//! A node is the value that one net carries in one clock of the computation. Equal nodes are merged, constants fold,
+//! and wiring that changes nothing disappears. The remaining nodes are the work for one point.
 
 use std::collections::HashMap;
 use std::panic::Location;
@@ -19,10 +19,10 @@ netlist::id!(
 /// A combinational cell of nodes.
 pub type Op = netlist::Op<NodeId>;
 
-/// Where a value comes from.
+/// The origin of a value.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Cell {
-    /// An operand, by its position among those of the design.
+    /// An operand, by its position among the operands of the design.
     Operand(usize),
     /// An undetermined value: a register before its first load, by its name.
     Unknown(String),
@@ -52,7 +52,7 @@ pub struct Label {
     pub named: bool,
     /// The name of the whole value, if this is a part of one.
     pub part_of: Option<String>,
-    /// Where the description says so.
+    /// The place in the description.
     pub location: &'static Location<'static>,
 }
 
@@ -87,7 +87,7 @@ pub struct Node {
     pub held: bool,
 }
 
-/// All values of a computation. A node stands after its operands.
+/// All values of a computation. A node comes after its operands.
 #[derive(Clone, Debug, Default)]
 pub struct Graph {
     /// The nodes, by number.
@@ -126,7 +126,7 @@ impl Graph {
     /// Limits a node, from now on, to the values of `range`.
     pub fn refine(&mut self, id: NodeId, range: Interval) -> NodeId {
         let node = &mut self.nodes[id.index()];
-        // Of a path that is never taken, the intersection can be empty.
+        // On a path that is never taken, the intersection can be empty.
         node.range = interval::common(node.range, range).unwrap_or(node.range);
         id
     }
@@ -168,7 +168,7 @@ impl Graph {
         self.insert(Cell::Read { rom, address }, format, range, label)
     }
 
-    /// Returns the node of a cell: where there is one already, that one, limited to `range` too.
+    /// Returns the node of a cell. If the node is already there, its values are limited to `range` too.
     pub fn insert(&mut self, cell: Cell, format: Format, range: Interval, label: &Label) -> NodeId {
         let key = (cell.clone(), format.width(), format.signed);
         if let Some(&id) = self.known.get(&key) {
@@ -216,7 +216,8 @@ impl Graph {
         self.insert(Cell::Op(op), format, range, label)
     }
 
-    /// Returns the limit that a choice keeps to: the value where it is less, and the limit where not.
+    /// Returns the limit of a choice between a value and a limit: the choice takes the value if it is less, else the
+    /// limit.
     fn limit(&self, op: &Op) -> Option<i128> {
         let Op::Mux { select, inputs } = op else { return None };
         match (&self.node(*select).cell, &inputs[..]) {
@@ -238,7 +239,7 @@ impl Graph {
             && limit.is_power_of_two()
     }
 
-    /// Returns a node that already is what the cell would give, or one that is less.
+    /// Returns a node that already has the value of the cell, or a simpler node with that value.
     fn fold(&mut self, op: &Op, format: Format, label: &Label) -> Option<NodeId> {
         let known = op.operands().into_iter();
         let known: Option<HashMap<NodeId, [u64; 1]>> =
@@ -347,7 +348,7 @@ impl Graph {
         matches!(self.node(inverse).cell, Cell::Op(Op::Not(it)) if it == of)
     }
 
-    /// Returns the bits of a slice that are not zeros in front of a number, where some are.
+    /// Returns the bits of a slice without the zeros in front of a number, if there are such zeros.
     fn without_zeros(&mut self, slice: NodeId, label: &Label) -> Option<NodeId> {
         let Cell::Op(Op::Slice { of, low }) = self.node(slice).cell else { return None };
         let Cell::Op(Op::Extend(number)) = self.node(of).cell else { return None };
@@ -415,7 +416,8 @@ impl Graph {
         }
     }
 
-    /// Returns the product of what the operands' values need, no wider, and unsigned where that serves.
+    /// Returns the product of operands that are no wider than their values need, and unsigned if no value is
+    /// negative. Returns `None` if the operands already have this form.
     fn fold_product(
         &mut self,
         a: NodeId,

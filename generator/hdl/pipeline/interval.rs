@@ -8,13 +8,13 @@ use super::{Goal, Options};
 pub enum Interval {
     /// A number of clocks.
     Clocks(usize),
-    /// The most that leave so many million points a second at the clock of the goal.
+    /// The longest interval with this number of million points a second at the clock of the goal.
     Rate(f64),
     /// The fewest with which there are no more multipliers than this.
     Multipliers(usize),
 }
 
-/// The key that is wrong, what is wrong with it, and the remedy.
+/// The key that is wrong, the problem with its value, and the remedy.
 pub struct Unreached {
     pub key: &'static str,
     pub message: String,
@@ -24,7 +24,8 @@ pub struct Unreached {
 /// Returns the clocks from a point to the next. A sequential core takes a point every `most`.
 ///
 /// # Errors
-/// An interval beyond the sequential core's, a rate that none reaches, more multipliers than are allowed with each.
+/// Fails if the interval is longer than the sequential core's, or if no interval reaches the rate. Fails if a rate is
+/// wanted without a clock. Fails if every interval needs more multipliers than are allowed.
 pub fn clocks<'a>(
     name: &str,
     options: &Options,

@@ -1,9 +1,9 @@
-//! Makes a pipeline of a design with a microprogram: it takes a point every clock or every few.
+//! Makes a pipeline of a design with a microprogram. The pipeline takes a point every clock or every few clocks.
 //!
-//! A design with a microprogram is unrolled (`unroll`) into a graph of values, whose products are
-//! split to the multipliers of a [`Timing`] by the first of the `passes`; a schedule (`schedule`, as a `request` wants it) gives
-//! every value its stage, and `stages` makes a design of it again, without a microprogram: a register wherever a value
-//! crosses from a stage to the next. Nothing here knows a device.
+//! `unroll` turns the design into a graph of values. The first of the `passes` splits its products to fit the
+//! multipliers of a [`Timing`]. A schedule (`schedule`, for a `request`) assigns every value to a stage. `stages`
+//! builds a design from that, without a microprogram and with a register wherever a value crosses from a stage to the
+//! next. Nothing here knows a device.
 
 mod delay;
 mod gates;
@@ -51,7 +51,7 @@ pub enum Goal {
 /// The storage of values that nothing reads for several stages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Delays {
-    /// A small memory, where the target has such.
+    /// A small memory, if the target has one.
     Memory,
     /// A register a stage.
     Registers,
@@ -64,9 +64,9 @@ pub struct Options {
     pub target: &'static Timing,
     /// The goal of the schedule.
     pub goal: Goal,
-    /// A point is taken every so many clocks at most.
+    /// The least number of clocks between two points.
     pub interval: Interval,
-    /// Products end in the register of a multiplier, where the target has a delay for it.
+    /// Products end in the register of a multiplier, if the target has a delay for it.
     pub registered: bool,
     /// The environment can hold the results back.
     pub stall: bool,
@@ -79,8 +79,8 @@ pub struct Options {
 /// Returns the pipeline of a sequential design.
 ///
 /// # Errors
-/// A microprogram that cannot be unrolled, with its source line; a clock or a number of stages that
-/// cannot be reached, with the nearest that can.
+/// Fails if the microprogram cannot be unrolled; the error has its source line. Fails if a clock or a number of
+/// stages cannot be reached; the error has the nearest value that can.
 pub fn pipeline(sequential: &Design, options: &Options) -> Result<Design, Diagnostics> {
     let unrolled = unroll::unroll_in_powers(sequential).map_err(request::sequentially)?;
     let unrolled = passes::applied(unrolled, options);

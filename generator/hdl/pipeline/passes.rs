@@ -1,6 +1,8 @@
-//! Runs the passes that rewrite an unrolled computation before its schedule: each makes the same values in other cells.
+//! Runs the passes that rewrite an unrolled computation before it is scheduled. Each pass computes the same values
+//! with other cells.
 //!
-//! A pass has its tests as files, `passes/<name>/*.txt`: a computation as text, and what the pass is to make of it.
+//! The tests of a pass are files, `passes/<name>/*.txt`: a computation as text, and the computation that the pass
+//! must make of it.
 
 use super::Options;
 use super::gates::gated;
@@ -10,7 +12,7 @@ use glint_base::target::Timing;
 
 /// A pass.
 pub struct Pass {
-    /// Its name, and that of the directory of its tests.
+    /// The name of the pass, and of the directory of its tests.
     pub name: &'static str,
     /// Whether a pipeline with these options has it.
     pub applies: fn(&Options) -> bool,
@@ -44,7 +46,8 @@ mod tests {
     /// Combinations of operands that are computed of a test.
     const MOST: u64 = 1 << 16;
 
-    /// Every file: the pass makes what stands behind the arrow, and the results are the same for every operand.
+    /// In every file: the pass makes the computation behind the arrow, and the results are the same for every
+    /// operand.
     #[test]
     fn passes_make_what_their_files_say() {
         let place = Path::new(env!("CARGO_MANIFEST_DIR")).join("pipeline/passes");

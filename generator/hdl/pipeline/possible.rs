@@ -6,7 +6,7 @@ use super::graph::{Cell, Graph, NodeId};
 use crate::netlist::eval;
 use glint_base::fixed::mask;
 
-/// The most bits of which all combinations are tried.
+/// The largest number of bits for which all combinations are tried.
 const MOST_BITS: u32 = 16;
 
 /// The most bits of a node that selects among a number for each of its values.
@@ -72,7 +72,8 @@ impl Cone {
         Self { leaves, bits, inside }
     }
 
-    /// Returns all nodes where the bits of the leaves are those of a number; none if a leaf never has such a value.
+    /// Returns the values of all nodes if `number` gives the bits of the leaves. Returns `None` if a leaf never has
+    /// its value.
     fn values(&self, graph: &Graph, number: u64) -> Option<HashMap<NodeId, [u64; 1]>> {
         let mut values: HashMap<NodeId, [u64; 1]> = HashMap::new();
         let mut rest = number;

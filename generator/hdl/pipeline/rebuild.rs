@@ -3,8 +3,8 @@
 use super::graph::{Cell, Graph, Node, NodeId, Op};
 use super::unroll::Unrolled;
 
-/// Returns a copy in which `replace` says what stands for a cell, whose operands are those of the new graph; the cell itself
-/// where it says nothing.
+/// Returns a copy of a computation in which other nodes may replace cells. `replace` gets each cell, with its
+/// operands in the new graph, and returns the replacement. If it returns `None`, the cell is copied.
 pub fn rebuilt(
     unrolled: &Unrolled,
     mut replace: impl FnMut(&mut Graph, &Op, &Node) -> Option<NodeId>,

@@ -11,7 +11,7 @@ use crate::netlist::{Design, decided_by_data, latest_done};
 use glint_base::codes;
 use glint_base::diagnostic::{Diagnostic, Diagnostics};
 
-/// A computation with what is asked of it.
+/// A computation, and the pipeline that is requested for it.
 pub struct Request<'a> {
     sequential: &'a Design,
     unrolled: &'a Unrolled,
@@ -19,7 +19,7 @@ pub struct Request<'a> {
     results: Vec<NodeId>,
 }
 
-/// Makes what stands against unrolling a problem of the key that asks for it.
+/// Turns the reasons against unrolling into errors of the key that asks for it, `architecture`.
 pub fn sequentially(found: Diagnostics) -> Diagnostics {
     let remedy = || "set architecture = \"sequential\"".to_owned();
     Diagnostics(found.0.into_iter().map(|it| it.of_key("architecture", remedy())).collect())
@@ -42,7 +42,7 @@ impl<'a> Request<'a> {
     /// Returns the clocks from a point to the next.
     ///
     /// # Errors
-    /// As of [`interval::clocks`].
+    /// Fails if [`interval::clocks`] fails.
     pub fn interval(&self) -> Result<usize, Diagnostics> {
         // With the clock of `start`, in which the operands are written. Iterations that operands decide on are counted at
         // their most.
@@ -58,7 +58,7 @@ impl<'a> Request<'a> {
     /// Returns the schedule that reaches the goal.
     ///
     /// # Errors
-    /// A clock or a number of stages that cannot be reached, with the nearest that can.
+    /// Fails if a clock or a number of stages cannot be reached. The error has the nearest value that can.
     pub fn schedule(
         &self,
         problems: &Problems<'_>,

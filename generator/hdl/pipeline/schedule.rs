@@ -1,14 +1,15 @@
-//! Assigns nodes to stages: a system of difference constraints, solved for the fewest register bits.
+//! Assigns nodes to stages: solves a system of difference constraints for the fewest register bits.
 //!
-//! Every node has a number, its stage. It stands no earlier than its operands, a stage later where a block
-//! memory lies between, and a stage later than any node from which the way through logic takes longer than
-//! the clock (Cong and Zhang, "An efficient and versatile scheduling algorithm based on SDC formulation",
-//! 2006). A value is held for as many boundaries as there are to its last use, a register bit for each
-//! bit and boundary. Constraints are differences of two variables, so the linear program has integers for
-//! a solution.
+//! Every node has a number, its stage. The stage is no earlier than the stages of its operands. It is a stage later
+//! if a block memory lies between. It is also a stage later than any node from which the path through logic takes
+//! longer than the clock. This is the formulation of Cong and Zhang, "An efficient and versatile scheduling algorithm
+//! based on SDC formulation", 2006. A value is held over every boundary up to its last use, and costs a register bit
+//! for each bit and boundary. All constraints are differences of two variables, so the linear program has an integer
+//! solution.
 //!
-//! Products that share multipliers get their stages first: one after another, as early as the constraints allow, in the first
-//! slot in which a multiplier is free (`sharing`). The linear program places everything else around them.
+//! Products that share multipliers get their stages first: one after another, as early as the constraints allow, in
+//! the first slot in which a multiplier is free (`sharing`). The linear program then places all other nodes around
+//! them.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
@@ -23,13 +24,13 @@ use glint_base::target::{Registered, Timing};
 /// When each value is computed.
 #[derive(Clone, Debug)]
 pub struct Schedule {
-    /// For each node of the graph; of no meaning for constants and for what nothing needs.
+    /// For each node of the graph; it has no meaning for constants and for nodes that nothing needs.
     pub stage: Vec<usize>,
     /// Boundaries with registers, from the operands to the results.
     pub latency: usize,
     /// Nanoseconds of a clock.
     pub period: f64,
-    /// Nanoseconds of logic in each stage, without those of the registers around it.
+    /// Nanoseconds of logic in each stage, without the delays of the registers around it.
     pub logic: Vec<f64>,
 }
 
@@ -38,7 +39,7 @@ pub struct Schedule {
 pub enum Refusal {
     /// The clock cannot be met.
     Unreachable(Unreachable),
-    /// The solver failed, or its solution breaks a constraint: what is wrong, and the node that stands wrong.
+    /// The solver failed, or its solution breaks a constraint: the reason, and the node in the wrong stage.
     Unsolved(String, Option<NodeId>),
 }
 
@@ -51,19 +52,19 @@ pub struct Unreachable {
     pub period: f64,
 }
 
-/// Nodes, edges and delays: what a schedule has to respect.
+/// The scheduling problem: the nodes, edges and delays that a schedule must respect.
 pub struct Problems<'a> {
     graph: &'a Graph,
     target: &'a Timing,
     /// The nodes that are scheduled, in order.
     live: Vec<NodeId>,
     results: &'a [NodeId],
-    /// For each node, the live ones that take it, without those that are constants.
+    /// For each node, the live nodes that use it; empty for constants.
     users: Vec<Vec<NodeId>>,
     delay: Vec<f64>,
     /// The setup of a register behind each node, beyond any other's.
     setup: Vec<f64>,
-    /// The selection between a value and a constant, where a register behind it does so by its reset.
+    /// The select of a choice between a value and a constant, if a register behind it makes the choice by its reset.
     reset_by: Vec<Option<NodeId>>,
     /// For nodes that the clock makes.
     clocked: Vec<Option<Clocked>>,
@@ -85,7 +86,8 @@ struct Clocked {
     apart: usize,
 }
 
-/// Returns the clock of a period in nanoseconds, in MHz to a decimal. Rounded down, so that what is stated can be reached.
+/// Returns the frequency of a `period` in nanoseconds, in MHz to one decimal. It is rounded down, so that the stated
+/// clock can be reached.
 pub fn megahertz(period: f64) -> f64 {
     (10_000.0 / period).floor() / 10.0
 }
@@ -95,7 +97,7 @@ fn takes_no_logic(cell: &Cell) -> bool {
     matches!(cell, Cell::Op(Op::Add { .. } | Op::Sub(..) | Op::Less(..) | Op::Mul(..)))
 }
 
-/// A node stands at least this number of stages after another.
+/// `(from, to, apart)`: the stage of node `to` is at least `apart` stages after the stage of node `from`.
 type Difference = (NodeId, NodeId, usize);
 
 /// The stages of the products that share multipliers.
@@ -119,8 +121,8 @@ fn inverted_factors(graph: &Graph, live: &[NodeId]) -> Vec<NodeId> {
     inverters
 }
 
-/// Returns whether a node is another with more bits of its sign, or under another name: made anew wherever it is
-/// used, so that registers hold what it is made of.
+/// Returns whether a node only extends or renames another one. Such a node is made anew wherever it is used, so that
+/// registers hold its operand.
 pub fn is_extension(graph: &Graph, id: NodeId) -> bool {
     matches!(graph.node(id).cell, Cell::Op(Op::Extend(_) | Op::Relabel(_)))
 }
@@ -216,8 +218,8 @@ impl<'a> Problems<'a> {
         all - self.kinds.iter().map(|kind| kind.products.len() - kind.units).sum::<usize>()
     }
 
-    /// Returns the shortest period that one operation alone allows, and the operation. What the environment takes for an operand
-    /// never makes a period unreachable.
+    /// Returns the shortest period that one operation alone allows, and the operation. The time that the environment
+    /// takes for an operand never makes a period unreachable.
     pub fn fastest(&self) -> Option<Unreachable> {
         let delay = |id: &NodeId| {
             let at = id.index();
@@ -239,7 +241,7 @@ impl<'a> Problems<'a> {
     /// can be.
     ///
     /// # Errors
-    /// An operation takes longer than the period; the solver fails.
+    /// Fails if an operation takes longer than the period, or if the solver fails.
     pub fn for_period(&self, period: f64) -> Result<Schedule, Refusal> {
         if let Some(unreachable) = self.fastest().filter(|it| it.period > period + 1e-9) {
             return Err(Refusal::Unreachable(unreachable));
@@ -247,11 +249,11 @@ impl<'a> Problems<'a> {
         self.solve(period, 0)
     }
 
-    /// Returns the schedule of this number of stages with the shortest period. With more than there are of use the
-    /// period is that of the slowest operation.
+    /// Returns the schedule with this number of stages and the shortest period. If there are more stages than useful,
+    /// the slowest operation decides the period.
     ///
     /// # Errors
-    /// The solver fails.
+    /// Fails if the solver fails.
     pub fn for_stages(&self, stages: usize) -> Result<Schedule, Refusal> {
         let fastest = self.fastest().map_or(0.0, |it| it.period);
         let fits = |period: f64| self.least_stages(period) <= stages;
@@ -286,16 +288,17 @@ impl<'a> Problems<'a> {
         self.clocked[user.index()].map_or(0, |it| it.apart)
     }
 
-    /// Returns the registers between two nodes that are too long for one stage. Block memories and multipliers stand in columns
-    /// of their own: where the way to a multiplier has no room, the value of a memory takes one near each.
+    /// Returns the number of registers between two nodes that are too far apart for one stage. Block memories and
+    /// multipliers lie in columns of their own. If one register leaves too little time on the way to a multiplier,
+    /// the value of a memory takes a register near each of the two.
     fn registers_between(&self, from: NodeId, user: NodeId, most: f64) -> usize {
         let product = matches!(self.graph.node(user).cell, Cell::Op(Op::Mul(..)));
         let far = product && delay::is_block(self.target, self.graph, from);
         1 + usize::from(far && self.delay[user.index()] + self.target.logic > most)
     }
 
-    /// Returns the nanoseconds until a register behind `user` has the value, of which the operand `from` is there after so many.
-    /// A mux that becomes a reset delays its select alone.
+    /// Returns the nanoseconds until a register behind `user` has its value, if the operand `from` is there after
+    /// `after` nanoseconds. A mux that becomes a reset delays its select alone.
     fn until_register(&self, from: NodeId, user: NodeId, after: f64) -> f64 {
         match self.reset_by[user.index()] {
             Some(select) if select != from => after,
@@ -314,7 +317,7 @@ impl<'a> Problems<'a> {
             }
             // Forward through logic, as far as the clock goes.
             let mut pending = BTreeSet::from([from]);
-            // What the environment takes of a clock never makes it unreachable.
+            // The part of a clock that the environment takes never makes the clock unreachable.
             longest[from.index()] = self.delay[from.index()].min(most);
             reached[from.index()] = from;
             while let Some(at) = pending.pop_first() {
@@ -355,7 +358,8 @@ impl<'a> Problems<'a> {
         results.map(|id| earliest[id.index()] + 1).max().unwrap_or(1)
     }
 
-    /// Returns the earliest stage of each node. Differences are sorted by their first node, and a node stands after its operands.
+    /// Returns the earliest stage of each node. The differences must be sorted by their first node; a node comes
+    /// after its operands.
     fn earliest(&self, differences: &[Difference], taken: &Taken) -> Vec<usize> {
         let mut earliest = vec![0; self.graph.nodes.len()];
         taken.iter().for_each(|(id, stage)| earliest[id.index()] = *stage);
@@ -365,8 +369,8 @@ impl<'a> Problems<'a> {
         earliest
     }
 
-    /// Returns the stages of products that share multipliers: one after another, first the one that can be there first, and of
-    /// those the one on which most depends.
+    /// Returns the stages of products that share multipliers. They are placed one after another. The product that can
+    /// be placed earliest comes first; among several, the product that the most stages must follow.
     fn taken(&self, differences: &[Difference]) -> Taken {
         let mut after = vec![0; self.graph.nodes.len()];
         for &(from, to, apart) in differences.iter().rev() {
@@ -393,8 +397,8 @@ impl<'a> Problems<'a> {
         taken
     }
 
-    /// Returns the last stage that a node can stand in: operands are there from the beginning, and results need a boundary behind
-    /// them.
+    /// Returns the last stage that a node can have. Operands are there from the beginning, and results need a
+    /// boundary behind them.
     fn last_stage(&self, id: usize, latency: usize) -> usize {
         if matches!(self.graph.nodes[id].cell, Cell::Operand(_)) { 0 } else { latency - 1 }
     }
@@ -402,7 +406,7 @@ impl<'a> Problems<'a> {
     /// Checks that stages keep every constraint, whoever found them.
     ///
     /// # Errors
-    /// The first that they break.
+    /// Fails if the stages break a constraint. The error is the first such constraint.
     fn verify(
         &self,
         differences: &[Difference],

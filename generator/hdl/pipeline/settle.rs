@@ -1,13 +1,13 @@
-//! Merges a limit of a limit into one limit. A step that limits its result makes such values when it is taken several
+//! Merges a limit of a limit into one limit. Such values arise if a step that limits its result is taken several
 //! times.
 //!
-//! `over₂ ? most : f(over₁ ? most : x)`, of which `over₂` asks for a bit of the inner choice, is one choice: `most` if
-//! either is over, and else `f(x)`.
+//! For example, in `over₂ ? most : f(over₁ ? most : x)`, the condition `over₂` tests a bit of the inner choice. The
+//! pass makes one choice of it: `most` if either condition holds, and else `f(x)`.
 
 use super::graph::{Cell, Graph, Label, NodeId, Op};
 use glint_base::fixed::Format;
 
-/// Returns the value as one choice, where a choice between a constant and another such choice makes it.
+/// Returns a value as one choice, if it is a choice between a constant and another such choice.
 pub fn settled(graph: &mut Graph, id: NodeId) -> NodeId {
     let node = graph.node(id).clone();
     let Some((over, rest, most)) = limit(graph, id) else { return id };
@@ -25,7 +25,7 @@ fn limit(graph: &Graph, id: NodeId) -> Option<(NodeId, NodeId, NodeId)> {
     }
 }
 
-/// Returns a condition without the choice of which it asks for a bit.
+/// Returns a condition that tests a bit of a choice, rewritten to read the choice's inputs instead.
 fn flag(graph: &mut Graph, id: NodeId) -> NodeId {
     let node = graph.node(id).clone();
     let Cell::Op(Op::Slice { of, low }) = node.cell else { return id };
@@ -51,7 +51,7 @@ fn either(graph: &mut Graph, a: NodeId, b: NodeId, label: &Label) -> NodeId {
     graph.op(Op::Or(a, b), Format::BIT, label)
 }
 
-/// Returns the bits of which a condition asks whether any is 1, as a net, the lowest bit and their number.
+/// Returns the bits that a condition tests for any 1: their net, the lowest bit and the number of bits.
 fn run(graph: &Graph, id: NodeId) -> Option<(NodeId, u32, u32)> {
     match graph.node(id).cell {
         Cell::Op(Op::Any(of)) => run(graph, of),
@@ -60,7 +60,8 @@ fn run(graph: &Graph, id: NodeId) -> Option<(NodeId, u32, u32)> {
     }
 }
 
-/// Returns `id` where `over` is 0, through wiring: choices whose own condition is 0 then are what they are below the limit.
+/// Returns `id` for the case that `over` is 0, looking through wiring. If this implies that the condition of an inner
+/// choice is 0 too, the choice is replaced by its value below the limit.
 fn below(graph: &mut Graph, id: NodeId, over: NodeId) -> NodeId {
     let node = graph.node(id).clone();
     if let Some((inner, rest, _)) = limit(graph, id) {

@@ -27,7 +27,8 @@ pub struct Unit {
     pub widths: [u32; 2],
     /// Whether the factors have signs.
     pub signed: bool,
-    /// For each slot, the product that is computed in it, and its factors in the order of those of the multiplier.
+    /// For each slot, the product that the multiplier computes in it, and the factors of this product in the order of
+    /// the multiplier's operands.
     pub serves: Vec<Option<(NodeId, [NodeId; 2])>>,
 }
 
@@ -39,8 +40,8 @@ fn factors(graph: &Graph, id: NodeId) -> Option<[NodeId; 2]> {
     }
 }
 
-/// Returns the products of a computation that take a multiplier of the target, which those that synthesis makes of look-up tables
-/// do not.
+/// Returns the products of a computation that take a multiplier of the target. It leaves out the narrow products that
+/// synthesis makes of look-up tables.
 pub fn products(graph: &Graph, target: &Timing, live: &[NodeId]) -> Vec<NodeId> {
     let family = FAMILIES.iter().find(|family| family.name() == target.name);
     let least = family.map_or(0, |family| family.estimate.least_product);
@@ -48,8 +49,8 @@ pub fn products(graph: &Graph, target: &Timing, live: &[NodeId]) -> Vec<NodeId> 
     products.filter(|&id| factors(graph, id).is_some()).collect()
 }
 
-/// Returns the products of a computation that share multipliers; none with an interval of 1. A product without sign is
-/// one with sign where the multiplier has a bit to spare, and has company there.
+/// Returns the products of a computation that share multipliers; empty with an interval of 1. Products without a sign
+/// are treated as products with one if the multiplier has a bit to spare and this saves multipliers.
 pub fn kinds(graph: &Graph, target: &Timing, live: &[NodeId], interval: usize) -> Vec<Kind> {
     let products = products(graph, target, live);
     let signed = |id: &NodeId| graph.node(*id).format.signed;
@@ -74,8 +75,8 @@ pub fn kinds(graph: &Graph, target: &Timing, live: &[NodeId], interval: usize) -
     kinds.filter(|kind| kind.units < kind.products.len()).collect()
 }
 
-/// Returns the units that serve the products of a kind in these stages. Of those that are free in its slot, a product takes the
-/// one whose muxes and registers grow the least.
+/// Returns the units that serve the products of a `kind` in these stages. Among the units that are free in its slot,
+/// a product takes the unit whose muxes and registers grow the least.
 pub fn units(
     graph: &Graph,
     target: &Timing,
@@ -83,7 +84,7 @@ pub fn units(
     stage: &[usize],
     interval: usize,
 ) -> Vec<Unit> {
-    // A factor without sign is a bit wider among those with one.
+    // A factor without a sign is one bit wider if the multiplier is signed.
     let width = |id: NodeId| {
         let format = graph.node(id).format;
         format.width() + u32::from(kind.signed && !format.signed)

@@ -1,11 +1,12 @@
 //! Splits products that are too wide for the multipliers of the target into sums of narrower ones.
 //!
-//! An operand that is too wide is cut in two: its upper bits, as many as a multiplier takes, and the rest.
-//! A rest of a few bits becomes rows of the product in look-up tables, as on paper: a synthesiser would
-//! spend a whole multiplier on it. A longer rest, or one of long rows, is a product of its own.
+//! An operand that is too wide is cut in two: its upper bits, as many as a multiplier takes, and the rest. A rest of
+//! a few bits becomes rows of the product in look-up tables, as on paper; a synthesiser would spend a whole
+//! multiplier on it. A longer rest, or one with long rows, becomes a product of its own.
 //!
-//! Two kinds of factors take less. Of the square `(u·2^r + l)² = u²·4^r + l·(u·2^(r+1) + l)` the rest is one factor for both.
-//! Of a factor that reaches a power of two, as a cosine does with 1.0, the highest bit is set where all others are 0.
+//! Two kinds of factors cost less. In the square `(u·2^r + l)² = u²·4^r + l·(u·2^(r+1) + l)`, both partial products
+//! with the rest share one factor. If a factor reaches a power of two, as a cosine does with 1.0, its highest bit is
+//! set only where all its other bits are 0.
 
 use super::graph::{Graph, Label, NodeId, Op};
 use super::rebuild::rebuilt;
@@ -73,8 +74,8 @@ fn reaches_a_power_of_two(graph: &Graph, factor: NodeId) -> bool {
     low >= 0 && high == 1 << (graph.width(factor) - 1)
 }
 
-/// Returns a product of a factor that is a power of two where its highest bit is set: the other factor there, else that of the
-/// bits below.
+/// Returns a product for a factor `wide` that is a power of two if its highest bit is set. In that case, the product
+/// is the other factor, shifted. Otherwise it is the product of the bits below and the other factor.
 fn below_the_highest(
     graph: &mut Graph,
     target: &Timing,
@@ -111,8 +112,9 @@ fn with_a_sign(graph: &Graph, [a, b]: [NodeId; 2]) -> Option<[NodeId; 2]> {
     (positive(factors[0]) && graph.width(factors[1]) > 1).then_some(factors)
 }
 
-/// Returns a product of a factor that is never negative and one that may be: that of the bits below the sign, less the former
-/// where the sign is set. Of two signed factors more bits would be cut.
+/// Returns the product of `positive`, which is never negative, and `other`, which may be. It is the product of
+/// `positive` and the bits of `other` below the sign. If the sign is set, `positive` is subtracted at the weight of
+/// the sign. A product of two signed factors would need more bits to be cut.
 fn below_the_sign(
     graph: &mut Graph,
     target: &Timing,
@@ -194,7 +196,7 @@ fn cut(
 ) -> Vec<Term> {
     let rest = graph.width(wide) - limit;
     let upper_bits = slice(graph, wide, rest, integer(signed, limit), &label.part("upper_bits"));
-    // What the upper bits are multiplied by, and the rest, and the places that the product of the upper bits is up.
+    // The factor of the upper bits, the factor of the rest, and the places by which the upper product is shifted up.
     let (upper_factor, rest_factor, places) = if wide == narrow {
         let lower = slice(graph, wide, 0, unsigned(rest), &label.part("lower_bits"));
         let zero = graph.constant(0, Format::BIT, &unnamed(label));
@@ -208,7 +210,7 @@ fn cut(
     let upper_label = label.part("upper");
     let upper = parts(graph, target, [upper_bits, upper_factor], upper_format, &upper_label);
     let upper = upper.into_iter().map(|term| Term { places: term.places + places, ..term });
-    // The lower bits have no sign; the product with them has that of the other operand.
+    // The lower bits have no sign; their product has the sign of the other operand.
     let width = graph.width(rest_factor);
     let lower = if rest <= MOST_ROWS && rest * width <= target.row_bits {
         vec![Term { value: rows(graph, wide, rest, rest_factor, label), places: 0 }]
@@ -256,7 +258,7 @@ fn unsigned(width: u32) -> Format {
     integer(false, width)
 }
 
-/// Returns the label of what needs no name.
+/// Returns a label for a node that needs no name.
 fn unnamed(label: &Label) -> Label {
     Label { doc: String::new(), named: false, ..label.clone() }
 }
@@ -399,7 +401,8 @@ mod tests {
         });
         let mut sums: Vec<u32> = sums.collect();
         sums.sort_unstable();
-        // Of rows of 4 and of 8 bits three each; of the lower parts, from the fifth place to the carry, 9 bits, and of the upper 8.
+        // Rows of 4 bits take three sums, and so do rows of 8 bits. The lower parts are added from the fifth place to
+        // the carry, in 9 bits, and the upper parts in 8 bits.
         assert_eq!(sums, [5, 5, 5, 8, 9, 9, 9, 9]);
     }
 

@@ -79,7 +79,7 @@ pub fn assemble(
     design
 }
 
-/// Counts apart what memories hold in place of registers.
+/// Counts separately the bits that memories hold in place of registers.
 fn count_delayed(design: &mut Design) {
     let lines = design.delay_lines();
     let passed = lines.iter().flat_map(|line| &line.values).flat_map(Delayed::passed);
@@ -101,7 +101,7 @@ struct Builder<'a> {
     design: Design,
     /// The pipeline as far as it is built; stages and checkpoints come last.
     pipeline: Pipeline,
-    /// 1 when every point moves on by a stage; none if they always do.
+    /// 1 when every point moves on by a stage; `None` if points always do.
     advance: Option<NetId>,
     /// The register behind the multiplier of each product that shares one.
     shared: HashMap<NodeId, NetId>,
@@ -195,7 +195,7 @@ impl Builder<'_> {
         }
     }
 
-    /// Returns `wish`, with a number where another value has it in any stage.
+    /// Returns `wish`, with a number added if another value has that name in any stage.
     fn distinct(&self, wish: &str) -> String {
         let taken = |name: &String| self.names.values().any(|other| other == name);
         let mut name = wish.to_owned();
@@ -296,7 +296,8 @@ impl Builder<'_> {
         id
     }
 
-    /// Returns the counter of the slots, and whether it stands in slot 0; none if there is one slot.
+    /// Makes the counter of the slots, and returns the net that says whether it is at slot 0. Returns `None` if there
+    /// is one slot.
     fn slots(&mut self) -> Option<NetId> {
         let last = self.pipeline.interval.checked_sub(1).filter(|last| *last > 0)?;
         let bits = usize::BITS - last.leading_zeros();
@@ -319,7 +320,7 @@ impl Builder<'_> {
         Some(first)
     }
 
-    /// Returns whether the counter stands in a slot.
+    /// Returns a net that says whether the counter is at slot `number`.
     fn is_slot(&mut self, slot: NetId, number: usize) -> NetId {
         let format = self.design.net(slot).format;
         let value = Driver::Constant(number as u64);
@@ -327,7 +328,8 @@ impl Builder<'_> {
         self.inner("slot_is", Format::BIT, Driver::Op(Op::Equal(slot, number)))
     }
 
-    /// Returns the enable of registers that take what a stage makes, and hold it until the next point is there.
+    /// Returns the enable of the registers that take the values of `stage` and hold them until the next point is
+    /// there.
     fn load(&mut self, stage: usize) -> Option<NetId> {
         let Some(slot) = self.pipeline.slot else { return self.advance };
         let number = stage % self.pipeline.interval;
@@ -343,7 +345,7 @@ impl Builder<'_> {
         Some(load)
     }
 
-    /// Returns the multipliers that products share, without what selects their factors.
+    /// Returns the multipliers that products share, without the logic that selects their factors.
     fn units(&mut self, registered: bool) -> Vec<(sharing::Unit, [NetId; 2])> {
         let mut made = Vec::new();
         for (number, unit) in (1..).zip(self.problems.units(self.schedule)) {
@@ -393,7 +395,7 @@ impl Builder<'_> {
                     let value = self.value(of[side], stage);
                     inputs[stage % self.pipeline.interval] = Some(self.widened(value, q));
                 }
-                // In slots without a product anything may come: what comes before.
+                // In slots without a product any value may come: the value of the slot before.
                 let first = inputs.iter().rev().flatten().next().copied();
                 let mut known = first.unwrap_or(q);
                 let inputs = inputs.into_iter().map(|input| {
@@ -452,7 +454,7 @@ impl Builder<'_> {
             self.values.insert((id, stage), value);
             let last = last[id.index()];
             for from in (stage..last).step_by(self.pipeline.interval) {
-                // What is read in the next stage alone need not stay.
+                // A value that only the next stage reads need not stay.
                 let enable = if last - stage > 1 { self.load(from) } else { self.advance };
                 value = self.behind(id, value, from + 1, enable);
                 let held = from + 1..=last.min(from + self.pipeline.interval);
@@ -486,7 +488,7 @@ impl Builder<'_> {
         self.of_node(id, stage, Driver::Op(op), self.graph.node(id).label.named)
     }
 
-    /// Returns a register of a stage that takes what the stage before has of a node.
+    /// Returns a register of `stage` that takes the `value` that the stage before has for node `id`.
     fn behind(&mut self, id: NodeId, value: NetId, stage: usize, enable: Option<NetId>) -> NetId {
         let q = self.of_node(id, stage, Driver::Undriven, true);
         self.register(q, value, enable, None);
@@ -530,7 +532,8 @@ impl Builder<'_> {
         net
     }
 
-    /// Returns a read port of a memory: of a block memory the word comes a stage after the address.
+    /// Makes a read port of a memory, and returns its data. The word of a block memory comes a stage after the
+    /// address.
     fn read(&mut self, id: NodeId, rom: RomId, address: NodeId, stage: usize) -> NetId {
         let synchronous = self.problems.is_clocked(id);
         let address = self.value(address, stage - usize::from(synchronous));
@@ -590,7 +593,8 @@ impl Builder<'_> {
                 }
                 let boundary = stage + 1;
                 let registers = (0..).map(RegId).zip(&self.design.registers);
-                // A multiplier's own register is none of the fabric, as that of a block memory.
+                // The register inside a multiplier takes no register of the fabric, nor does the register of a block
+                // memory.
                 let registers = registers.filter(|(id, _)| !self.pipeline.registered.contains(id));
                 let bits = registers.map(|(_, register)| register.q);
                 let bits = bits.filter(|q| self.pipeline.stage_of[q.index()] == boundary);
@@ -607,13 +611,14 @@ impl Builder<'_> {
             .collect()
     }
 
-    /// Returns the stage whose logic makes a node: of a product in the register of a multiplier, that before its own.
+    /// Returns the stage whose logic computes a node. For a product in the register of a multiplier, it is the stage
+    /// before the node's own.
     fn computed_in(&self, id: NodeId) -> usize {
         let product = matches!(self.graph.node(id).cell, Cell::Op(_));
         self.schedule.stage[id.index()] - usize::from(product && self.problems.is_clocked(id))
     }
 
-    /// Returns where values that architectural registers hold are to be seen.
+    /// Returns the nets that show the values of architectural registers.
     fn checkpoints(&self, unrolled: &Unrolled) -> Vec<Checkpoint> {
         let mut before: HashMap<RegId, NodeId> = HashMap::new();
         let mut checkpoints = Vec::new();

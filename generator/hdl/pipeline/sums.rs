@@ -1,15 +1,16 @@
 //! Rewrites sums and differences so that they take fewer look-up tables.
 //!
-//! A synthesiser takes sums as they are written, and a schedule counts them. Where an operand of a sum has zeros in its
-//! lowest bits, the lowest bits of the other operand pass by the adder. `a + ~b + 1` is `a - b`. A choice between a
-//! value and a constant is made behind a sum with a constant, where the register makes it by its reset.
+//! A synthesiser takes sums as they are written, and a schedule counts them. If an operand of a sum has zeros in its
+//! lowest bits, the lowest bits of the other operand pass by the adder. For example, `a + ~b + 1` becomes `a - b`. A
+//! choice between a value and a constant moves behind a sum with a constant, where a register can make the choice by
+//! its reset.
 
 use super::graph::{Cell, Graph, Label, NodeId, Op};
 use crate::netlist::interval::of_cell;
 use glint_base::fixed::Format;
 use glint_base::interval::Interval;
 
-/// Returns a cell; of a sum or a difference the chain has no more bits than it needs.
+/// Inserts a cell. The carry chain of a sum or a difference gets no more bits than it needs.
 pub fn shortened(
     graph: &mut Graph,
     op: Op,
@@ -26,7 +27,7 @@ pub fn shortened(
     within(graph, op, format, range, label, behind)
 }
 
-/// Returns a cell as [`shortened`] does. Choices are made behind a sum with a constant where `behind` says so.
+/// Returns a cell as [`shortened`] does. With `behind`, choices are made behind a sum with a constant.
 fn within(
     graph: &mut Graph,
     op: Op,
@@ -107,7 +108,8 @@ fn chosen_behind(
     Some(graph.insert(Cell::Op(Op::Mux { select, inputs }), format, range, label))
 }
 
-/// Returns the select and the inputs of a choice between a value and a constant, where a node is one or has its bits.
+/// Returns the select and the inputs of a choice between a value and a constant, if a node is such a choice or has
+/// its bits.
 fn choice(graph: &Graph, id: NodeId) -> Option<(NodeId, Vec<NodeId>)> {
     match &graph.node(id).cell {
         Cell::Op(Op::Relabel(of)) => choice(graph, *of),

@@ -64,7 +64,7 @@ fn a_clock_that_cannot_be_met_names_the_nearest_and_what_limits_it() {
     let text = refused(&ratio(), Goal::ClockMhz(1500.0));
     assert!(text.contains("cannot run at 1500 MHz"), "{text}");
     assert!(text.contains("`ratio_trial") && text.contains("pipeline/tests.rs"), "{text}");
-    // What it proposes can be reached.
+    // The proposed clock can be reached.
     let nearest = text.split("set pipeline.clock_mhz to ").nth(1).expect("a remedy");
     let nearest: f64 = nearest.split(' ').next().expect("a number").parse().expect("a number");
     stages(&ratio(), Goal::ClockMhz(nearest));
@@ -152,7 +152,7 @@ fn a_registered_multiplier_is_named_where_it_reaches_the_clock_and_holds_every_p
     let inside: Vec<NetId> =
         registered.iter().filter_map(|&it| Some(made.multiplier(it)?.product)).collect();
     assert_eq!(inside, products);
-    // Nothing else takes what is inside a multiplier.
+    // Nothing else takes the product inside a multiplier.
     let data = made.registers.iter().filter_map(|register| register.data);
     let taken = made.iter().flat_map(|(id, _)| made.combinational_inputs(id)).chain(data);
     assert_eq!(taken.filter(|net| products.contains(net)).count(), products.len());
@@ -332,7 +332,7 @@ fn an_interval_is_the_longest_for_a_rate_and_the_shortest_for_multipliers() {
         made.map(|it| it.pipeline.expect("a pipeline").interval).map_err(|it| it.to_string())
     };
     let at_100 = |interval| at(Goal::ClockMhz(100.0), interval);
-    // The sequential core takes five clocks, with that of the write; there are three products.
+    // The sequential core takes five clocks, including the clock of the write; there are three products.
     for (rate, interval) in [(100.0, 1), (50.1, 1), (50.0, 2), (34.0, 2), (33.3, 3), (0.1, 5)] {
         assert_eq!(at_100(Interval::Rate(rate)), Ok(interval), "{rate}");
     }

@@ -1,9 +1,9 @@
 //! Prints and reads unrolled computations as text, for the tests of passes.
 //!
-//! A value is a line, `name format [low, high] = operation operands`. A line without an operation is an operand;
+//! A value is a line, `name format [low, high] = operation operands`. A line without an operation is an operand.
 //! `constant` is followed by a bit pattern, `slice` by its value and the lowest bit, `mux` by the select and its
-//! inputs, `add` by a third operand where a carry comes in. The range stands there where it is not that of the format.
-//! The last lines are `result name`.
+//! inputs. `add` has a third operand if a carry comes in. The range is left out if it is the range of the format. The
+//! last lines are `result name`.
 
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write;
@@ -14,7 +14,7 @@ use super::unroll::Unrolled;
 use crate::netlist::{NetId, eval};
 use glint_base::fixed::{Format, mask};
 
-/// Prints what the results need.
+/// Prints the nodes that the results need.
 pub fn printed(unrolled: &Unrolled) -> String {
     let graph = &unrolled.graph;
     let results = unrolled.results.iter().map(|it| it.1);
@@ -52,7 +52,7 @@ pub fn printed(unrolled: &Unrolled) -> String {
 /// Reads a computation.
 ///
 /// # Errors
-/// The line that is none.
+/// Fails if a line is not understood. The error is the line.
 #[track_caller]
 pub fn parsed(text: &str) -> Result<Unrolled, String> {
     let mut graph = Graph::default();

@@ -1,14 +1,14 @@
-//! Unrolls a microprogram into a graph of values, by executing it symbolically: on operands that are not known yet.
+//! Unrolls a microprogram into a graph of values by executing it symbolically: the operands are unknowns.
 //!
-//! Every clock of one computation is gone through, from the one that takes `start` to the one in which
-//! the results are on the outputs. Fields of the control word are constants then, muxes under them
-//! disappear, and what a register takes is a new value. A synchronous ROM and a register without an
-//! enable follow their inputs by a clock here too.
+//! The execution visits every clock of one computation, from the clock that takes `start` to the clock in which the
+//! results are on the outputs. Fields of the control word are constants in a clock, so muxes under them disappear.
+//! Each load of a register makes a new value. A synchronous ROM and a register without an enable follow their inputs
+//! by a clock here too.
 //!
-//! A condition that is a constant decides where control goes. One that depends on an operand is
-//! followed both ways: a loop is executed as often as it can be, each iteration under the conditions of
-//! those before, and a jump ahead is executed with and without what it skips. Where the ways meet, each
-//! register is chosen by the condition.
+//! A constant condition decides where control goes. A condition that depends on an operand is followed both ways. A
+//! loop is executed as often as it can be, each iteration under the conditions of those before. A jump ahead is
+//! executed with and without the microinstructions that it skips. Where the ways meet, the condition chooses the
+//! value of each register.
 
 mod clock;
 mod cycle;
@@ -53,7 +53,7 @@ pub struct Step {
     pub registers: Vec<(RegId, NodeId)>,
 }
 
-/// Where an execution stands.
+/// The point that an execution has reached.
 struct At {
     state: State,
     address: usize,
@@ -68,34 +68,35 @@ struct Executor<'a> {
     shown: Option<Vec<(NetId, NodeId)>>,
 }
 
-/// Executes the microprogram of a design, which the DSL has accepted.
+/// Executes the microprogram of a design that the DSL has accepted.
 ///
 /// # Errors
-/// A microprogram that has no fixed bound, waits for `start` on the way or gives several results; a
-/// result that depends on what an earlier computation has left.
+/// Fails if the microprogram has no fixed bound, waits for `start` on the way or gives several results. Fails if a
+/// result depends on a value that an earlier computation has left.
 pub fn unroll(design: &Design) -> Result<Unrolled, Diagnostics> {
     run(design, Iterations::OneByOne).map_err(|diagnostic| Diagnostics(vec![diagnostic]))
 }
 
-/// Unrolls into fewer values, where iterations of a loop can be taken together.
+/// Unrolls as [`unroll`] does, into fewer values if iterations of a loop can be taken together.
 ///
 /// # Errors
-/// As of [`unroll`].
+/// Fails if [`unroll`] would fail.
 pub fn unroll_in_powers(design: &Design) -> Result<Unrolled, Diagnostics> {
     run(design, Iterations::InPowers).map_err(|diagnostic| Diagnostics(vec![diagnostic]))
 }
 
-/// How the iterations of a loop are executed of which operands decide the number.
+/// How to execute the iterations of a loop with a data-dependent trip count.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Iterations {
-    /// Each under the conditions of those before.
+    /// Each iteration under the conditions of the iterations before it.
     OneByOne,
-    /// Where the number is known by a few bits and the iterations are alike: 8, 4, 2 and 1, each under a bit of the number.
+    /// If a few bits determine the number and the iterations are alike: 8, 4, 2 and 1 iterations, each under a bit of
+    /// the number.
     InPowers,
 }
 
-/// Returns the result that depends on what an earlier computation has left, in words; none where no result does, or where the
-/// microprogram cannot be executed to its results so.
+/// Returns a diagnostic if a result depends on a value that an earlier computation has left. Returns `None` if no
+/// result does, or if the microprogram cannot be executed to its results in this way.
 pub fn carried(design: &Design) -> Option<Diagnostic> {
     let (executor, results) = executed(design, Iterations::InPowers).ok()?;
     executor.determined(&results, "has a state between points, which nothing here speaks of").err()
@@ -216,12 +217,12 @@ impl<'a> Executor<'a> {
         }
     }
 
-    /// Returns every iteration but the first of the loop from `to` to `last`, of which `condition` says whether there
-    /// is one; `state` is that after the first. The loop is bounded whatever the registers `free`, with
-    /// which it begins, hold.
+    /// Executes every iteration but the first of the loop from `to` to `last`, and returns the state after them.
+    /// `condition` says whether there is another iteration; `state` is the state after the first one. The loop must
+    /// be bounded whatever the registers `free`, with which it begins, hold.
     ///
-    /// The values behind the condition go from iteration to iteration as if every iteration were taken: an iteration counts only
-    /// where those before it were taken, and a counter needs no muxes then.
+    /// The values behind the condition go from iteration to iteration as if every iteration were taken. An iteration
+    /// counts only if all iterations before it were taken, and a counter needs no muxes then.
     fn iterations(
         &mut self,
         mut state: State,
@@ -271,9 +272,12 @@ impl<'a> Executor<'a> {
         }
     }
 
-    /// Returns the state after the iterations of a loop, of which there are as many as `conditions` hold, but for the registers
-    /// that count them: 8, 4, 2 and 1 iterations, each under a bit of their number. None if an iteration depends on the registers
-    /// that count them or on a memory, or the number on more than a few bits.
+    /// Unrolls a loop with a data-dependent trip count as blocks of 8, 4, 2 and 1 iterations. One bit of the count
+    /// enables each block. The count is the number of `conditions` that hold. The returned state is wrong for the
+    /// registers that count the iterations.
+    ///
+    /// Returns `None` if an iteration depends on these registers or on a memory, or if the count depends on more than
+    /// a few bits.
     fn in_powers(
         &mut self,
         first: &State,
@@ -382,7 +386,7 @@ impl<'a> Executor<'a> {
         Ok((clock.edge(), condition))
     }
 
-    /// Returns each register as it is in `yes` where the condition holds, and else as in `no`.
+    /// Returns each register as in `yes` if the condition holds, and else as in `no`.
     fn either(&mut self, condition: NodeId, yes: &State, no: &State) -> State {
         let design = self.design;
         let graph = &mut self.unrolled.graph;
@@ -415,7 +419,7 @@ impl<'a> Executor<'a> {
         Diagnostic::new(codes::UNROLL, message, microinstruction.location)
     }
 
-    /// Checks that no result depends on what an earlier computation has left.
+    /// Checks that no result depends on a value that an earlier computation has left.
     fn determined(&self, results: &[(NetId, NodeId)], what: &str) -> Result<(), Diagnostic> {
         let graph = &self.unrolled.graph;
         for &(port, value) in results {

@@ -9,7 +9,8 @@ use crate::sim::program::{
 /// The width of a narrow slot.
 const NARROW: u32 = u32::BITS;
 
-/// Gives every slot of the compiler its place, and what works on slots of both banks conversions.
+/// Gives every slot of the compiler its place, and inserts conversions before instructions that work on slots of both
+/// banks.
 ///
 /// Within a bank, slots are numbered in the order in which they are computed.
 pub(super) fn divide(
@@ -18,7 +19,7 @@ pub(super) fn divide(
     registers: &[RegisterEdge],
 ) -> Program {
     let mut is_wide: Vec<bool> = widths(compiler).iter().map(|&bits| bits > NARROW).collect();
-    // What takes a wide slot at the edge is itself wide, and so is what takes that.
+    // A slot that takes a wide slot at the edge is itself wide, and so is a slot that takes that slot.
     let reads_of = reads.iter().map(|edge| (edge.to, edge.address));
     let pairs = reads_of.chain(registers.iter().map(|edge| (edge.q, edge.data)));
     let pairs: Vec<(Slot, Slot)> = pairs.collect();
@@ -45,8 +46,8 @@ pub(super) fn divide(
     divider.program()
 }
 
-/// Returns a bound on the width of what each slot holds. The nets that share a slot are extensions of the
-/// narrowest among them.
+/// Returns a bound on the width of the value in each slot. The nets that share a slot are extensions of the narrowest
+/// among them.
 fn widths(compiler: &Compiler) -> Vec<u32> {
     let mut widths = vec![u64::BITS + 1; compiler.sources.len()];
     for (net, &slot) in compiler.of_net.iter().enumerate() {
@@ -64,7 +65,7 @@ fn widths(compiler: &Compiler) -> Vec<u32> {
         if widths[to] <= u64::BITS {
             continue;
         }
-        // What has no net of its own is part of a concatenation, or is held over the edge.
+        // A slot without a net of its own is part of a concatenation, or is held over the edge.
         widths[to] = match step.instruction {
             Instruction::Place { base, drop, shift, .. } => {
                 widths[base as usize].max(u64::BITS - u32::from(drop) + u32::from(shift))
@@ -82,7 +83,7 @@ struct Divider<'a> {
     is_wide: Vec<bool>,
     narrow: Bank,
     wide: Bank,
-    /// For each slot of the compiler, where it is in each bank, if it is there yet.
+    /// For each slot of the compiler, its place in each bank, if it has one yet.
     narrow_of: Vec<Option<Slot>>,
     wide_of: Vec<Option<Slot>>,
     steps: Vec<(Sources, Step)>,
@@ -90,7 +91,7 @@ struct Divider<'a> {
 }
 
 impl Divider<'_> {
-    /// Returns a new slot, where it is wanted.
+    /// Returns a new slot in the wanted bank.
     fn fresh(&mut self, wide: bool, initial: u64) -> Slot {
         let bank = if wide { &mut self.wide } else { &mut self.narrow };
         bank.initial.push(initial);
@@ -115,7 +116,7 @@ impl Divider<'_> {
         }
     }
 
-    /// Returns where a slot of the compiler is, if it is anywhere yet.
+    /// Returns the place of a slot of the compiler, if it has one yet.
     fn place(&self, slot: Slot) -> Option<Place> {
         let slot = slot as usize;
         if *self.is_wide.get(slot)? {
@@ -125,9 +126,10 @@ impl Divider<'_> {
         }
     }
 
-    /// Returns the value of a slot of the compiler in a bank. Constants, registers and ROMs get their places when
-    /// they are first asked for. A conversion is done now, for a step with these sources, and serves
-    /// those that follow.
+    /// Returns the slot that has the value of the compiler's `slot` in the narrow or the `wide` bank.
+    ///
+    /// Constants, registers and ROMs get their places when they are first asked for. If a conversion is needed, it
+    /// becomes a step with these `sources`, and later calls share it.
     fn operand(&mut self, slot: Slot, wide: bool, sources: Sources) -> Slot {
         let of = if wide { &self.wide_of } else { &self.narrow_of };
         if let Some(there) = of[slot as usize] {
@@ -233,7 +235,7 @@ impl Divider<'_> {
         for slot in slots {
             *slot = self.operand(*slot, wide, sources);
         }
-        // Numbered last: the result stands behind its operands.
+        // The result gets its number last, so that it comes after its operands.
         let result = if wide == result_wide { self.home(step.to) } else { self.fresh(wide, 0) };
         if let Some(to) = to {
             *to = result;

@@ -59,7 +59,7 @@ impl<const LANES: usize> Circuit<LANES> {
     /// Compiles a design and has rust_hdl check the result. It is at power-up, the clock low.
     ///
     /// # Errors
-    /// As of [`Program::new`]; rust_hdl's `check_all` finds a fault.
+    /// Fails if [`Program::new`] fails, or if rust_hdl's `check_all` finds a fault.
     pub fn new(design: &Design) -> Result<Self> {
         let program = Arc::new(Program::new(design)?);
         let inputs = vec![[0; LANES]; program.inputs()];
@@ -98,8 +98,8 @@ impl<const LANES: usize> Circuit<LANES> {
         Ok(circuit)
     }
 
-    /// Returns the input ports in order of declaration, each with its lanes; bits beyond a port's width are ignored. What is set
-    /// takes effect with rust_hdl's next update.
+    /// Returns the input ports in order of declaration, each with its lanes. Bits beyond a port's width are ignored.
+    /// New values take effect with rust_hdl's next update.
     pub fn inputs_mut(&mut self) -> &mut Vec<[u64; LANES]> {
         self.input_set = true;
         &mut self.inputs

@@ -15,7 +15,7 @@ impl Program {
     /// Compiles a design.
     ///
     /// # Errors
-    /// The mistakes that [`Design::verify_structure`] finds; ROMs of more than 2^32 words.
+    /// Fails with the mistakes that [`Design::verify_structure`] finds. Fails if the ROMs have more than 2^32 words.
     pub fn new(design: &Design) -> Result<Self> {
         let mistakes = design.verify_structure();
         ensure!(mistakes.is_empty(), Diagnostics(mistakes));
@@ -31,8 +31,8 @@ impl Program {
 }
 
 impl<'a> Compiler<'a> {
-    /// Returns a slot with a field of the control word. It is a source of its own, so that what depends on
-    /// it is settled when the field changes, rather than whenever the address does.
+    /// Returns a slot with a field of the control word. The field is a source of its own, so that dependent steps are
+    /// settled when the field changes, rather than whenever the address does.
     fn field(&mut self, word: NetId, low: u32, width: u32) -> Slot {
         let a = self.of_net[word.index()];
         if self.known_value(a).is_some() || self.next_field == Sources::BITS {
@@ -109,15 +109,15 @@ impl<'a> Compiler<'a> {
             });
         }
         self.drop_unneeded(&reads, &registers);
-        // An operand depends on no source that the result does not depend on, so its set is the
-        // smaller number; a field is the largest number among its own and those of its operands.
-        // This remains an order of evaluation.
+        // An operand depends on no source that the result does not depend on, so its set is the smaller number. A
+        // field is the largest among its own number and the numbers of its operands. The order therefore remains an
+        // order of evaluation.
         self.steps.sort_by_key(|step| step.sources);
         banks::divide(&self, &reads, &registers)
     }
 
-    /// Returns the registers, those that take the value of another before that one as far as they are no circle: such a value
-    /// need not be copied to be [`Compiler::stable`].
+    /// Returns the registers in an order in which a register that takes the value of another comes before that other
+    /// one, except in circles. The value then need not be copied to be [`Compiler::stable`].
     fn readers_first(&self) -> Vec<&'a Register> {
         let registers = &self.design.registers;
         let slot = |net: NetId| self.of_net[net.index()];
@@ -134,7 +134,7 @@ impl<'a> Compiler<'a> {
         let mut placed = vec![false; registers.len()];
         let mut ready: Vec<usize> = (0..registers.len()).filter(|&at| readers[at] == 0).collect();
         while ordered.len() < registers.len() {
-            // In a circle one goes ahead of those that read it.
+            // In a circle, one register goes ahead of the registers that read it.
             let first = || placed.iter().position(|&placed| !placed);
             let Some(at) = ready.pop().or_else(first) else { break };
             if placed[at] {
@@ -152,8 +152,7 @@ impl<'a> Compiler<'a> {
         ordered
     }
 
-    /// Drops the instructions that neither the edge nor a named net or a port has a use for. What
-    /// they would have computed has no slot then.
+    /// Drops the instructions that neither the edge nor a named net or a port needs. Their results have no slot then.
     fn drop_unneeded(&mut self, reads: &[ReadEdge], registers: &[RegisterEdge]) {
         let design = self.design;
         let mut needed = vec![false; self.sources.len()];

@@ -8,15 +8,15 @@ use crate::sim::machine::execute;
 use crate::sim::program::{InputPort, Instruction, Slot, Sources, Span};
 use glint_base::fixed::mask;
 
-/// The most sources that are input ports, which change at another edge than what the edge writes; the first numbers are
-/// theirs.
+/// The most sources that are input ports. They have the first numbers, and change at another edge than the registers
+/// and ROMs that the edge writes.
 const INPUTS: u32 = 16;
 
 /// Sources below this number change from outside settling and share numbers when they are many;
 /// from here on each is a field of the control word, numbered in order of evaluation.
 const FIRST_FIELD: u32 = 40;
 
-/// An instruction and what orders it.
+/// An instruction, and the data by which instructions are ordered.
 pub(super) struct Ordered {
     pub(super) sources: Sources,
     pub(super) to: Slot,
@@ -32,13 +32,13 @@ pub(super) struct Compiler<'a> {
     pub(super) sources: Vec<Sources>,
     /// The number of sources that are input ports.
     input_sources: u32,
-    /// The next source for what the edge writes.
+    /// The next source for a value that the edge writes.
     next_source: u32,
-    /// The sources of what has an enable.
+    /// The sources of values that have an enable.
     enabled: HashMap<NetId, u32>,
     /// The next source for a field.
     pub(super) next_field: u32,
-    /// For each slot; the only lane is that of the folded constants.
+    /// The initial value of each slot. Its only lane is the lane of the folded constants.
     pub(super) initial: Vec<[u64; 1]>,
     constants: BTreeMap<u64, Slot>,
     /// Instructions already there, written to slot 0, and the slots that have their results.
@@ -105,8 +105,9 @@ impl<'a> Compiler<'a> {
         (self.sources.len() - 1) as Slot
     }
 
-    /// Returns a slot that the edge writes where `enable` is 1. What has one enable changes together, and is one source; but what
-    /// a microinstruction loads is seldom all news.
+    /// Returns a slot that the edge writes if `enable` is 1. All slots with the same enable change together and share
+    /// one source. A field of the control word is no such enable, because a microinstruction seldom changes all the
+    /// values that it loads.
     pub(super) fn source(&mut self, enable: Option<NetId>) -> Slot {
         let is_field = |net: &NetId| matches!(self.design.net(*net).driver, Driver::Field(_));
         let enable = enable.filter(|net| !is_field(net));
@@ -171,8 +172,8 @@ impl<'a> Compiler<'a> {
         sources.fold(0, |all, sources| all | sources)
     }
 
-    /// Returns the slot, the lowest bit and the width, as a `drop`, of which a slot is a slice; itself when
-    /// it is none. Instructions that can cut use it, and the slice is often not needed then.
+    /// Returns the operand of a slice, its lowest bit and its width, as a `drop`. Returns `slot` itself if it is no
+    /// slice. Instructions that can cut use the operand directly, and the slice is often not needed then.
     pub(super) fn sliced(&self, slot: Slot) -> (Slot, u8, u8) {
         match self.made_by.get(&slot) {
             Some(Instruction::Slice { a, low, drop, .. }) => (*a, *low, *drop),
@@ -180,7 +181,7 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    /// Returns the slot, the lowest bit and the width, as a `drop`, of which a slot says whether any bit is 1.
+    /// Returns the bits that `slot` tests for any 1: their slot, the lowest bit and the width, as a `drop`.
     pub(super) fn any(&self, slot: Slot) -> Option<(Slot, u8, u8)> {
         match self.made_by.get(&slot) {
             Some(Instruction::Any { a, low, drop, .. }) => Some((*a, *low, *drop)),
@@ -188,8 +189,8 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    /// Returns the placement of which a slot is the result: base, slot, lowest bit, width as a `drop`, and shift. A slice is
-    /// one on `zero`.
+    /// Returns the placement that makes `slot`: base, slot, lowest bit, width as a `drop`, and shift. A slice is a
+    /// placement on `zero`.
     pub(super) fn placed(&self, slot: Slot, zero: Slot) -> Option<(Slot, Slot, u8, u8, u8)> {
         match *self.made_by.get(&slot)? {
             Instruction::Place { base, a, low, drop, shift, .. } => {

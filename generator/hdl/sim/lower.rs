@@ -106,14 +106,15 @@ impl Compiler<'_> {
             return self.constant(0);
         }
         let (low, drop) = (inner_low + low as u8, drop_of(width).max(64 - left));
-        // Beyond what the operand holds there are only the zeros that extend it.
+        // Above the bits of the operand there are only the zeros that extend it.
         if u32::from(low) >= self.held(a) {
             return self.constant(0);
         }
         self.emit(&[a], |to| Instruction::Slice { to, a, low, drop })
     }
 
-    /// Returns the width of what a slot holds: that of the narrowest net in it, of which the others are extensions.
+    /// Returns the width of the value in a slot: the width of the narrowest of its nets. The other nets extend that
+    /// one.
     fn held(&self, slot: Slot) -> u32 {
         let nets = self.of_net.iter().zip(&self.design.nets);
         let widths = nets.filter(|(own, _)| **own == slot).map(|(_, net)| net.format.width());
@@ -158,8 +159,8 @@ impl Compiler<'_> {
         self.emit(&[of_a, of_b], add)
     }
 
-    /// Returns a mux of two inputs, together with what only prepares its operands: chains of such muxes tell in
-    /// which range a value is.
+    /// Returns a mux of two inputs, merged with the logic that only prepares its operands. Chains of such muxes tell
+    /// in which range a value is.
     fn choose(&mut self, select: Slot, a: Slot, b: Slot) -> Slot {
         let Some((of, low, drop)) = self.any(select) else {
             return self.emit(&[select, a, b], |to| Instruction::Choose { to, select, a, b });

@@ -9,11 +9,10 @@ use crate::sim::program::{Bank, Instruction, Place, Program, Slot, Sources, Span
 use crate::sim::slots::Slots;
 use crate::sim::word::Word;
 
-/// The state of `LANES` independent instances of a design, which one pass over the [`Program`]
-/// advances together.
+/// The state of `LANES` independent instances of a design, which one pass over the [`Program`] advances together.
 ///
-/// A pass is compiled three times on x86-64: for any processor, for those with AVX2 and for those with AVX-512. Which
-/// one runs is decided at run time, and they compute the same.
+/// A pass is compiled three times on x86-64: for any processor, for processors with AVX2 and for processors with
+/// AVX-512. The machine decides at run time which one runs; all compute the same.
 #[derive(Clone, Debug)]
 pub struct Machine<const LANES: usize = 1> {
     program: Arc<Program>,
@@ -40,18 +39,17 @@ impl<const LANES: usize> Machine<LANES> {
     /// the order of the design.
     ///
     /// # Panics
-    /// When there is no such word.
+    /// Panics if there is no such word.
     pub fn invert(&mut self, word: usize, bits: u64) {
         Arc::make_mut(&mut self.program).words[word] ^= bits;
         self.changed = Sources::MAX;
     }
 
-    /// Performs a rising edge, if there is one; then changes the inputs, if there are new ones; then brings all nets up to date.
-    /// Returns whether anything that starts a change has changed.
+    /// Performs a rising edge, if there is one; then changes the inputs, if there are new ones; then brings all nets
+    /// up to date. Returns whether anything that starts a change has changed.
     ///
-    /// At the edge, registers and synchronous ROMs take what their operands carry. `inputs` are the bit
-    /// patterns of the input ports, in order of declaration; bits beyond the width of a port are
-    /// ignored.
+    /// At the edge, registers and synchronous ROMs take the values of their operands. `inputs` has the bit pattern of
+    /// each input port, in order of declaration; bits beyond the width of a port are ignored.
     pub fn update(&mut self, edge: bool, inputs: Option<&[[u64; LANES]]>) -> bool {
         #[cfg(target_arch = "x86_64")]
         match Vectors::here() {
@@ -139,11 +137,11 @@ impl<const LANES: usize> Machine<LANES> {
         }
     }
 
-    /// Returns for each lane a pattern that is 0 exactly if each net carries what is expected of it, in the bits that are `known`
-    /// of it: all, when there is nothing.
+    /// Returns for each lane a pattern that is 0 exactly if every net carries its `expected` value. Only the bits in
+    /// `known` are compared, or all bits if it is `None`.
     ///
     /// # Panics
-    /// When a net is unnamed and was optimised away.
+    /// Panics if a net is unnamed and was optimised away.
     pub fn differences(
         &self,
         nets: &[NetId],
@@ -202,7 +200,7 @@ impl<const LANES: usize> Machine<LANES> {
     /// Returns the bit pattern of a net in each lane.
     ///
     /// # Panics
-    /// When the net is unnamed and was optimised away.
+    /// Panics if the net is unnamed and was optimised away.
     pub fn lanes(&self, net: NetId) -> [u64; LANES] {
         match self.program.place(net) {
             Place::Narrow(slot) => self.narrow[slot as usize].map(u64::from),
@@ -213,7 +211,7 @@ impl<const LANES: usize> Machine<LANES> {
     /// Returns the bit pattern of a net in one lane.
     ///
     /// # Panics
-    /// When the net is unnamed and was optimised away, or there is no such lane.
+    /// Panics if the net is unnamed and was optimised away, or there is no such lane.
     pub fn lane(&self, net: NetId, lane: usize) -> u64 {
         match self.program.place(net) {
             Place::Narrow(slot) => self.narrow[slot as usize][lane].into(),
@@ -429,7 +427,7 @@ pub(super) fn execute<W: Word, const LANES: usize>(
             unary(slots, to, a, |a| W::from(a >> low & mask(drop) != W::ZERO));
         }
         I::LessUnsigned { to, a, b } => binary(slots, to, a, b, |a, b| W::from(a < b)),
-        // With the sign bits inverted, the order is that of unsigned numbers.
+        // With inverted sign bits, signed numbers have the order of unsigned ones.
         I::LessSigned { to, a, b, drop } => {
             binary(slots, to, a, b, |a, b| W::from(a ^ sign::<W>(drop) < b ^ sign::<W>(drop)))
         }
@@ -474,7 +472,7 @@ fn read(words: &[u64], span: Span, address: u64) -> u64 {
     if address < u64::from(span.len) { words[span.start as usize + address as usize] } else { 0 }
 }
 
-/// Selects one of the choices in each lane: the last of them where `select` is beyond them.
+/// Selects one of the choices in each lane. If `select` is beyond the choices, it selects the last one.
 #[inline(always)]
 fn mux<W: Word, const LANES: usize>(
     slots: &mut [[W; LANES]],

@@ -1,15 +1,14 @@
 //! The built-in simulator: runs many instances of a design clock by clock, and writes waveforms.
 //!
-//! A [`Design`] is compiled to a [`Program`] of levelised instructions, which a [`Machine`] runs for a
-//! number of independent instances at once, its lanes; a [`Circuit`] is the machine as one rust_hdl
-//! block, and a [`Simulator`] the circuit with its clock.
+//! A [`Design`] is compiled to a [`Program`] of levelised instructions. A [`Machine`] runs the program for a number
+//! of independent instances at once, its lanes. A [`Circuit`] is the machine as one rust_hdl block, and a
+//! [`Simulator`] is the circuit with its clock.
 //!
-//! rust_hdl is the kernel. Its part is exactly this: it owns the clock, a `Signal`; each half of a clock
-//! is one call of its `simulate()`, which updates the block, finds the edge, and updates again until
-//! nothing changes; its `check_all` checks the ports, and its probes see every named net and write the
-//! waveforms. What an update does with the netlist is Glint's own: the registers at an edge, and then one pass
-//! over the program, which settles all nets, because it is in an order of evaluation. An own rust_hdl
-//! block for each cell would be settled by rust_hdl as well, a hundred times more slowly.
+//! rust_hdl is the kernel. It owns the clock, a `Signal`. Each half of a clock is one call of its `simulate()`, which
+//! updates the block, finds the edge, and updates again until nothing changes. Its `check_all` checks the ports, and
+//! its probes see every named net and write the waveforms. Glint's code computes the netlist within an update: the
+//! registers at an edge, and then one pass over the program, in an order of evaluation, which settles all nets.
+//! rust_hdl could also settle one block for each cell, but a hundred times more slowly.
 
 mod banks;
 mod circuit;
@@ -72,7 +71,7 @@ impl<const LANES: usize> Simulator<LANES> {
     /// Makes a simulator at power-up: all inputs, registers and outputs of synchronous ROMs are 0.
     ///
     /// # Errors
-    /// As of [`Circuit::new`].
+    /// Fails if [`Circuit::new`] fails.
     pub fn new(design: &Design) -> Result<Self> {
         let name = |net| design.net(net).name.clone();
         Ok(Self {
@@ -97,7 +96,7 @@ impl<const LANES: usize> Simulator<LANES> {
     /// Sets an input port in every lane for the next clock; bits beyond its width are ignored.
     ///
     /// # Panics
-    /// When there is no port of this position.
+    /// Panics if there is no port of this position.
     pub fn set_lanes(&mut self, input: usize, lanes: [u64; LANES]) {
         self.circuit.inputs_mut()[input] = lanes;
     }
@@ -111,7 +110,7 @@ impl<const LANES: usize> Simulator<LANES> {
     /// Returns the bit pattern of a net in each lane, after the latest clock.
     ///
     /// # Panics
-    /// When the net is unnamed and was optimised away.
+    /// Panics if the net is unnamed and was optimised away.
     pub fn lanes(&self, net: NetId) -> [u64; LANES] {
         self.circuit.machine.lanes(net)
     }
@@ -119,16 +118,16 @@ impl<const LANES: usize> Simulator<LANES> {
     /// Returns the bit pattern of a net in one lane, after the latest clock.
     ///
     /// # Panics
-    /// When the net is unnamed and was optimised away, or there is no such lane.
+    /// Panics if the net is unnamed and was optimised away, or there is no such lane.
     pub fn lane(&self, net: NetId, lane: usize) -> u64 {
         self.circuit.machine.lane(net, lane)
     }
 
-    /// Returns for each lane a pattern that is 0 exactly if each net carries what is expected of it, in the bits that are `known`
-    /// of it: all, when there is nothing.
+    /// Returns for each lane a pattern that is 0 exactly if every net carries its `expected` value. Only the bits in
+    /// `known` are compared, or all bits if it is `None`.
     ///
     /// # Panics
-    /// When a net is unnamed and was optimised away.
+    /// Panics if a net is unnamed and was optimised away.
     pub fn differences(
         &self,
         nets: &[NetId],
@@ -141,21 +140,21 @@ impl<const LANES: usize> Simulator<LANES> {
     /// Runs one clock: the falling edge, with which inputs change, and the rising edge.
     ///
     /// # Errors
-    /// The waveform cannot be written; or the circuit does not settle, which would be a bug.
+    /// Fails if the waveform cannot be written. Fails if the circuit does not settle, which would be a bug.
     #[inline]
     pub fn clock(&mut self) -> Result<()> {
         self.half(false)?;
         self.half(true)
     }
 
-    /// Runs one clock in which the input ports, in order of position, carry these bits: read where they stand, not copied. From
-    /// the next on, what was set before holds again.
+    /// Runs one clock in which the input ports, in order of position, carry the bits `inputs`, which are not copied.
+    /// From the next clock on, the inputs have their earlier values again.
     ///
     /// # Errors
-    /// As of [`Simulator::clock`].
+    /// Fails as [`Simulator::clock`] does.
     ///
     /// # Panics
-    /// When there are more or fewer than ports.
+    /// Panics if `inputs` has more or fewer entries than there are ports.
     #[inline]
     pub fn clock_with(&mut self, inputs: &mut Vec<[u64; LANES]>) -> Result<()> {
         assert_eq!(inputs.len(), self.inputs.len(), "one for each input port");
@@ -169,7 +168,7 @@ impl<const LANES: usize> Simulator<LANES> {
     /// The next clock does not depend on whether this was called.
     ///
     /// # Errors
-    /// As of [`Simulator::clock`].
+    /// Fails as [`Simulator::clock`] does.
     pub fn settle(&mut self) -> Result<()> {
         self.half(false)
     }
@@ -190,7 +189,7 @@ impl<const LANES: usize> Simulator<LANES> {
     /// Writes the waveform of lane 0 from now on: VCD, a clock of 10 ns, starting at time 0.
     ///
     /// # Errors
-    /// The file cannot be written.
+    /// Fails if the file cannot be written.
     pub fn trace(&mut self, file: impl Write + Send + 'static) -> Result<()> {
         self.time = 0;
         let file: Box<dyn Write + Send> = Box::new(file);
@@ -201,7 +200,7 @@ impl<const LANES: usize> Simulator<LANES> {
     /// Ends the waveform, if there is one, and flushes the file.
     ///
     /// # Errors
-    /// The file cannot be written.
+    /// Fails if the file cannot be written.
     pub fn end_trace(&mut self) -> Result<()> {
         if let Some(trace) = self.trace.take() {
             trace.finish(self.time + HALF_CLOCK)?;
@@ -214,7 +213,7 @@ impl Simulator {
     /// Sets an input port for the next clock; bits beyond its width are ignored.
     ///
     /// # Panics
-    /// When there is no port of this position.
+    /// Panics if there is no port of this position.
     #[inline]
     pub fn set(&mut self, input: usize, bits: u64) {
         self.set_lanes(input, [bits]);
@@ -223,7 +222,7 @@ impl Simulator {
     /// Returns the bit pattern of a net after the latest clock.
     ///
     /// # Panics
-    /// When the net is unnamed and was optimised away.
+    /// Panics if the net is unnamed and was optimised away.
     #[inline]
     pub fn value(&self, net: NetId) -> u64 {
         self.lane(net, 0)

@@ -1,20 +1,18 @@
 //! Defines the simulation program to which a design is compiled: its slots, instructions and edges.
 //!
-//! All values live in *slots*, bit patterns masked to their width. A clock has two phases. *Settling*
-//! runs the steps in order; each computes one slot from earlier ones. The *edge* writes the
-//! data outputs of synchronous ROMs and then the registers. Nets that are mere wiring (other names,
-//! zero extensions, whole slices) share a slot, constants are folded, and equal instructions are
-//! merged, so there are fewer instructions than cells. An unnamed net whose only readers can cut it
-//! out of its operand themselves has no slot at all.
+//! All values are in *slots*, bit patterns masked to their width. A clock has two phases. *Settling* runs the steps
+//! in order; each computes one slot from earlier ones. The *edge* writes the data outputs of synchronous ROMs and
+//! then the registers. Nets that are mere wiring (other names, zero extensions, whole slices) share a slot, constants
+//! are folded, and equal instructions are merged, so there are fewer instructions than cells. An unnamed net has no
+//! slot at all if all its readers can cut it out of its operand themselves.
 //!
-//! There are two banks of slots: *narrow* ones of 32 bits, where nearly all values fit and a vector of
-//! the processor holds twice as many lanes, and *wide* ones of 64 for the rest. An [`Instruction`] works
-//! within one bank; the other [`Step`]s lead from one to the other.
+//! There are two banks of slots. The *narrow* bank has slots of 32 bits: nearly all values fit, and a vector of the
+//! processor holds twice as many lanes. The *wide* bank has slots of 64 bits for all other values. An [`Instruction`]
+//! works within one bank; the other [`Step`]s lead from one bank to the other.
 //!
-//! What changes from outside settling, input ports and what the edge writes, is a *source*; so are
-//! the fields of the control word, most of which stay as they are from one word to the next.
-//! Instructions that depend on the same sources form a segment, and settling skips segments whose
-//! sources have not changed.
+//! A value that changes outside settling is a *source*: an input port, or a value that the edge writes. The fields of
+//! the control word are sources too, because most of them stay the same from one word to the next. Instructions that
+//! depend on the same sources form a segment. Settling skips segments whose sources have not changed.
 
 use crate::netlist::NetId;
 use glint_base::fixed::MAX_WIDTH;
@@ -49,7 +47,7 @@ pub(super) enum Instruction {
     Xor { to: Slot, a: Slot, b: Slot },
     /// Sum.
     Add { to: Slot, a: Slot, b: Slot, drop: u8 },
-    /// Sum of bits of `a` and bits of `b`: a value and what it is rounded up by, say.
+    /// Sum of bits of `a` and bits of `b`: for example, a value and the amount by which it is rounded up.
     AddSlices { to: Slot, a: Slot, b: Slot, low_a: u8, drop_a: u8, low_b: u8, drop_b: u8, drop: u8 },
     /// Sum and carry.
     AddCarry { to: Slot, a: Slot, b: Slot, carry: Slot, drop: u8 },
@@ -90,7 +88,8 @@ pub(super) enum Instruction {
 }
 
 impl Instruction {
-    /// Returns its slots, the result first. Those of a mux in the table of choices are not among them.
+    /// Returns the slots of the instruction, the result first. The inputs of a mux in the table of choices are not
+    /// included.
     pub(super) fn slots_mut(&mut self) -> Vec<&mut Slot> {
         match self {
             Self::Copy { to, a }
@@ -137,7 +136,7 @@ pub(super) enum Step {
     SignedProduct { to: Slot, a: Slot, b: Slot, drop_a: u8, drop_b: u8, drop: u8 },
 }
 
-/// Where a value is.
+/// The place of a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Place {
     Narrow(Slot),
@@ -191,7 +190,7 @@ pub(super) struct RegisterEdge {
     pub reset: Option<(Slot, u64)>,
 }
 
-/// One of the two banks: what happens to its slots outside settling.
+/// One of the two banks: its slots that change outside settling, and its initial contents.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Bank {
     pub inputs: Vec<InputPort>,
@@ -205,7 +204,7 @@ pub(super) struct Bank {
 /// A compiled [`Design`](crate::netlist::Design). Machines share it; it holds no state.
 #[derive(Clone, Debug)]
 pub struct Program {
-    /// In an order in which each stands after those that compute its operands.
+    /// The steps, in an order in which each follows the steps that compute its operands.
     pub(super) steps: Vec<Step>,
     /// They cover the steps.
     pub(super) segments: Vec<Segment>,
@@ -228,7 +227,7 @@ impl Program {
     /// Returns the place of a net.
     ///
     /// # Panics
-    /// When the net is unnamed and has none.
+    /// Panics if the net is unnamed and has none.
     pub(super) fn place(&self, net: NetId) -> Place {
         let place = self.places[net.index()];
         place.unwrap_or_else(|| panic!("{net:?} is unnamed and not simulated"))

@@ -5,7 +5,7 @@ use std::ops::{Deref, DerefMut};
 /// The bytes of a line of the processor's cache, as long as its longest vector. One that lies across two lines is slow.
 const LINE: usize = 64;
 
-/// The words of each slot of a bank, one a lane; the first begins where a line does.
+/// The words of each slot of a bank, one a lane. The first word is aligned to a cache line.
 #[derive(Debug)]
 pub(super) struct Slots<W, const LANES: usize> {
     words: Vec<W>,

@@ -25,7 +25,7 @@ impl<W: Write> VcdWriter<W> {
     /// Writes the header, in which the outermost scope is called `name`, and all values at `time`.
     ///
     /// # Errors
-    /// The file cannot be written.
+    /// Fails if the file cannot be written.
     pub fn new(file: W, name: &str, time: u64, circuit: &dyn Block) -> Result<Self> {
         let page = Page::default();
         let mut probe = write_vcd_header(page.clone(), &Named { name, circuit });
@@ -38,10 +38,10 @@ impl<W: Write> VcdWriter<W> {
         Ok(writer)
     }
 
-    /// Writes what has changed since the last step.
+    /// Writes the changes since the last step.
     ///
     /// # Errors
-    /// The file cannot be written.
+    /// Fails if the file cannot be written.
     pub fn step(&mut self, time: u64, circuit: &dyn Block) -> Result<()> {
         if let Some(mut probe) = self.probe.take() {
             probe.timestamp(time)?;
@@ -53,7 +53,7 @@ impl<W: Write> VcdWriter<W> {
     /// Ends the waveform at `time` and hands the file back, flushed.
     ///
     /// # Errors
-    /// The file cannot be written.
+    /// Fails if the file cannot be written.
     pub fn finish(mut self, time: u64) -> Result<W> {
         if let Some(probe) = &mut self.probe {
             probe.timestamp(time)?;

@@ -1,7 +1,7 @@
 //! Shows a circuit's wires to rust_hdl's probes, as atoms with run-time widths.
 //!
-//! They are made when a probe comes by and hold nothing of their own but the id, which is the same
-//! every time; rust_hdl needs no more. Simulation without a trace never makes one.
+//! An atom is made when a probe visits the circuit. It holds nothing of its own but the id, which is the same every
+//! time; rust_hdl needs no more. A simulation without a trace never makes one.
 
 use rust_hdl::core::ast::VerilogLiteral;
 use rust_hdl::core::atom::{Atom, AtomKind};

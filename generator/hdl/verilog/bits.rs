@@ -1,9 +1,8 @@
-//! Reduces wiring to a normal form: which bits of which nets, or which constants, a word is made of.
+//! Reduces wiring to a normal form: the bits of nets, and the constants, that make up a word.
 //!
-//! Slices, extensions, concatenations, relabelled nets and constants are no hardware. [`Bits`] is
-//! what any mixture of them amounts to: pieces of the nets that the Verilog declares, constants, and
-//! copies of a sign bit. Because it is a normal form, the printer finds `a[5:2]` behind three nets of
-//! wiring, and the bits that nobody reads are known exactly.
+//! Slices, extensions, concatenations, relabelled nets and constants are no hardware. [`Bits`] is the result of any
+//! mixture of them: pieces of the nets that the Verilog declares, constants, and copies of a sign bit. Because it is
+//! a normal form, the printer finds `a[5:2]` behind three nets of wiring, and knows exactly which bits nobody reads.
 
 use crate::netlist::NetId;
 use glint_base::fixed::mask;
@@ -59,7 +58,7 @@ impl Piece {
         }
     }
 
-    /// Joins both pieces into one, `self` above `below`, where they are neighbours of one origin.
+    /// Joins both pieces into one, `self` above `below`, if they are neighbours of one origin.
     fn join(self, below: Self) -> Option<Self> {
         match (self, below) {
             (Self::Net { net, low, width }, Self::Net { net: other, low: from, width: count })

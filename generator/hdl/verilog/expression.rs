@@ -1,9 +1,9 @@
 //! Writes cells as Verilog expressions.
 //!
-//! The operands of every cell have one width, which is also that of the result, so that no context
-//! can extend or cut a carry. The exceptions are handled by name: a product is written only as the
-//! whole right-hand side of a net of its full width, and the carry into an adder is extended to the
-//! adder's width. Signedness matters to products and comparisons alone, which state it.
+//! The operands of every cell have the same width as the result, so that no context can extend or cut a carry. Two
+//! cells are exceptions. A product is written only as the whole right-hand side of a net of its full width. The carry
+//! into an adder is extended to the adder's width. Only products and comparisons depend on signedness, and they state
+//! it.
 
 use super::bits::{Bits, Piece};
 use super::plan::{NetForm, Plan, Reader};
@@ -143,7 +143,7 @@ impl<'a> Expressions<'a> {
         self.bits(&exact)
     }
 
-    /// Returns the cell that a net stands for, if that is written in its place.
+    /// Returns the cell whose result a net is, if the cell is written in place of the net.
     fn inline(&self, id: NetId) -> Option<NetId> {
         match self.plan.bits[id.index()].single() {
             Some(Piece::Net { net, .. }) if self.plan.forms[net.index()] == NetForm::Inline => {
@@ -232,7 +232,7 @@ impl<'a> Expressions<'a> {
         if width == 1 { carry } else { format!("{{{}, {carry}}}", literal(0, width - 1)) }
     }
 
-    /// Returns an operand whose signedness in the Verilog is that of its format.
+    /// Returns an operand that has the signedness of its format in the Verilog.
     fn with_sign(&mut self, id: NetId) -> String {
         let text = self.operand(id);
         let wanted = self.plan.design.net(id).format.signed;

@@ -8,7 +8,7 @@ use glint_base::fixed::Format;
 /// The facts of a file's header beyond the design.
 #[derive(Clone, Copy)]
 pub struct Origin<'a> {
-    /// The command that makes the file again; empty where there is none.
+    /// The command that makes the file again; empty if there is no such command.
     pub regenerate: &'a str,
     /// Clocks between the events of the handshake.
     pub timing: &'a Timing,
@@ -67,7 +67,7 @@ fn paragraph(text: &str) -> Vec<String> {
     lines
 }
 
-/// Returns the lines that say where a file comes from.
+/// Returns the lines about the origin of a file.
 pub fn regenerated(origin: &Origin) -> Vec<String> {
     let again = match origin.regenerate {
         "" => String::new(),

@@ -11,7 +11,7 @@ use glint_base::fixed::mask;
 /// Returns the `.mem` file of a ROM.
 ///
 /// # Errors
-/// A control ROM whose words are not exactly as wide as all fields; a word that is wider than its ROM.
+/// Fails if the words of the control ROM are not exactly as wide as all fields, or if a word is wider than its ROM.
 pub fn contents(design: &Design, id: RomId) -> Result<String> {
     let rom = design.rom(id);
     let width = design.width(rom.data);

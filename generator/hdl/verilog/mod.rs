@@ -1,5 +1,6 @@
-//! Writes a design as Verilog modules, and the contents of its ROMs as memory files. Names and expressions become
-//! strings first (`plan`, `expression`), and `writer` makes modules of their lines.
+//! Writes a design as Verilog modules, and the contents of its ROMs as memory files.
+//!
+//! Names and expressions become strings first (`plan`, `expression`). `writer` then makes modules of these lines.
 
 pub mod bits;
 pub mod delays;
@@ -29,15 +30,15 @@ use plan::Plan;
 /// Returns the files of a design by their names: modules, then the contents of ROMs as `$readmemh` reads them.
 ///
 /// # Errors
-/// The mistakes that [`Design::verify_structure`] finds.
+/// Fails with the mistakes that [`Design::verify_structure`] finds, or if [`memories`] fails.
 pub fn files(design: &Design) -> Result<Vec<(String, String)>> {
     let (plan, naming) = (Plan::new(design)?, Naming::new(design));
     let origin = Origin { regenerate: "", timing: &Timing::default() };
     Ok([modules(&plan, &naming, &origin), memories(design, &naming)?].concat())
 }
 
-/// Returns the modules by the names of their files: of a pipeline one, else the top module, the control unit and the
-/// datapath.
+/// Returns the modules by the names of their files. A pipeline is one module. Other designs have the top module, the
+/// control unit and the datapath.
 pub fn modules(plan: &Plan, naming: &Naming, origin: &Origin) -> Vec<(String, String)> {
     let file = |module: &str, text: String| (format!("{module}.v"), text);
     if let Some(pipeline) = &plan.design.pipeline {
@@ -54,10 +55,10 @@ pub fn modules(plan: &Plan, naming: &Naming, origin: &Origin) -> Vec<(String, St
     [vec![top], parts.to_vec()].concat()
 }
 
-/// Returns the contents of the ROMs that stand in files of their own, by the names of these.
+/// Returns the contents of the ROMs that have files of their own, by the names of these files.
 ///
 /// # Errors
-/// A control ROM whose words are not exactly as wide as all fields; a word that is wider than its ROM.
+/// Fails if the words of the control ROM are not exactly as wide as all fields, or if a word is wider than its ROM.
 pub fn memories(design: &Design, naming: &Naming) -> Result<Vec<(String, String)>> {
     let apart = |id: &RomId| !naming.style.inline && !naming.second.contains(id);
     let roms = naming.files.iter().enumerate().map(|(at, file)| (RomId(at as u32), file));

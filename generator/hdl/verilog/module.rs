@@ -1,4 +1,4 @@
-//! Writes the modules of the control unit and of the datapath, and the parts of which the module of a pipeline is made.
+//! Writes the modules of the control unit and of the datapath, and the sections of the module of a pipeline.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -56,7 +56,7 @@ impl<'a> Builder<'a> {
         let state = Row::declarations(&self.state(&|_| true));
         body.extend(writer::section("Registers", state));
         body.extend(writer::block("    initial begin", initial, "    end"));
-        // One-liners stand together.
+        // Items of one line have no empty lines between them.
         let mut after_line = false;
         for item in items {
             let is_line = item.len() == 1;
@@ -92,7 +92,7 @@ impl<'a> Builder<'a> {
         Row::ports(&rows)
     }
 
-    /// Returns `reg` where a procedural block assigns the net, else `wire`.
+    /// Returns `reg` if a procedural block assigns the net, else `wire`.
     fn kind(&self, net: NetId) -> &'static str {
         match &self.plan.design.net(net).driver {
             Driver::Register(register) if self.plan.delayed(*register).is_some() => "wire",
@@ -113,7 +113,7 @@ impl<'a> Builder<'a> {
         registers.filter(|net| self.plan.partition(*net) == self.partition)
     }
 
-    /// Returns the declarations of what the clock changes and is wanted, except ports.
+    /// Returns the declarations of the `wanted` registers and words of synchronous ROMs, except ports.
     pub(super) fn state(&self, wanted: &dyn Fn(NetId) -> bool) -> Vec<Row> {
         let roms = self.plan.design.roms.iter().filter(|rom| rom.synchronous).map(|rom| rom.data);
         let roms = roms.filter(|net| self.plan.partition(*net) == self.partition);
@@ -125,8 +125,8 @@ impl<'a> Builder<'a> {
         rows.collect()
     }
 
-    /// Writes the statements that make registers 0 before the first clock. What a ROM is read into is known after it, and
-    /// block memories have no values there on some targets.
+    /// Writes the statements that make registers 0 before the first clock. Words of synchronous ROMs are known after
+    /// that clock, and on some targets block memories have no initial values.
     fn initial(&self) -> Vec<String> {
         let design = self.plan.design;
         let zero =
@@ -196,7 +196,8 @@ impl<'a> Builder<'a> {
                 return behind;
             }
         }
-        // In a pipeline neither a format nor what was said of the net before stands on a line of its own.
+        // In a pipeline, a net that repeats a value gets no line for its format, nor for the comment that was written
+        // before.
         if repeats && self.plan.design.pipeline.is_some() {
             note.clear();
         }
@@ -237,7 +238,7 @@ impl<'a> Builder<'a> {
         lines
     }
 
-    /// Returns the labels of a case: names where the select is a field of the control word, else numbers.
+    /// Returns the labels of a case. They are names if the select is a field of the control word, else numbers.
     fn case_labels(&mut self, select: NetId, count: usize) -> Vec<String> {
         let design = self.plan.design;
         let width = design.width(select);
@@ -259,7 +260,7 @@ impl<'a> Builder<'a> {
             .collect()
     }
 
-    /// Returns a memory, unless it is there for another read port, and its read port.
+    /// Returns a memory and its read port. The memory is left out if another read port has already declared it.
     fn rom(&mut self, id: RomId) -> Vec<String> {
         let rom = self.plan.design.rom(id);
         let case = self.naming.style.case;
@@ -285,7 +286,7 @@ impl<'a> Builder<'a> {
         lines
     }
 
-    /// Returns the declaration of a memory with its words, or of the function in its place.
+    /// Returns the declaration of a memory with its words, or of the function that replaces it.
     fn memory(&mut self, id: RomId) -> Vec<String> {
         let design = self.plan.design;
         let rom = design.rom(id);
@@ -349,7 +350,7 @@ impl<'a> Builder<'a> {
         lines
     }
 
-    /// Writes the blocks of registers: those with the same enable and the same reset behaviour share one.
+    /// Writes the blocks of registers. Registers with the same enable and the same reset behaviour share a block.
     pub(super) fn groups(&mut self, wanted: &dyn Fn(NetId) -> bool) -> Vec<Vec<String>> {
         /// The enable, and whether reset sets the registers.
         type Key = (Option<NetId>, bool);
@@ -390,7 +391,7 @@ impl<'a> Builder<'a> {
         takes
     }
 
-    /// Returns the blocks of the wanted registers of a pipeline: one for those that take their values under the same enable.
+    /// Returns the blocks of the wanted registers of a pipeline: one block for all registers with the same enable.
     pub(super) fn stage(&mut self, wanted: &dyn Fn(NetId) -> bool) -> Vec<String> {
         let mut groups: BTreeMap<Option<NetId>, Vec<RegId>> = BTreeMap::new();
         for id in self.written(wanted) {
@@ -465,8 +466,8 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// Returns a statement for each word of a ROM; it begins with what `place` says for the number of the word, which has so many
-/// bits.
+/// Returns a statement for each word of a ROM. It begins with the text that `place` returns for the number of the
+/// word and the number's width in bits.
 fn words(
     design: &Design,
     id: RomId,
@@ -488,7 +489,7 @@ fn words(
     rom.words.iter().enumerate().flat_map(word).collect()
 }
 
-/// Returns the file parameters of ROMs, with their commas; none where the words stand in the Verilog.
+/// Returns the file parameters of ROMs, with their commas. It is empty if the words are written in the Verilog.
 pub fn parameters(naming: &Naming, roms: &[RomId]) -> Vec<String> {
     let roms = roms.iter().filter(|_| !naming.style.inline);
     let texts = roms.filter(|rom| !naming.second.contains(rom)).map(|rom| {

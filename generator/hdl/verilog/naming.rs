@@ -1,4 +1,5 @@
-//! Chooses the names and comments that the Verilog adds to those of the description: of instances, memories, files.
+//! Chooses the names and comments that the Verilog has in addition to the description's: of instances, memories,
+//! files.
 
 use super::text::{Names, constant_name};
 use crate::netlist::{Control, Design, Driver, FieldKind, Net, NetId, Op, Partition, Rom, RomId};
@@ -33,9 +34,9 @@ pub struct Naming {
 /// How memories and registers are written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Style {
-    /// ROM contents stand in the Verilog: there are neither files nor parameters with their names.
+    /// ROM contents are written in the Verilog: there are neither files nor parameters with their names.
     pub inline: bool,
-    /// ROM contents stand there as the choices of a case, in a function.
+    /// ROM contents are written as the choices of a case, in a function.
     pub case: bool,
     /// The attributes of ROMs that are read on the clock.
     pub rom_style: Option<&'static str>,
@@ -44,7 +45,8 @@ pub struct Style {
 }
 
 impl Naming {
-    /// Chooses names for what the Verilog adds, such as instances, memories and parameters; none is the name of a net.
+    /// Chooses names for the instances, memories and parameters that the Verilog adds. None of them is the name of a
+    /// net.
     pub fn new(design: &Design) -> Self {
         let mut names = Names::new(design.nets.iter().map(|net| net.name.as_str()));
         names.fresh("clk");
@@ -159,7 +161,7 @@ pub fn remark(design: &Design, id: NetId) -> String {
     }
 }
 
-/// Returns `ROM 18`, or `ROM sine` where the source has no number.
+/// Returns `ROM 18`, or `ROM sine` if the source has no number for the ROM.
 pub fn rom_label(rom: &Rom) -> String {
     match rom.block {
         Some(number) => format!("ROM {number}"),

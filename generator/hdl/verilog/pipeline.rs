@@ -25,14 +25,14 @@ pub fn module(plan: &Plan, naming: &Naming, pipeline: &Pipeline, origin: &Origin
         _ => false,
     };
     let is_word = |net: NetId| matches!(design.net(net).driver, Driver::Rom(_));
-    // What the clock changes stands in the stage that makes it.
+    // A net that changes at the clock belongs to the stage that computes it.
     let section = |net: NetId| pipeline.clock_of(net) - usize::from(clocked(net));
     let shared = |net: NetId| pipeline.is_shared(net);
     let here = |net: NetId, number: usize| {
         !pipeline.handshake.contains(&net) && !shared(net) && section(net) == number
     };
     let mut stages = handshake(plan, naming, pipeline);
-    // Stages read what is behind a multiplier before they say what is in front of it.
+    // Stages read the register behind a multiplier before the logic in front of it is written.
     let behind = |net: NetId| pipeline.units.iter().any(|unit| unit.nets.last() == Some(&net));
     stages.extend(Row::declarations(&builder.state(&behind)));
     for (number, stage) in pipeline.stages.iter().enumerate() {
@@ -94,7 +94,7 @@ fn handshake(plan: &Plan, naming: &Naming, pipeline: &Pipeline) -> Vec<String> {
         [Role::InValid, Role::Valid, Role::Reset].map(|role| port(role).unwrap_or_default());
     let (valid, last) = (&naming.valid, pipeline.stages.len());
     let slot = pipeline.slot.map(|slot| (&design.net(slot).name, design.width(slot)));
-    // The condition of a slot; none where there is one slot.
+    // The condition of a slot; `None` if there is one slot.
     let in_slot = |number: usize| {
         slot.map(|(name, bits)| format!("({name} == {})", literal(number as u64, bits)))
     };
@@ -169,7 +169,7 @@ fn handshake(plan: &Plan, naming: &Naming, pipeline: &Pipeline) -> Vec<String> {
     )
 }
 
-/// Returns the net that says when all points move on; none if they always do.
+/// Returns the net that says when all points move on; `None` if they always do.
 fn enable(design: &Design, pipeline: &Pipeline) -> Option<NetId> {
     design.registers.iter().find(|it| pipeline.valid.contains(&it.q))?.enable
 }

@@ -1,8 +1,8 @@
 //! Plans the Verilog of a module: the nets that are declared, the text of the others, and the readers of each bit.
 //!
-//! Wiring (slices, extensions, concatenations, relabelled nets, constants) that nobody named is
-//! written where it is used, as [`Bits`]. Other cells that nobody named are written into the one
-//! expression that uses them while that stays short. Everything else is declared, under its name.
+//! Wiring (slices, extensions, concatenations, relabelled nets, constants) that nobody named is written where it is
+//! used, as [`Bits`]. Another cell that nobody named is written into the one expression that uses it, as long as the
+//! expression stays short. All other nets are declared, under their names.
 
 use std::collections::{BTreeMap, HashSet};
 
@@ -32,7 +32,7 @@ pub enum NetForm {
 /// Something that reads nets, and the module that it is written in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Reader {
-    /// The right-hand side of a declared net, or of one written in its place.
+    /// The right-hand side of a declared net, or of a net whose expression is written in place of its name.
     Cell(NetId),
     /// Data, enable and reset of a register.
     Register(RegId),
@@ -58,7 +58,7 @@ pub struct Plan<'a> {
     pub reset: Option<NetId>,
     /// The registers that are written as memories.
     pub delays: Vec<DelayLine>,
-    /// The nets that repeat a value of a pipeline, whose comment stands where it is declared first.
+    /// The nets that repeat a value of a pipeline. The first declaration of the value has the comment.
     repeats: HashSet<NetId>,
 }
 
@@ -66,7 +66,7 @@ impl<'a> Plan<'a> {
     /// Builds the plan of a design.
     ///
     /// # Errors
-    /// The mistakes that [`Design::verify_structure`] finds.
+    /// Fails with the mistakes that [`Design::verify_structure`] finds.
     pub fn new(design: &'a Design) -> Result<Self> {
         let mistakes = design.verify_structure();
         ensure!(mistakes.is_empty(), Diagnostics(mistakes));
@@ -111,7 +111,8 @@ impl<'a> Plan<'a> {
         self.design.net(net).driver == Driver::Input
     }
 
-    /// Returns whether a register is one of those of a delay line, and whether it is the last, which is read.
+    /// Returns `None` if a register belongs to no delay line, and else whether it is the last of its line, which is
+    /// read.
     pub fn delayed(&self, register: RegId) -> Option<bool> {
         let mut values = self.delays.iter().flat_map(|line| &line.values);
         let value = values.find(|it| it.registers.contains(&register))?;
@@ -148,8 +149,8 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Returns the bits of the operand that a reader really reads: all of them, but for a field, a slice and
-    /// the address of a ROM, which may have bits to spare.
+    /// Returns the bits of the operand that a reader actually reads. These are all bits, except for a field, a slice
+    /// and the address of a ROM, which may have bits to spare.
     pub fn operand_bits(&self, reader: Reader, operand: NetId) -> Bits {
         let bits = &self.bits[operand.index()];
         match reader {
@@ -242,7 +243,7 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Finds the cells that are written: those that nobody named and nothing needs are left out.
+    /// Finds the cells that are written. Cells that nobody named and nothing needs are left out.
     fn find_live(&mut self, order: &[NetId]) {
         let mut live = vec![false; self.design.nets.len()];
         // Registers and ROMs: no cell is known to be written yet.
@@ -361,7 +362,7 @@ impl<'a> Plan<'a> {
         self.repeats = nets.into_iter().filter(repeated).collect();
     }
 
-    /// Returns the comment of a net where it is declared.
+    /// Returns the comment of a net at its declaration.
     pub fn remark(&self, id: NetId) -> String {
         if self.repeats.contains(&id) { String::new() } else { remark(self.design, id) }
     }
@@ -374,7 +375,7 @@ impl<'a> Plan<'a> {
         nets.sum::<usize>().max(1)
     }
 
-    /// Returns whether `op` may stand inside what `reader` writes. Products never do, except as the whole
+    /// Returns whether `op` may be written inside the expression of `reader`. Products never may, except as the whole
     /// right-hand side: in a larger expression they would be cut to the width of their operands.
     fn reads_well(&self, op: &Op, reader: Reader, mentioned: usize) -> bool {
         const SMALL: usize = 3;

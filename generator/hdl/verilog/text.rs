@@ -107,7 +107,7 @@ pub fn range(width: u32) -> String {
     }
 }
 
-/// Returns a statement, broken at spaces where it exceeds the columns; further lines are indented more.
+/// Returns a statement, broken at spaces if it exceeds the columns. Further lines are indented more.
 pub fn statement(indent: usize, text: &str) -> Vec<String> {
     broken(&" ".repeat(indent), &" ".repeat(indent + 8), text)
 }
@@ -123,7 +123,7 @@ pub fn comment(indent: usize, text: &str) -> Vec<String> {
     broken(&margin, &margin, &text)
 }
 
-/// Returns a declaration with a comment behind it, or above it where it does not fit behind.
+/// Returns a declaration with a comment behind it, or above it if there is no room behind.
 pub fn annotated(code: &str, indent: usize, note: &str) -> Vec<String> {
     let code = format!("{}{code}", " ".repeat(indent));
     let note = ascii(note);

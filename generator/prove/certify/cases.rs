@@ -1,5 +1,5 @@
-//! Splits a computation into the ways that it can go, and finds the intervals of raw values that its nodes have on
-//! each.
+//! Splits a computation into ways, one for each combination of decisions, and finds the intervals of raw values that
+//! its nodes have on each way.
 
 use std::collections::BTreeMap;
 
@@ -10,10 +10,10 @@ use glint_base::interval::{self, Interval, common, wrap};
 use glint_rtl::netlist::{RomId, interval::of_cell};
 use glint_rtl::pipeline::{Cell, Graph, NodeId, Op};
 
-/// More ways than this are not looked at, those that turn out to be none too.
+/// The most ways that are looked at, including ways that turn out to be impossible.
 const MOST: usize = 4096;
 
-/// Intervals of raw values by node, beyond those that follow from the operands.
+/// Intervals of raw values by node, in addition to the intervals that follow from the operands.
 pub type Known = BTreeMap<NodeId, Interval>;
 
 /// One way.
@@ -23,14 +23,14 @@ pub struct Case {
     pub known: Known,
     /// The raw values of every node.
     pub ranges: Vec<Interval>,
-    /// The nodes whose values are those of a parabola, which are fewer than intervals tell.
+    /// The nodes whose values are the values of a parabola. Intervals alone would allow more values.
     pub parabolas: BTreeMap<NodeId, Polynomial>,
 }
 
 /// The raw value of a word of a ROM.
 pub type Words<'a> = &'a dyn Fn(RomId, u64) -> i128;
 
-/// An unrolled computation and what is known of it.
+/// An unrolled computation, with its tables and quotients.
 #[derive(Clone, Copy)]
 pub struct View<'a> {
     /// The computation.
@@ -42,7 +42,7 @@ pub struct View<'a> {
 }
 
 impl View<'_> {
-    /// Returns every node that these need, themselves too, in order. Of a quotient that are its operands, and no bits.
+    /// Returns the nodes `roots` and every node that they need, in order. A quotient needs its operands and no bits.
     fn cone(&self, roots: &[NodeId]) -> Vec<NodeId> {
         let operands = |at| self.operands(NodeId(at as u32)).into_iter().map(NodeId::index);
         let roots = roots.iter().map(|root| root.index());
@@ -61,7 +61,7 @@ impl View<'_> {
 /// Returns all ways to compute `results`, given `known` of the operands: together they cover every combination of operands.
 ///
 /// # Errors
-/// There are too many.
+/// Fails if there are too many ways.
 pub fn cases(view: View, results: &[NodeId], known: &Known) -> Result<Vec<Case>, String> {
     let cone = view.cone(results);
     let graph = view.graph;
@@ -98,7 +98,8 @@ pub fn cases(view: View, results: &[NodeId], known: &Known) -> Result<Vec<Case>,
     Ok(found)
 }
 
-/// Returns the raw values of a node, given `known` of the operands; none where a selection on the way to it is open.
+/// Returns the raw values of a node, given `known` of the operands. Returns `None` if a selection on the way to it is
+/// open.
 pub fn range(view: View, node: NodeId, known: &Known) -> Option<Interval> {
     let ranges = view.graph.nodes.iter().map(|node| node.range).collect();
     let mut case = Case { known: known.clone(), ranges, parabolas: BTreeMap::new() };
@@ -231,7 +232,8 @@ fn polynomial(
     }
 }
 
-/// Returns the node to split first, so that this undecided selection becomes known: a condition of which it is made.
+/// Returns the node to split first, so that this undecided selection becomes known: a condition on which the
+/// selection depends.
 fn decider(graph: &Graph, id: NodeId, of: &dyn Fn(&NodeId) -> Interval) -> NodeId {
     let operands = match &graph.node(id).cell {
         Cell::Op(op @ (Op::And(..) | Op::Or(..) | Op::Not(_) | Op::Relabel(_)))
@@ -245,8 +247,8 @@ fn decider(graph: &Graph, id: NodeId, of: &dyn Fn(&NodeId) -> Interval) -> NodeI
     open.map_or(id, |operand| decider(graph, operand, of))
 }
 
-/// Notes that a node has the values of `range` alone, and what follows for those that it comes from; false if
-/// that cannot be. `ranges` are the values that nodes have without it.
+/// Limits a node to the values of `range`, and limits the nodes that it comes from accordingly. Returns false if that
+/// is impossible. `ranges` are the values that nodes have without this limit.
 pub fn learn(
     graph: &Graph,
     known: &mut Known,
@@ -300,7 +302,7 @@ pub fn learn(
             let range = (base + (range.0 << low), base + ((range.1 + 1) << low) - 1);
             learn(graph, known, ranges, *of, range)
         }
-        // Of a mux that is decided, the input that it passes on.
+        // For a mux whose select is decided: the input that it passes on.
         (Op::Mux { select, inputs }, _) => match value(known, *select) {
             (low, high) if low == high => {
                 let input = inputs[(low as usize).min(inputs.len() - 1)];

@@ -10,7 +10,8 @@ use glint_base::fixed::exp2;
 use glint_formula::{Comparison, Formula, Function, Kind, Literal, Operator};
 use glint_golden::Operand;
 
-/// A formula's term under what it presupposes: these terms are not negative, those not positive.
+/// A term for the formula under conditions: the terms `at_least` are not negative, and the terms `at_most` are not
+/// positive.
 #[derive(Clone, Debug, Default)]
 pub struct Branch {
     /// Terms that are at least 0.
@@ -32,7 +33,7 @@ enum Choice {
 }
 
 impl Branch {
-    /// Returns whether it presupposes of a number what is not so.
+    /// Returns whether a condition of the branch is false for a number.
     pub fn is_never(&self, terms: &Terms) -> bool {
         let is = |id: &Id, wrong: fn(f64) -> bool| match terms.get(*id) {
             Term::Number(value) => wrong(*value),
@@ -42,7 +43,8 @@ impl Branch {
             || self.at_most.iter().any(|id| is(id, |value| value > 0.0))
     }
 
-    /// Returns the way that goes both ways, with the term of the second; none where they choose differently.
+    /// Returns the branch in which both formulas make their choices, with the term of `other`. Returns `None` if they
+    /// choose differently.
     pub fn and(&self, other: &Self) -> Option<Self> {
         let mut both = self.clone();
         both.term = other.term;
@@ -84,12 +86,12 @@ pub struct Setting<'a> {
     pub operands: &'a [Operand],
 }
 
-/// Returns the variable that stands for the word of a table, by the variable of the operand that numbers it.
+/// Returns the variable for the word of a table, by the variable of the operand that addresses the table.
 pub fn word_variable(rom: &str, variable: &str) -> String {
     format!("{rom}_at_{variable}")
 }
 
-/// Notes by which power of two each operand is divided where it occurs: the exponent, if it is the same everywhere, or
+/// Notes by which power of two each operand is divided in the formula: the exponent if it is the same everywhere, or
 /// 0.
 pub fn divisors(formula: &Formula, found: &mut HashMap<String, Option<i32>>) {
     let mut note = |name: &str, power: i32| {
@@ -128,13 +130,13 @@ pub fn untranslated(function: Function) -> String {
 /// Returns every way that a formula can go.
 ///
 /// # Errors
-/// The formula has a part without a translation.
+/// Fails if the formula has a part without a translation.
 pub fn branches(
     formula: &Formula,
     setting: &Setting,
     terms: &mut Terms,
 ) -> Result<Vec<Branch>, String> {
-    // Of two expressions every way that both can go together, each with its term.
+    // For two expressions: every way that both can go together, with the term of each.
     let pairs =
         |terms: &mut Terms, a: &Formula, b: &Formula| -> Result<Vec<(Branch, Id, Id)>, String> {
             let (first, second) = (branches(a, setting, terms)?, branches(b, setting, terms)?);
@@ -267,7 +269,7 @@ fn variable_of(
     }
 }
 
-/// Returns the value of what does not vary in this case.
+/// Returns the value of a formula that does not vary in this case.
 fn constant(formula: &Formula, setting: &Setting) -> Option<f64> {
     match &formula.kind {
         Kind::Number(literal) => Some(literal.nearest()),
@@ -314,7 +316,8 @@ fn power(terms: &mut Terms, base: Id, exponent: u32) -> Id {
     result.unwrap_or_else(|| terms.number(1.0))
 }
 
-/// Returns the term, or what it is by the rules of 0 and 1, or the number that it is if that is exact.
+/// Returns the id of a term, simplified by the rules of 0 and 1. If the term is a number and f64 holds it exactly, it
+/// is the id of that number.
 pub fn folded(terms: &mut Terms, term: Term) -> Id {
     let value = |id: Id| match terms.get(id) {
         Term::Number(value) => Some(*value),

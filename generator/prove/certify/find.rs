@@ -1,4 +1,5 @@
-//! Finds a bound where a contract states none: the least that Gappa finds for each statement, and of these the largest.
+//! Finds a bound if a contract states none. Gappa finds the least bound for each statement, and the largest of these
+//! is the result.
 
 use std::fs;
 use std::time::Duration;
@@ -18,11 +19,11 @@ const MILLIONTHS: f64 = 1e6;
 const STEP: f64 = 1.0 / 2048.0;
 const TRY: Duration = Duration::from_secs(2);
 
-/// Returns a bound of all that the statements ask for. What Gappa answers is an upper limit; where a smaller one can be proved the
-/// largest is brought down by halves.
+/// Returns a bound for all statements. Gappa's answers are upper limits. If a smaller one can be proved, the largest
+/// is brought down by halves.
 ///
 /// # Errors
-/// Gappa does not do its work; or in words why it finds no bound.
+/// Fails if Gappa does not do its work. The inner error says in words why Gappa finds no bound.
 pub fn bound(gappa: &Tool, asked: &[Statement], limit: Duration) -> Result<Result<f64, String>> {
     let answers = asked.par_iter().map(|one| answer(gappa, one, limit));
     let answers: Result<Vec<_>, String> =
@@ -56,7 +57,8 @@ pub fn bound(gappa: &Tool, asked: &[Statement], limit: Duration) -> Result<Resul
     Ok(Ok(bound))
 }
 
-/// Returns Gappa's answer to a statement, the least of those to its scripts; nothing where it asks for nothing.
+/// Returns Gappa's answer to a statement: the least of the answers to its scripts. Returns `None` inside if the
+/// statement asks for nothing.
 fn answer(
     gappa: &Tool,
     statement: &Statement,
@@ -86,8 +88,8 @@ fn answer(
     })
 }
 
-/// Returns the upper end of the interval that Gappa gives, rounded up to six digits behind the point; 0 where it says that what is
-/// presupposed cannot be.
+/// Returns the upper end of the interval that Gappa gives, rounded up to six digits behind the point. Returns 0 if
+/// Gappa says that the hypotheses contradict each other.
 fn largest(output: &str) -> Option<f64> {
     if output.contains("anything can be proved") {
         return Some(0.0);

@@ -14,7 +14,7 @@ use glint_rtl::pipeline::{Cell, Graph, NodeId, Op};
 /// A node's raw value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Value {
-    /// It is this, on this way.
+    /// The node is this number, on this way.
     Constant(i128),
     /// The term times two to the power of `scale`.
     Term {
@@ -34,7 +34,7 @@ pub struct Hardware<'a> {
     graph: &'a Graph,
     quotients: &'a BTreeMap<NodeId, Quotient>,
     case: &'a Case,
-    /// Operands, and behind them what else has become a variable.
+    /// The operands, followed by the other nodes that have become variables.
     pub variables: Variables,
     /// The names of the tables.
     tables: &'a [String],
@@ -67,7 +67,8 @@ impl<'a> Hardware<'a> {
         Value::Term { id, scale }
     }
 
-    /// Returns the word of a table: the variable that a formula has for it too, where an operand numbers it.
+    /// Returns the word of a table. If an operand addresses the table, it is the variable that a formula has for the
+    /// word too.
     fn read(&mut self, terms: &mut Terms, node: NodeId, rom: RomId, address: NodeId) -> Value {
         let table = &self.tables[rom.index()];
         let variable = match self.graph.node(address).cell {
@@ -97,8 +98,8 @@ impl<'a> Hardware<'a> {
         Ok(value)
     }
 
-    /// Returns the difference of two values of which the first is known to be less, or not to be; nothing where one does not
-    /// vary, or has no translation.
+    /// Returns the difference of two values and its range. `less` says whether the first value is known to be less,
+    /// or known not to be less. Returns `None` if a value does not vary or has no translation.
     pub fn compared(
         &mut self,
         terms: &mut Terms,
@@ -133,7 +134,7 @@ impl<'a> Hardware<'a> {
     /// Returns the node as a value.
     ///
     /// # Errors
-    /// The operation that has no translation, with the name of its result.
+    /// Fails if an operation has no translation. The error has the name of the operation's result.
     pub fn value(&mut self, terms: &mut Terms, id: NodeId) -> Result<Value, String> {
         if let Some(&value) = self.known.get(&id) {
             return Ok(value);
@@ -144,8 +145,8 @@ impl<'a> Hardware<'a> {
         Ok(value)
     }
 
-    /// Returns the node as a term even where it is one number in this case: that it is this number says something of its operands.
-    /// None where it is made of constants, or is bits that are cut out.
+    /// Returns the node as a term even if it is one number in this case: this fact says something about its operands.
+    /// Returns `None` if the node is made of constants, or is bits that are cut out.
     pub fn expression(&mut self, terms: &mut Terms, id: NodeId) -> Option<Value> {
         let is_cut =
             matches!(self.graph.node(id).cell, Cell::Op(Op::Slice { .. }) | Cell::Operand(_));
@@ -173,7 +174,7 @@ impl<'a> Hardware<'a> {
             Cell::Read { rom, address } => return Ok(self.read(terms, id, *rom, *address)),
             _ => return Err(format!("`{name}` is nothing that the operands determine")),
         };
-        // What is to be added where bits above the format are dropped.
+        // The amount to add if bits above the format are dropped.
         let wrap_of = |range: Interval| {
             wrap(range, node.format).ok_or_else(|| {
                 let ((low, high), format) = (range, node.format);
@@ -220,7 +221,7 @@ impl<'a> Hardware<'a> {
             Op::Not(a) => {
                 let most = if node.format.signed { -1 } else { node.format.range().1 };
                 let a = self.value(terms, *a)?;
-                // The inverse of an unsigned number stands for 1.0 less it, with the point at its top.
+                // The inverse of an unsigned number is 1.0 minus the number, with the point at its top.
                 let a = match (a, node.format.signed) {
                     (Value::Term { id, scale }, false) => {
                         let wanted = node.format.width() as i32;
@@ -281,8 +282,8 @@ impl<'a> Hardware<'a> {
         }
     }
 
-    /// Returns the number of which `a` holds the bits from `low` up and `b` the one below: their sum is that number
-    /// rounded to the nearest, halves up, for ⌊y⌋ + (⌊2y⌋ − 2⌊y⌋) = ⌊y + 1/2⌋. None where it may be negative.
+    /// Returns the number y for which `a` holds the bits from `low` up and `b` the bit below: their sum is y rounded
+    /// to the nearest, halves up, for ⌊y⌋ + (⌊2y⌋ − 2⌊y⌋) = ⌊y + 1/2⌋. Returns `None` if y may be negative.
     fn rounded(&self, a: NodeId, b: NodeId) -> Option<(NodeId, u32)> {
         let inner = |id: NodeId| match &self.graph.node(id).cell {
             Cell::Op(Op::Extend(of) | Op::Relabel(of)) => *of,

@@ -1,8 +1,9 @@
 //! Writes the bound of a contract as statements that Gappa proves.
 //!
-//! The computation is unrolled into a graph of values and split into [`cases`] at saturations, clamps and tables, which together cover the
-//! domain. In each the [`hardware`] is an expression with roundings and the formula one without ([`exact`]), and a statement says that
-//! they differ by the bound at most; a formula that reads a table reads the words that the hardware has.
+//! The computation is unrolled into a graph of values. It is split into [`cases`] at saturations, clamps and tables;
+//! the cases together cover the domain. In each case, the [`hardware`] is an expression with roundings, and the
+//! formula is one without ([`exact`]). A statement says that the two differ by at most the bound. A formula that
+//! reads a table reads the hardware's words.
 
 pub mod cases;
 pub mod exact;
@@ -36,8 +37,8 @@ use task::Task;
 /// Returns the statements whose conjunction is the contract of a sequential design.
 ///
 /// # Errors
-/// The step that has no translation, in words; that the contract states no bound; or that it takes longer than `limit` to
-/// say them all.
+/// Fails if a step has no translation, if the contract states no bound, or if it takes longer than `limit` to write
+/// all statements. The error says so in words.
 pub fn statements(
     design: &Design,
     contract: &dyn Contract,
@@ -55,7 +56,7 @@ pub fn statements(
 /// and [`Statement::within`] states the answer.
 ///
 /// # Errors
-/// As of [`statements`].
+/// Fails as [`statements`] does.
 pub fn questions(
     design: &Design,
     contract: &dyn Contract,
@@ -130,7 +131,8 @@ fn formulas(contract: &dyn Contract) -> Result<Vec<Formula>, String> {
             let rest: String = text.chars().skip(fault.span.start).take(40).collect();
             format!("{fault}, `{rest}`")
         })?;
-        // Before the ways through the hardware, which may be many. Of a line the cosine and the size have one.
+        // This comes before the ways through the hardware, which may be many. For a line, the cosine and the absolute
+        // value have a translation.
         let mut refused = None;
         formula.walk(&mut |part| match part.kind {
             Kind::Unary(Function::Negate | Function::Abs | Function::Cos, _) => {}

@@ -16,8 +16,8 @@ use glint_formula::Formula;
 use glint_rtl::pipeline::{Cell, NodeId, Op};
 
 impl Task<'_> {
-    /// Returns variable and divisor of each operand: where the formula divides it by a power of two throughout, the
-    /// variable is the quotient.
+    /// Returns the variable and the divisor of each operand. If the formula divides an operand by a power of two
+    /// throughout, the variable is the quotient.
     fn variables(&self) -> HashMap<String, (String, i32)> {
         let mut divisors = HashMap::new();
         self.formulas.iter().for_each(|formula| exact::divisors(formula, &mut divisors));
@@ -81,7 +81,7 @@ impl Task<'_> {
             let presupposed = self.presupposed(case, &mut hardware, &mut terms, &operands);
             let (out, scale) = hardware::placed(&mut terms, out, 0);
             let out = hardware::scaled(&mut terms, out, scale, "out");
-            // What the formula is multiplied by: the colour, or what makes units of values.
+            // The formula is multiplied by this factor: the colour, or the number of output units in 1.0.
             let (factor, formulas) = match self.contract.highlight() {
                 Some(_) => (real_operand(&colours[at].name, &setting, &mut terms)?, self.formulas),
                 None => {

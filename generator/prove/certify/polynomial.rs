@@ -21,7 +21,7 @@ impl Polynomial {
         Self { of: None, factors: [value, 0, 0] }
     }
 
-    /// Makes the polynomial x, where x is the value of a node.
+    /// Makes the polynomial x, for x the value of a node.
     pub fn operand(id: NodeId) -> Self {
         Self { of: Some(id), factors: [0, 1, 0] }
     }
@@ -36,7 +36,7 @@ impl Polynomial {
         small.then_some(Self { of, factors })
     }
 
-    /// Returns the sum with so many times the other.
+    /// Returns the sum of this polynomial and `times` times the other.
     pub fn plus(self, other: Self, times: i128) -> Option<Self> {
         let sum = |at: usize| self.factors[at] + times * other.factors[at];
         self.with(other, [sum(0), sum(1), sum(2)])

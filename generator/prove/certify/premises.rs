@@ -1,5 +1,5 @@
-//! Writes the premises of statements about outputs as statements of their own: that a parabola has no values beyond those that
-//! are taken for it, and what a divider presupposes and keeps.
+//! Writes the premises of statements about outputs as statements of their own. One premise says that a node has only
+//! values of its parabola. Other premises say which values a divider needs and which bounds its steps keep.
 
 use super::cases::{Case, View};
 use super::hardware::{Hardware, Value};
@@ -21,7 +21,7 @@ pub struct Premise {
 /// Returns the premises of a case.
 ///
 /// # Errors
-/// A value has no translation.
+/// Fails if a value has no translation.
 pub fn of(
     view: View,
     case: &Case,
@@ -57,7 +57,7 @@ struct Task<'a> {
 
 impl Task<'_> {
     /// Writes the statement that the values of a node, a quadratic polynomial, lie from `low` to `high`, with a hint
-    /// that completes the square. Returns `None` where the node or the variable of the polynomial is a constant.
+    /// that completes the square. Returns `None` if the node or the variable of the polynomial is a constant.
     fn parabola(
         &mut self,
         node: NodeId,
@@ -89,7 +89,7 @@ impl Task<'_> {
         let rest = self.terms.insert(Term::Sub(divisor, dividend), "rest");
         let [dividend_name, divisor_name, rest_name] =
             [dividend, divisor, rest].map(|id| self.terms.name(id));
-        // What a sum has beside the dividend.
+        // The other summand, if the divisor is a sum with the dividend.
         let beside = match *self.terms.get(divisor) {
             Term::Add(a, b) if a == dividend => Some(b),
             Term::Add(a, b) if b == dividend => Some(a),

@@ -23,7 +23,7 @@ pub enum Subject {
 
 /// The outcome of a statement's proof.
 pub enum Outcome {
-    /// The script that was accepted, and what it speaks of.
+    /// The script that was accepted, and its subject.
     Proved(usize, Subject),
     /// No proof: Gappa's answer to the last script.
     Open(String),
@@ -32,7 +32,7 @@ pub enum Outcome {
 /// Has one of the statement's scripts accepted by Gappa, and with `coq` its proof by Coq's kernel.
 ///
 /// # Errors
-/// A tool does not do its work. That a statement is not proved, or not within the limit, is no error.
+/// Fails if a tool does not do its work. A statement that is not proved, or not within the limit, is no error.
 pub fn prove(
     gappa: &Tool,
     coq: Option<&Tool>,
@@ -55,7 +55,7 @@ pub fn prove(
         if run.status.code().is_none() {
             bail!("`{gappa}` failed ({}): {}", run.status, run.output.trim());
         }
-        // Of a rewriting that it cannot prove Gappa says so, and goes on.
+        // If Gappa cannot prove a rewriting, it says so and goes on.
         let assumed = run.output.contains("trivially equal");
         if !run.status.success() || assumed {
             let mut lines =
@@ -85,7 +85,7 @@ pub fn prove(
     Ok(Outcome::Open(why))
 }
 
-/// Returns the subject of an accepted script. Gappa is asked for a contradiction where no point is found.
+/// Returns the subject of an accepted script. If no point is found, it asks Gappa for a contradiction.
 fn subject(gappa: &Tool, script: &str, limit: Duration) -> Result<Subject> {
     if let Some(point) = witness::witness(script) {
         return Ok(Subject::Point(point));

@@ -1,9 +1,9 @@
 //! Finds dividers that take a bit of the quotient a clock in the unrolled computation.
 //!
-//! A step doubles the remainder r and takes the divisor d away where it fits: r' = 2·r − b·d with b = (2·r ≥ d). If
-//! 0 ≤ r ≤ d and d > 0, the same holds of r'. After k steps from r₀ the bits are the number q = Σ bᵢ·2^(k−i), and the last
-//! remainder is 2^k·r₀ − q·d, between 0 and d: q·2^−k is below r₀/d by 2^−k at most, and never above. What this rests on
-//! (0 ≤ r₀ ≤ d, d > 0, and what a step keeps) are statements for Gappa too.
+//! A step doubles the remainder r and subtracts the divisor d if it fits: r' = 2·r − b·d with b = (2·r ≥ d). If 0 ≤ r
+//! ≤ d and d > 0, the same holds for r'. After k steps from r₀, the bits are the number q = Σ bᵢ·2^(k−i), and the
+//! last remainder is 2^k·r₀ − q·d, between 0 and d. Therefore q·2^−k is below r₀/d by 2^−k at most, and never above.
+//! The premises (0 ≤ r₀ ≤ d, d > 0, and the invariant of a step) are statements for Gappa too.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,7 @@ use glint_rtl::pipeline::{Cell, Graph, NodeId, Op};
 pub struct Quotient {
     /// The first remainder.
     pub dividend: NodeId,
-    /// The divisor, which is subtracted where it fits.
+    /// The divisor, which is subtracted if it fits.
     pub divisor: NodeId,
     /// How many bits.
     pub bits: u32,
@@ -54,7 +54,7 @@ fn quotient(graph: &Graph, id: NodeId) -> Option<Quotient> {
     follows.then_some(Quotient { dividend, divisor, bits: steps.len() as u32 })
 }
 
-/// Collects the nodes of which a node is joined, the top one first.
+/// Collects the nodes that are joined in a node, the top one first.
 fn joined(graph: &Graph, id: NodeId, parts: &mut Vec<NodeId>) {
     match &graph.node(id).cell {
         Cell::Op(Op::Concat(inner)) => inner.iter().for_each(|&part| joined(graph, part, parts)),
@@ -62,7 +62,8 @@ fn joined(graph: &Graph, id: NodeId, parts: &mut Vec<NodeId>) {
     }
 }
 
-/// A step: `doubled` is twice the remainder, `trial` what it exceeds the divisor by, `bit` whether it does.
+/// A step: `doubled` is twice the remainder, `trial` is `doubled` minus the divisor, and `bit` says whether the
+/// divisor fits.
 struct Step {
     remainder: NodeId,
     divisor: NodeId,
@@ -97,7 +98,7 @@ fn step(graph: &Graph, bit: NodeId) -> Option<Step> {
     (is_sign && is_doubled && natural).then_some(Step { remainder, divisor, doubled, trial, bit })
 }
 
-/// Returns whether a node is what a step leaves, with all bits that numbers up to the divisor have.
+/// Returns whether a node is the remainder after a step, with all bits that numbers up to the divisor have.
 fn is_left(graph: &Graph, id: NodeId, step: &Step) -> bool {
     let Cell::Op(Op::Slice { of, low: 0 }) = graph.node(id).cell else { return false };
     let left = Op::Mux { select: step.bit, inputs: vec![step.doubled, step.trial] };

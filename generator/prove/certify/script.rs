@@ -1,4 +1,4 @@
-//! Writes the text of a statement for Gappa: definitions, what is presupposed, the goal, and hints.
+//! Writes the text of a statement for Gappa: definitions, hypotheses, the goal, and hints.
 
 use std::collections::{BTreeMap, HashMap};
 use std::fmt::Write as _;
@@ -40,7 +40,8 @@ impl Script<'_> {
         self.statement(terms, difference, &goal, &[])
     }
 
-    /// Returns a goal about a term, with hints beside those that hardware and formula give.
+    /// Returns the text of a statement whose goal is about a term. `hints` are added to the hints that hardware and
+    /// formula give.
     pub fn statement(&self, mut terms: Terms, about: Id, goal: &str, hints: &[String]) -> String {
         let mut roots = vec![about];
         for way in self.ways {
@@ -88,8 +89,10 @@ impl Script<'_> {
         text
     }
 
-    /// Writes hints: which terms of the formula are sums of terms of the hardware, those with roundings taken without them, and
-    /// which terms of the hardware stand for which of the formula. Gappa proves each that it uses.
+    /// Writes hints, of four kinds. A value between a and 1 gets a form that shows its range (`blend`). A term of the
+    /// formula may be a line through a term of the hardware without roundings. It may equal a term of the hardware
+    /// without its roundings. It may be near a term of the hardware with roundings. Gappa proves each hint that it
+    /// uses.
     fn hints(
         &self,
         terms: &mut Terms,
@@ -145,7 +148,8 @@ impl Script<'_> {
         (equal, near)
     }
 
-    /// Returns the values of all terms at operands of this case, and at others of the domain, of which there are more.
+    /// Returns the values of all terms at operands of this case, followed by their values at other operands of the
+    /// domain.
     fn samples(&self, terms: &Terms) -> Vec<Vec<f64>> {
         let mut random = ChaCha8Rng::seed_from_u64(1);
         let (mut samples, mut others) = (Vec::new(), Vec::new());
@@ -218,13 +222,14 @@ fn rewriting(terms: &Terms, left: Id, right: Id, (factor, offset): (f64, f64)) -
     format!("{} -> {right};", terms.name(left))
 }
 
-/// Returns whether two columns are equal but for the rounding of f64.
+/// Returns whether two columns are equal except for the rounding of f64.
 fn is_same(x: &[f64], y: &[f64]) -> bool {
     let largest = y.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
     x.iter().zip(y).all(|(x, y)| (x - y).abs() <= largest * exp2(-44))
 }
 
-/// Finds factor and offset, both short numbers, of the line on which the values of `y` follow those of `x`.
+/// Finds the line on which the values of `y` follow the values of `x`. Returns its factor and offset, both short
+/// numbers.
 fn line_through(x: &[f64], y: &[f64]) -> Option<(f64, f64)> {
     let other = x.iter().position(|value| *value != x[0])?;
     let factor = (y[other] - y[0]) / (x[other] - x[0]);
@@ -238,7 +243,8 @@ fn line_through(x: &[f64], y: &[f64]) -> Option<(f64, f64)> {
     (factor != 0.0 && x.iter().zip(y).all(fits)).then_some((factor, offset))
 }
 
-/// Returns the goal of a script: a bound is asked for where none is stated, or the difference is within this one.
+/// Returns the goal of a script. With a bound, it says that the difference is within the bound. Without one, it asks
+/// for a bound.
 pub fn goal(difference: &str, bound: Option<f64>) -> String {
     match bound {
         Some(bound) => format!("|{difference}| <= {}", number(bound)),

@@ -1,18 +1,20 @@
-//! Writes the statements of devices that show the words of a table of powers of a cosine times a colour, point by point
-//! along a line.
+//! Writes the statements of devices that show the words of a table of powers of a cosine times a colour, point by
+//! point along a line.
 //!
-//! A word stands for all angles of a segment. Two kinds of statements are the contract:
+//! A word serves all angles of a segment. Two kinds of statements are the contract:
 //!
-//! - Of each word w, for a segment from angle a to angle b (in right angles, 0 ≤ a ≤ b ≤ 1): f(a) ≤ w + E and f(b) ≥ w − E with the bound E
-//!   of f. As cos falls from 0 to π, every angle of the segment has f between f(b) and f(a).
-//! - Of each output: where a word w and a real f differ by that bound at most, it differs from f times the colour by the contract's.
+//! - For each word w, whose segment goes from angle a to angle b (in right angles, 0 ≤ a ≤ b ≤ 1): f(a) ≤ w + E and
+//!   f(b) ≥ w − E, with the bound E of f. As cos falls from 0 to π, f is between f(b) and f(a) at every angle of the
+//!   segment.
+//! - For each output: if a word w and a real f differ by at most that bound, then the output differs from f times the
+//!   colour by at most the contract's bound.
 //!
-//! Gappa has no cosine. By Taylor cos y = 1 − y²/2! + y⁴/4! − … ± y²ᵐ/(2m)! + ρ·y²ᵐ⁺²/(2m+2)! with |ρ| ≤ 1, for every real y: the statement
-//! is proved for every ρ from −1 to 1, and for every number within 10⁻²⁰ of π/2 in its place.
+//! Gappa has no cosine. By Taylor cos y = 1 − y²/2! + y⁴/4! − … ± y²ᵐ/(2m)! + ρ·y²ᵐ⁺²/(2m+2)! with |ρ| ≤ 1, for every
+//! real y. The statement is proved for every ρ from −1 to 1, and for every number within 10⁻²⁰ of π/2 in its place.
 //!
-//! The angles of each word are found by cutting the angle's range into halves until the values in the netlist are decided, as
-//! [`super::cases`] has them. All points of a line are the first one at another angle: [`glint_rtl::pipeline::unroll_line`] has the induction,
-//! and what the formula says of the angle of a point is what the walk's register holds ([`Walk::angle`]).
+//! The angles of each word are found by halving the angle's range until the values in the netlist are decided, as in
+//! [`super::cases`]. All points of a line are the first one at another angle: [`glint_rtl::pipeline::unroll_line`]
+//! has the induction. The formula's angle of a point is the value of the walk's register ([`Walk::angle`]).
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -28,20 +30,22 @@ use glint_formula::{Enclosure, Formula, Function, Kind, Operator, parse};
 use glint_rtl::netlist::NetId;
 use glint_rtl::pipeline::{Cell, NodeId, Op, WalkRegister};
 
-/// Words in a script: what Gappa takes grows with the square.
+/// The number of words in a script: Gappa's time grows with its square.
 const WORDS: usize = 8;
 
-/// The last term of the polynomial for the cosine is y to the power of twice this; what is left of it is below 10⁻¹⁶ in a right angle.
+/// The last term of the polynomial for the cosine is y to the power of twice this number. The remainder is below
+/// 10⁻¹⁶ in a right angle.
 const TERMS: u32 = 10;
 
 /// π/2 lies between these.
 const RIGHT: (&str, &str) = ("1.57079632679489661923", "1.57079632679489661924");
 
-/// The bound of f, rounded down to this number of fraction bits, is what the statements say of it: a short number, of which the sum with a
-/// word is exact in f64.
+/// The statements use the bound of f, rounded down to this number of fraction bits. It is a short number, so that its
+/// sum with a word is exact in f64.
 const PLACES: i32 = 42;
 
-/// The angle of a point, in a formula: a name that no operand has, for the first point's angle is not that of the others.
+/// The angle of a point, as a name in a formula. No operand has this name, because the first point's angle differs
+/// from the other angles.
 const POINT: &str = "angle of the point";
 
 /// The segment of a word's angles, in right angles.
@@ -54,7 +58,7 @@ struct Word {
 /// Returns the statements of a line.
 ///
 /// # Errors
-/// A formula or netlist that is no table of a power of a cosine, at an angle that is walked along.
+/// Fails if the formula or the netlist is no table of a power of a cosine, at an angle that is walked along.
 pub fn statements(task: &Task, walk: &[WalkRegister]) -> Result<Vec<Statement>, String> {
     let bound = task.bound.ok_or("a table is stated by segment with a stated bound alone")?;
     if task.contract.highlight().is_none() {
@@ -128,8 +132,8 @@ impl Walk {
         Ok(Self { start, wrapped })
     }
 
-    /// Returns the expression with [`POINT`] for the angle of a point, which is what the walk's register holds: by induction that is
-    /// start + index·step, wrapped around.
+    /// Returns the expression with [`POINT`] in place of the angle of a point, start + index·step, wrapped around. By
+    /// induction, the walk's register holds this angle.
     fn angle(&self, formula: &Formula) -> Formula {
         formula.substitute(&self.wrapped, &Formula::operand(POINT), &formula.span)
     }
@@ -226,7 +230,8 @@ fn words(task: &Task, table: NodeId, walk: &Walk, angle: &Formula) -> Result<Vec
     Ok(found.into_values().collect())
 }
 
-/// Returns the enclosure of an angle where that of the point is in this range; none where it is made of anything else.
+/// Returns the enclosure of an angle if the angle of the point is in this range. Returns `None` if the angle depends
+/// on anything else.
 fn enclosed(angle: &Formula, (low, high): (f64, f64)) -> Option<Enclosure> {
     angle.enclose(&[(POINT, Enclosure::between(low, high))]).ok()
 }
@@ -379,7 +384,7 @@ mod tests {
         let square = (std::f64::consts::FRAC_PI_2 * 2.0 / 3.0).powi(2);
         let text = cosine("x", 0.5, 2);
         let lines = text.lines().filter(|line| line.starts_with("c_"));
-        // Each line is `c = 1 - inner * square / divisor;`, the first with what is left, which is taken for 0.
+        // Each line is `c = 1 - inner * square / divisor;`. The first one has the remainder, which is taken as 0.
         let value = lines.fold(0.0, |inner, line| {
             let divisor = line.rsplit(' ').next().expect("a divisor").trim_end_matches(';');
             1.0 - inner * square / divisor.parse::<f64>().expect("a number")

@@ -13,11 +13,11 @@ pub(super) const ASKED: &str = "| in ? }";
 pub struct Statement {
     /// The output that it speaks of, or the value on the way to the outputs.
     pub output: String,
-    /// Its number among those of the output, from 1.
+    /// Its number among the statements of the output, from 1.
     pub number: usize,
-    /// Other outputs of which it is the statement too, by another name.
+    /// Other outputs that have the same statement, under another name.
     pub also: Vec<String>,
-    /// Scripts of which one has to be accepted: where the formula jumps there are two that are right.
+    /// Alternative scripts: one must be accepted. At a jump of the formula, two are right.
     pub scripts: Vec<String>,
 }
 
@@ -35,12 +35,13 @@ impl Statement {
 #[derive(Default)]
 pub(super) struct Statements {
     pub(super) list: Vec<Statement>,
-    /// Where each is, by its scripts with all names replaced.
+    /// The index of each statement, by its scripts with all names replaced.
     known: HashMap<Vec<String>, usize>,
 }
 
 impl Statements {
-    /// Adds a statement about an output, or the output to one that is the same but for its names.
+    /// Adds a statement about an output. If there is one with other names and the same text, the output is added to
+    /// that one.
     pub(super) fn push(&mut self, output: &str, scripts: Vec<String>) {
         let nameless = scripts.iter().map(|script| script::nameless(script)).collect();
         if let Some(&at) = self.known.get(&nameless) {

@@ -1,5 +1,5 @@
-//! Holds the design, the contract and the unrolled computation of a proof, and cuts the domain where the formula or a table asks
-//! for it.
+//! Holds the design, the contract and the unrolled computation of a proof. It cuts the domain where the formula or a
+//! table requires it.
 
 use super::cases::{self, Known, View};
 use glint_formula::{Formula, Kind, Operator};
@@ -7,8 +7,8 @@ use glint_golden::Contract;
 use glint_rtl::netlist::{Design, RomId};
 use glint_rtl::pipeline::{Cell, Graph, NodeId, Unrolled};
 
-/// An operand of at most this number of values is gone through value by value where it is an exponent of the formula, or
-/// numbers the words of several tables.
+/// The most values of an operand that is split value by value, because it is an exponent of the formula or addresses
+/// several tables.
 const SPLIT: i64 = 1024;
 
 /// A table of at most this number of different words, one after the other, is gone through word by word.
@@ -18,7 +18,7 @@ const RUNS: usize = 16;
 pub(super) struct Task<'a> {
     pub(super) design: &'a Design,
     pub(super) contract: &'a dyn Contract,
-    /// The bound in units of the outputs; none where it is asked for.
+    /// The bound in units of the outputs; `None` if the statements ask for it.
     pub(super) bound: Option<f64>,
     pub(super) unrolled: &'a Unrolled,
     pub(super) view: View<'a>,
@@ -33,7 +33,7 @@ impl Task<'_> {
         &self.unrolled.graph
     }
 
-    /// Notes what [`cases::learn`] notes, with what is known before any way is followed.
+    /// Calls [`cases::learn`] with the ranges that nodes have before any way is followed.
     pub(super) fn learn(&self, known: &mut Known, node: NodeId, range: (i128, i128)) -> bool {
         let ranges: Vec<_> = self.graph().nodes.iter().map(|node| node.range).collect();
         cases::learn(self.graph(), known, &ranges, node, range)
@@ -73,9 +73,10 @@ impl Task<'_> {
         outputs.collect()
     }
 
-    /// Returns the domain, by the values of operands that stand in exponents, and by the runs of operands over which tables have the
-    /// same words. Of one table with many words, which the formula reads too, a word is a variable; those of several depend on
-    /// each other.
+    /// Returns the domain in parts. An operand in an exponent makes a part for each of its values. An operand that
+    /// addresses tables makes a part for each run of values with the same words. If there is one table with many
+    /// words, and the formula reads it too, its word is a variable. This cannot be done for several tables, because
+    /// their words depend on each other.
     pub(super) fn split(&self, known: &Known) -> Vec<Known> {
         let mut split = vec![known.clone()];
         for operand in self.contract.operands() {

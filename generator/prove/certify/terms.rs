@@ -1,4 +1,4 @@
-//! Keeps the real expressions of a formula and of what the hardware computes, and writes them as Gappa takes them.
+//! Keeps the real expressions of a formula and of the hardware, and writes them as Gappa takes them.
 
 use std::collections::HashMap;
 use std::fmt::Write as _;
@@ -36,7 +36,7 @@ pub enum Term {
     Round {
         /// The term that is rounded.
         of: Id,
-        /// Fraction bits that are kept; negative where integer bits are dropped.
+        /// The number of fraction bits that are kept; negative if integer bits are dropped.
         fraction: i32,
         /// The direction.
         direction: Direction,
@@ -53,10 +53,10 @@ pub struct Terms {
 }
 
 impl Terms {
-    /// Returns the term; `name` is what its definition is called, if it gets one.
+    /// Returns the term; `name` becomes the name of its definition, if it gets one.
     ///
-    /// Operands of a sum and a product are put in one order, so that hardware and formula have them in the
-    /// same: Gappa compares a product with another factor by factor.
+    /// Operands of a sum and a product are put in one order, so that hardware and formula have the same: Gappa
+    /// compares a product with another factor by factor.
     pub fn insert(&mut self, term: Term, name: &str) -> Id {
         let term = match term {
             Term::Add(a, b) if self.is_after(a, b) => Term::Add(b, a),
@@ -78,8 +78,8 @@ impl Terms {
         id
     }
 
-    /// Returns whether `a` stands behind `b`: numbers stand first, variables last, and other terms by the variables and the degree
-    /// that they have.
+    /// Returns whether `a` comes after `b` in the order of terms. Numbers come first and variables last. All other
+    /// terms are ordered by their variables and degree.
     fn is_after(&self, a: Id, b: Id) -> bool {
         let kind = |id: Id| match self.get(id) {
             Term::Number(_) => 0,
@@ -143,7 +143,7 @@ impl Terms {
         }
     }
 
-    /// Returns the values of all terms where the variables have these; NaN where a variable has none.
+    /// Returns the values of all terms for these values of the variables. A variable without a value is NaN.
     pub fn evaluate(&self, variables: &HashMap<String, f64>) -> Vec<f64> {
         let mut values: Vec<f64> = Vec::with_capacity(self.terms.len());
         for (term, _) in &self.terms {
@@ -173,7 +173,7 @@ impl Terms {
         cone::needed(self.terms.len(), roots.iter().copied(), |id| self.operands(id))
     }
 
-    /// Returns the term without its roundings. `known` are those that are known.
+    /// Returns the term without its roundings. `known` holds the results so far.
     pub fn unrounded(&mut self, id: Id, known: &mut HashMap<Id, Id>) -> Id {
         if let Some(&twin) = known.get(&id) {
             return twin;

@@ -1,7 +1,8 @@
-//! Finds a point that satisfies the hypotheses of a script, which shows that its statement speaks of something.
+//! Finds a point that satisfies the hypotheses of a script. The point shows that the statement is not about an empty
+//! set.
 //!
-//! The script's own text is read: definitions, places of the point (`@FIX`), intervals and signs. A point is found by descent on how far
-//! the hypotheses are from holding, and counts when all of them hold in f64.
+//! The search reads the script's own text: definitions, places of the point (`@FIX`), intervals and signs. It finds a
+//! point by descent on the distance of the hypotheses from holding. The point counts if all of them hold in f64.
 
 use std::collections::HashMap;
 
@@ -18,7 +19,7 @@ const STARTS: usize = 64;
 /// Fraction bits of a variable that has no place of the point.
 const CONTINUOUS: i32 = 20;
 
-/// Where a variable without an interval is looked for, on both sides of 0.
+/// The largest absolute value at which a variable without an interval is looked for.
 const FREE: f64 = 1024.0;
 
 /// A goal that nothing satisfies, by which Gappa is asked for a contradiction.
@@ -51,7 +52,7 @@ struct Hypotheses {
 }
 
 impl Hypotheses {
-    /// Parses a script; `None` where its text has a part that is not understood.
+    /// Parses a script; returns `None` if a part of its text is not understood.
     fn of(script: &str) -> Option<Self> {
         let (definitions, statement) = script.split_once("\n{ ")?;
         let mut terms = Terms::default();
@@ -99,7 +100,7 @@ impl Hypotheses {
         Some(Self { variables: variables.collect(), terms, intervals })
     }
 
-    /// Returns how far the hypotheses are from holding: 0 where they hold.
+    /// Returns the distance of the hypotheses from holding: 0 if they hold.
     fn violation(&self, point: &[i64]) -> f64 {
         let variables = self.variables.iter().zip(point);
         let variables = variables.map(|(it, &raw)| (it.name.clone(), raw as f64 * it.unit));
@@ -140,7 +141,7 @@ impl Hypotheses {
     }
 }
 
-/// Returns a point at which the hypotheses of a script hold, in words; `None` where none is found.
+/// Returns a point at which the hypotheses of a script hold, in words; `None` if no point is found.
 pub fn witness(script: &str) -> Option<String> {
     if !script.contains(IMPLIES) {
         return Some("every point".to_owned());
@@ -172,7 +173,7 @@ pub fn witness(script: &str) -> Option<String> {
 
 /// Parses an expression of a script into `terms` and returns its term; `None` if it is not understood.
 ///
-/// A name stands for its term in `names`, or else for a new variable.
+/// A name is its term in `names`, or else a new variable.
 fn expression(text: &str, terms: &mut Terms, names: &HashMap<String, Id>) -> Option<Id> {
     if let Some(rounded) = text.strip_prefix("fixed<") {
         let (how, of) = rounded.split_once(">(")?;
@@ -218,7 +219,8 @@ fn term(formula: &Formula, terms: &mut Terms, names: &HashMap<String, Id>) -> Op
 mod tests {
     use super::*;
 
-    /// x² ≥ 1/4 and x ≤ 0 in quarters, and down to integers −1: x is −1/2, −3/4 or −1. With x ≥ 1/4 besides there is none.
+    /// x² ≥ 1/4 and x ≤ 0 in quarters, and down to integers −1: x is −1/2, −3/4 or −1. With x ≥ 1/4 in addition,
+    /// there is no such x.
     #[test]
     fn a_witness_satisfies_the_hypotheses() {
         let script = |more: &str| {

@@ -1,6 +1,6 @@
 //! Evaluates the cells of a module that Yosys has read from Verilog, on terms.
 //!
-//! They mean what Yosys documents of them.
+//! A cell has the meaning that Yosys documents.
 
 use anyhow::{Context, Result, bail, ensure};
 
@@ -21,7 +21,7 @@ pub type Bits = Vec<Bit>;
 pub struct Values(Vec<Option<(Id, u32)>>);
 
 impl Values {
-    /// Makes the values of so many wires, none of which has a value yet.
+    /// Makes the values of `wires` wires. No wire has a value yet.
     pub fn new(wires: usize) -> Self {
         Self(vec![None; wires])
     }
@@ -61,7 +61,7 @@ impl Values {
         word.unwrap_or_else(|| terms.constant(0, 1))
     }
 
-    /// Returns the lowest bits that stand beside each other in one term, and how many they are.
+    /// Returns the lowest bits that lie side by side in one term, and their number.
     fn run(&self, terms: &mut Terms, bits: &[Bit]) -> (Id, usize) {
         let source = |bit: Bit| if let Bit::Wire(wire) = bit { self.0[wire] } else { None };
         let first = source(bits[0]);
@@ -99,10 +99,10 @@ impl Values {
         terms.choice(inside, word, beyond)
     }
 
-    /// Returns the result of a cell with the inputs A, B and S, of so many bits.
+    /// Returns the result of a cell with the inputs A, B and S. The result has `width` bits.
     ///
     /// # Errors
-    /// It is not known here, or wider than terms are.
+    /// Fails if the cell is not known here, or wider than terms are.
     pub fn cell(
         &self,
         terms: &mut Terms,

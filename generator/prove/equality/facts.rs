@@ -1,9 +1,9 @@
-//! Makes instances of laws about products and words of memories, both of which the solver takes for unknown functions.
+//! Makes instances of laws about products and words of memories. The solver treats both as uninterpreted functions.
 //!
-//! Products are of integers modulo 2^64: a product is the sum of the products of the parts of a factor; a product by 0,
-//! 1 and -1 is known; the product of factors within bounds is within bounds. A word of a small memory is the one at its
-//! address; of a larger one it is within the bounds of all words. Every instance is true, whatever the terms are: one
-//! that does not help does no harm.
+//! Products are of integers modulo 2^64. A product is the sum of the products of the parts of a factor. A product by
+//! 0, 1 and -1 is known. The product of factors within bounds is within bounds. A word of a small memory is the word
+//! at its address; a word of a larger one is within the bounds of all words. Every instance is true, whatever the
+//! terms are, so an unnecessary one does no harm.
 
 use std::collections::{HashMap, HashSet};
 
@@ -18,8 +18,8 @@ const ROWS: u32 = 8;
 /// A memory of so few words is written out.
 const WORDS: usize = 16;
 
-/// Returns facts about the terms of a cone, one bit each, which is 1. With `parts`, they say of products what they are
-/// in parts, and add products.
+/// Returns facts about the terms of a cone. Each fact is one bit, which is 1. With `parts`, facts also say that a
+/// product is the sum of its parts, which adds products.
 pub fn about(terms: &mut Terms, roots: &[Id], products: &[Product], parts: bool) -> Vec<Id> {
     let mut facts = Vec::new();
     let mut seen = HashSet::new();
@@ -105,8 +105,8 @@ struct Parts {
     there: bool,
 }
 
-/// Divides a product where a factor is the upper bits of something: the whole times the other is this product, shifted,
-/// and that of the lower bits.
+/// Divides a product if a factor is the upper bits of a larger term. The larger term times `other` is this product,
+/// shifted, plus the product of the lower bits and `other`.
 fn in_parts(terms: &mut Terms, factor: Id, other: Id) -> Option<Parts> {
     let (bits, signed) = extended(terms, factor)?;
     let (whole, low) = whole(terms, bits)?;
@@ -166,7 +166,7 @@ fn square_in_parts(terms: &mut Terms, factor: Id, whole: Id, rest: Id) -> Option
     Some(Parts { product, sum, there: true })
 }
 
-/// Returns bits with those of the same term below their lowest, and how many these are.
+/// Returns `bits` joined with the bits of the same term below their lowest, and the number of the bits below.
 fn whole(terms: &mut Terms, bits: Id) -> Option<(Id, u32)> {
     match *terms.term(bits) {
         Term::Slice { of, low } if low > 0 => {
@@ -204,7 +204,7 @@ fn rows(terms: &mut Terms, bits: Id, other: Id) -> Id {
     })
 }
 
-/// Shifts a term up by so many bits, with zeros below; the result has 64 bits.
+/// Shifts a term up by `by` bits, with zeros below; the result has 64 bits.
 pub fn shifted(terms: &mut Terms, id: Id, by: u32) -> Id {
     if by == 0 {
         return id;
@@ -213,7 +213,8 @@ pub fn shifted(terms: &mut Terms, id: Id, by: u32) -> Id {
     terms.make(Term::Join(kept, zeros), MAX_WIDTH)
 }
 
-/// Returns the fact that the product is between those of the ends, if the factors are within their ranges.
+/// Returns the fact that the product is between the products at the ends of the ranges, if the factors are within
+/// their ranges.
 fn within(terms: &mut Terms, product: &Product) -> Option<Id> {
     let [a, b] = product.factors;
     let [x, y] = product.ranges;
@@ -227,7 +228,8 @@ fn within(terms: &mut Terms, product: &Product) -> Option<Id> {
     Some(terms.make(Term::Or(not, conclusion), 1))
 }
 
-/// Returns whether 64 bits are a number of an interval, two's complement; none if that is no question of 64 bits.
+/// Returns whether 64 bits are a number of an interval, two's complement. Returns `None` if the ends of the interval
+/// do not fit into 64 bits.
 fn between(terms: &mut Terms, value: Id, range: Interval) -> Option<Id> {
     let low = i64::try_from(range.0).ok()?;
     let high = i64::try_from(range.1).ok()?;

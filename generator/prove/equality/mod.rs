@@ -1,9 +1,10 @@
 //! Proves with an SMT solver that a pipeline and its sequential core compute the same outputs for every point.
 //!
-//! Both netlists are executed symbolically, one clock at a time. The core runs its microprogram from the clock that takes `start`; the
-//! pipeline carries one point, with anything before and behind it. Multiplications and table reads are uninterpreted functions with a
-//! few arithmetic lemmas (`facts`). Each checkpoint is a lemma on the way: once a value of a stage is proved equal to the core's register,
-//! it stands for that register. The code shares nothing with `hdl/pipeline`, which built the pipeline.
+//! Both netlists are executed symbolically, one clock at a time. The core runs its microprogram from the clock that
+//! takes `start`; the pipeline carries one point, with anything before and behind it. Multiplications and table reads
+//! are uninterpreted functions with a few arithmetic lemmas (`facts`). Each checkpoint is a lemma on the way: once a
+//! value of a stage is proved equal to the core's register, it replaces that register. The code shares nothing with
+//! `hdl/pipeline`, which built the pipeline.
 
 mod cells;
 mod facts;
@@ -57,7 +58,7 @@ pub enum Verdict {
 /// Why the solver does not decide a question.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Open {
-    /// It answers that it does not know, or with values of products and words that are not those of any point.
+    /// The solver does not know, or it answers with values of products and words that no point has.
     Unknown,
     /// It was stopped at its time limit.
     Limit,
@@ -70,7 +71,7 @@ pub struct Proof {
     pub outputs: usize,
     /// Registers on the way that are equal, in all ways.
     pub registers: usize,
-    /// Ways through the microprogram, where operands decide.
+    /// The number of ways through the microprogram, if operands decide.
     pub ways: usize,
     /// Products that the solver knows nothing of.
     pub products: usize,
@@ -78,7 +79,7 @@ pub struct Proof {
     pub questions: usize,
 }
 
-/// A point of which the cores make different things.
+/// A point for which the cores compute different outputs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Difference {
     /// Bit patterns, by name.
@@ -105,7 +106,7 @@ impl fmt::Display for Difference {
 /// Compares a pipeline with its sequential core, within a time limit on the solver.
 ///
 /// # Errors
-/// The designs have different ports, do not come to an end, or the solver does not do its work.
+/// Fails if the designs have different ports or do not come to an end, or if the solver does not do its work.
 pub fn compare(
     sequential: &Design,
     pipeline: &Design,
@@ -318,7 +319,8 @@ impl<'p> Comparison<'p> {
         Branch { conditions: Vec::new(), state, visits, clocks: 0 }
     }
 
-    /// Executes the microprogram to the results, or to where operands decide: the ways from there are added to `ways`.
+    /// Executes the microprogram to the results, or to a point at which operands decide. The ways from there are
+    /// added to `ways`.
     fn follow(
         &mut self,
         core: &Execution<'_>,
@@ -359,7 +361,8 @@ impl<'p> Comparison<'p> {
         bail!("the sequential core shows no result")
     }
 
-    /// Adds both ways from where a register of the sequencer depends on operands, as far as they can be gone.
+    /// Adds both ways from a point at which a register of the sequencer depends on operands. A way that is impossible
+    /// is left out.
     fn fork(&mut self, way: Branch, undecided: Id, ways: &mut Vec<Branch>) -> Result<Answer> {
         let condition = match *self.terms.term(undecided) {
             Term::Choice(condition, ..) => condition,
@@ -381,7 +384,7 @@ impl<'p> Comparison<'p> {
         Ok(Answer::Equal)
     }
 
-    /// Returns terms that are 1 where the conditions hold.
+    /// Returns terms that are 1 if the conditions hold.
     fn holding(&mut self, conditions: &[(Id, bool)]) -> Vec<Id> {
         let terms = &mut self.terms;
         conditions.iter().map(|&(it, value)| if value { it } else { terms.not(it) }).collect()
@@ -471,7 +474,7 @@ impl<'p> Comparison<'p> {
             self.terms.replace(&self.divided, &mut whole);
             let [mut whole] = whole;
             if let Some(net) = wholes.of(sum) {
-                // Of the bits above, which bounds on the factors decide, nothing is said.
+                // This says nothing about the bits above, which bounds on the factors decide.
                 let width = self.terms.width(net);
                 let low = self.terms.slice(whole, 0, width);
                 let equal = self.terms.equal(low, net);
@@ -513,7 +516,7 @@ impl<'p> Comparison<'p> {
                     values.iter().find(|(id, _)| id == operand).map_or(0, |&(_, bits)| bits)
                 };
                 let operands: Vec<u64> = self.operands.iter().map(of).collect();
-                // What the solver made up of products need not be so; what it chose of operands may show all the same.
+                // The solver's products may be made up. Its operands may show a difference all the same.
                 let difference = match differs(self.pair, &operands)? {
                     None => tried(self.pair, Some(&operands))?,
                     found => found,

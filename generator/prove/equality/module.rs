@@ -60,7 +60,7 @@ struct Write {
 pub struct Module {
     inputs: Vec<(String, Bits)>,
     outputs: Vec<(String, Bits)>,
-    /// Each after what it reads.
+    /// Each cell comes after the cells that it reads.
     cells: Vec<Cell>,
     registers: Vec<Register>,
     pub memories: Vec<Memory>,
@@ -94,7 +94,7 @@ impl Module {
     /// Reads a module of Yosys's JSON.
     ///
     /// # Errors
-    /// It has a cell that is not known here, or what is no clocked circuit with the one clock `clk`.
+    /// Fails if a cell is not known here, or if the module is no clocked circuit with the one clock `clk`.
     pub fn new(json: &Value) -> Result<Self> {
         let mut module = Self {
             inputs: Vec::new(),
@@ -199,7 +199,7 @@ impl Module {
         Ok(())
     }
 
-    /// Puts each cell after those whose output it reads.
+    /// Puts each cell after the cells whose output it reads.
     fn order(&mut self) -> Result<()> {
         let all = |cell: &Cell| cell.inputs.iter().flatten().copied().collect::<Bits>();
         let registers = self.registers.iter().map(|it| (&it.output, &it.data));
@@ -254,7 +254,7 @@ impl Module {
         Ok(())
     }
 
-    /// Makes what registers hold at power-up, of which nothing is known.
+    /// Returns the contents of registers at power-up, which are unknown.
     pub fn power_up(&self, terms: &mut Terms) -> Held {
         self.registers.iter().map(|it| unknown(terms, it.output.len())).collect()
     }
@@ -262,7 +262,7 @@ impl Module {
     /// Returns the value of every wire, from the inputs and the read ports of memories that are written.
     ///
     /// # Errors
-    /// A cell that is not known here, or wider than terms are.
+    /// Fails if a cell is not known here, or wider than terms are.
     pub fn settle(
         &self,
         terms: &mut Terms,

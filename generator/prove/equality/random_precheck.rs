@@ -7,7 +7,7 @@ use glint_rtl::netlist::{Design, Interpreter, NetId, Role};
 /// More clocks than a computation takes.
 const MOST_CLOCKS: usize = 8192;
 
-/// A pipeline and its sequential core, and what they have in common.
+/// A pipeline and its sequential core, with the operands and outputs that both have.
 pub struct Pair<'a> {
     pub sequential: &'a Design,
     pub pipeline: &'a Design,
@@ -23,7 +23,7 @@ impl<'a> Pair<'a> {
     /// Pairs the cores, by the operands and the outputs that they have in common.
     ///
     /// # Errors
-    /// The second is no pipeline, or one has a port that the other lacks.
+    /// Fails if the second design is no pipeline, or if one design has a port that the other lacks.
     pub fn new(sequential: &'a Design, pipeline: &'a Design) -> Result<Self> {
         let stages = pipeline.pipeline.as_ref().context("the design is no pipeline")?;
         let names = |design: &Design, wanted: fn(Role) -> bool| {
@@ -59,10 +59,11 @@ impl<'a> Pair<'a> {
         })
     }
 
-    /// Returns the bit patterns of the outputs, of the sequential core and of the pipeline, for those of the operands.
+    /// Returns the bit patterns of the outputs, of the sequential core and of the pipeline, for the bit patterns of
+    /// the `operands`.
     ///
     /// # Errors
-    /// No result is shown.
+    /// Fails if no result is shown.
     pub fn outputs(&self, operands: &[u64]) -> Result<[Vec<u64>; 2]> {
         Ok([self.of_sequential(operands)?, self.of_pipeline(operands)?])
     }

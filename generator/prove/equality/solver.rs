@@ -15,9 +15,9 @@ use glint_tools::{LimitReached, Tool};
 
 /// The solver's answer on terms that are asked to be 1 together.
 pub enum Outcome {
-    /// They never are.
+    /// The terms are never all 1.
     Unsatisfiable,
-    /// They are for these values of unknowns, as far as products and memories are not known.
+    /// The terms are all 1 for these values of unknowns, as far as products and memories are not known.
     Satisfiable(Vec<(Id, u64)>),
     /// Neither.
     Undecided(Open),
@@ -36,7 +36,7 @@ impl<'a> Solver<'a> {
     /// Gives the solver a directory of its own, and `limit` for all its answers together.
     ///
     /// # Errors
-    /// No temporary directory can be made.
+    /// Fails if no temporary directory can be made.
     pub fn new(tool: &'a Tool, limit: Duration) -> Result<Self> {
         let dir = Directory::new().context("cannot make a temporary directory")?;
         Ok(Self { tool, end: Instant::now() + limit, dir, asked: 0 })
@@ -45,7 +45,7 @@ impl<'a> Solver<'a> {
     /// Returns whether terms of one bit can all be 1, given facts about the products.
     ///
     /// # Errors
-    /// The solver does not do its work.
+    /// Fails if the solver does not do its work.
     pub fn ask(
         &mut self,
         terms: &mut Terms,

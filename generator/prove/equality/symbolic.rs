@@ -5,7 +5,8 @@ use glint_base::fixed::MAX_WIDTH;
 use glint_base::interval::Interval;
 use glint_rtl::netlist::{Design, Driver, NetId, Op, Role};
 
-/// A product of 64 bits, and what the design says of its factors: to be believed only where they are shown to keep to it.
+/// A product of 64 bits, and the ranges that the design states for its factors. A range may be used only if the
+/// factor is shown to keep to it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Product {
     pub factors: [Id; 2],
@@ -20,7 +21,7 @@ pub struct State {
 }
 
 impl State {
-    /// Puts a condition, one bit, at a value in what is held.
+    /// Replaces a condition, one bit, by `value` in the terms of the state.
     pub fn assume(&mut self, terms: &mut Terms, condition: Id, value: bool) {
         let mut all: Vec<Id> = self.registers.iter().chain(&self.words).copied().collect();
         terms.assuming(condition, value, &mut all);
@@ -48,7 +49,7 @@ impl<'a> Execution<'a> {
         }
     }
 
-    /// Makes the state at power-up, of which nothing is known.
+    /// Returns the state at power-up, which is unknown.
     pub fn power_up(&self, terms: &mut Terms) -> State {
         let design = self.design;
         let registers = design.registers.iter().map(|it| terms.unknown(design.width(it.q)));

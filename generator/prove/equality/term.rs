@@ -1,7 +1,7 @@
-//! Makes and simplifies terms of bit-vectors: what nets carry when operands are not known.
+//! Makes and simplifies terms of bit-vectors: the values of nets when operands are unknown.
 //!
-//! A term is made once: equal ones are the same. Constants fold, which is what makes a microprogram run, and wiring is
-//! brought into one form, so that many values that are equal are the same term.
+//! Equal terms are made once and are the same. Constants fold, so that a microprogram can run. Wiring is brought into
+//! one form, so that many values that are equal are the same term.
 
 use std::collections::HashMap;
 
@@ -19,7 +19,7 @@ impl Id {
     }
 }
 
-/// A term. Operands have the width of the result where nothing else is said.
+/// A term. Operands have the width of the result unless the variant says otherwise.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Term {
     /// Any value, the same wherever the number is.
@@ -37,7 +37,7 @@ pub enum Term {
     Product(Id, Id),
     /// One bit: two terms of one width are equal.
     Equal(Id, Id),
-    /// One bit: of two terms of one width the first is less, unsigned.
+    /// One bit: the first of two terms of one width is less, unsigned.
     Less(Id, Id),
     /// One bit: the same, two's complement.
     SignedLess(Id, Id),
@@ -101,7 +101,7 @@ impl Term {
     }
 }
 
-/// Returns a pattern of so many bits, two's complement.
+/// Returns a pattern of `width` bits as a number, two's complement.
 fn signed(bits: u64, width: u32) -> i64 {
     let drop = MAX_WIDTH - width;
     (bits << drop) as i64 >> drop
@@ -231,7 +231,7 @@ impl Terms {
         self.replace(&HashMap::from([(condition, constant)]), terms);
     }
 
-    /// Replaces some terms by others where these terms contain them. What comes in their place is not looked through.
+    /// Replaces some terms by others wherever `terms` contain them. The replacements themselves are not searched.
     pub fn replace(&mut self, by: &HashMap<Id, Id>, terms: &mut [Id]) {
         let mut new: HashMap<Id, Id> = HashMap::new();
         for id in self.cone(terms.iter().copied()) {
@@ -399,7 +399,8 @@ impl Terms {
         }
     }
 
-    /// Returns a sum or a difference: what stands below the lowest bits of `b`, which are 0, passes it by.
+    /// Returns a sum or a difference for which the lowest bits of `b` are 0: the bits of `a` below them pass by the
+    /// adder.
     fn passed_by(&mut self, a: Id, b: Id, width: u32, op: fn(Id, Id) -> Term) -> Option<Id> {
         let low = self.zeros(b);
         if low == 0 || low >= width {

@@ -18,7 +18,7 @@ fn unknowns(random: &mut ChaCha8Rng) -> Vec<u64> {
     (0..64).map(|_| of(random)).collect()
 }
 
-/// Numbers of so many bits, two's complement.
+/// Returns a pattern of `width` bits as a number, two's complement.
 fn signed(bits: u64, width: u32) -> i64 {
     (bits << (64 - width)) as i64 >> (64 - width)
 }
@@ -29,7 +29,7 @@ fn simpler_terms_have_the_values_of_those_that_were_asked_for() {
     for _ in 0..60 {
         let values = unknowns(&mut random);
         let mut terms = Terms::default();
-        // Each with what it is worth.
+        // Each term with its value.
         let mut made: Vec<(Id, u64)> = Vec::new();
         for value in &values[..6] {
             let width = 1 + random.next_u32() % 12;

@@ -1,10 +1,11 @@
 //! Proves that the emitted Verilog of a pipeline shows what its netlist shows, for every point and from any state.
 //!
-//! Both are carried out on terms, the text as Yosys reads it, from registers and memories that hold anything. Nothing is asked
-//! of the text but its ports. A memory that is written is a delay: by going through all values of the counter that addresses
-//! it, a read is shown to give what was written so many clocks before. A clock in which points stay changes nothing, and any
-//! other is one in which the results are taken; it is therefore enough to follow a point while none stays. A register of the
-//! text that is equal to a net of the netlist takes its term, so that the solver is asked of one clock at a time.
+//! The netlist and the text, as Yosys reads it, are executed on terms, from registers and memories that hold
+//! anything. The text only needs the right ports. A memory that is written must be a delay. For all values of the
+//! counter that addresses it, a read is shown to give the word that was written a fixed number of clocks before. A
+//! clock in which points stay changes nothing, and in any other clock the results are taken. It is therefore enough
+//! to follow a point while none stays. A register of the text that is equal to a net of the netlist takes its term,
+//! so that the solver sees one clock at a time.
 
 use std::collections::{HashMap, HashSet};
 use std::time::Duration;
@@ -32,7 +33,7 @@ pub enum TextVerdict {
     Different(String),
     /// The solver does not decide it.
     Open(Open),
-    /// Something that is not known here stands in the text, or a memory of it is no delay.
+    /// The text contains something that is not known here, or one of its memories is no delay.
     Unread(String),
 }
 
@@ -53,7 +54,7 @@ pub struct TextProof {
 /// solver.
 ///
 /// # Errors
-/// The design is no pipeline; the solver does not do its work.
+/// Fails if the design is no pipeline, or if the solver does not do its work.
 pub fn compare_text(
     design: &Design,
     text: &Value,
@@ -118,7 +119,7 @@ fn ended<T>(verdict: TextVerdict) -> Result<T> {
 
 type Roles = HashMap<String, Role>;
 
-/// Registers with what they hold, and what the ports of each memory are given.
+/// Registers with the constants that they hold, and the constants at the ports of each memory.
 type Constants = (HashMap<usize, u64>, Vec<Option<Vec<u64>>>);
 
 /// Finds for each memory the clocks from write to read, of each of its read ports, while all points move on.
@@ -155,8 +156,8 @@ fn delays(module: &Module, roles: &Roles) -> Result<Vec<Vec<usize>>> {
 /// More values than a counter of slots has.
 const MOST_SLOTS: usize = 1024;
 
-/// Returns the clocks from write to read of each read port, for what write and read ports are given in the clocks of a period, which
-/// comes again and again.
+/// Returns the clocks from write to read of each read port. `course` has the values at the write port and the read
+/// ports in each clock of a period, which repeats. Returns `None` if a read port has no fixed number of clocks.
 fn lags(course: &[&[u64]], reads: usize) -> Option<Vec<usize>> {
     let period = course.len();
     let lag = |read: usize, now: usize| {
@@ -169,8 +170,9 @@ fn lags(course: &[&[u64]], reads: usize) -> Option<Vec<usize>> {
     (0..reads).map(of_read).collect()
 }
 
-/// Finds the registers that hold a constant after a clock, of a reset or in which the results are taken, and the constants, and those that
-/// the ports of each memory are given in it where all bits are written; some registers are known before.
+/// Finds the registers that hold a constant after a clock, and the constants at the ports of each memory in that
+/// clock, if all bits are written. The clock is one of a reset, or one in which the results are taken. Some registers
+/// are known before.
 fn constants(
     module: &Module,
     roles: &Roles,
@@ -221,7 +223,7 @@ struct Comparison<'p> {
     proof: TextProof,
 }
 
-/// Returns the term of an input in a clock: operands come with a point, and all other inputs are those of the handshake.
+/// Returns the term of an input in a clock. Operands come with a point, and all other inputs belong to the handshake.
 fn input(
     terms: &mut Terms,
     inputs: &mut HashMap<(String, usize), Id>,
@@ -297,7 +299,7 @@ impl Comparison<'_> {
             for (one, other) in one.into_iter().zip(other) {
                 self.must_equal(Some((moves, true)), one, other, why)?;
             }
-            // What a read gives is the same in both for the same address alone.
+            // A read gives the same word in both only if the address is the same.
             let [one, other] = [&any, &taken].map(|it| memory.control(&mut self.terms, it));
             let reads = 1..=memory.reads.len();
             if one[reads.clone()] != other[reads] {
@@ -361,11 +363,11 @@ impl Comparison<'_> {
         nets
     }
 
-    /// Puts the terms of the netlist in the place of those that registers of the text hold and that are equal.
+    /// Replaces the terms that registers of the text hold by equal terms of the netlist.
     fn register(&mut self, held: &mut Held, nets: &[Id]) -> Result<()> {
         let known: HashSet<Id> = nets.iter().copied().collect();
         let cone = self.terms.cone(held.iter().flatten().chain(nets).copied());
-        // What does not depend on the point is of no use.
+        // A term that does not depend on the point is of no use.
         let mut ours: HashSet<Id> =
             self.inputs.iter().filter(|((_, clock), _)| *clock == 0).map(|(_, id)| *id).collect();
         for &id in &cone {
@@ -414,7 +416,7 @@ impl Comparison<'_> {
         Ok(())
     }
 
-    /// Ends the comparison unless two terms are equal, where a bit has a value.
+    /// Ends the comparison unless two terms are equal whenever a bit has a value.
     fn must_equal(
         &mut self,
         condition: Option<(Id, bool)>,
@@ -458,8 +460,8 @@ impl Comparison<'_> {
         }
     }
 
-    /// Finds values of the unknowns for which terms are 1, and tells them in words: those that were found, or some at
-    /// random.
+    /// Finds values of the unknowns for which the `wanted` terms are 1, and describes them in words. It tries random
+    /// values and the values that the solver `found`.
     fn difference(
         &self,
         wanted: &[Id],

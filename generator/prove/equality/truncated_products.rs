@@ -1,7 +1,8 @@
-//! Finds products of the core that the pipeline has of the lowest bits of their factors alone.
+//! Finds products of the core for which the pipeline multiplies only the lowest bits of the factors.
 //!
-//! A pipeline leaves the highest bit of a factor to itself: where it is a sign, or set where all other bits are 0. The lowest bits
-//! may be a value that the core has in other terms, which the solver is asked about.
+//! A pipeline treats the highest bit of a factor separately if the bit is a sign, or if it is set only where all
+//! other bits are 0. The core may have the lowest bits in other terms; the solver then decides whether they are
+//! equal.
 
 use anyhow::Result;
 
@@ -12,7 +13,8 @@ use super::split_products::agree;
 use super::term::{Id, Term};
 use glint_base::fixed::MAX_WIDTH;
 
-/// How a factor is made of one of the pipeline's: the same, or its lowest bits, so many.
+/// The relation of a factor to a factor of the pipeline: they are the same, or the lowest bits of the first, in this
+/// number, are the second.
 #[derive(Clone, Copy)]
 enum Factor {
     Same,
@@ -20,7 +22,7 @@ enum Factor {
 }
 
 impl Comparison<'_> {
-    /// Notes what the products of a cone are by those of the pipeline.
+    /// Notes how the products of a cone follow from the products of the pipeline.
     pub(super) fn divide_by_lowest(&mut self, wanted: &[Id]) -> Result<()> {
         for id in self.terms.cone(wanted.iter().copied()) {
             let Term::Product(a, b) = *self.terms.term(id) else { continue };
@@ -37,7 +39,8 @@ impl Comparison<'_> {
         Ok(())
     }
 
-    /// Notes what a product is if its factors are made of those of a product of the pipeline; whether they are.
+    /// Notes how a product follows from a product of the pipeline, if its factors are made of the factors of that
+    /// product. Returns whether they are.
     fn by_parts(&mut self, [a, b]: [Id; 2], [c, d]: [Id; 2]) -> Result<bool> {
         let (Some(first), Some(second)) = (self.made(a, c)?, self.made(b, d)?) else {
             return Ok(false);
@@ -69,8 +72,8 @@ impl Comparison<'_> {
         Ok(matches!(said, Outcome::Unsatisfiable))
     }
 
-    /// Notes what the product of `factor` and `other` is by that of `part` and `other`: the same, or that and the product of the
-    /// bits above, which is one by 0, 1 or -1.
+    /// Notes how the product of `factor` and `other` follows from the product of `part` and `other`. They are equal,
+    /// or they differ by the product of the bits above and `other`, which is a product by 0, 1 or -1.
     fn note(&mut self, factor: Id, part: Id, made: Factor, other: Id) {
         let terms = &mut self.terms;
         let product = terms.make(Term::Product(factor, other), MAX_WIDTH);

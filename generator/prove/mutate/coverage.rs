@@ -74,10 +74,10 @@ impl<'a> Watch<'a> {
 }
 
 impl Coverage {
-    /// Runs a test of `points` results, and records where it reads each word.
+    /// Runs a test of `points` results, and records the places at which it reads each word.
     ///
     /// # Errors
-    /// A design that cannot be simulated.
+    /// Fails if the design cannot be simulated.
     pub(super) fn of(design: &Design, lockstep: &Lockstep<'_>, points: u64) -> Result<Self> {
         let operands: Vec<NetId> = design
             .registers
@@ -100,7 +100,7 @@ impl Coverage {
         Ok(Self { places: all, operands })
     }
 
-    /// Returns where a word is read.
+    /// Returns the places at which a word is read.
     pub(super) fn places(&self, rom: RomId, word: usize) -> &[Place] {
         &self.places[rom.index()][word]
     }

@@ -44,7 +44,7 @@ impl Bit {
     }
 }
 
-/// Where a fault is, and what it does there.
+/// The place of a fault, and the change there.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Site {
     /// A bit of a net.
@@ -66,7 +66,7 @@ pub struct Fault {
     pub id: String,
     /// The kind of the fault.
     pub kind: FaultKind,
-    /// Where.
+    /// The place of the fault.
     pub site: Site,
 }
 
@@ -78,7 +78,7 @@ impl Faults {
     /// Lists all faults, but of large ROMs a sample that is always the same.
     pub fn of(design: &Design) -> Self {
         let mut faults = Self::default();
-        // The environment's part, and what the fields of the control word name bit by bit.
+        // Left out: the reset, which is the environment's, and the control word, whose fields are nets of their own.
         let reset = design.port(|role| role == Role::Reset).map(|port| port.net);
         let control = design.roms.get(design.control.rom.index()).map(|rom| rom.data);
         let left_out = [reset, control];
@@ -101,7 +101,7 @@ impl Faults {
         faults
     }
 
-    /// Keeps so many, spread evenly, if there are more.
+    /// Keeps `most` faults, spread evenly, if there are more.
     pub fn thin(&mut self, most: usize) {
         let all = self.0.len();
         let mut at = 0;
@@ -121,7 +121,7 @@ impl Faults {
         self.0.len()
     }
 
-    /// Returns whether there is none.
+    /// Returns whether there are no faults.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
@@ -135,8 +135,8 @@ impl Faults {
         self.0.push(Fault { id, kind, site });
     }
 
-    /// Adds the faults of the bits of a net; none of a constant, which is at fault as a whole, or of another name of a
-    /// net.
+    /// Adds the faults of the bits of a net. A constant, which is at fault as a whole, and another name of a net have
+    /// no such faults.
     fn bits(&mut self, id: NetId, net: &Net) {
         if matches!(net.driver, Driver::Constant(_) | Driver::Undriven | Driver::Op(Op::Relabel(_)))
         {

@@ -11,10 +11,10 @@ use regex::Regex;
 
 use glint_tools::Tool;
 
-/// The file in which the module with a fault stands beside the fault-free one.
+/// The file of the module with a fault, beside the fault-free one.
 pub(super) const MUTANT: &str = "glint_mutant.v";
 
-/// The nets that may differ, one a line, and what Yosys says in the end.
+/// The file of the nets that may differ, one a line. [`STATUS`] is the file of Yosys's final answer.
 const FREE: &str = "glint_free.txt";
 const STATUS: &str = "glint_status.txt";
 
@@ -32,15 +32,17 @@ fn pattern(text: &str) -> Regex {
     Regex::new(text).expect("a pattern of ours")
 }
 
-/// Returns whether Yosys proves that every port and register of the module `name` carries the same in both for all
-/// inputs: temporal induction from a state in which they agree, cells with the same inputs, multipliers and ROMs among
-/// them, taken together first. At first all other nets of the same name are shown to be equal too, which makes the
-/// proof short; those that are not are then left free. The files of either are in `directory`, the fault-free ones and
-/// those in which [`MUTANT`] is one; instances of a module in another file are taken as they are. A proof that fails or
-/// takes more than `limit` proves nothing.
+/// Returns whether Yosys proves that every port and register of the module `name` carries the same in the fault-free
+/// module and in the mutant, for all inputs. A proof that fails or takes more than `limit` proves nothing.
+///
+/// The proof is temporal induction from a state in which the two agree. Cells with the same inputs, including
+/// multipliers and ROMs, are merged first. At first all other nets of the same name are shown to be equal too, which
+/// makes the proof short; nets that differ are then left free. The files of both are in `directory`: `gold` are the
+/// fault-free files, and in `gate` one file is [`MUTANT`]. Instances of a module in another file are taken as they
+/// are.
 ///
 /// # Errors
-/// Yosys is missing; a file cannot be read or written.
+/// Fails if Yosys is missing, or if a file cannot be read or written.
 pub(super) fn proves(
     directory: &Path,
     name: &str,
@@ -92,7 +94,7 @@ fn commands(name: &str, [gold, gate]: [&[&str]; 2], is_free: bool) -> String {
             "read_verilog {files}; prep{flatten} -top {name}; opt; rename {name} {by}; design -stash {by}; "
         )
     };
-    // Going backward, cells whose results are equal would have their inputs compared, those that are free too.
+    // Going backward would compare the inputs of cells whose results are equal, including inputs that are free.
     let (make, join) = if is_free {
         (format!("equiv_make -blacklist {FREE}"), "equiv_struct -fwonly -icells")
     } else {

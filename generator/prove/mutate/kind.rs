@@ -1,10 +1,10 @@
-//! The kinds of faults, and what they are called in tables.
+//! The kinds of faults, and their names in tables.
 
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-/// The kinds, each with what it is called in tables, in their order.
+/// The kinds in their order, each with its name in tables.
 macro_rules! kinds {
     ($($(#[$doc:meta])* $kind:ident = $name:literal,)*) => {
         /// The kind of a fault.
@@ -48,9 +48,9 @@ kinds! {
     Rounding = "rounding wrong",
     /// The operands of a difference or a comparison change places.
     Operands = "operands swapped",
-    /// Another operator stands in a cell's place.
+    /// The cell has another operator.
     Operator = "operator wrong",
-    /// The bits beside those that are meant are taken.
+    /// Bits next to the right ones are taken.
     Wiring = "wiring wrong",
     /// A register takes its data always, or never.
     Enable = "enable dropped",

@@ -1,9 +1,9 @@
 //! Tests the tests by mutation: plants faults, and finds which of them the tests notice.
 //!
-//! Faults are planted one at a time, in the netlist ([`Faults`]) and in the emitted Verilog, and what a
-//! configuration is tested with is run on each mutant. A mutant is *caught*, or *equivalent*, which is
-//! proved, or *undecided*. What the test does not notice is never called equivalent for that reason. Apart from that,
-//! and on its own, the bench that is shipped with the core runs on each: that is all that its user has.
+//! Faults are planted one at a time, in the netlist ([`Faults`]) and in the emitted Verilog. Each mutant goes through
+//! the tests of the configuration. It is *caught*, or proved *equivalent*, or *undecided*. A fault is never called
+//! equivalent just because the test does not notice it. Separately, the bench that is shipped with the core runs on
+//! each mutant, because the core's user has nothing else.
 
 mod coverage;
 mod fault;

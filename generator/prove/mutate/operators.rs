@@ -71,7 +71,7 @@ fn add(design: &Design, a: NetId, b: NetId, carry: Option<NetId>) -> Vec<(String
         faults.push(("no-carry".to_owned(), FaultKind::Rounding, op));
     }
     for (bit, rest) in [(a, b), (b, a)] {
-        // One unit in the last place or none: what rounds to nearest.
+        // One unit in the last place or none: this is a rounding to nearest.
         if design.net(bit).range == (0, 1) && carry.is_none() {
             faults.push(("truncated".to_owned(), FaultKind::Rounding, Op::Relabel(rest)));
         }

@@ -1,8 +1,8 @@
 //! Tests a mutant with operands held at values that lead to a word of a table.
 //!
-//! What one value in a million shows is not left to chance. Operands are held where the word at fault is read,
-//! and the others drawn; where an operand is the address, all values of the others that determine `f` are
-//! tried.
+//! Random operands would rarely show a fault that one value in a million shows. The test therefore holds the operands
+//! that lead to the faulty word, and draws the others. If an operand is the address, the test tries all values of the
+//! other operands that determine `f`.
 
 use anyhow::Result;
 
@@ -41,7 +41,7 @@ pub(super) fn addressing(core: &Core, rom: RomId, word: usize) -> Option<Operand
 /// Returns the first difference while these operands are held and the others drawn.
 ///
 /// # Errors
-/// The mutant cannot be simulated.
+/// Fails if the mutant cannot be simulated.
 pub(super) fn drawn(core: &Core, mutant: &Design, held: Operands) -> Result<Option<Difference>> {
     let lockstep = core.lockstep_of(mutant, SEED)?.holding(&held);
     let mismatch = lockstep.run(POINTS, &|_| ())?.mismatch;
@@ -51,7 +51,7 @@ pub(super) fn drawn(core: &Core, mutant: &Design, held: Operands) -> Result<Opti
 /// Runs a few points at which all operands are held.
 ///
 /// # Errors
-/// The mutant cannot be simulated.
+/// Fails if the mutant cannot be simulated.
 pub(super) fn alone(core: &Core, mutant: &Design, held: Operands) -> Result<Option<Difference>> {
     let lockstep = core.lockstep_of(mutant, SEED)?.holding(&held);
     let mismatch = lockstep.run_alone(FEW_POINTS)?.mismatch;
@@ -60,7 +60,7 @@ pub(super) fn alone(core: &Core, mutant: &Design, held: Operands) -> Result<Opti
 
 /// The result of a run through the other operands that determine `f`.
 pub(super) enum Tried {
-    /// They have too many values.
+    /// Nothing was tried: the operands have too many values, or the device computes lines.
     Nothing,
     /// All of them, and no register and no output differs on any clock.
     All,
@@ -71,7 +71,7 @@ pub(super) enum Tried {
 /// Tries all values of the operands that determine `f` while these are held, if they have at most `most_bits` bits.
 ///
 /// # Errors
-/// The mutant cannot be simulated.
+/// Fails if the mutant cannot be simulated.
 pub(super) fn all(
     core: &Core,
     mutant: &Design,
@@ -82,7 +82,7 @@ pub(super) fn all(
     if contract.length().is_some() {
         return Ok(Tried::Nothing);
     }
-    // A colour shows what f is; the register of f is compared.
+    // A colour only shows f, and the register of f is compared.
     let colours = contract.operands().iter().filter(|it| it.colour);
     held.extend(colours.map(|it| (it.name.clone(), it.domain.1)));
     let model = core.device.golden(&core.config);

@@ -9,7 +9,7 @@ use glint_rtl::netlist::{Design, Driver, Net, NetId, Op, RegId, RomId};
 impl Fault {
     /// Returns the design with this fault.
     ///
-    /// It is a design for simulation and emission: the intervals of its nets are those of the fault-free one.
+    /// It is a design for simulation and emission: its nets keep the intervals of the fault-free design.
     pub fn planted(&self, design: &Design) -> Design {
         let mut mutant = design.clone();
         match &self.site {
@@ -24,7 +24,7 @@ impl Fault {
     }
 }
 
-/// Returns a design without what only people read: cheaper to copy.
+/// Returns a design without the texts that only people read: it is cheaper to copy.
 pub(super) fn bare(design: &Design) -> Design {
     let mut bare = design.clone();
     for rom in &mut bare.roms {
@@ -64,7 +64,7 @@ fn at_fault(design: &mut Design, sound: NetId, bit: u32, how: Bit) -> Driver {
 
 fn plant_bit(design: &mut Design, net: NetId, bit: u32, how: Bit) {
     match design.net(net).driver.clone() {
-        // The register of that name is compared: what it takes is at fault.
+        // The register of that name is compared, so the value that it takes is at fault.
         Driver::Register(id) => {
             if let Some(data) = design.register(id).data {
                 let driver = at_fault(design, data, bit, how);
@@ -74,7 +74,7 @@ fn plant_bit(design: &mut Design, net: NetId, bit: u32, how: Bit) {
                 register.reset = register.reset.map(|reset| how.applied(reset, bit));
             }
         }
-        // The port stays what the environment drives: what is read of it is at fault.
+        // The port keeps the value that the environment drives; the value that is read from it is at fault.
         Driver::Input => {
             let driver = at_fault(design, net, bit, how);
             let read = add(design, net, "read", driver);
@@ -118,7 +118,7 @@ fn redirect(design: &mut Design, from: NetId, to: NetId, except: &[NetId]) {
     }
 }
 
-/// Makes a register keep what it has.
+/// Makes a register keep its value.
 fn never(design: &mut Design, id: RegId) {
     let register = &mut design.registers[id.index()];
     register.data = Some(register.q);

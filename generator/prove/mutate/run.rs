@@ -18,8 +18,8 @@ use glint_core::cosim::{Lockstep, Mismatch};
 use glint_golden::Model;
 use glint_rtl::netlist::{Design, RomId};
 
-/// Points of a first look. They are the first of the default test's first stream, so that what differs in
-/// them differs in the test.
+/// The number of points of a first look. They are the first of the default test's first stream, so that a difference
+/// in them is a difference in the test.
 const FIRST_POINTS: u64 = 256;
 
 /// The longer test in which words are looked for that the default test does not read.
@@ -29,7 +29,7 @@ const BEYOND_SEED: u64 = 2;
 /// Plants every one of the faults in turn. `progress` is called after each.
 ///
 /// # Errors
-/// A mutant that cannot be simulated.
+/// Fails if a mutant cannot be simulated.
 pub fn run<'f>(
     core: &Core,
     faults: impl IntoIterator<Item = &'f Fault>,
@@ -82,7 +82,7 @@ impl Bench<'_> {
     fn found(&self, fault: &Fault) -> Result<Found> {
         let mutant = fault.planted(&self.sound);
         let verdict = self.verdict(fault, &mutant)?;
-        // What changes nothing that is compared changes no output.
+        // A fault that changes nothing that is compared changes no output.
         let shipped =
             !matches!(verdict, Verdict::Equivalent(_)) && self.shipped.notices(&mutant)?;
         Ok(Found { fault: fault.clone(), verdict, shipped })
@@ -176,7 +176,8 @@ impl Bench<'_> {
         Ok(if all_tried { Verdict::Equivalent(How::Operands) } else { Verdict::Undecided })
     }
 
-    /// Returns the control operands of computations that read a word: of the default test, or else of a longer one.
+    /// Returns the control operands of computations that read a word. They come from the default test, or else from a
+    /// longer one.
     fn readings(&self, rom: RomId, word: usize) -> Result<Vec<Operands>> {
         let design = &self.sound;
         let mut readings: Vec<Operands> = self.tested.operands(design, rom, word).collect();
@@ -191,8 +192,8 @@ impl Bench<'_> {
         Ok(readings)
     }
 
-    /// Runs the streams of a longer test that read a word, where the default test does not: for a pipeline alone, which
-    /// has no registers that keep the operands of a reading.
+    /// Runs the streams of a longer test that read a word, if the default test does not read it. This is for
+    /// pipelines alone, which have no registers that keep the operands of a reading.
     fn beyond_shows(&self, mutant: &Design, rom: RomId, word: usize) -> Result<Option<Mismatch>> {
         if self.latency == 0 || !self.tested.places(rom, word).is_empty() {
             return Ok(None);
@@ -219,7 +220,8 @@ impl Bench<'_> {
         }
     }
 
-    /// Returns where the default test reads the words at fault: a seed, and the results up to where it shows.
+    /// Returns the places at which the default test reads the words at fault: a seed, and the results up to where it
+    /// shows.
     fn places(&self, site: &Site) -> Vec<(u64, u64)> {
         let Some((rom, words)) = self.words(site) else {
             return Vec::new();

@@ -8,15 +8,15 @@ use super::kind::FaultKind;
 use super::verdict::{Detector, Found, How, Verdict};
 use super::verilog::{ShippedBench, TextFault, TextFound, TextVerdict};
 
-/// At most so much of the faults may be undecided, as a share.
+/// The largest share of the faults that may be undecided.
 pub const TOLERATED: f64 = 0.01;
 
-/// So much of the faults in the Verilog the shipped bench ought to notice by itself: of those that it or a longer
-/// bench notices.
+/// The share of the faults in the Verilog that the shipped bench should notice by itself, among the faults that it or
+/// a longer bench notices.
 pub const GOAL_TEXT: f64 = 0.98;
 
-/// And of the bits in the upper half of the words of tables: of those whose inversion some check notices. Words that
-/// are never read are not among them.
+/// The same share for the bits in the upper half of the words of tables, among the bits whose inversion some check
+/// notices. Words that are never read are not counted.
 pub const GOAL_MEMORY: f64 = 0.95;
 
 /// Some of the faults.
@@ -35,7 +35,7 @@ impl Share {
     }
 }
 
-/// Faults by what became of them.
+/// Faults by their verdicts.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Tally {
     /// How many were planted.
@@ -91,7 +91,7 @@ pub struct Score {
     pub all: Tally,
     /// By kind.
     pub kinds: BTreeMap<FaultKind, Tally>,
-    /// The ids of those that are undecided.
+    /// The ids of the undecided faults.
     pub undecided: Vec<String>,
 }
 
@@ -136,12 +136,12 @@ pub struct TextScore {
     pub undecided: Vec<String>,
     /// The shipped bench's share of the faults that it or a longer one notices.
     pub shipped: Share,
-    /// The ids of those that it does not.
+    /// The ids of the faults that the shipped bench does not notice.
     pub missed: Vec<String>,
 }
 
 impl TextScore {
-    /// Adds up what was found of faults, given in the same order.
+    /// Adds up the findings about `faults`, which `found` gives in the same order.
     pub fn of(faults: &[TextFault], found: &[TextFound]) -> Self {
         let mut score = Self::default();
         for (fault, found) in faults.iter().zip(found) {

@@ -1,4 +1,4 @@
-//! Runs the shipped bench as a check of its own: its vectors, and nothing but the outputs.
+//! Runs the shipped bench as a check of its own: it applies the bench's vectors and compares only the outputs.
 
 use anyhow::Result;
 
@@ -14,7 +14,7 @@ impl Shipped {
     /// Makes the vectors of a configuration's shipped bench.
     ///
     /// # Errors
-    /// Golden model and simulation do not agree.
+    /// Fails if golden model and simulation do not agree.
     pub(super) fn of(core: &Core) -> Result<Self> {
         core.shipped_vectors().map(Self)
     }
@@ -22,13 +22,13 @@ impl Shipped {
     /// Returns whether a mutant differs in an output that the bench compares.
     ///
     /// # Errors
-    /// A mutant that cannot be simulated.
+    /// Fails if the mutant cannot be simulated.
     pub(super) fn notices(&self, mutant: &Design) -> Result<bool> {
         let mut simulator: Simulator = Simulator::new(mutant)?;
         let Self(vectors) = self;
         let outputs: Vec<_> = mutant.outputs().collect();
         let reset = mutant.inputs().position(|port| port.role == Role::Reset);
-        // Of a pipeline, what says that results are those of a point.
+        // In a pipeline, this output says that the results belong to a point.
         let valid = outputs.iter().position(|port| port.role == Role::Valid);
         let shown = valid.filter(|_| mutant.pipeline.is_some());
         let mut was_reset = false;
@@ -36,8 +36,8 @@ impl Shipped {
             for (at, &bits) in inputs.iter().enumerate() {
                 simulator.set(at, bits);
             }
-            // Those of a sequential core depend on registers alone, and stand as they were after the edge before; the
-            // `in_ready` of a pipeline depends on `out_ready`.
+            // Outputs of a sequential core depend on registers alone, and have had their values since the edge
+            // before. The `in_ready` of a pipeline depends on `out_ready`.
             if shown.is_some() {
                 simulator.settle()?;
             }

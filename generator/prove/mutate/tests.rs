@@ -1,4 +1,4 @@
-//! Proofs against the simulation: what is noticed is never proved equivalent.
+//! Compares proofs with the simulation: a fault that is noticed is never proved equivalent.
 
 use std::path::{Path, PathBuf};
 
@@ -14,8 +14,8 @@ use glint_core::registry::Registry;
 use glint_rtl::dsl::fixture::design;
 use glint_rtl::dsl::step;
 
-/// Returns the number of faults of which one is planted: fewer are left out with `GLINT_TESTS=all`. It is no multiple of three, as for
-/// each bit there are three faults.
+/// Returns n, so that one of n faults is planted. With `GLINT_TESTS=all`, n is smaller. It is no multiple of three,
+/// because each bit has three faults.
 fn every() -> usize {
     if std::env::var("GLINT_TESTS").is_ok_and(|tests| tests == "all") { 29 } else { 211 }
 }
@@ -70,7 +70,7 @@ fn no_proof_of_what_shows() {
     assert!(proved * every() > 2_900 && noticed * every() > 29_000, "{proved}, {noticed}");
 }
 
-/// The default test cannot notice what it never comes to, and comes to nearly everything.
+/// The default test cannot notice a fault that it never reaches, and it reaches nearly everything.
 #[test]
 fn what_is_never_reached_is_never_noticed() {
     let core = core("configs/reduced/schlick.toml");
@@ -109,7 +109,7 @@ fn a_point_is_searched_for_that_shows_a_fault() {
     assert!(difference.held.contains(&("cos_gamma".to_owned(), 1 << 5)), "{difference:?}");
 }
 
-/// Below 1.0 are all numbers without a bit from that of 1.0 on, whatever the others are.
+/// A number is below 1.0 if the bit of 1.0 and all higher bits are 0, whatever the lower bits are.
 #[test]
 fn lower_bits_do_not_decide_a_comparison() {
     let core = core("configs/lyon_pipelined.toml");
@@ -141,7 +141,7 @@ fn the_sign_decides_a_comparison_with_0() {
     assert!(!proved("sum[4]:inverted") && !proved("sum[4]:stuck-at-0"));
 }
 
-/// The remainder of a dividend is the difference where that is not negative: no more than before.
+/// The remainder of a dividend is the difference if that is not negative: it is no larger than before.
 #[test]
 fn a_remainder_does_not_grow_by_a_subtraction() {
     let core = core("configs/schlick_pipelined.toml");

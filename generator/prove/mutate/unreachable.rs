@@ -12,7 +12,7 @@ use glint_rtl::sim::Simulator;
 /// The values that the bits of some nets have had.
 struct Watch<'a> {
     nets: &'a [NetId],
-    /// For each net the bits that were 0, and those that were 1.
+    /// For each net, the bits that were 0, and the bits that were 1.
     seen: Vec<[u64; 2]>,
 }
 
@@ -30,10 +30,10 @@ impl Watch<'_> {
 /// has anyway, words of tables that are never read. Of other faults it says nothing.
 ///
 /// # Errors
-/// A design that cannot be simulated.
+/// Fails if the design cannot be simulated.
 pub fn unreached<'f>(core: &Core, faults: &[&'f Fault]) -> Result<Vec<&'f Fault>> {
     let lockstep = core.lockstep(TEST_SEED)?;
-    // What a register holds is seen after the edge; what other nets show in between is not.
+    // A register's value is seen after the edge; values that other nets show in between are not.
     let registers = core.design.registers.iter().map(|register| register.q);
     let nets: Vec<NetId> = registers.collect();
     let begin = |_| Watch { nets: &nets, seen: vec![[0; 2]; nets.len()] };

@@ -13,7 +13,7 @@ use glint_core::cosim::Mismatch;
 pub enum Detector {
     /// The default test: golden model against built-in simulator.
     Cosim,
-    /// Operands held where the words at fault are read.
+    /// Operands held at values that read the words at fault.
     Directed,
 }
 
@@ -60,7 +60,7 @@ pub struct Difference {
 /// The verdict on a mutant.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verdict {
-    /// A check differs, and where.
+    /// A check differs, at this place.
     Caught(Detector, Difference),
     /// Proved to change nothing that is compared.
     Equivalent(How),
@@ -68,7 +68,7 @@ pub enum Verdict {
     Undecided,
 }
 
-/// A fault and what became of it.
+/// A fault and its verdict.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Found {
     /// The fault.

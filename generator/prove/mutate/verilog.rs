@@ -1,11 +1,11 @@
 //! Plants faults in the emitted Verilog, which an emitter could make, and finds whether lint or a bench notices them.
 //!
-//! They are planted in the text of the modules, one at a time. Lint must notice, or a bench: the one that is shipped
-//! with the fault-free text, or a longer one, on whose vectors golden model and built-in simulator agree. What the
-//! shipped bench notices by itself is counted apart.
+//! They are planted in the text of the modules, one at a time. Lint or a bench must notice each fault. The bench is
+//! the one that is shipped with the fault-free text, or a longer one. Golden model and built-in simulator agree on
+//! its vectors. The faults that the shipped bench notices by itself are counted separately.
 //!
-//! No register is put on the other edge of the clock: what it takes is stable by then, so that it carries the
-//! same at every edge that counts, and only timing analysis can tell.
+//! No register is moved to the other edge of the clock. Its input is stable by then, so it carries the same value at
+//! every edge that counts, and only timing analysis can tell.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -24,7 +24,7 @@ use glint_core::package::{self, EmitInputs};
 use glint_tools::transient::Directory;
 use glint_tools::{BuiltBench, Simulator, Tool, Waveform};
 
-/// Results of the longer bench, which runs where the shipped one notices nothing.
+/// Results of the longer bench, which runs if the shipped one notices nothing.
 const POINTS: u64 = 10_000;
 
 /// The time limit of Yosys for the proof that a fault changes nothing. Proofs that succeed take some seconds; a machine that
@@ -34,12 +34,12 @@ const PROOF_LIMIT: Duration = Duration::from_secs(120);
 /// A fault of a text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TextFault {
-    /// The file, the number of the line, and what was done there.
+    /// The file, the number of the line, and the change.
     pub id: String,
     /// The name of the fault's kind.
     pub kind: &'static str,
     file: usize,
-    /// The line, from 0, and what it becomes.
+    /// The line, from 0, and its new text.
     line: usize,
     text: String,
 }
@@ -92,8 +92,7 @@ pub struct Text {
     modules: Vec<usize>,
 }
 
-/// A replacement of text, and its name. A replacement may equal what it replaces; then
-/// there is no fault.
+/// A replacement of text, and its name. If the replacement equals the original text, there is no fault.
 struct Operator {
     kind: &'static str,
     pattern: Regex,
@@ -172,7 +171,7 @@ impl Text {
     /// Collects the fault-free text of a configuration, with its shipped bench.
     ///
     /// # Errors
-    /// A tool is missing; golden model and simulation differ; the design cannot be written.
+    /// Fails if a tool is missing, if golden model and simulation differ, or if the design cannot be written.
     pub fn of(core: &Core) -> Result<Self> {
         TOOLS.iter().try_for_each(|tool| Tool::find(tool).map(drop))?;
         let name = &core.config.name;
@@ -204,10 +203,10 @@ impl Text {
         Ok(text)
     }
 
-    /// Collects the fault-free text of what stands around a core, with the shipped benches and proofs of it.
+    /// Collects the fault-free text of the wrappers around a core, with their shipped benches and proofs.
     ///
     /// # Errors
-    /// Golden model and simulation differ; the design cannot be written.
+    /// Fails if golden model and simulation differ, or if the design cannot be written.
     pub fn of_wrappers(core: &Core) -> Result<Self> {
         let name = &core.config.name;
         let mut text =
@@ -266,7 +265,7 @@ impl Text {
     /// Returns the result for each of the faults.
     ///
     /// # Errors
-    /// A linter is missing, or does not end within `limit`.
+    /// Fails if a linter is missing, or does not end within `limit`.
     pub fn run(
         &self,
         faults: &[TextFault],
@@ -288,7 +287,7 @@ impl Text {
         let (shipped, bench) = self.benches(&files, limit)?;
         let verdict = match (shipped, bench) {
             _ if is_linted => TextVerdict::Lint,
-            // What Icarus does not build is noticed as lint is.
+            // A text that Icarus does not build is noticed in the same way as by lint.
             (ShippedBench::Refused, _) => TextVerdict::Lint,
             (ShippedBench::Silent, Some(bench)) => {
                 if self.proves(&files, fault.file, bench.directory(), limit)? {
@@ -367,7 +366,7 @@ impl Text {
         let top = self.top.trim_end_matches("_tb");
         let multiplier = format!("{top}_multiplier.v");
         let gold: Vec<&str> = if self.files.iter().any(|(name, _)| *name == multiplier) {
-            // By itself it is that of default parameters, which no instance has.
+            // By itself, the multiplier has its default parameters, which no instance has.
             self.modules.iter().map(|&at| self.files[at].0.as_str()).collect()
         } else {
             vec![name]
@@ -389,7 +388,7 @@ fn in_line(
     faults: &mut Vec<TextFault>,
 ) {
     let is_memory = code.contains("_rom [") || code.contains("$readmem");
-    // What is assigned on a clock is no comparison.
+    // An assignment on a clock is no comparison.
     let assignment =
         code.find(" <= ").filter(|_| !code.contains("wire") && !code.contains("assign"));
     let mut numbers = BTreeMap::<&str, usize>::new();

@@ -1,10 +1,10 @@
 //! Searches for a point that shows a fault of a pipeline.
 //!
-//! What a pipeline has and its core has not, such as the parts of a product, may show in a result only when a carry runs
-//! through all bits that are then dropped, and only with some values of the other operands: too seldom for points at random.
-//! The pipeline is therefore simulated beside the mutant, with a point in every lane in each clock that takes one. Points that make a register
-//! differ are kept, those most that do it in a late stage, and new ones are made of them by a change of one operand. What the
-//! golden model predicts is seen to differ at last, or nothing is found, which proves nothing.
+//! Some parts exist in a pipeline and not in its core, such as the parts of a product. A fault there may show only
+//! when a carry runs through all bits that are then dropped, too seldom for random points. The pipeline is therefore
+//! simulated beside the mutant, with a point in every lane in each clock that takes one. The search keeps the points
+//! that make a register differ, preferably in a late stage, and changes one operand of them. It ends when a value
+//! that the golden model predicts differs, or finds nothing, which proves nothing.
 
 use std::sync::Arc;
 
@@ -22,8 +22,8 @@ const LANES: usize = 64;
 /// Clocks of a search.
 const CLOCKS: usize = 1 << 16;
 
-/// Points that differ where the golden model predicts a value, and are not confirmed: after so many the search ends. A
-/// value is predicted only of points that come to its microinstruction.
+/// The number of points after which the search ends, if they differ at a predicted value and are not confirmed. The
+/// golden model predicts a value only for points that come to its microinstruction.
 const TRIES: usize = 32;
 
 /// Points that are kept.
@@ -60,7 +60,7 @@ impl PointSearch {
     /// Prepares the search: finds the ports of the operands, and the registers and checkpoints of each stage.
     ///
     /// # Errors
-    /// A pipeline that is not of this contract, or cannot be simulated.
+    /// Fails if the pipeline is not of this contract, or cannot be simulated.
     pub(super) fn new(
         sound: &Design,
         pipeline: &Pipeline,
@@ -94,11 +94,11 @@ impl PointSearch {
         })
     }
 
-    /// Returns `confirm`'s result for the first point that differs where the golden model predicts a value; none if no such point
-    /// is found, or it confirms none.
+    /// Returns `confirm`'s result for the first point that differs at a value that the golden model predicts. Returns
+    /// `None` if no such point is found, or if `confirm` confirms none.
     ///
     /// # Errors
-    /// As of `confirm`; a mutant that cannot be simulated.
+    /// Fails if `confirm` fails, or if the mutant cannot be simulated.
     pub(super) fn search<T>(
         &self,
         mutant: &Design,

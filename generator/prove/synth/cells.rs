@@ -1,8 +1,8 @@
 //! Measures a core in standard cells of 0.18 µm, before layout: Yosys with a liberty file, and OpenSTA for the delay.
 //!
-//! Nets of a large fan-out are buffered, and cells sized: without, the clock enable of a pipeline takes longer than everything that
-//! it enables. The library is that of Oklahoma State University, in the typical corner, as Debian's `qflow-tech-osu018` has it; a gate is
-//! the area of its NAND2X1.
+//! Nets with a large fan-out are buffered, and cells are sized. Otherwise the clock enable of a pipeline would take
+//! longer than all logic that it enables. The library is the one of Oklahoma State University, in the typical corner,
+//! as Debian's `qflow-tech-osu018` has it. A gate is the area of its NAND2X1.
 
 use std::fs;
 use std::path::Path;
@@ -27,7 +27,7 @@ const CONSTRAINTS: &str = "cells.constr";
 /// Makes sure that there is a library.
 ///
 /// # Errors
-/// There is none; the message says how to get it.
+/// Fails if the library is missing; the message says how to get it.
 pub fn check(liberty: &Path) -> Result<()> {
     if !liberty.is_file() {
         bail!(
@@ -111,7 +111,7 @@ fn timing(
     sources: &Sources,
     netlist: &Netlist,
 ) -> Result<(f64, Vec<Step>)> {
-    // Longer than any path: what is left of it is the slack.
+    // Longer than any path: the path's delay is this period minus the slack.
     const PERIOD: f64 = 1000.0;
     const SCRIPT: &str = "timing.tcl";
     let script = format!(

@@ -1,7 +1,7 @@
 //! Measures a core on iCE40 UltraPlus 5K with Yosys, nextpnr-ice40 and icetime.
 //!
-//! nextpnr-ice40 takes every DSP block for a register and leaves its delay out. `icetime` knows the delay of a
-//! block that is a multiplier and nothing else, so that is what [`glint_tools::synthesis`] makes of products.
+//! nextpnr-ice40 treats every DSP block as a register and leaves its delay out. `icetime` knows the delay of a block
+//! only if it is a pure multiplier. [`glint_tools::synthesis`] therefore makes pure multipliers of products.
 
 use std::collections::BTreeMap;
 
@@ -84,8 +84,8 @@ fn route(
     Ok((1000.0 / nanoseconds, steps(netlist, &path, &placed)))
 }
 
-/// Returns the longest path. What icetime calls a net is often the next one that has a name, so that cells are looked up by their
-/// place.
+/// Returns the longest path. icetime often calls a net by the next one that has a name, so cells are looked up by
+/// their place.
 fn steps(netlist: &Netlist, path: &Value, placed: &Value) -> Vec<Step> {
     let outputs = outputs(placed);
     let points = path[0].as_array().into_iter().flatten();
@@ -110,7 +110,7 @@ fn location_of(cell: &str) -> Option<String> {
     }
 }
 
-/// Returns a net that each cell drives, by the cell's location: of a block the first of its outputs.
+/// Returns a net that each cell drives, by the cell's location. For a block, it is the first of the outputs.
 fn outputs(placed: &Value) -> BTreeMap<String, String> {
     // nextpnr calls the only module `top`.
     let Some(module) = placed["modules"].as_object().and_then(|modules| modules.values().next())

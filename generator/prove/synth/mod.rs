@@ -1,8 +1,8 @@
 //! Measures area and frequency of a core: synthesis, placement, routing and timing analysis by outside tools.
 //!
-//! A core is measured with a register on each side of every port (`harness`), so that pins do not count. The
-//! delay of a DSP block is never left out: on iCE40 the blocks are pure multipliers, and `icetime` times what
-//! nextpnr-ice40 does not; on ECP5 a netlist with registers inside the blocks is refused.
+//! A core is measured with a register on each side of every port (`harness`), so that pins do not count. The delay of
+//! a DSP block is never left out. On iCE40 the blocks are pure multipliers, and `icetime` times the blocks, which
+//! nextpnr-ice40 does not. On ECP5 a netlist with registers inside the blocks is refused.
 
 mod cells;
 mod ecp5;
@@ -34,7 +34,7 @@ use glint_tools::synthesis::synthesise;
 pub struct Flow {
     target: Target,
     yosys: Tool,
-    /// nextpnr, then icetime; or OpenSTA; nothing where the area is all.
+    /// nextpnr and icetime, or OpenSTA; empty if only the area is measured.
     others: Vec<Tool>,
     liberty: PathBuf,
     versions: Vec<String>,
@@ -57,7 +57,7 @@ impl Flow {
     /// cells.
     ///
     /// # Errors
-    /// One of them is missing; the message says how to get it.
+    /// Fails if a tool is missing; the message says how to get it.
     pub fn find(target: Target, search: &OsStr, liberty: &Path) -> Result<Self> {
         let yosys = Tool::find_in("yosys", search)?;
         let others = match target {
@@ -110,7 +110,7 @@ impl Flow {
     /// Measures a core; `done` is called after each step.
     ///
     /// # Errors
-    /// A tool fails, takes longer than its limit, or does not say what is asked of it.
+    /// Fails if a tool fails, takes longer than its limit, or does not report a figure.
     pub fn measure(&self, subject: &Subject, done: &(dyn Fn() + Sync)) -> Result<Figures> {
         let measured = match (self.target, self.others.as_slice()) {
             (Target::Ice40, [nextpnr, icetime]) => {

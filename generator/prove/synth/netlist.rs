@@ -20,10 +20,10 @@ pub struct Netlist {
 }
 
 impl Netlist {
-    /// Reads what `write_json` of Yosys has written.
+    /// Reads the netlist that Yosys's `write_json` has written.
     ///
     /// # Errors
-    /// It has no nets or cells of the harness.
+    /// Fails if the JSON has no nets or cells of the harness.
     pub fn new(design: &Design, json: &Value) -> Result<Self> {
         let module = &json["modules"][TOP];
         let part = |name: &str| {
@@ -71,10 +71,10 @@ impl Netlist {
         Ok(Self { names, registers: registers.collect(), cells: cells.clone() })
     }
 
-    /// Makes sure that the delay of no DSP block is left out: each parameter of the cells of a kind is one that is `timed`.
+    /// Makes sure that the delay of no DSP block is left out: every parameter of the cells of a kind must be `timed`.
     ///
     /// # Errors
-    /// One is not; `why` says what that means.
+    /// Fails if a parameter is not `timed`; `why` explains the consequence.
     pub fn check_timed(
         &self,
         kind: &str,
@@ -115,8 +115,8 @@ pub fn path(points: impl IntoIterator<Item = (String, f64)>) -> Vec<Step> {
     steps
 }
 
-/// Returns the nets of a design by name, each with what it is shown as, and a rank: of several names for one wire the first
-/// is a register's, then a ROM's, a product's, one that the author gave, any other.
+/// Returns the nets of a design by name, each with a rank and the text to show. If one wire has several names, a
+/// register's name comes first, then a ROM's, a product's, one that the author gave, any other.
 fn known(design: &Design) -> BTreeMap<&str, (u8, String)> {
     let known = design.nets.iter().map(|net| {
         let shown = match net.driver {

@@ -5,11 +5,11 @@ use rayon::prelude::*;
 
 use super::{Figures, Step, Subject};
 
-/// Puts into `figures` what `route` finds with each seed, a frequency in MHz and the longest path, unless there is a reason why
-/// it cannot.
+/// Puts the results of `route` with each seed into `figures`: a frequency in MHz and the longest path. It does
+/// nothing if `figures` has a reason why the core cannot be timed.
 ///
 /// # Errors
-/// A run fails; the message has its seed.
+/// Fails if a run fails; the message has its seed.
 pub fn routed(
     figures: Figures,
     subject: &Subject,

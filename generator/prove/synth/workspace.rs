@@ -9,7 +9,7 @@ use glint_tools::Tool;
 use glint_tools::sources::Sources;
 use glint_tools::synthesis::{self, STATISTICS_COMMAND, Usage};
 
-/// Where the core's sources and its harness stand.
+/// The directory of the core's sources and its harness.
 pub struct Workspace<'a> {
     pub sources: Sources<'a>,
     subject: &'a Subject<'a>,
@@ -24,7 +24,7 @@ impl<'a> Workspace<'a> {
     /// Writes the sources.
     ///
     /// # Errors
-    /// They cannot be written.
+    /// Fails if the sources cannot be written.
     pub fn new(yosys: &'a Tool, subject: &'a Subject<'a>) -> Result<Self> {
         let sources = Sources::new(yosys, subject.files, subject.limit)?;
         sources.write(HARNESS, &harness::harness(subject.design)?)?;
@@ -34,7 +34,7 @@ impl<'a> Workspace<'a> {
     /// Runs nextpnr on the netlist with a seed, with the `options` of its family, which a space divides.
     ///
     /// # Errors
-    /// It fails, or takes too long.
+    /// Fails if nextpnr fails or takes too long.
     pub fn nextpnr(&self, nextpnr: &Tool, seed: u32, options: &str) -> Result<()> {
         // File names without a directory: the WebAssembly of nextpnr sees no other.
         let arguments = format!("{options} --timing-allow-fail -q --seed {seed} --json {NETLIST}");
@@ -46,7 +46,7 @@ impl<'a> Workspace<'a> {
     /// which is left in the file [`NETLIST`].
     ///
     /// # Errors
-    /// As of [`Sources::run`].
+    /// Fails if [`Sources::run`] fails.
     pub fn synthesise(&self, target: Target) -> Result<(Usage, Netlist)> {
         let family = target.family().context("Yosys knows no such family")?;
         let top = &self.subject.design.name;
@@ -66,7 +66,7 @@ impl<'a> Workspace<'a> {
     /// Reads the netlist that Yosys has left.
     ///
     /// # Errors
-    /// It is none.
+    /// Fails if the file is no netlist.
     pub fn netlist(&self) -> Result<Netlist> {
         Netlist::new(self.subject.design, &self.sources.json(NETLIST)?)
     }

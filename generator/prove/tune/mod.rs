@@ -1,8 +1,9 @@
 //! Finds the smallest configuration of a device for an error.
 //!
-//! The proved bound of the accuracy contract decides, so that the answer of [`tune`] keeps the error for every operand of the domain; the
-//! cost is estimated from the netlist ([`model`]). Free are the keys that change neither a port nor the formula (`space`), with those that
-//! add microinstructions where a rate is stated as enough, DSP blocks are dear, or nothing else fits the chip.
+//! The proved bound of the accuracy contract decides, so that the answer of [`tune`] keeps the error for every
+//! operand of the domain. The cost is estimated from the netlist ([`model`]). The search changes only keys that
+//! change neither a port nor the formula (`space`). It also changes keys that add microinstructions if a rate is
+//! stated as enough, if DSP blocks are dear, or if nothing else fits the chip.
 
 pub mod model;
 mod search;
@@ -92,12 +93,15 @@ const LONGEST: i64 = 64;
 /// The keys by which a pipeline has a rate.
 const ARCHITECTURE: [&str; 2] = ["architecture", "pipeline.interval"];
 
-/// Searches for the smallest configuration. `base` has the keys that are part of the goal; the free ones are changed, but for those
-/// in `fixed`. Where a rate is wanted or DSP blocks are limited, and `fixed` has no architecture, pipelines are looked at too, with the
-/// longest interval that does. `progress` is called with the number of configurations that were looked at.
+/// Searches for the smallest configuration.
+///
+/// `base` has the keys that are part of the goal. The search changes the free keys, except those in `fixed`. It also
+/// looks at pipelines if a rate is wanted or DSP blocks are limited, and `fixed` has no architecture; such a pipeline
+/// has the longest interval that meets the goal. `progress` is called with the number of configurations that were
+/// looked at.
 ///
 /// # Errors
-/// No configuration keeps the goal; the message says which term of the bound, or the clock, is in the way.
+/// Fails if no configuration keeps the goal. The message says which term of the bound, or the clock, is in the way.
 pub fn tune(
     device: &Device,
     base: &Config,
@@ -185,11 +189,11 @@ fn of_architecture(
     Ok(if fits(&shared) { shared } else { answer })
 }
 
-/// Returns every configuration of the free keys whose values are given, each with its cost, in the order of the values: for tests
-/// of the search, and for small spaces.
+/// Returns the smallest configuration that keeps the goal, among all combinations of the `values` of keys. Returns
+/// `None` if none keeps it. This is for tests of the search, and for small spaces.
 ///
 /// # Errors
-/// A configuration that the device accepts and that makes no design.
+/// Fails if `base` makes no design, or if a key does not exist.
 pub fn exhaustive(
     device: &Device,
     base: &Config,

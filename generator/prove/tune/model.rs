@@ -42,7 +42,8 @@ pub struct Cost {
     pub mhz: f64,
 }
 
-/// Returns the family of a target. Cells have no model of their own: of the FPGAs ECP5 is nearest, where a product is not split.
+/// Returns the family of a target. Standard cells have no model of their own and use ECP5, the nearest of the FPGAs,
+/// where a product is not split.
 fn family(target: Target) -> &'static Family {
     target.family().unwrap_or(&ECP5)
 }
@@ -77,7 +78,7 @@ impl Cost {
         self.luts + dsp * self.dsps as f64 + block * self.block_rams as f64
     }
 
-    /// Returns the resources that a usual chip of the target lacks, in words; empty where the core fits.
+    /// Returns the resources that a usual chip of the target lacks, in words; empty if the core fits.
     pub fn excess(&self, target: Target) -> String {
         let chip = &family(target).chips[0];
         let wanted = [self.luts.ceil() as u64, self.dsps, self.block_rams];

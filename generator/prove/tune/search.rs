@@ -1,4 +1,5 @@
-//! Searches for the smallest configuration: up until the bound is kept, then down as far as it is.
+//! Searches for the smallest configuration: first upward until the bound is kept, then downward as long as it is
+//! kept.
 
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
@@ -15,17 +16,17 @@ use glint_core::registry::Device;
 use glint_golden::{Bound, Term};
 use glint_show::evidence::comparison::clocks_per_point;
 
-/// The exponent at which the clocks of a point are counted where they depend on it.
+/// The exponent at which the clocks of a point are counted if they depend on it.
 const EXPONENT: f64 = 35.0;
 
-/// A configuration with what is known of it.
+/// A configuration, with its bound, its cost and its rate.
 #[derive(Clone, Debug)]
 pub struct Candidate {
     /// The configuration.
     pub config: Config,
     /// The proved bound.
     pub bound: Bound,
-    /// The estimate of what it costs.
+    /// The estimate of its cost.
     pub cost: Cost,
     /// Clocks from a point to the next, as `glint synth` counts them; `None` if the device shows none.
     pub clocks: Option<f64>,
@@ -43,7 +44,8 @@ impl Candidate {
 pub struct Answer {
     /// The smallest configuration that was found.
     pub best: Candidate,
-    /// Configurations that none of those looked at betters both in error and in the objective, by rising error.
+    /// The configurations that no other configuration betters both in error and in the objective, by rising error.
+    /// Only configurations that the search has looked at are compared.
     pub front: Vec<Candidate>,
     /// The keys that were changed or could have been.
     pub free: Vec<&'static str>,
@@ -51,7 +53,7 @@ pub struct Answer {
     pub looked_at: usize,
 }
 
-/// A search in the making. What was looked at is kept by its text: `None` is no device.
+/// A search in progress. `seen` keeps the candidates by the text of their configurations: `None` is no device.
 pub struct Search<'a> {
     device: &'a Device,
     space: &'a Space,
@@ -74,7 +76,7 @@ impl<'a> Search<'a> {
     pub fn run(&self, base: &Config) -> Result<Answer> {
         let base = self.look(base).context("the configuration to start from makes no design")?;
         let mut best = self.reach(base)?;
-        // Single changes first; pairs, of which there are many, only where no single one helps.
+        // Single changes first; pairs, which are many, only if no single change helps.
         while let Some(better) = self.descend(&best, 1).or_else(|| self.descend(&best, 2)) {
             best = better;
         }
@@ -118,7 +120,7 @@ impl<'a> Search<'a> {
         }
         let contract = (self.device.contract)(config);
         let design = self.device.design(config).ok();
-        // What a free key leaves as it is alone, two together may not.
+        // A free key alone changes nothing in the interface, but two together may.
         let design = design.filter(|design| self.space.holds(design, contract.as_ref()));
         let found = design.map(|design| Candidate {
             config: config.clone(),
@@ -149,7 +151,8 @@ impl<'a> Search<'a> {
         self.goal.most_dsps.is_none_or(|most| candidate.cost.dsps <= most)
     }
 
-    /// Returns the clock that a candidate needs for the goal, in MHz: infinite where it shows no point.
+    /// Returns the clock that a candidate needs for the goal, in MHz. It is infinite if a rate is wanted and the
+    /// candidate shows no point.
     fn wanted_mhz(&self, candidate: &Candidate) -> f64 {
         let of_rate = self.goal.rate.map(|rate| match candidate.clocks {
             Some(clocks) => rate * clocks,
@@ -238,7 +241,7 @@ impl<'a> Search<'a> {
         )
     }
 
-    /// Returns the error that cannot be kept, and what is in the way.
+    /// Returns the error that says that the goal cannot be kept, and which term is in the way.
     fn out_of_reach(&self, nearest: &Candidate) -> Result<Candidate> {
         let unit = self.goal.unit;
         // The rounding of the outputs is no part of the error of f.
@@ -285,7 +288,7 @@ impl Goal {
         [excess, first, second, self.error(candidate), cost.rom_bits as f64]
     }
 
-    /// Returns those that none betters both in error and in the objective, by rising error.
+    /// Returns the candidates that no other candidate betters both in error and in the objective, by rising error.
     pub(super) fn front(&self, mut all: Vec<Candidate>) -> Vec<Candidate> {
         all.sort_by(|one, other| {
             let by_error = self.error(one).total_cmp(&self.error(other));

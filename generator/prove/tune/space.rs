@@ -11,10 +11,11 @@ use glint_rtl::netlist::Design;
 /// Steps by which an integer is changed.
 const STEPS: [i64; 3] = [1, 2, 4];
 
-/// Tables of keys that state what is computed, and where.
+/// Tables of keys that define the computation and its domain.
 const STATEMENT: [&str; 2] = ["domain", "function"];
 
-/// Points at which formulas are compared, drawn as those of a test are: most of them where the formula is neither 0 nor flat.
+/// The number of points at which formulas are compared. They are drawn like the points of a test: most of them where
+/// the formula is neither 0 nor flat.
 const POINTS: u32 = 600;
 
 /// The free keys of a device.
@@ -31,7 +32,7 @@ impl Space {
     /// without those in `fixed`.
     ///
     /// # Errors
-    /// `base` makes no design.
+    /// Fails if `base` makes no design.
     pub fn new(device: &Device, base: &Config, fixed: &[&str], slower: bool) -> Result<Self> {
         let schema = (device.schema)();
         let design = device.design(base).context("this configuration makes no design")?;
@@ -54,7 +55,7 @@ impl Space {
         Ok(space)
     }
 
-    /// Returns whether somebody outside sees the same core, but for its accuracy.
+    /// Returns whether the core looks the same from outside, except for its accuracy.
     pub fn holds(&self, design: &Design, contract: &dyn Contract) -> bool {
         let own = &self.outside;
         own.ports == ports(design)
@@ -91,10 +92,10 @@ impl Space {
     }
 }
 
-/// Returns a configuration with values replaced; `None` where the device does not accept that.
+/// Returns a configuration with values replaced; `None` if the device does not accept it.
 fn with(schema: &Schema, config: &Config, values: &[(&'static str, Value)]) -> Option<Config> {
     let changed = |name: &str| values.iter().find(|(key, _)| *key == name).map(|(_, value)| value);
-    // A choice decides which other keys apply; those that no longer do are left out.
+    // A choice decides which other keys apply; keys that no longer apply are left out.
     let mut draft: Vec<(String, Value)> = config
         .values()
         .map(|(name, own)| (name.to_owned(), changed(name).unwrap_or(own).clone()))
@@ -117,7 +118,7 @@ fn with(schema: &Schema, config: &Config, values: &[(&'static str, Value)]) -> O
         schema.key(name).is_none_or(|key| !name.starts_with("pipeline.") || *value != key.default)
     });
     let mut config = Config::from_values(schema, &config.name, draft).ok()?;
-    // What a file may say beside the keys.
+    // `strict` is no key, although a file may set it.
     config.strict = false;
     values.iter().all(|(key, value)| config.value(key) == value).then_some(config)
 }
@@ -143,8 +144,8 @@ impl Outside {
         }
     }
 
-    /// Returns whether the formula is this one. Where it jumps, two values are right, which depend on the widths: one of them is the
-    /// formula's.
+    /// Returns whether `contract` has the same formula. At a jump of a formula, two values are right, and the widths
+    /// decide which. One of these must be a value of the other formula.
     fn has_formula(&self, contract: &dyn Contract) -> bool {
         let other = formula(contract, &self.points);
         let same = |(a, b): (&[f64; 2], &[f64; 2])| a.iter().any(|value| b.contains(value));
@@ -163,7 +164,8 @@ fn formula(contract: &dyn Contract, points: &[Vec<i64>]) -> Vec<[f64; 2]> {
     values
 }
 
-/// Returns the values by which it is seen what a key does: those next to its own, and the ends of its range.
+/// Returns the values that are tried to see the effect of a key: the values next to its own, and the ends of its
+/// range.
 fn alternatives(key: &Key, value: &Value) -> Vec<Value> {
     let mut values = neighbours(&key.kind, value);
     match (&key.kind, value) {

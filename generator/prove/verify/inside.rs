@@ -140,7 +140,7 @@ fn record(subject: &Subject<'_>) -> Result<Option<Recorded>> {
     Recorded::find(subject.proofs, &digest, core.contract.as_ref())
 }
 
-/// Returns the whole proof; or, where it is long, its record, checked again in part.
+/// Returns the whole proof. If the proof is long, it returns the proof's record, checked again in part.
 fn contract(subject: &Subject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Result<Finding> {
     let contract = subject.core.contract.as_ref();
     if !contract.bound().is_stated() {

@@ -1,7 +1,8 @@
 //! Runs every check of a configuration, and writes a record and a page about it.
 //!
-//! A [`Check`] asks one question, with the tools that it names, and gives a [`Finding`]: the answer, its domain, and what it leaves
-//! open. No check knows the finding of another, and the same tools give the same findings; durations stand apart, in [`CheckTime`].
+//! A [`Check`] asks one question, with the tools that it names, and gives a [`Finding`]: the answer, its domain, and
+//! the open points. No check knows the finding of another. The same tools give the same findings; durations are
+//! separate, in [`CheckTime`].
 
 mod inside;
 mod outside;
@@ -31,13 +32,13 @@ pub struct Subject<'a> {
     pub core: &'a Core,
     /// How much is done.
     pub effort: Effort,
-    /// Where records of `cosim --exhaustive --json` are.
+    /// The directory of records of `cosim --exhaustive --json`.
     pub proofs: &'a Path,
     files: OnceLock<Vec<OutputFile>>,
 }
 
 impl<'a> Subject<'a> {
-    /// Prepares the checks of a core, none of which has run yet.
+    /// Prepares the checks of a core. No check has run yet.
     pub fn new(path: &'a str, core: &'a Core, effort: Effort, proofs: &'a Path) -> Self {
         Self { path, core, effort, proofs, files: OnceLock::new() }
     }
@@ -75,7 +76,7 @@ pub struct FileDigest {
 pub struct Effort {
     /// Everything, however long it takes.
     pub full: bool,
-    /// Only what needs no tool outside Glint.
+    /// Only the checks that need no tool outside Glint.
     pub without_tools: bool,
     /// After which a run of an outside tool is given up.
     pub time_limit: Duration,
@@ -98,7 +99,7 @@ pub enum Verdict {
     /// The check could not be run: a tool is missing, or it takes more than this effort allows.
     #[default]
     NotRun,
-    /// It is a second proof of what another check shows, and did not succeed; why is said.
+    /// It is a second proof of a fact that another check shows, and did not succeed; the finding says why.
     Unconfirmed,
     /// It was left out on purpose.
     LeftOut,
@@ -140,16 +141,16 @@ impl Verdict {
 pub struct Finding {
     /// The verdict.
     pub verdict: Verdict,
-    /// For what: operands, clocks, faults.
+    /// The domain of the finding: operands, clocks, faults.
     pub domain: String,
     /// The outcome in a sentence or two.
     pub words: String,
     /// The part that the check leaves undecided; may be empty.
     pub open: String,
-    /// The record that stands for a part of the work, by its file.
+    /// The file of the record that replaces a part of the work.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub record: Option<String>,
-    /// The command that completes what was not run.
+    /// The command that completes the parts that were not run.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub complete_with: Option<String>,
     /// The failures, each with its reproducer.
@@ -199,7 +200,7 @@ pub struct Check {
     run: Run,
 }
 
-/// All checks: first those that need nothing but Glint.
+/// All checks. The checks that need nothing but Glint come first.
 pub const CHECKS: [&Check; 16] = [
     &inside::DESIGN,
     &inside::LOCKSTEP,
@@ -283,7 +284,7 @@ impl Check {
     }
 }
 
-/// A check and what it found.
+/// A check and its finding.
 #[derive(Clone, Debug, Serialize)]
 pub struct Answer {
     /// [`Check::id`].
@@ -299,7 +300,7 @@ pub struct Answer {
     /// The finding.
     #[serde(flatten)]
     pub finding: Finding,
-    /// How long it took: not among what is the same every time.
+    /// How long the check took. It is not serialised, because it differs from run to run.
     #[serde(skip)]
     pub timing: CheckTime,
 }
@@ -358,13 +359,14 @@ pub struct Record {
     pub device: &'static str,
     /// SHA-256 of the configuration with all its keys.
     pub configuration: String,
-    /// Each Verilog and memory file that `generate` writes; none where golden model and simulation do not agree on the bench.
+    /// Each Verilog and memory file that `generate` writes. It is empty if golden model and simulation do not agree
+    /// on the bench.
     pub files: Vec<FileDigest>,
     /// Whether everything was done, however long it takes.
     pub full: bool,
     /// The conclusion of all checks.
     pub conclusion: Conclusion,
-    /// How many checks say what.
+    /// The number of checks with each verdict.
     pub counts: BTreeMap<Verdict, usize>,
     /// In the order in which they were run.
     pub checks: Vec<Answer>,

@@ -105,7 +105,7 @@ pub const CERTIFICATE: Check = Check {
     },
 };
 
-/// The exit code of the program that recomputes every operand where it decides all but some.
+/// The exit code of the program that recomputes every operand if it decides all but some.
 const SOME_UNDECIDED: i32 = 3;
 
 /// The bound of the contract, by a program that shares nothing with Glint but the formula.
@@ -257,7 +257,7 @@ pub const TEXT: Check = Check {
     },
 };
 
-/// Returns the finding where the solver proves nothing and no point is found that differs.
+/// Returns the finding if the solver proves nothing and no differing point is found.
 fn undecided(subject: &Subject<'_>, open: equality::Open, limit: Duration) -> Finding {
     let limit = limit.as_secs();
     match open {
@@ -402,7 +402,7 @@ pub const FORMAL: Check = Check {
     tools: &["yosys", "yosys-smtbmc", "z3"],
     steps: |_| 1,
     run: |subject, _, _| {
-        // All in one directory, without what a target has of its own in one below.
+        // All files in one directory, without the files in subdirectories, which belong to a target.
         let plain = subject.files()?.iter().filter_map(|file| {
             let path = match file.path.split('/').collect::<Vec<_>>()[..] {
                 ["rtl_out" | "testbench", _, name] => name.to_owned(),

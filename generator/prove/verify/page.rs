@@ -28,7 +28,7 @@ struct View<'a> {
 /// Returns the page; nothing before its last section depends on the timings.
 ///
 /// # Errors
-/// A template that fails.
+/// Fails if the template fails.
 pub fn page(record: &Record, timings: &[CheckTime]) -> Result<String> {
     let counts = record.counts.iter();
     let checks = record.checks.iter();

@@ -1,4 +1,4 @@
-//! A fault is found by the check that looks for it, and by no other.
+//! Tests that the check for a fault finds it, and that no other check does.
 
 use std::path::Path;
 use std::time::Duration;
@@ -8,7 +8,7 @@ use glint_config as config;
 use glint_core::core::Core;
 use glint_core::registry::Registry;
 
-/// Returns a narrow device, of which every check says something.
+/// Returns a narrow device for which every check has a finding.
 fn core() -> Core {
     let registry = Registry::catalogue();
     let text = include_str!("../../../configs/reduced/rough.toml");

@@ -9,7 +9,7 @@ use glint_core::core::Core;
 use glint_core::registry::Device;
 use glint_golden::{Bound, Contract};
 
-/// Steps by which an integer is changed. A larger one is tried only where no smaller one helps.
+/// Steps by which an integer is changed. A larger step is tried only if no smaller one helps.
 const STEPS: [i64; 4] = [1, 2, 4, 8];
 
 /// The least gain that counts, in output units.
@@ -42,8 +42,8 @@ struct Better {
     bound: Bound,
 }
 
-/// Returns the changes that keep the accuracy contract, where the configuration does not; else, and where none do, the change
-/// of one key that would bring the error bound down most.
+/// Returns the changes that keep the accuracy contract, if the configuration does not keep it. If it does, or if no
+/// changes help, returns the change of one key that would bring the error bound down most.
 pub fn of(core: &Core) -> Option<Advice> {
     let (device, bound) = (&core.device, core.contract.bound());
     let first = better(device, &core.config, &bound)?;
@@ -57,8 +57,8 @@ pub fn of(core: &Core) -> Option<Advice> {
     Some(kept.map_or(single, |it| advice(device, &core.config, &needed(device, &core.config, it))))
 }
 
-/// Returns the change of one key that the bound depends on, by as little as helps, that brings the bound down most; `None`
-/// where none does. Domains stay as they are: to narrow one is to ask for less.
+/// Returns the change of one key that the bound depends on, by as little as helps, that brings the bound down most.
+/// Returns `None` if no change does. Domains stay as they are: to narrow a domain is to ask for less.
 fn better(device: &Device, config: &Config, bound: &Bound) -> Option<Better> {
     let schema = (device.schema)();
     STEPS.into_iter().find_map(|step| {
@@ -161,7 +161,7 @@ fn neighbours(kind: &Kind, value: &Value, step: i64) -> Vec<Value> {
     }
 }
 
-/// Returns the configuration with another value for a key; `None` where the device does not accept that.
+/// Returns the configuration with another value for a key; `None` if the device does not accept it.
 fn with(schema: &Schema, config: &Config, key: &str, value: &Value) -> Option<Config> {
     let given = config.values().filter(|(name, _)| config.applies(schema, name));
     let given = given.map(|(name, own)| {

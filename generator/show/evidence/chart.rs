@@ -34,7 +34,7 @@ impl ChartAxis {
         Self { scale: Scale::Logarithmic, ..Self::linear(label, low, high) }
     }
 
-    /// Returns the place of a value: itself, or its power of ten; `None` where it has none.
+    /// Returns the place of a value: the value itself, or its power of ten. Returns `None` if it has no place.
     pub fn place(&self, value: f64) -> Option<f64> {
         let place = match self.scale {
             Scale::Linear => value,
@@ -50,7 +50,7 @@ impl ChartAxis {
 pub struct Series {
     /// The name, for the legend and the table's head.
     pub name: String,
-    /// One value for each place on the chart's axis; NaN (`null` in JSON) where there is none.
+    /// One value for each place on the chart's axis; NaN (`null` in JSON) if there is no value.
     pub values: Vec<f64>,
 }
 
@@ -59,7 +59,7 @@ pub struct Series {
 pub struct Mark {
     /// The label.
     pub label: String,
-    /// Where it crosses the vertical axis.
+    /// The place where the mark crosses the vertical axis.
     pub at: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Compares devices at one exponent: how near they come to `cosⁿγ`, and what they take.
+//! Compares devices at one exponent: how near they come to `cosⁿγ`, and the hardware that they take.
 
 use std::fmt;
 
@@ -47,14 +47,14 @@ pub struct Accuracy {
     /// The source's formula, in f64 and at the quantised operands, against `cosⁿ` of the angle that these
     /// denote.
     pub formula: Spread,
-    /// `cosⁿ` of the angle that the quantised operands denote against `cosⁿγ`. 0 where a contract does not
-    /// tell that angle ([`Highlight::cosine`]): then the formula's error includes it.
+    /// `cosⁿ` of the angle that the quantised operands denote against `cosⁿγ`. It is 0 if a contract does not tell
+    /// that angle ([`Highlight::cosine`]); the formula's error then includes it.
     pub operands: Spread,
     /// The word f against the formula at the quantised operands.
     pub fixed_point: Spread,
 }
 
-/// Returns the formula at the quantised operands: where it jumps, the right value that is nearer to `f`.
+/// Returns the formula at the quantised operands. At a jump, it is the right value that is nearer to `f`.
 pub fn formula(highlight: &Highlight, control: &[i64], f: f64) -> f64 {
     let [one, other] = highlight.references(control);
     if (f - other).abs() < (f - one).abs() { other } else { one }
@@ -83,11 +83,11 @@ pub fn accuracy(contract: &dyn Contract, n: f64) -> Option<Accuracy> {
     Some(accuracy)
 }
 
-/// Returns the clocks per point of the exponent `n`, from one `start` to the next; where a `start` shows a line of
-/// points, on the longest.
+/// Returns the clocks per point for the exponent `n`, from one `start` to the next. If a `start` shows a line of
+/// points, the longest line counts.
 ///
 /// # Errors
-/// A device that does not end, or shows no point.
+/// Fails if the device does not end, or shows no point.
 pub fn clocks_per_point(design: &Design, contract: &dyn Contract, n: f64) -> Result<f64> {
     let point = contract.highlight().and_then(|it| it.at(TYPICAL.to_radians(), n));
     let point = point.unwrap_or_default();

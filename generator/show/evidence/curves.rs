@@ -19,7 +19,8 @@ const SHOWN: [u32; 5] = [2, 8, 35, 128, 1000];
 /// How far out the curves over the angle go, in `√n·γ`.
 const REACH: f64 = 4.0;
 
-/// Places of a curve over the angle, and angles about each of them of which the worst counts.
+/// The number of places of a curve over the angle, and the number of angles about each place. The worst of these
+/// angles counts.
 const PLACES: u32 = 100;
 const ANGLES: u32 = 12;
 
@@ -39,7 +40,7 @@ pub struct DeviceCurves {
     pub largest_colour: f64,
     /// Errors by exponent; empty when the operands do not denote γ and n.
     pub exponents: Vec<AtExponent>,
-    /// The charts, none without errors.
+    /// The charts; empty if there are no errors.
     pub charts: Vec<Chart>,
 }
 
@@ -129,8 +130,8 @@ fn places() -> Vec<f64> {
     even(0.0, REACH, PLACES)
 }
 
-/// Returns the signed formula error at each place, and the largest fixed-point error about it; zero beyond 90°,
-/// where nothing is reflected. `None` when the operands cannot denote `n`.
+/// Returns the signed formula error at each place, and the largest fixed-point error about it. It is zero beyond 90°,
+/// because nothing is reflected there. Returns `None` if the operands cannot denote `n`.
 fn over_angle(contract: &dyn Contract, n: f64) -> Option<Vec<AtAngle>> {
     let highlight = contract.highlight()?;
     let format = highlight.f_format();

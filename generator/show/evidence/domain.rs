@@ -7,10 +7,10 @@ use glint_golden::Contract;
 /// Places along the domain.
 const PLACES: i64 = 160;
 
-/// Operands about each place, at most, of which the worst counts.
+/// The largest number of operands about each place. The worst of them counts.
 const OPERANDS: i64 = 256;
 
-/// Returns the charts; none of another device.
+/// Returns the charts; empty for other devices.
 pub fn charts(contract: &dyn Contract) -> Vec<Chart> {
     let ([operand], [output]) = (contract.operands(), contract.outputs()) else {
         return Vec::new();

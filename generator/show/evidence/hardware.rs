@@ -12,13 +12,13 @@ pub trait Synthesis: Sync {
     /// Returns its version, for people.
     ///
     /// # Errors
-    /// It does not say.
+    /// Fails if the tool does not say its version.
     fn version(&self) -> Result<String>;
 
-    /// Returns what the module `top` of these files, pairs of a plain name and contents, takes of a family.
+    /// Returns the cells of a family that the module `top` takes. `files` are pairs of a plain name and contents.
     ///
     /// # Errors
-    /// It fails, or takes too long.
+    /// Fails if the tool fails or takes too long.
     fn usage(&self, files: &[(String, String)], top: &str, family: &Family) -> Result<Usage>;
 }
 
@@ -38,7 +38,7 @@ pub struct FamilyUsage {
 /// Returns the cells that one configuration takes of every family; `done` is called after each.
 ///
 /// # Errors
-/// Synthesis fails.
+/// Fails if synthesis fails.
 pub fn usage(
     core: &Core,
     synthesis: &dyn Synthesis,

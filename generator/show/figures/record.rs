@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::{Figures, Target};
 use glint_base::input;
 
-/// Where the records of this repository stand.
+/// The directory of this repository's records.
 pub const DIRECTORY: &str = "records/synthesis";
 
 /// A configuration with all that was measured of it, `<name>.json`.
@@ -32,11 +32,11 @@ pub struct Record<F = Figures> {
 }
 
 impl Record {
-    /// Returns the record of a core, among all in a directory; `None` where there is none, and where there is no such
-    /// directory. Files that are no records are left alone.
+    /// Returns the record of a core, among all in a directory. Returns `None` if there is no such record, or no such
+    /// directory. Files that are no records are ignored.
     ///
     /// # Errors
-    /// The directory or a file in it cannot be read; a record is damaged.
+    /// Fails if the directory or a file in it cannot be read, or if a record is damaged.
     pub fn find(directory: &Path, core: &str) -> Result<Option<Self>> {
         let records = input::records::<Self>(directory)?.into_iter();
         let mut records = records.map(|(_, record)| record);
@@ -74,7 +74,8 @@ pub struct Rate {
 }
 
 impl Rate {
-    /// Returns the rate of a core that takes so many clocks a point; none where no frequency was measured.
+    /// Returns the rate of a core that takes `clocks_per_point` clocks a point. Returns `None` if no frequency was
+    /// measured.
     pub fn new(figures: &Figures, clocks_per_point: f64) -> Option<Self> {
         let points = figures.frequency?.median / clocks_per_point;
         let per = |units: Option<u64>| Some(points / units.filter(|units| *units > 0)? as f64);

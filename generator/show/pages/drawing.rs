@@ -4,7 +4,7 @@ use anyhow::Result;
 use glint_base::fill;
 use glint_base::template::Template;
 
-/// A drawing; units are those of the page at full size.
+/// A drawing. Its units are the units of the page at full size.
 #[derive(Clone, Debug)]
 #[glint_base::template::template("drawing.svg")]
 pub struct Drawing {
@@ -36,7 +36,7 @@ pub enum Item {
     Text {
         /// Class.
         class: &'static str,
-        /// Where it starts, is centred or ends, as the class says.
+        /// The place at which it starts, is centred or ends, as the class says.
         x: i32,
         /// The base line.
         y: i32,
@@ -50,7 +50,7 @@ pub enum Item {
         /// In a sentence.
         title: String,
     },
-    /// Ends what [`Item::Open`] began.
+    /// Ends the group that [`Item::Open`] began.
     Close,
 }
 
@@ -70,7 +70,7 @@ impl Drawing {
     /// Returns the drawing as an `svg` element.
     ///
     /// # Errors
-    /// A template that fails to print.
+    /// Fails if the template cannot be printed.
     pub fn svg(&self) -> Result<String> {
         Ok(self.render()?)
     }
@@ -78,7 +78,7 @@ impl Drawing {
     /// Returns the drawing as a file of its own, ending with a newline.
     ///
     /// # Errors
-    /// A template that fails to print.
+    /// Fails if a template cannot be printed.
     pub fn file(&self) -> Result<String> {
         fill!("standalone.svg" {
             drawing: String = self.svg()?,

@@ -13,7 +13,7 @@ const ROWS: usize = 11;
 pub struct Figure<'a> {
     /// The chart.
     pub chart: &'a Chart,
-    /// Where the seed has it; empty for a figure of ours.
+    /// The place of the figure in the seed; empty for a figure of ours.
     pub source: &'a str,
     /// The plot.
     pub svg: String,
@@ -23,10 +23,10 @@ pub struct Figure<'a> {
     pub rows: Vec<(String, Vec<String>)>,
 }
 
-/// Makes figures of charts, each with where its source has it.
+/// Makes figures of charts, each with the place in its source.
 ///
 /// # Errors
-/// A chart cannot be plotted.
+/// Fails if a chart cannot be plotted.
 pub fn figures<'a>(charts: &[(&'a Chart, &'a str)]) -> Result<Vec<Figure<'a>>> {
     charts.par_iter().map(|(chart, source)| figure(chart, source)).collect()
 }

@@ -1,7 +1,7 @@
 //! Sets a formula in plain text as MathML.
 //!
-//! Descriptions write formulas as programs do, `out = colour * (n/2 * (c - 1) + 1)^2`. What this reader does not
-//! understand stays plain text.
+//! Descriptions write formulas as programs do, `out = colour * (n/2 * (c - 1) + 1)^2`. A formula that this reader
+//! does not understand stays plain text.
 
 use super::markup::html;
 
@@ -74,7 +74,7 @@ fn tokens(text: &str) -> Option<Vec<&str>> {
     Some(tokens)
 }
 
-/// A part of a formula: its MathML, and the same without the parentheses around it, where it has some.
+/// A part of a formula: its MathML, and the MathML without the parentheses around it, if it has some.
 struct Part {
     mathml: String,
     inside: Option<String>,
@@ -168,7 +168,7 @@ impl<'a> Reader<'a> {
         Some(sum)
     }
 
-    /// Reads products and quotients from the left; all that stands before a `/` is the numerator.
+    /// Reads products and quotients from the left. Everything before a `/` is the numerator.
     fn product(&mut self) -> Option<String> {
         let mut product = self.power()?;
         while let Some(sign) = self.sign(&["*", "/"]) {
@@ -197,7 +197,7 @@ impl<'a> Reader<'a> {
         self.at += 1;
         let mut exponent = None;
         if self.sign(&["^"]).is_some() {
-            // What follows in parentheses is the cosine's.
+            // Parentheses after the exponent hold the argument of the cosine.
             exponent = Some(match self.peek()? {
                 "(" => self.parentheses()?.bare(),
                 _ => self.single()?.bare(),
@@ -256,7 +256,8 @@ impl<'a> Reader<'a> {
             inside += &format!("<mo separator=\"true\">,</mo>{}", self.sum()?);
         }
         self.sign(&[")"])?;
-        // Around a fraction they are as high as it is, by their size: few fonts have what a browser would stretch.
+        // Parentheses around a fraction are as high as it is, by their size: few fonts have glyphs that a browser
+        // would stretch.
         let around = |sign: &str| match inside.contains("<mfrac>") {
             true => format!(
                 "<mpadded voffset=\"-0.35em\"><mo class=\"tall\" stretchy=\"false\">{sign}</mo></mpadded>"
@@ -268,7 +269,8 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Returns a name: Greek letters by their names, `delta_x` as a difference, what follows `_` or is a number as a subscript.
+/// Returns a name. Greek letters are written by their names, `delta_x` is a difference, and the part after `_`, or a
+/// number at the end, is a subscript.
 fn name(token: &str) -> String {
     if let Some(of) = token.strip_prefix("delta_") {
         return format!("<mrow><mi mathvariant=\"normal\">Δ</mi>{}</mrow>", name(of));
@@ -318,7 +320,7 @@ mod tests {
         assert!(
             set("n/2").contains("<mfrac><mrow><mi>n</mi></mrow><mrow><mn>2</mn></mrow></mfrac>")
         );
-        // The parentheses of a denominator go, those of a base stay.
+        // The parentheses of a denominator go; the parentheses of a base stay.
         let quotient = set("c / (n + c)");
         assert!(!quotient.contains("<mo>(</mo>"), "{quotient}");
         assert_eq!(set("(a + b)^2").matches("<mo>(</mo>").count(), 1);

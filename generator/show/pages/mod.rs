@@ -25,7 +25,7 @@ use glint_core::core::Core;
 /// Returns the page of a configuration, which the command line knows as `config`, a path; `proofs` is the directory of records.
 ///
 /// # Errors
-/// A device that does not end; a record that cannot be read.
+/// Fails if the device does not end, or if a record cannot be read.
 pub fn of(core: &Core, config: &str, proofs: &Path) -> Result<String> {
     let line = core.line()?;
     let inputs = PageInputs {

@@ -17,12 +17,12 @@ const FINE: u32 = 4;
 pub const WIDTH: u32 = 480 * FINE;
 pub const HEIGHT: u32 = 300 * FINE;
 
-/// Stand-ins for the roles of lines and text; [`themed`] puts classes in their place.
+/// Placeholder colours for the roles of lines and text; [`themed`] replaces them by classes.
 const INK: RGBColor = RGBColor(1, 0, 0);
 const GRID: RGBColor = RGBColor(2, 0, 0);
 const MARK: RGBColor = RGBColor(3, 0, 0);
 
-/// Returns the stand-in colour of series number `at`, for which [`themed`] puts the class from [`class`].
+/// Returns the placeholder colour of series number `at`, which [`themed`] replaces by the class from [`class`].
 fn style(at: usize) -> RGBColor {
     RGBColor(4, 0, (at % STYLES) as u8)
 }
@@ -32,11 +32,11 @@ pub fn class(at: usize) -> String {
     format!("s{}", at % STYLES + 1)
 }
 
-/// Returns the chart as an `svg` element, which scales to its place and takes its colours from the classes `ink`,
-/// `grid`, `mark` and those of [`class`].
+/// Returns the chart as an `svg` element, which scales to its place. It takes its colours from the classes `ink`,
+/// `grid` and `mark`, and from the classes of [`class`].
 ///
 /// # Errors
-/// The plotting library refuses; an empty range does that.
+/// Fails if the plotting library fails, for example because a range is empty.
 pub fn svg(chart: &Chart) -> Result<String> {
     let mut text = String::new();
     draw(chart, &mut text).map_err(|error| anyhow!("cannot plot `{}`: {error}", chart.id))?;
@@ -118,7 +118,7 @@ fn draw(chart: &Chart, text: &mut String) -> Result<(), Box<dyn std::error::Erro
             plane.draw_series(LineSeries::new(run, style))?;
         }
     }
-    // What is known at one place only is a point with its name.
+    // A series with a value at only one place is a point with its name.
     for (at, (x, y), left) in points(chart) {
         plane.draw_series([Circle::new((x, y), 4 * FINE, style(at).filled())])?;
         let (away, end) = if left { (-8, HPos::Right) } else { (8, HPos::Left) };
@@ -131,8 +131,8 @@ fn draw(chart: &Chart, text: &mut String) -> Result<(), Box<dyn std::error::Erro
     Ok(())
 }
 
-/// Finds the series of one value: number, place, and whether the name stands left of it. Names stand on the side where
-/// there is more room, unless the name of a neighbour above is there.
+/// Finds the series of one value: number, place, and whether the name is left of it. A name is on the side with more
+/// room, unless the name of a neighbour above is there.
 fn points(chart: &Chart) -> Vec<(usize, (f64, f64), bool)> {
     let only = |values: &[f64]| {
         let mut known = chart.places.iter().zip(values).filter(|(_, value)| value.is_finite());
@@ -243,7 +243,8 @@ fn number(value: f64) -> String {
     if text == "-0" { "0" } else { text }.replace('-', "\u{2212}")
 }
 
-/// Puts classes in place of the stand-ins, and adds what makes the element an image to a screen reader.
+/// Replaces placeholder colours by classes, and adds the attributes that make the element an image to a screen
+/// reader.
 fn themed(text: &str, chart: &Chart) -> String {
     let hex = |RGBColor(r, g, b): RGBColor| format!("#{r:02X}{g:02X}{b:02X}");
     let mut roles = vec![

@@ -1,9 +1,9 @@
-//! Tabulates the stages of a pipeline, and what its shared multipliers compute in each slot.
+//! Tabulates the stages of a pipeline, and the products that its shared multipliers compute in each slot.
 
 use super::account::{Table, code};
 use glint_rtl::netlist::{Design, Pipeline};
 
-/// Returns the product that each shared multiplier computes in each slot; none where no multiplier is shared.
+/// Returns the product that each shared multiplier computes in each slot. Returns `None` if no multiplier is shared.
 pub fn reservations(pipeline: &Pipeline) -> Option<Table> {
     let slots = (0..pipeline.interval).map(|slot| format!("slot {slot}"));
     let headings: Vec<String> = ["multiplier".to_owned()].into_iter().chain(slots).collect();

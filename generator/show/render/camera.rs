@@ -4,21 +4,21 @@ use anyhow::{Context, Result, ensure};
 
 use super::vector::Vector;
 
-/// Where a picture is seen from. Its own coordinates have x to the right, y upward, and look along −z.
+/// The place from which a picture is seen. Its own coordinates have x to the right, y upward, and look along −z.
 #[derive(Clone, Copy, Debug)]
 pub struct Camera {
     eye: Vector,
     right: Vector,
     up: Vector,
     back: Vector,
-    /// Half the width and half the height of what is seen at distance 1.
+    /// Half the width and half the height of the view at distance 1.
     half: (f64, f64),
 }
 
 /// The user's settings of the camera; the rest follows from the extent of the scene.
 #[derive(Clone, Copy, Debug)]
 pub struct View {
-    /// Where it stands.
+    /// The place of the camera.
     pub eye: Option<Vector>,
     /// The point that it looks at: the middle of everything by default.
     pub target: Option<Vector>,
@@ -26,7 +26,7 @@ pub struct View {
     pub field: f64,
 }
 
-/// From where things are seen by default: from the front, a little above.
+/// The direction from which things are seen by default: from the front, a little above.
 const DIRECTION: Vector = Vector::new(0.0, 0.28, 1.0);
 
 /// How much of the picture things fill, by default.
@@ -37,7 +37,7 @@ impl Camera {
     /// their middle and radius, unless `view` says otherwise; `middle` is the middle of them all.
     ///
     /// # Errors
-    /// An eye at its target.
+    /// Fails if the eye is at its target.
     pub fn new(
         view: &View,
         aspect: f64,
@@ -85,7 +85,7 @@ impl Camera {
         needed.fold(0.0, f64::max)
     }
 
-    /// Returns where it stands.
+    /// Returns the place of the camera.
     pub fn eye(&self) -> Vector {
         self.eye
     }
@@ -104,7 +104,7 @@ impl Camera {
         self.right * x + self.up * y + self.back * z
     }
 
-    /// Returns half the width and half the height of what is seen at distance 1.
+    /// Returns half the width and half the height of the view at distance 1.
     pub fn half(&self) -> (f64, f64) {
         self.half
     }

@@ -1,4 +1,4 @@
-//! Reads height maps, the slopes of which turn the normals of a surface.
+//! Reads height maps, whose slopes turn the normals of a surface.
 
 use anyhow::{Context, Result, bail, ensure};
 use png::{BitDepth, ColorType, Decoder, Limits, Transformations};
@@ -14,9 +14,9 @@ const MEMORY: usize = 512 << 20;
 pub struct Relief {
     width: usize,
     height: usize,
-    /// The rise per pixel to the right and upward, where black to white is 1.
+    /// The rise per pixel to the right and upward, if black to white is 1.
     slopes: Vec<[f32; 2]>,
-    /// How high white stands over black, in the scene's unit.
+    /// The height of white above black, in the scene's unit.
     depth: f64,
     /// How often the map is repeated over a unit of texture coordinates.
     repeat: f64,
@@ -26,7 +26,7 @@ impl Relief {
     /// Reads the map that a PNG file holds.
     ///
     /// # Errors
-    /// No PNG, one with colours or transparency, or too large a one.
+    /// Fails if the file is no PNG, has colours or transparency, or is too large.
     pub fn decode(png: &[u8], depth: f64, repeat: f64) -> Result<Self> {
         let limits = Limits { bytes: MEMORY };
         let mut decoder = Decoder::new_with_limits(std::io::Cursor::new(png), limits);
@@ -62,7 +62,7 @@ impl Relief {
         Ok(Self { slopes: slopes(&heights, width, height), width, height, depth, repeat })
     }
 
-    /// Returns how much the surface rises per unit of u and v, where it has the given texture coordinates.
+    /// Returns the rise of the surface per unit of u and v, at the given texture coordinates.
     ///
     /// Slopes between the pixels are interpolated, so that no edges show.
     pub fn rise(&self, u: f64, v: f64) -> [f64; 2] {

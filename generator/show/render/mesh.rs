@@ -56,12 +56,16 @@ pub struct RawCorner {
 }
 
 impl Mesh {
-    /// Makes a mesh of what is given. Triangles without area are left out and counted. Corners without a normal, or
-    /// with one of length 0, get the mean normal, weighted by area, of the triangles that meet in their position and
-    /// hang together there by edges of at most `crease` degrees, so that sharper edges stay sharp.
+    /// Makes a mesh of positions, normals, texture coordinates and triangles. Triangles without area are left out and
+    /// counted.
+    ///
+    /// A corner without a normal, or with one of length 0, gets a mean normal. It is the mean, weighted by area, of
+    /// the triangles that meet in the corner's position and hang together there by edges of at most `crease` degrees.
+    /// Sharper edges stay sharp.
     ///
     /// # Errors
-    /// No triangle with an area, or too many; numbers that are not finite, or coordinates beyond 10³⁰.
+    /// Fails if no triangle has an area, or if there are too many. Fails if numbers are not finite, or coordinates
+    /// are beyond 10³⁰.
     pub fn new(
         positions: Vec<Vector>,
         mut normals: Vec<Vector>,
@@ -162,8 +166,8 @@ fn first_of_same(positions: &[Vector]) -> Vec<u32> {
         .collect()
 }
 
-/// Appends to `normals` those of all corners, three for each triangle, and returns where each is. `areas` are the
-/// triangles' normals, as long as twice their areas.
+/// Appends the normals of all corners to `normals`, three for each triangle, and returns the index of each. `areas`
+/// are the triangles' normals, as long as twice their areas.
 fn creased_normals(
     positions: &[Vector],
     triangles: &[[RawCorner; 3]],
@@ -173,7 +177,7 @@ fn creased_normals(
 ) -> Vec<u32> {
     let same = first_of_same(positions);
     let point = |corner: usize| same[triangles[corner / 3][corner % 3].position as usize];
-    // The corners by their point; those of a point are in the order of the triangles.
+    // The corners by their point; the corners of one point are in the order of the triangles.
     let mut corners: Vec<u32> = (0..3 * triangles.len() as u32).collect();
     corners.sort_by_key(|&corner| point(corner as usize));
     let flat = libm::cos(crease.to_radians());

@@ -1,8 +1,9 @@
 //! Renders pictures whose highlights a device computes, bit by bit.
 //!
-//! The host computes visibility, normals, half vectors, and the ambient and diffuse light in f64; an [`Engine`] computes the specular
-//! term of every sample and light, along lines for devices that walk lines. The same picture has the same bytes on every machine: it
-//! depends neither on the engine nor on the number of threads, and transcendental functions are those of `libm`.
+//! The host computes visibility, normals, half vectors, and the ambient and diffuse light in f64. An [`Engine`]
+//! computes the specular term of every sample and light, along lines for devices that walk lines. The same picture
+//! has the same bytes on every machine. It depends neither on the engine nor on the number of threads, and
+//! transcendental functions come from `libm`.
 
 mod camera;
 mod height;
@@ -51,7 +52,7 @@ pub const MOST_LIGHTS: usize = 16;
 /// The angle between the upper and the lower edge of a picture by default, in degrees.
 pub const FIELD: f64 = 30.0;
 
-/// n by default, where the device takes so much.
+/// n by default, if the device takes so large a value.
 const EXPONENT: i64 = 80;
 
 /// Points, about, that are handed to the device at once.
@@ -64,11 +65,11 @@ pub struct Settings {
     pub size: (u32, u32),
     /// Samples along each side of a pixel, which is their mean.
     pub samples: u32,
-    /// From where.
+    /// The settings of the camera.
     pub view: View,
     /// How things reflect.
     pub material: Material,
-    /// The colour where nothing is hit, 0 … 1.
+    /// The colour of samples that hit nothing, 0 … 1.
     pub background: Vector,
     /// Whether the picture of Blinn's function in f64 is wanted too.
     pub compare: bool,
@@ -76,7 +77,7 @@ pub struct Settings {
     pub operands: Vec<(String, f64)>,
 }
 
-/// A picture and what there is to say of it.
+/// A picture, and the facts about its rendering.
 #[derive(Clone, Debug)]
 pub struct Rendered {
     /// Through the device.
@@ -90,7 +91,8 @@ pub struct Rendered {
 }
 
 impl Rendered {
-    /// Returns the picture; where Blinn's was wanted, it and their difference stand beside it, each with its caption.
+    /// Returns the picture. If Blinn's picture was wanted, it and the difference are beside it, each with its
+    /// caption.
     pub fn whole(&self, device: &str) -> Picture {
         let Some(comparison) = &self.comparison else {
             return self.picture.clone();
@@ -127,10 +129,10 @@ pub fn draws(core: &Core) -> bool {
     Feed::new(core.device.name, contract).is_ok()
 }
 
-/// Checks what is to be rendered.
+/// Checks the settings and the scene before they are rendered.
 ///
 /// # Errors
-/// A setting is wrong; the sentence says which.
+/// Fails if a setting is wrong; the sentence says which.
 pub fn check(settings: &Settings, scene: &Scene) -> Result<()> {
     let (width, height) = settings.size;
     let sides = 1..=LARGEST_SIDE;
@@ -167,8 +169,8 @@ pub fn check(settings: &Settings, scene: &Scene) -> Result<()> {
 /// Renders a scene; `progress` is called with the number of rows so far.
 ///
 /// # Errors
-/// As of [`check`]; a camera that sees nowhere; operands that a picture cannot supply; and those of the
-/// engine.
+/// Fails if [`check`] does, if the camera sees nowhere, if a picture cannot supply an operand, or if the engine
+/// fails.
 pub fn render(
     core: &Core,
     engine: &mut dyn Engine,

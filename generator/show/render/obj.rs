@@ -1,19 +1,19 @@
 //! Reads Wavefront OBJ: the geometry of a mesh.
 //!
-//! Everything but vertices, normals, texture coordinates and faces is passed over: groups, materials,
-//! lines, curves. A reader of its own, because a mistake is reported with its line, and because faces whose
-//! corners have normals may stand beside faces without.
+//! The reader ignores everything but vertices, normals, texture coordinates and faces: groups, materials, lines,
+//! curves. Glint has its own reader so that it can report a mistake with its line. A file may mix faces whose corners
+//! have normals and faces without.
 
 use anyhow::{Context, Result, anyhow, bail, ensure};
 
 use super::mesh::{Mesh, RawCorner};
 use super::vector::Vector;
 
-/// Returns the mesh that a file describes; where it has no normals, edges beyond `crease` degrees are sharp.
+/// Returns the mesh that a file describes. If it has no normals, edges beyond `crease` degrees are sharp.
 ///
 /// # Errors
-/// With the number of the line: a number that is none or not finite, a face with less than three corners or
-/// with one that does not exist. Without it: those of [`Mesh::new`].
+/// Fails with the number of the line if a number is not one or not finite, or if a face has less than three corners
+/// or a corner that does not exist. Fails without it if [`Mesh::new`] fails.
 pub fn parse(text: &str, crease: f64) -> Result<Mesh> {
     let mut read = Reader::default();
     for (number, line) in text.lines().enumerate() {

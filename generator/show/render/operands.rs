@@ -1,6 +1,6 @@
-//! Feeds a device: finds out which of its operands mean what, and makes the raw operands of a point or a line.
+//! Feeds a device: finds the meaning of each operand, and makes the raw operands of a point or a line.
 //!
-//! Nothing here knows a device; its contract names its operands, and those names are what it is known by.
+//! Nothing here knows a device. The contract names the operands, and the names tell their meaning.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -123,13 +123,13 @@ const OF_LINES: [(&str, Quantity); 5] = [
     ("amplitude", Quantity::Amplitude),
 ];
 
-/// The operands of a device, each with what it takes.
+/// The operands of a device, each with the quantity that it takes.
 #[derive(Clone, Debug)]
 pub struct Feed {
     operands: Vec<(Quantity, Format, (i64, i64))>,
     /// For red, green and blue the place of its output.
     channels: [usize; 3],
-    /// For red, green and blue what an output is to be multiplied with, for 255 at full colour.
+    /// For red, green and blue, the factor that makes an output 255 at full colour.
     scales: [f64; 3],
     /// The most intervals of a line, if it computes lines.
     longest: Option<usize>,
@@ -150,19 +150,19 @@ pub fn walks_lines(contract: &dyn Contract) -> bool {
 }
 
 impl Feed {
-    /// Finds out what the operands of a device of that name mean.
+    /// Finds the meanings of the operands of a device with the name `device`.
     ///
     /// # Errors
-    /// It has operands that are not understood, or not the colours.
+    /// Fails if the device has operands that are not understood, or not the colours.
     pub fn new(device: &str, contract: &dyn Contract) -> Result<Self> {
         Self::with(device, contract, &[])
     }
 
-    /// Finds out what the operands of a device of that name mean, some of which are `given` and the same at every
-    /// point.
+    /// Finds the meanings of the operands of a device with the name `device`. Some operands are `given` and the same
+    /// at every point.
     ///
     /// # Errors
-    /// As of [`Feed::new`]; an operand that the device does not have, or a value beyond its domain.
+    /// Fails as [`Feed::new`] does, if the device does not have a given operand, or if a value is beyond its domain.
     pub fn with(device: &str, contract: &dyn Contract, given: &[(String, f64)]) -> Result<Self> {
         let surfaces = contract.operands().iter().any(|it| it.name == OF_SURFACES[10].0);
         let names: &[(&str, Quantity)] = match (walks_lines(contract), surfaces) {
@@ -363,12 +363,12 @@ impl Feed {
     /// Returns the raw operands of a line. Angles are taken modulo a turn.
     ///
     /// # Errors
-    /// An angle times √(n/2) that a device without an exponent has no room for.
+    /// Fails if a device without an exponent has no room for an angle times √(n/2).
     pub fn line(&self, line: &Line) -> Result<Vec<i64>> {
         if let Some((_, format, _)) = self.find(Quantity::ZetaStart)
             && !self.takes(Quantity::Exponent)
         {
-            // A right angle is kept for what rounding may add along the line.
+            // A right angle is kept for the errors that rounding may add along the line.
             let room = exp2(format.int) - 1.0;
             let ends = [line.zeta_start, line.zeta(line.length)];
             let mut ends = ends.map(|zeta| self.stretch(line) * zeta / FRAC_PI_2).into_iter();
@@ -386,8 +386,8 @@ impl Feed {
         Ok(self.operands.iter().zip(self.line_values(line)).map(raw).collect())
     }
 
-    /// Returns the results of a point as a colour, 255 at full colour: `outputs` gives those in which red, green and
-    /// blue are.
+    /// Returns the results of a point as a colour, 255 at full colour. `outputs` gives the results of the computation
+    /// that has the channel.
     #[inline]
     pub fn colour<'a>(&self, outputs: impl Fn(usize) -> &'a [i64]) -> Vector {
         let of = |channel: usize| outputs(channel)[self.channels[channel]] as f64;
@@ -400,7 +400,8 @@ fn number(value: f64, format: Format, (low, high): (i64, i64)) -> i64 {
     format.quantise(value).clamp(i128::from(low), i128::from(high)) as i64
 }
 
-/// Returns the raw angle nearest to right angles, modulo a turn: what an angle without room for more means.
+/// Returns the raw value nearest to an angle in right angles. A format without room for the angle wraps around,
+/// modulo a turn.
 fn raw_angle(right_angles: f64, format: Format) -> i64 {
     let scaled = nearest(right_angles * exp2(format.frac)) as i128;
     format.narrow(scaled, format.frac, Rounding::Truncate, Overflow::Wrap) as i64
@@ -419,7 +420,8 @@ fn fixed(operand: &Operand, value: f64) -> Result<Quantity> {
     Ok(Quantity::Given(value))
 }
 
-/// Returns the quantity that an operand takes. Of a unit with several lights one is lit: vectors to the others are zero.
+/// Returns the quantity that an operand takes. In a unit with several lights, only one is lit: vectors to the others
+/// are zero.
 fn quantity(operand: &Operand, names: &[(&str, Quantity)]) -> Option<Quantity> {
     let of = |wanted: &str| {
         let mut names = names.iter();

@@ -75,7 +75,7 @@ impl Picture {
     /// Returns the picture as a PNG file. The same pixels give the same bytes.
     ///
     /// # Errors
-    /// None that a user could cause.
+    /// Fails only through a bug, not through anything that a user gives.
     pub fn png(&self) -> Result<Vec<u8>> {
         let mut bytes = Vec::new();
         let mut encoder = Encoder::new(&mut bytes, self.width, self.height());
@@ -103,7 +103,7 @@ pub struct Difference {
     pub largest: u8,
     /// The peak signal-to-noise ratio in decibels, over the pixels of the things; none when they are equal.
     pub psnr: Option<f64>,
-    /// By what the differences in [`Difference::picture`] are multiplied, for them to be seen.
+    /// The factor of the differences in [`Difference::picture`], which makes them visible.
     pub gain: u8,
     /// The absolute differences.
     pub picture: Picture,

@@ -89,7 +89,7 @@ impl Scene {
     /// consist of triangles that one can see, for devices that interpolate along them.
     ///
     /// # Errors
-    /// None that a user could cause.
+    /// Fails only through a bug, not through anything that a user gives.
     pub fn built_in(which: BuiltIn, colour: Option<Vector>, coarse: bool) -> Result<Vec<Object>> {
         let ball = |middle, radius| {
             if coarse {

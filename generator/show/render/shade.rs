@@ -1,7 +1,7 @@
-//! Computes the host's part of shading: what a point is, its ambient and diffuse light, and what the device is to
-//! compute for it.
+//! Computes the host's part of shading: the surface at a point, its ambient and diffuse light, and the operands of
+//! the device.
 //!
-//! All of it is f64. Most devices compute the specular term alone; one that takes normals computes the rest too.
+//! All of it is f64. Most devices compute the specular term alone; a device that takes normals computes the rest too.
 
 use std::f64::consts::{PI, TAU};
 
@@ -22,7 +22,7 @@ pub struct Material {
     pub ambient: f64,
     /// The share of each light, times the cosine of its angle.
     pub diffuse: f64,
-    /// k_s: of each light, times the reflectance f that the device computes.
+    /// k_s: the share of each light, times the reflectance f that the device computes.
     pub specular: f64,
     /// n.
     pub exponent: u32,
@@ -39,11 +39,11 @@ impl Material {
 pub struct Shader<'a> {
     /// Things and lights.
     pub scene: &'a Scene,
-    /// From where it is seen.
+    /// The camera from which the scene is seen.
     pub camera: &'a Camera,
     /// The material of all things.
     pub material: Material,
-    /// The colour where nothing is hit, 0 … 255.
+    /// The colour of samples that hit nothing, 0 … 255.
     pub background: Vector,
     /// The device's operands.
     pub feed: &'a Feed,
@@ -51,15 +51,15 @@ pub struct Shader<'a> {
     pub compare: bool,
 }
 
-/// Some samples of a row, shaded but for what the device computes.
+/// Some samples of a row, shaded except for the light that the device computes.
 pub struct Shaded {
     /// Ambient and diffuse light or the background, 0 … 255, of each sample, and the number of lights for
     /// which the device computes a result.
     pub samples: Vec<(Vector, u32)>,
     /// The points that it computes.
     pub points: Points,
-    /// For each sample and each of its lights the numbers of the results with its red, green and blue.
-    /// `None` where every computation has one result, with all three, and they come in this order.
+    /// For each sample and each of its lights, the numbers of the results with its red, green and blue. `None` if
+    /// every computation has one result, with all three colours, and the results come in this order.
     pub places: Option<Vec<[usize; 3]>>,
     /// For each sample and each of its lights Blinn's cosⁿγ times the light's colour, 0 … 255; empty unless
     /// it is wanted.
@@ -79,7 +79,7 @@ struct Surface {
 }
 
 impl Surface {
-    /// Returns whether a light falls on it. The device knows nothing of what lies in its own shadow.
+    /// Returns whether a light falls on the surface. The device knows nothing about surfaces in their own shadow.
     fn is_lit(&self, light: &Light) -> bool {
         self.smooth.dot(light.direction) > 0.0
     }
@@ -95,7 +95,7 @@ impl Shader<'_> {
     /// Returns the points that a device computes for a row of samples; `ray` gives the ray of each.
     ///
     /// # Errors
-    /// A line that the device cannot take.
+    /// Fails if the device cannot take a line.
     pub fn shade(&self, hits: &[Hit], ray: impl Fn(usize) -> Vector) -> Result<Shaded> {
         let mut shaded = Shaded {
             samples: Vec::with_capacity(hits.len()),
@@ -188,10 +188,10 @@ impl Shader<'_> {
         Ok(())
     }
 
-    /// Returns the lines along some samples: for each light the numbers of the first result of red, green and blue. A
-    /// light that falls on none of them has no line.
+    /// Adds the lines along some samples. Returns for each light the numbers of the first result of red, green and
+    /// blue. A light that falls on none of the samples has no line.
     ///
-    /// The host's set-up is that of seed 000, from normals and half vectors at both ends.
+    /// The host's set-up is the set-up of seed 000, from normals and half vectors at both ends.
     fn lines(&self, surfaces: &[Surface], points: &mut Points) -> Result<Vec<[usize; 3]>> {
         let (Some(first), Some(last)) = (surfaces.first(), surfaces.last()) else {
             return Ok(Vec::new());

@@ -7,11 +7,11 @@ use anyhow::Result;
 use super::mesh::{Mesh, RawCorner, SMOOTH};
 use super::vector::Vector;
 
-/// Makes a torus around the y axis: `major` from the middle to the tube's, `minor` the tube's radius, each way in so
-/// many steps.
+/// Makes a torus around the y axis. `major` is the distance from the middle to the tube's middle, and `minor` is the
+/// tube's radius. `steps` are the numbers of steps each way.
 ///
 /// # Errors
-/// As of [`Mesh::new`].
+/// Fails if [`Mesh::new`] fails.
 pub fn torus(major: f64, minor: f64, steps: [u32; 2]) -> Result<Mesh> {
     grid(steps, [true, true], |u, v| {
         let (around, across) = (u * TAU, v * TAU);
@@ -27,7 +27,7 @@ pub fn torus(major: f64, minor: f64, steps: [u32; 2]) -> Result<Mesh> {
 /// Makes a ball, with this number of steps around and from pole to pole.
 ///
 /// # Errors
-/// As of [`Mesh::new`].
+/// Fails if [`Mesh::new`] fails.
 pub fn ball(middle: Vector, radius: f64, steps: [u32; 2]) -> Result<Mesh> {
     grid(steps, [true, false], |u, v| {
         let (around, down) = (u * TAU, v * PI);
@@ -45,7 +45,7 @@ pub fn ball(middle: Vector, radius: f64, steps: [u32; 2]) -> Result<Mesh> {
 /// Makes a vase of height 2 around the y axis, open at the top: belly, neck and lip.
 ///
 /// # Errors
-/// As of [`Mesh::new`].
+/// Fails if [`Mesh::new`] fails.
 pub fn vase(steps: [u32; 2]) -> Result<Mesh> {
     grid(steps, [true, false], |u, v| {
         // Outside from the foot to the lip, then down the inside.
@@ -71,7 +71,7 @@ fn vase_radius(height: f64) -> f64 {
     (foot * belly + lip).max(0.0)
 }
 
-/// Makes the surface `at` over the unit square, in steps; closed in a direction where its ends meet.
+/// Makes the surface `at` over the unit square, in steps. The surface is `closed` in a direction if its ends meet.
 fn grid(steps: [u32; 2], closed: [bool; 2], at: impl Fn(f64, f64) -> Vector) -> Result<Mesh> {
     let [columns, rows] = steps;
     let mut positions = Vec::new();

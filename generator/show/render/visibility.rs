@@ -42,7 +42,7 @@ pub struct Raster {
     pub columns: usize,
     /// Rows, from the top.
     pub rows: usize,
-    /// Half the width and half the height of what is seen at distance 1.
+    /// Half the width and half the height of the view at distance 1.
     half: (f64, f64),
 }
 
@@ -78,7 +78,7 @@ pub struct Visibility<'a> {
     /// The corners of each mesh, by object.
     corners: Vec<Vec<Vector>>,
     balls: Vec<(u32, Vector, f64)>,
-    /// For each band of rows what may be seen there: object, triangle, columns.
+    /// For each band of rows, the candidates that may be seen there: object, triangle, columns.
     bands: Vec<Vec<Candidate>>,
     /// The least distance at which a surface is seen.
     near: f64,
@@ -93,7 +93,7 @@ struct Candidate {
 }
 
 impl<'a> Visibility<'a> {
-    /// Sorts a scene, all of which lies in a ball of radius `size`.
+    /// Sorts a scene, which must lie in a ball of radius `size`.
     pub fn new(scene: &'a Scene, camera: &Camera, raster: Raster, size: f64) -> Self {
         let mut visibility = Self {
             scene,
@@ -145,7 +145,7 @@ impl<'a> Visibility<'a> {
         }
     }
 
-    /// Returns where a triangle may be seen, if anywhere.
+    /// Returns the rows and columns in which a triangle may be seen, if there are any.
     fn candidate(&self, object: u32, triangle: u32) -> Option<Candidate> {
         let corners = self.corners(object, triangle);
         let distances = corners.map(|corner| -corner.0[2]);
@@ -185,7 +185,7 @@ impl<'a> Visibility<'a> {
     pub fn rows(&self, first: usize, end: usize) -> Vec<Hit> {
         let width = self.raster.columns;
         let mut hits = vec![NOTHING; width * (end - first)];
-        // Bands of the whole picture, of which the first and the last may be seen in part.
+        // Bands of the whole picture. The first and the last may be only partly among these rows.
         let mut parts = Vec::new();
         let (mut rest, mut row) = (hits.as_mut_slice(), first);
         while row < end {
@@ -198,7 +198,7 @@ impl<'a> Visibility<'a> {
         hits
     }
 
-    /// Finds what is seen in the rows of one band, the first of which is number `first`.
+    /// Finds the surfaces in the rows of one band. The first row has the number `first`.
     fn band(&self, first: usize, hits: &mut [Hit]) {
         let width = self.raster.columns;
         let end = first + hits.len() / width;
@@ -256,7 +256,7 @@ impl Planes {
         (volume != 0.0).then_some(Self { normals, volume })
     }
 
-    /// Returns where a ray meets the triangle, with the weights of the second and the third corner.
+    /// Returns the depth at which a ray meets the triangle, with the weights of the second and the third corner.
     #[inline]
     fn meet(&self, ray: Vector) -> Option<(f64, [f64; 2])> {
         let [a, b, c] = self.normals.map(|normal| ray.dot(normal));
@@ -270,7 +270,7 @@ impl Planes {
     }
 }
 
-/// Returns where a ray enters a ball.
+/// Returns the place at which a ray enters a ball, as a multiple of the ray.
 #[inline]
 fn meet_ball(ray: Vector, middle: Vector, radius: f64) -> Option<f64> {
     let square = ray.dot(ray);

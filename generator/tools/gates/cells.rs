@@ -9,7 +9,7 @@ use anyhow::{Context, Result};
 use super::super::sources::Sources;
 use crate::Tool;
 
-/// The library of Oklahoma State University for 0.18 µm, where Debian's `qflow-tech-osu018` has it.
+/// The library of Oklahoma State University for 0.18 µm, at the path in Debian's `qflow-tech-osu018`.
 pub const LIBERTY: &str = "/usr/share/qflow/tech/osu018/osu018_stdcells.lib";
 
 /// How Yosys maps to the cells of `cells.lib`, without the top module.
@@ -41,7 +41,7 @@ impl Start {
 /// Returns the flat netlist of the module `top` in cells of [`LIBERTY`], as Verilog.
 ///
 /// # Errors
-/// The library cannot be read; Yosys fails, or takes longer than `limit`.
+/// Fails if the library cannot be read, or if Yosys fails or takes longer than `limit`.
 pub fn netlist(
     yosys: &Tool,
     files: &[(String, String)],
@@ -63,7 +63,7 @@ pub fn netlist(
 /// unknown by the first value on its constant inputs.
 ///
 /// # Errors
-/// They are not beside the library, or have no flip-flop.
+/// Fails if the models are not beside the library, or have no flip-flop.
 pub fn models(start: Start) -> Result<Vec<(String, String)>> {
     let text = read(&Path::new(LIBERTY).with_extension("v"))?;
     let mut parts = text.split("   specify\n");

@@ -23,7 +23,7 @@ pub fn is_simulated(family: &Family) -> bool {
 /// Returns the flat netlist of the module `top`, as Verilog, with the contents of the ROMs.
 ///
 /// # Errors
-/// As of [`super::synthesis::synthesise`].
+/// Fails as [`super::synthesis::synthesise`] does.
 pub fn netlist(
     yosys: &Tool,
     files: &[(String, String)],
@@ -37,11 +37,11 @@ pub fn netlist(
     sources.text(NETLIST)
 }
 
-/// Returns the files of a test bench around a netlist: `sources`, which are those of the device and its test bench,
-/// without the files named in `rtl`, and with the netlist and the models of the family's cells.
+/// Returns the files of a test bench around a netlist. They are the `sources` of the device and its test bench
+/// without the files named in `rtl`, the netlist, and the models of the family's cells.
 ///
 /// # Errors
-/// The models are not where Yosys has them; there are none.
+/// Fails if Yosys's directory does not have the models, or if the family has no models.
 pub fn bench(
     yosys: &Tool,
     sources: Vec<(String, String)>,
@@ -73,7 +73,7 @@ pub fn around(
 /// Returns the models of a family's cells.
 ///
 /// # Errors
-/// They are not where Yosys has them; there are none.
+/// Fails if Yosys's directory does not have the models, or if the family has no models.
 pub fn models(yosys: &Tool, family: &Family) -> Result<Vec<(String, String)>> {
     let shipped = shipped(yosys, family)?;
     let mut files = Vec::new();

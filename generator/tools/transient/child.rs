@@ -17,7 +17,7 @@ impl Child {
     /// Starts `command` in a process group of its own.
     ///
     /// # Errors
-    /// It does not start.
+    /// Fails if the command does not start.
     pub fn spawn(command: &mut Command) -> io::Result<Self> {
         // A terminal's Ctrl-C reaches this process alone, which then ends its children itself.
         #[cfg(unix)]
@@ -36,7 +36,7 @@ impl Child {
     /// Returns how it ended, if it has.
     ///
     /// # Errors
-    /// There is no such child.
+    /// Fails if there is no such child.
     pub fn try_wait(&mut self) -> io::Result<Option<ExitStatus>> {
         // Its number is free as soon as it is collected: it goes off the list in the same step.
         let mut list = list();
@@ -84,7 +84,7 @@ pub fn kill_tree(child: u32) {
 #[cfg(not(unix))]
 pub fn kill_tree(_child: u32) {}
 
-/// Kills all descendants of this process, also those whose parents have ended, until none is left alive or
+/// Kills all descendants of this process, including descendants whose parents have ended, until none is alive or
 /// `deadline` has passed.
 #[cfg(unix)]
 pub fn kill_own_descendants(deadline: Instant) {
@@ -122,8 +122,8 @@ fn kill_all(list: impl Fn() -> Vec<i32>) {
     stopped.into_iter().for_each(|pid| send(pid, Signal::KILL));
 }
 
-/// Makes this process the parent of descendants whose own parent has ended, so that they are found. Where the
-/// system cannot do that, only those in the process group of a child are.
+/// Makes this process the parent of descendants whose own parent has ended, so that they are found. If the system
+/// cannot do that, only descendants in the process group of a child are found.
 pub fn adopt_orphans() {
     #[cfg(target_os = "linux")]
     let _ = rustix::process::set_child_subreaper(Some(rustix::process::getpid()));
@@ -139,7 +139,7 @@ mod tree {
         parent: i32,
     }
 
-    /// Returns the living descendants of `root`, with itself or without. None where there is no `/proc`.
+    /// Returns the living descendants of `root`, with itself or without. The list is empty if there is no `/proc`.
     pub fn descendants(root: i32, with_root: bool) -> Vec<i32> {
         let all = all();
         let mut found = vec![root];

@@ -1,17 +1,19 @@
-//! The guard: a shell that outlives this process, and kills what it has started if it is killed itself.
+//! The guard: a shell that outlives this process. If this process is killed, the guard kills the children that it has
+//! started.
 
 use std::collections::BTreeSet;
 use std::io::Write;
 use std::os::unix::process::CommandExt;
 use std::process::{ChildStdin, Command, Stdio};
 
-/// Reads lists of children, a line each, until the pipe closes, as it does with the end of this process. Those on the last
-/// line, which is empty after an end in order, are killed with their descendants in other groups and with their own group.
+/// Reads lists of children, a line each, until the pipe closes, which it does at the latest when this process ends.
+/// Then it kills the children on the last line, with their own groups and with their descendants in other groups.
+/// After an orderly end, the last line is empty.
 ///
-/// A pipe closes shortly before the process is gone. With its end the groups of its children become orphans, and if one of
-/// them has a stopped process then, the system sends SIGHUP and SIGCONT to the whole group: a child that was stopped too early would be
-/// gone before its own children are listed. So the shell waits until it has another parent itself; the `sleep` behind
-/// that forks, which the system does after it has dealt with all children.
+/// A pipe closes shortly before the process is gone. With the end of the process, the groups of its children become
+/// orphans. If a group has a stopped process then, the system sends SIGHUP and SIGCONT to the whole group. A child
+/// that was stopped too early would be gone before its own children are listed. So the shell waits until it has
+/// another parent itself. The `sleep` behind that forks, which the system does after it has dealt with all children.
 pub(super) const SCRIPT: &str = r#"
 tree() {
     for task in /proc/"$1"/task/*/children; do
@@ -57,7 +59,7 @@ impl Guard {
 /// Returns the shell that a script of a guard runs in.
 pub(super) fn shell(script: &str) -> Command {
     let mut command = Command::new("/bin/sh");
-    // A group of its own: what is sent to that of this process does not reach it.
+    // The shell has a group of its own: a signal to the group of this process does not reach it.
     command.args(["-c", script]).current_dir("/").process_group(0);
     command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::null());
     command

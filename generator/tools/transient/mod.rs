@@ -1,9 +1,9 @@
 //! Keeps a list of child processes and temporary directories: things that exist only while Glint runs.
 //!
-//! Each stands on a list until it is gone. [`clear`] ends and deletes all of them, for a process that is
-//! interrupted. A child is started, and a temporary path made, under the list's lock: nothing can appear
-//! between the end of the listing and the end of the process. Of a process that is killed, a guard ends the children, and
-//! the next one deletes the temporary directories, which are locked while they are in use.
+//! Each thing is on a list until it is gone. If a process is interrupted, [`clear`] ends and deletes all of them. A
+//! child is started, and a temporary path made, under the list's lock: nothing can appear between the end of the
+//! listing and the end of the process. If a process is killed, a guard ends its children. The next process deletes
+//! the killed one's temporary directories, which are locked while they are in use.
 
 mod child;
 #[cfg(unix)]

@@ -1,5 +1,4 @@
-//! Makes temporary directories, each with a file in it that says whose it is and is locked while the directory is in
-//! use.
+//! Makes temporary directories. Each has a file that names its owner and is locked while the directory is in use.
 
 use std::fs;
 use std::io::{self, Write};
@@ -10,7 +9,7 @@ use tempfile::TempDir;
 
 use super::list;
 
-/// The prefixes of the names of directories for tools, and of those beside files that they are made for.
+/// The prefixes of the names of directories for tools, and of directories beside the files that they are made for.
 const FOR_TOOLS: &str = "glint-";
 const BESIDE: &str = ".glint-";
 
@@ -27,11 +26,11 @@ pub struct Directory {
 }
 
 impl Directory {
-    /// Returns one for the use of a tool, where the system keeps temporary files. The first deletes those that killed processes
-    /// have left.
+    /// Returns a directory for the use of a tool, where the system keeps temporary files. The first call deletes the
+    /// directories that killed processes have left there.
     ///
     /// # Errors
-    /// It cannot be made.
+    /// Fails if the directory cannot be made.
     pub fn new() -> io::Result<Self> {
         let place = std::env::temp_dir();
         // The tools that work there, make and abc among them, take a path apart at blanks.
@@ -47,11 +46,11 @@ impl Directory {
         Self::made(&place, FOR_TOOLS)
     }
 
-    /// Returns one in `parent`, for files that are moved into their places beside it, once those that killed processes have left
-    /// there are deleted.
+    /// Returns a directory in `parent`, for files that are moved into their places beside it. It first deletes the
+    /// directories that killed processes have left there.
     ///
     /// # Errors
-    /// It cannot be made.
+    /// Fails if the directory cannot be made.
     pub fn beside(parent: &Path) -> io::Result<Self> {
         // The path stays right when the process changes its directory.
         let parent = std::path::absolute(parent)?;
@@ -69,14 +68,14 @@ impl Directory {
         };
         let mut directory = Self { made: Some(made), lock: None };
         let mut lock = fs::File::create(directory.path().join(LOCK))?;
-        // Before it says anything: what is empty is nobody's. A system without locks goes without.
+        // The file is locked while it is empty: an empty file belongs to nobody. A system without locks goes without.
         let _ = lock.try_lock();
         lock.write_all(title(directory.path()).as_bytes())?;
         directory.lock = Some(lock);
         Ok(directory)
     }
 
-    /// Returns where it is.
+    /// Returns the path of the directory.
     pub fn path(&self) -> &Path {
         self.made.as_ref().map_or(Path::new(""), TempDir::path)
     }
@@ -99,8 +98,8 @@ impl Drop for Directory {
     }
 }
 
-/// Deletes the directories that killed processes have left in `parent`: those that say that they are, under their own
-/// name, and that nobody has locked.
+/// Deletes the directories that killed processes have left in `parent`. Such a directory has a file that says so,
+/// under the directory's own name, and nobody has locked the file.
 fn sweep(parent: &Path, prefix: &str) {
     for entry in fs::read_dir(parent).into_iter().flatten().flatten() {
         let (path, lock) = (entry.path(), entry.path().join(LOCK));
@@ -122,10 +121,10 @@ fn title(directory: &Path) -> String {
     format!("Glint works in {name}. The next run deletes what a killed one has left.\n")
 }
 
-/// Lists everything below a directory that is none, sorted; links are not followed.
+/// Lists every file and link below a directory, sorted, without directories. Links are not followed.
 ///
 /// # Errors
-/// A directory that cannot be read.
+/// Fails if a directory cannot be read.
 pub fn files_below(directory: &Path) -> io::Result<Vec<PathBuf>> {
     let mut found = Vec::new();
     let mut pending = vec![directory.to_owned()];

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use super::*;
 
-/// Waits for what a script writes.
+/// Waits for the number that a script writes.
 fn number_in(path: &Path) -> u32 {
     let deadline = Instant::now() + Duration::from_secs(60);
     loop {
@@ -89,7 +89,7 @@ fn what_is_dropped_is_gone_and_off_the_list() {
     assert!(!path.exists() && !list().paths.contains(&path));
 }
 
-/// Directories in use stay, and so do those of somebody else.
+/// Directories in use stay, and so do directories of somebody else.
 #[test]
 fn what_killed_processes_have_left_goes() {
     let place = tempfile::tempdir().unwrap();

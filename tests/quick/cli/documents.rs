@@ -59,9 +59,10 @@ fn every_page_is_in_the_book() {
     let links = summary.split("](").skip(1).filter_map(|rest| rest.split_once(')'));
     let listed: BTreeSet<String> =
         links.map(|it| format!("docs/{}", it.0)).filter(|it| it != "docs/").collect();
-    let pages = ["docs", "docs/design", "docs/devices", "docs/evidence", "docs/flows", "docs/images"]
-        .map(|folder| paths(folder, ".md"))
-        .concat();
+    let pages =
+        ["docs", "docs/design", "docs/devices", "docs/evidence", "docs/flows", "docs/images"]
+            .map(|folder| paths(folder, ".md"))
+            .concat();
     let pages = pages.into_iter().filter(|it| it != "docs/SUMMARY.md");
     assert_eq!(listed, pages.collect());
 }

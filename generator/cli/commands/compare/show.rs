@@ -45,7 +45,8 @@ pub fn show(
     Ok(())
 }
 
-/// Tells over what the errors of a device are, that has more operands than the angle and n; none of others.
+/// Returns a sentence about the operands at which the errors of a device are computed, if the device has more
+/// operands than the angle and n. Returns `None` for all other devices.
 fn at_rest(entry: &Entry) -> Option<String> {
     let contract = entry.core.contract.as_ref();
     let control = contract.operands().iter().filter(|operand| !operand.colour);
@@ -72,7 +73,7 @@ fn at_rest(entry: &Entry) -> Option<String> {
     })
 }
 
-/// Returns the largest error and the mean: of the whole, of the formula, of the operands and of the fixed point.
+/// Returns the largest and the mean error for the whole, the formula, the operands and the fixed point.
 fn errors(accuracy: &Accuracy) -> impl Iterator<Item = f64> {
     let Accuracy { whole, formula, operands, fixed_point } = *accuracy;
     [whole, formula, operands, fixed_point].into_iter().flat_map(|it| [it.largest, it.mean])
@@ -136,7 +137,7 @@ fn print_hardware(entries: &[Entry]) {
     }
 }
 
-/// Returns the usage of all families, with `unknown` where it is not known.
+/// Returns the usage of all families, with `unknown` for a usage that is not known.
 fn taken(entry: &Entry, unknown: &str) -> Vec<String> {
     let of = |at: usize| entry.usage.get(at).and_then(|usage| usage.as_ref().ok());
     let families = (0..FAMILIES.len()).flat_map(|at| match of(at) {
@@ -209,7 +210,7 @@ fn numbers(usage: &Usage) -> [(&'static str, u64); 3] {
     [("luts", usage.luts), ("dsps", usage.dsps), ("block_rams", usage.block_rams)]
 }
 
-/// Returns the heading, then a row for each entry. What is not known is empty.
+/// Returns the heading, then a row for each entry. A value that is not known is empty.
 fn as_csv(arguments: &Arguments, entries: &[Entry]) -> Vec<Vec<String>> {
     let synthesised = entries.iter().any(|entry| !entry.usage.is_empty());
     let mut heading: Vec<String> = ["name", "device", "exponent"].map(str::to_owned).to_vec();

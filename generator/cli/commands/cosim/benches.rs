@@ -39,7 +39,7 @@ struct Mismatch {
 /// Runs the benches of configurations.
 ///
 /// # Errors
-/// Wrong usage; a simulator that is missing, refuses a bench, or does not end in time.
+/// Fails for wrong usage, or if the simulator is missing, refuses a bench, or does not end in time.
 pub fn benches(
     output: Output,
     loaded: &[Loaded],
@@ -74,8 +74,7 @@ pub fn benches(
     Ok(output.concluded(holds, list))
 }
 
-/// Returns the emitted bench in an external simulator. The expected values are those on which golden model
-/// and built-in simulator agree.
+/// Runs the emitted bench in an external simulator. Golden model and built-in simulator agree on the expected values.
 fn bench(one: &Loaded, which: Simulator, points: u64, arguments: &Arguments) -> Result<Run> {
     let vectors = one.core.vectors(points, arguments.seed)?;
     let clocks = vectors.inputs.len();
@@ -89,7 +88,7 @@ fn bench(one: &Loaded, which: Simulator, points: u64, arguments: &Arguments) -> 
         let written = bench_waveform(which, &files, &top, clocks, arguments.time_limit.get())
             .and_then(|waveform| destination::replace(&path, &waveform));
         if let Err(error) = &written {
-            // What differs is worth more than its waveform.
+            // The difference is worth more than its waveform.
             failure::warn(&format!("{}: no waveform: {error:#}", one.path));
         }
         Mismatch {

@@ -27,8 +27,8 @@ const WORTH_SHARING: Duration = Duration::from_secs(60);
 /// Numbers of cores for which the duration of a proof is estimated.
 const CORES: [u32; 3] = [1, 16, 1000];
 
-/// Runs `glint cosim --exhaustive`: the factored proof of the accuracy contract and, where they are not too many, every
-/// combination of operands clock by clock.
+/// Runs `glint cosim --exhaustive`: the factored proof of the accuracy contract. It also runs every combination of
+/// operands clock by clock, if they are not too many.
 pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     if arguments.resume.is_some() && loaded.len() != 1 {
@@ -83,7 +83,7 @@ fn prove(output: Output, job: &Job<'_>, state: &mut State, file: Option<&Path>) 
     // Nothing is worth computing that cannot be kept.
     save(state)?;
     let bar = progress::bar(output, job.remaining(state), "evaluations");
-    // Only what is kept is worth waiting for.
+    // Only a state that is kept in a file is worth waiting for.
     let deferred = file.map(|_| Deferred::begin());
     let interrupted = || deferred.as_ref().is_some_and(Deferred::noted);
     let mut saved = Instant::now();

@@ -25,8 +25,8 @@ struct Row {
     inside: bool,
 }
 
-/// Computes every row of a CSV file with the golden model's arithmetic and in f64; of a line, every point. `given` holds
-/// for all rows.
+/// Computes every row of a CSV file with the golden model's arithmetic and in f64. For a line, it computes every
+/// point. `given` holds for all rows.
 pub fn batch(output: Output, one: &Loaded, given: &[Option<i64>], path: &Path) -> Result<bool> {
     let contract = one.core.contract.as_ref();
     let (mut text, mut json) = (headings(contract), Vec::new());
@@ -62,7 +62,8 @@ pub fn batch(output: Output, one: &Loaded, given: &[Option<i64>], path: &Path) -
     Ok(true)
 }
 
-/// Returns the operand of each column; none of one with the real values that `glint setup` writes beside the operands.
+/// Returns the operand of each column. A column of the real values that `glint setup` writes beside the operands has
+/// none.
 fn columns<'a>(
     one: &Loaded,
     given: &[Option<i64>],
@@ -96,7 +97,7 @@ fn missing_columns(
     operands::missing(contract, &given)
 }
 
-/// Hands the points of a row to `shown`: those of a line, or one.
+/// Hands the points of a row to `shown`: all points of a line, or one point.
 fn points(
     contract: &dyn Contract,
     given: &[Option<i64>],
@@ -140,8 +141,8 @@ fn points(
     Ok(())
 }
 
-/// Returns the first row of the results, ending with a newline. Operands, f and formulas are values; a result is a raw integer,
-/// and its heading says so where that is not its value.
+/// Returns the first row of the results, ending with a newline. Operands, f and formulas are values. A result is a
+/// raw integer; its heading says so if the integer is not its value.
 fn headings(contract: &dyn Contract) -> String {
     let mut headings: Vec<String> =
         contract.operands().iter().map(|operand| operand.name.clone()).collect();
@@ -159,7 +160,7 @@ fn headings(contract: &dyn Contract) -> String {
     headings.join(",") + "\n"
 }
 
-/// Appends a row of numbers, none of which needs a quote, as CSV.
+/// Appends a row of numbers as CSV. No number needs a quote.
 fn append(contract: &dyn Contract, row: &Row, text: &mut String) {
     for (operand, &raw) in contract.operands().iter().zip(&row.operands) {
         decimal(operand.format.to_f64(raw.into()), text);

@@ -8,7 +8,7 @@ use glint_golden::{Contract, Operand};
 /// setting.
 ///
 /// # Errors
-/// A setting without `=`, an operand that is unknown or set twice, or a value that is no number of its format.
+/// Fails if a setting has no `=`, if an operand is unknown or set twice, or if a value is no number of its format.
 pub fn given(operands: &[Operand], settings: &[String]) -> Result<Vec<Option<i64>>, String> {
     let mut raw: Vec<Option<i64>> = vec![None; operands.len()];
     for setting in settings {
@@ -45,8 +45,8 @@ fn nearest_to_zero(operand: &Operand) -> i64 {
     0.clamp(low, high)
 }
 
-/// Returns all operands. Those that are not given have values at which the results are well inside their ranges; a colour has the
-/// largest.
+/// Returns all operands. An operand that is not given gets a value at which the results are well inside their ranges.
+/// A colour gets the largest value.
 pub fn typical(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<i64> {
     let typical = trial::typical(contract, given);
     let each = contract.operands().iter().zip(given).zip(typical);
@@ -66,7 +66,7 @@ pub fn missing(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<String> {
     missing.collect()
 }
 
-/// Returns the raw value that a text gives to an operand; what is wrong with it names the operand.
+/// Returns the raw value that a text gives to an operand. The error message names the operand.
 pub fn named_value(operand: &Operand, text: &str) -> Result<i64, String> {
     value(operand, text).map_err(|why| format!("operand `{}`: {why}", operand.name))
 }

@@ -13,7 +13,8 @@ use glint_prove::synth::{Figures, Target};
 /// The folder beside configurations, which may be deleted at any time.
 const FOLDER: &str = ".glint";
 
-/// A folder with one file for each configuration and target. What is not readable is measured again, and what cannot be kept is not.
+/// A folder with one file for each configuration and target. A file that is not readable is measured again, and a
+/// measurement that cannot be kept is not kept.
 pub struct Cache(PathBuf);
 
 #[derive(Serialize, Deserialize)]

@@ -16,10 +16,10 @@ const STYLE: &str = "<style>svg{background:#fcfcfb}text{fill:#1c1d1f;font-family
 /// Room for the heading above the plot.
 const HEADING: u32 = 110;
 
-/// Returns an SVG that stands by itself.
+/// Returns an SVG that needs no other file.
 ///
 /// # Errors
-/// A front of one configuration, which is no line.
+/// Fails if the front is empty, or a single configuration, which is no line.
 pub fn plot(answer: &Answer, arguments: &Arguments) -> Result<String> {
     let is_best = |candidate: &&Candidate| candidate.config == answer.best.config;
     let (Some(first), Some(last)) = (answer.front.first(), answer.front.last()) else {
@@ -73,7 +73,7 @@ pub fn plot(answer: &Answer, arguments: &Arguments) -> Result<String> {
     let svg = plots::svg(&chart)?;
     let (start, rest) = svg.split_once('>').unwrap_or((&svg, ""));
     let start = start.replace("<svg ", "<svg xmlns=\"http://www.w3.org/2000/svg\" ");
-    // On the page of a report, title and axis stand beside the plot.
+    // The page of a report has title and axis beside the plot; this file has them in the plot.
     let (width, height) = (plots::WIDTH, plots::HEIGHT);
     let start = start.replace(
         &format!("viewBox=\"0 0 {width} {height}\""),

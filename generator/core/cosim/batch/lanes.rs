@@ -49,7 +49,7 @@ impl Engine for RustHdl {
 /// The instances of one thread.
 struct Team {
     instances: Instances<LANES>,
-    /// The clocks from a point to its results, of a pipeline.
+    /// The clocks from a point to its results, if the design is a pipeline.
     latency: Option<u64>,
     /// The output that says when a pipeline takes a point; the same in all instances.
     in_ready: Option<NetId>,

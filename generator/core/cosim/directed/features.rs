@@ -1,5 +1,5 @@
-//! Records what a computation does within a design, its features, as bits: the inputs of muxes that it takes, the sides
-//! of comparisons, the bits that it sets and clears, the words that it reads.
+//! Records the features of a computation within a design, as bits: the inputs of muxes that it takes, the sides of
+//! comparisons, the bits that it sets and clears, and the words that it reads.
 
 use super::side_by_side::{LANES, Lanes};
 use glint_base::fixed::mask;
@@ -9,9 +9,9 @@ use glint_rtl::sim::Machine;
 /// How bright the results of a computation are, by the largest: a thing that is done in the dark shows nothing.
 pub const CLASSES: usize = 3;
 
-/// A bit of what is watched.
+/// A net, or some nets, whose features are watched.
 enum Watched {
-    /// The bits that are 1, or with all inverted those that are 0.
+    /// The bits that are 1. If all bits of the mask are set, the bits are inverted: the bits that are 0.
     Ones(NetId, u64),
     /// The inputs that a mux takes, where another would be different.
     Choice(NetId, Vec<NetId>),
@@ -23,7 +23,7 @@ enum Watched {
     Pair(NetId, NetId),
 }
 
-/// The watched features of a design, and those that the computations in the lanes have shown.
+/// The watched features of a design, and the features that the computations in the lanes have shown.
 pub struct Watch {
     watched: Vec<Watched>,
     done: Vec<[u64; LANES]>,

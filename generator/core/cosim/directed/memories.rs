@@ -8,13 +8,13 @@ use glint_rtl::sim::Machine;
 pub struct Memories {
     /// The input port that says which copy is read.
     pub lane: NetId,
-    /// For each ROM the number of its first word among those of the design, the number of its first word here, and how
-    /// far the copies lie apart.
+    /// For each ROM the number of its first word in the design, the number of its first word in the copies, and the distance
+    /// between copies.
     roms: Vec<(u32, usize, usize)>,
 }
 
 impl Memories {
-    /// Gives each of so many lanes, a power of two, tables of its own; control memories are one for all.
+    /// Gives each of `lanes` lanes, a power of two, its own tables. All lanes share the control memories.
     pub fn copied(design: &mut Design, lanes: usize) -> Self {
         let lane_bits = lanes.ilog2();
         let lane = add(design, "lane", lane_bits, Driver::Input);

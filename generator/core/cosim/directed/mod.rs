@@ -1,15 +1,16 @@
-//! Chooses the computations of a test bench that notices what is wrong with a core.
+//! Chooses the computations of a test bench that notices faults in a core.
 //!
-//! Whoever ports a core, edits a memory or takes another tool relies on the bench that goes with it, and points at
-//! random reach neither every word of a table nor both sides of every comparison. Out of a pool of
-//! computations some are chosen, by what they do in the design:
+//! A user who ports a core, edits a memory or takes another tool relies on the bench that goes with the core. Points at
+//! random reach neither every word of a table nor both sides of every comparison. This module chooses computations from a
+//! pool by their features in the design:
 //!
-//! - for each word of a ROM that any of them reads, and every bit of its upper half, one whose results differ when the
-//!   bit is inverted, or one near them that is searched for; of lines, which read a word a clock, those that read it;
-//! - of a device that walks lines one to the end of the domain of its length;
-//! - every combination of the ends of the control operands;
-//! - for each bit of each net, each input of a mux, each outcome of a comparison and what else is watched, some
-//!   that do it with bright results, some with dim ones, some in the dark.
+//! - For each ROM word that any computation reads, and each bit of its upper half: one computation whose results differ if
+//!   the bit is inverted. If the pool has none, one near its computations is searched for. Lines, which read a word a clock,
+//!   are chosen if they read the word.
+//! - For a device that walks lines: one line to the end of the domain of its length.
+//! - Every combination of the ends of the control operands.
+//! - For each bit of each net, each input of a mux, each outcome of a comparison and each other watched feature: some
+//!   computations that show it with bright results, some with dim results, some in the dark.
 //!
 //! Nothing here depends on time or on threads: the same design gives the same computations.
 
@@ -31,7 +32,7 @@ use glint_rtl::netlist::Design;
 use glint_rtl::sim::{Machine, Program};
 use side_by_side::{LANES, Shown, SideBySide};
 
-/// So many computations do what is watched, if there are so many.
+/// The number of computations that must show each feature, or all of them if there are fewer.
 const TIMES: u8 = 2;
 
 /// Clocks of all computations together.
@@ -79,7 +80,7 @@ impl Known {
             let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
             known.entry(key).or_default().clone()
         };
-        // Whoever wants the same waits here.
+        // A thread that wants the same computations waits here.
         let mut slot = slot.lock().unwrap_or_else(PoisonError::into_inner);
         if slot.is_none() {
             *slot = Some(computations(design, contract)?);
@@ -91,7 +92,7 @@ impl Known {
 /// Chooses the computations.
 ///
 /// # Errors
-/// A design that cannot be simulated, or does not belong to the contract.
+/// Fails if the design cannot be simulated, or does not belong to the contract.
 pub fn computations(design: &Design, contract: &dyn Contract) -> Result<Computations> {
     let observed = observable(design);
     let machine = Machine::new(Arc::new(Program::new(&observed)?));
@@ -135,7 +136,8 @@ pub fn computations(design: &Design, contract: &dyn Contract) -> Result<Computat
     Ok(Computations { operands, word_stride: of_words.word_stride })
 }
 
-/// Chooses lines that read table after table: the first, which is the longest, and those of which most words are new.
+/// Chooses lines that read table after table: the first line, which is the longest, and each line that reads mostly new
+/// words.
 fn sweeps(lines: &[Candidate]) -> Vec<usize> {
     let mut read = HashSet::new();
     let mut chosen = Vec::new();
@@ -149,7 +151,7 @@ fn sweeps(lines: &[Candidate]) -> Vec<usize> {
     chosen
 }
 
-/// Returns how bright the brightest result is: 0 in the dark, 1 dim, 2 beyond a sixteenth of what a colour can be.
+/// Returns a class for the brightest result: 0 in the dark, 1 dim, 2 beyond a sixteenth of the largest output.
 fn class(contract: &dyn Contract, shown: &Shown) -> usize {
     let mut class = 0;
     for (_, outputs) in &shown.results {
@@ -161,8 +163,8 @@ fn class(contract: &dyn Contract, shown: &Shown) -> usize {
     class
 }
 
-/// Adds the candidates that do most of what has not been done often enough, per clock, until all is done or there are
-/// enough clocks. Features from `words` on are words, which are read once.
+/// Adds the candidates that show, per clock, the most features that were not shown often enough. It ends when no feature is
+/// missing or there are enough clocks. Features from number `words` on are ROM words, which must be read once.
 fn choose(candidates: &[Candidate], words: usize, count: usize, chosen: &mut Vec<usize>) {
     let mut wanted = vec![TIMES; count];
     wanted[words..].fill(1);
@@ -182,7 +184,8 @@ fn choose(candidates: &[Candidate], words: usize, count: usize, chosen: &mut Vec
         let news = candidate.features.iter().filter(|&&feature| wanted[feature as usize] > 0);
         ((news.count() as u64) << 20) / u64::from(candidate.shown.clocks.max(1))
     };
-    // What a candidate brings only falls as others are chosen: the first whose gain stands is the best.
+    // The gain of a candidate only falls as others are chosen. The first candidate whose gain has not changed is therefore
+    // the best.
     let mut heap: BinaryHeap<(u64, std::cmp::Reverse<usize>)> =
         (0..candidates.len()).map(|at| (gain(&wanted, at), std::cmp::Reverse(at))).collect();
     while let Some((stated, std::cmp::Reverse(at))) = heap.pop() {

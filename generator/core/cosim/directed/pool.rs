@@ -1,9 +1,9 @@
-//! Draws the pool of computations from which those of a test bench are chosen.
+//! Draws the pool of computations from which the computations of a test bench are chosen.
 
 use crate::cosim::{Points, Random};
 use glint_golden::{Contract, Highlight};
 
-/// Points that are drawn as those of the default test are.
+/// The number of points that are drawn in the same way as the points of the default test.
 const DRAWN: usize = 1024;
 
 /// Points with the other operands such that they are seen. Of three one is drawn evenly and reads words far from the peak,
@@ -20,7 +20,7 @@ const MOST_VALUES: u64 = 4096;
 const FIRST_VALUES: [i64; 6] = [0, 1, 2, 3, 7, 15];
 const LINE_BITS: std::ops::RangeInclusive<u32> = 8..=12;
 
-/// The longest line among those that are drawn, in intervals.
+/// The longest line among the drawn points, in intervals.
 const LONGEST: i64 = 1023;
 
 /// Where the formula is seen best.
@@ -99,7 +99,7 @@ pub fn pool(contract: &dyn Contract) -> Pool {
             readers.push(values);
         }
     }
-    // Together in the lanes of a simulator run those that are of a length.
+    // The simulator runs computations in its lanes together, so computations of similar length should be neighbours.
     if let Some(length) = points.length() {
         drawn.sort_by_key(|values| values[length]);
         readers.sort_by_key(|values| values[length]);
@@ -107,7 +107,8 @@ pub fn pool(contract: &dyn Contract) -> Pool {
     Pool { corners: corners(&points, &bright), drawn, readers, sweeps }
 }
 
-/// Moves operands with a fraction toward the ends of their domains, most to the upper, where a cosine is that of no angle.
+/// Moves operands with a fraction toward the ends of their domains, most of them to the upper end. A cosine there belongs to
+/// no angle.
 fn near_ends(points: &Points<'_>, random: &mut Random, values: &mut [i64]) {
     for (value, operand) in values.iter_mut().zip(points.operands()) {
         let (low, high) = operand.domain;

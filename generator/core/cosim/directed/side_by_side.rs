@@ -56,7 +56,7 @@ impl SideBySide {
     /// Resets the machine of a design, and drives no computation yet.
     ///
     /// # Errors
-    /// A contract and a design that do not belong together.
+    /// Fails if contract and design do not belong together.
     pub fn new(
         design: &Design,
         contract: &dyn Contract,
@@ -74,7 +74,7 @@ impl SideBySide {
     /// Has each lane read tables of its own, the copies that are in the design.
     ///
     /// # Errors
-    /// They are those of another design.
+    /// Fails if the copies belong to another design.
     pub fn with_copies(mut self, design: &Design, copies: Memories) -> Result<Self> {
         let port = design.input_position(copies.lane)?;
         (0..LANES).for_each(|lane| self.inputs[port][lane] = lane as u64);
@@ -110,7 +110,7 @@ impl SideBySide {
     /// every clock before its edge, with the lanes that are busy.
     ///
     /// # Errors
-    /// One that does not end.
+    /// Fails if a computation does not end.
     pub fn run<'c>(
         &mut self,
         computations: impl IntoIterator<Item = &'c [i64]>,

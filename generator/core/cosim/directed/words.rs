@@ -1,5 +1,6 @@
-//! Finds test computations that detect faults in the words of the datapath's ROMs: their results change when a bit in
-//! the upper half of a word is inverted. Where no candidate detects a bit, others near the candidates are searched.
+//! Finds test computations that detect faults in the words of the datapath's ROMs. A computation detects a fault if its
+//! results change when a bit in the upper half of a word is inverted. If no candidate detects a bit, the search tries
+//! computations near the candidates.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
@@ -22,8 +23,8 @@ pub const LONGEST: u32 = 64;
 /// computation, or every third, and so on, evenly over all memories: a simulator ends within seconds.
 const MOST_CLOCKS: u64 = 40_000;
 
-/// Where no reader of a word notices a fault, so many times others are tried that are near readers: within the domain,
-/// and then beyond it.
+/// The number of rounds in which computations near readers are tried, if no reader of a word notices a fault: first within
+/// the domain, and then beyond it.
 const ROUNDS: usize = 6;
 const ROUNDS_BEYOND: usize = 6;
 
@@ -41,11 +42,11 @@ pub struct Chosen {
     pub word_stride: usize,
 }
 
-/// Finds computations that notice every bit of the upper half of a word, inverted, that any of the candidates notices
-/// or one near them that is searched for; of all words but those in `known`.
+/// Finds computations that detect inverted bits in the upper halves of ROM words. A bit counts if a candidate detects it, or
+/// a computation near the candidates that the search finds. Words in `known` are left out.
 ///
 /// # Errors
-/// A design that cannot be simulated.
+/// Fails if the design cannot be simulated.
 pub fn chosen(
     design: &Design,
     contract: &dyn Contract,
@@ -109,7 +110,7 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Chooses what notices these bits of a word.
+    /// Chooses computations that notice these bits of a word.
     fn word(&mut self, word: u32, mut left: u64, readers: &[usize]) -> Result<()> {
         let candidates = self.candidates;
         let chosen = readers.iter().filter(|at| self.result.chosen.contains(at));
@@ -119,9 +120,9 @@ impl Search<'_> {
         let mut nearest: Vec<&[i64]> =
             readers.iter().map(|&at| candidates[at].operands.as_slice()).collect();
         let all = nearest.clone();
-        // What notices the lowest bit mostly notices those above it, which weigh more.
+        // A computation that notices the lowest bit mostly notices the bits above it, which weigh more.
         let mut unnoticed = 0;
-        // Of what is noticed at all the least.
+        // The last bit that some computation notices. `climb` starts from it.
         let mut least = highest(left.max(1));
         while left & !unnoticed != 0 {
             let bit = lowest(left & !unnoticed);
@@ -142,9 +143,10 @@ impl Search<'_> {
         self.climb(word, left, least, nearest.iter().map(|operands| operands.to_vec()).collect())
     }
 
-    /// Looks for what notices these bits of a word, from computations that notice another: to where that shows more and
-    /// more. Within the domain some words are read far from any highlight alone, so that at last the operands are taken
-    /// from all of their formats, where the device is what its golden model says too.
+    /// Searches for computations that notice these bits of a word. It starts from computations that notice another bit, and
+    /// climbs to computations in which that bit shows more and more. Within the domain, some words are read only far from any
+    /// highlight. The last rounds therefore take operands from their whole formats, where the golden model still predicts
+    /// the device.
     fn climb(
         &mut self,
         word: u32,

@@ -1,4 +1,4 @@
-//! Parses the values of an operand that an exhaustive check visits in place of those of the contract.
+//! Parses the values of an operand that an exhaustive check visits instead of the contract's values.
 
 use std::str::FromStr;
 
@@ -61,7 +61,7 @@ fn range(item: &str) -> Option<(i64, i64, usize)> {
 /// Returns the sweep of a contract with other values of some operands.
 ///
 /// # Errors
-/// An operand that is no axis of the sweep; a value outside the operand's domain.
+/// Fails if an operand is no axis of the sweep, or if a value is outside the operand's domain.
 pub fn sweep(contract: &dyn Contract, others: &[AxisValues]) -> Result<Sweep> {
     let mut sweep = contract.sweep();
     let twice =

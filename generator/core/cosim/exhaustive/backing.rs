@@ -1,4 +1,5 @@
-//! The evidence for a stated bound: a proof in the catalogue, a record of all operands, a certificate, or its author's word.
+//! The evidence for a stated bound: a proof in the catalogue, the record of an exhaustive check, a certificate, or its
+//! author's word.
 
 use std::fmt;
 use std::path::Path;
@@ -11,7 +12,7 @@ use glint_base::input;
 use glint_base::program::Program;
 use glint_golden::Contract;
 
-/// The directory of certificates inside that of the records.
+/// The directory of certificates inside the directory of the records.
 const CERTIFICATES: &str = "certificates";
 
 /// How far the recorded bound may be from today's, in units.
@@ -30,14 +31,14 @@ pub enum Backing {
     Author,
 }
 
-/// The record of `glint certify`: what was proved of a configuration.
+/// The record of `glint certify`: the result of a proof of a configuration.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Certificate {
     /// The version of Glint; a record begins with it.
     pub glint: String,
     /// As the command line names it.
     pub config: String,
-    /// Tells what is proved: [`crate::core::Core::contract_digest`].
+    /// Identifies the proved contract: [`crate::core::Core::contract_digest`].
     pub contract: String,
     /// In output units.
     pub bound: f64,
@@ -55,7 +56,7 @@ impl Backing {
     /// Returns the evidence in the records of a directory for a contract outside the catalogue.
     ///
     /// # Errors
-    /// A record that cannot be read.
+    /// Fails if a record cannot be read.
     pub fn of_records(directory: &Path, digest: &str, contract: &dyn Contract) -> Result<Self> {
         let shown = |path: &Path| path.display().to_string().replace('\\', "/");
         if let Some(record) = Record::find(directory, digest, contract)?

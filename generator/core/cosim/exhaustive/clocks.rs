@@ -1,9 +1,9 @@
 //! Compares every register and every output with the golden model at every clock, for every combination of operands.
 //!
-//! What cannot be done for the operands of a device of full width is done for those of a narrow one.
-//! Combinations are numbered by *place*; a block of places goes through the lanes of one simulator, each
-//! with a run of them from power-up on. A computation thus begins with the registers that the one before
-//! it in its lane has left, and neither the order of blocks nor their number has any influence.
+//! A device of full width has too many combinations of operands, so a narrow one is checked instead. Combinations are
+//! numbered by *place*. A block of places goes through the lanes of one simulator, and each lane runs consecutive places from
+//! power-up on. A computation thus begins with the registers that the computation before it in its lane has left. Neither the
+//! order of blocks nor their number has any influence.
 
 use std::fmt;
 use std::io::Write;
@@ -22,7 +22,7 @@ use glint_base::program::Program;
 use glint_golden::{Contract, Model};
 use glint_rtl::netlist::Design;
 
-/// The most bits of operands of which all combinations are gone through.
+/// The most bits of all operands together for which all combinations are visited.
 pub const MOST_BITS: u32 = 26;
 
 /// Combinations of a lane.
@@ -79,7 +79,7 @@ impl<'a> Clocks<'a> {
     /// Pairs them by the names of ports and registers.
     ///
     /// # Errors
-    /// A name of one side that the other does not have.
+    /// Fails if one side has a name that the other does not have.
     pub fn new(
         design: &'a Design,
         model: Box<dyn Model>,
@@ -88,7 +88,7 @@ impl<'a> Clocks<'a> {
         Ok(Self { binding: Binding::new(design, model, contract)? })
     }
 
-    /// Holds some operands at raw values: the combinations are those of the others.
+    /// Holds some operands at raw values. The combinations are the combinations of the other operands.
     #[must_use]
     pub fn holding(self, held: &[(String, i64)]) -> Self {
         Self { binding: self.binding.holding(held) }
@@ -107,8 +107,8 @@ impl<'a> Clocks<'a> {
         }
     }
 
-    /// Returns the part that is not covered, in a sentence: why there are no combinations, or what going through them leaves to
-    /// random stimulus.
+    /// Returns the part that is not covered, in a sentence: the reason why there are no combinations, or the part that is
+    /// left to random stimulus.
     pub fn omits(&self) -> String {
         match self.count() {
             0 => format!(
@@ -143,7 +143,7 @@ impl<'a> Clocks<'a> {
     /// rayon's pool. `progress` is called with the number of combinations of each block that is done.
     ///
     /// # Errors
-    /// A design that cannot be simulated, or does not settle.
+    /// Fails if the design cannot be simulated, or does not settle.
     pub fn check(&self, blocks: Vec<u64>, progress: &(dyn Fn(u64) + Sync)) -> Result<Option<u64>> {
         let check = |block| {
             let places = self.of_block(block);
@@ -175,7 +175,7 @@ impl<'a> Clocks<'a> {
     /// Returns the difference at a place that [`Clocks::check`] found.
     ///
     /// # Errors
-    /// Nothing differs there; those of [`Clocks::check`].
+    /// Fails if nothing differs at the place, or as [`Clocks::check`] fails.
     pub fn difference(&self, place: u64) -> Result<Difference> {
         let mut alone = self.alone(place)?;
         alone.go_on(u64::MAX)?;

@@ -1,8 +1,8 @@
 //! Runs a proof as a job that can be interrupted, resumed, and divided among machines.
 //!
-//! Blocks of places are dealt out: shard i of N has every N-th block, from block i − 1 on. What a shard has
-//! done is a [`State`], a few numbers that stand in a file; joining the states of all shards gives exactly
-//! what one uninterrupted run gives, because a peak does not depend on the order in which it was found.
+//! The blocks of places are divided among shards: shard i of N has every N-th block, from block i − 1 on. A [`State`] records
+//! the progress of a shard, as a few numbers in a file. Joining the states of all shards gives exactly the result of one
+//! uninterrupted run, because a peak does not depend on the order in which it was found.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -97,7 +97,7 @@ pub struct Progress {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct State {
-    /// Tells one configuration, and what computes with it, from another.
+    /// Identifies one configuration, and the sources that compute with it.
     pub digest: String,
     /// The part of the job.
     pub shard: Shard,
@@ -139,7 +139,7 @@ impl<'a> Job<'a> {
         Self::of_sweep(contract, contract.sweep())
     }
 
-    /// Makes the job for a sweep with other values than those of the contract.
+    /// Makes the job for a sweep with other values than the contract's sweep.
     pub fn of_sweep(contract: &'a dyn Contract, sweep: Sweep) -> Self {
         let (f, colours) = (Places::of_sweep(contract, sweep), Places::of_colours(contract));
         Self { f, colours, clocks: None }
@@ -194,7 +194,7 @@ impl<'a> Job<'a> {
     /// largest errors are found again where it says that they are.
     ///
     /// # Errors
-    /// The state cannot be of this job.
+    /// Fails if the state cannot belong to this job.
     pub fn validate(&self, state: &State) -> Result<()> {
         let shard = state.shard;
         ensure!(shard.is_valid(), "there is no shard {shard}");
@@ -242,7 +242,7 @@ impl<'a> Job<'a> {
     /// Returns how long the rest of the shard takes on `threads` threads: a short sample of each part is timed.
     ///
     /// # Errors
-    /// A design that cannot be simulated, or does not settle.
+    /// Fails if the design cannot be simulated, or does not settle.
     pub fn estimate(&self, state: &State, threads: usize) -> Result<Duration> {
         let [f, colours, clocks] = self.parts_remaining(state);
         let seconds = |count: u64, pace: Duration| count as f64 * pace.as_secs_f64();
@@ -262,7 +262,7 @@ impl<'a> Job<'a> {
     /// breaks; `progress` is called with the number of places of each block that is done.
     ///
     /// # Errors
-    /// A design that cannot be simulated, or does not settle.
+    /// Fails if the design cannot be simulated, or does not settle.
     pub fn run(
         &self,
         state: &mut State,
@@ -303,8 +303,8 @@ impl<'a> Job<'a> {
     /// Merges the shards of one job.
     ///
     /// # Errors
-    /// Shards of different jobs, shards that are missing, twice there, or not done. `names` say which,
-    /// in the order of `states`.
+    /// Fails if the shards belong to different jobs, or if a shard is missing, duplicated or not done. `names` gives the
+    /// names of `states`, in their order, for the error.
     pub fn merge(&self, states: &[State], names: &[String]) -> Result<State> {
         let Some(first) = states.first() else {
             anyhow::bail!("nothing to merge");

@@ -1,5 +1,4 @@
-//! Writes and reads the state of a job as the text of a file, with a checksum, so that what was cut or changed is
-//! noticed.
+//! Writes and reads the state of a job as the text of a file. A checksum detects a file that was cut or changed.
 
 use anyhow::{Context, Result, ensure};
 use serde::{Deserialize, Serialize};
@@ -22,7 +21,7 @@ fn checksum(state: &State) -> Result<String> {
 /// Returns the text of a file that keeps a state.
 ///
 /// # Errors
-/// Numbers that JSON does not have.
+/// Fails if the state cannot be written as JSON.
 pub fn to_text(state: &State) -> Result<String> {
     let kept = Kept { state: state.clone(), checksum: checksum(state)? };
     Ok(serde_json::to_string_pretty(&kept)? + "\n")
@@ -31,7 +30,7 @@ pub fn to_text(state: &State) -> Result<String> {
 /// Returns the state that a file keeps.
 ///
 /// # Errors
-/// The text is not such a file's, or was changed since it was written.
+/// Fails if the text is not the text of such a file, or was changed since it was written.
 pub fn from_text(text: &str) -> Result<State> {
     let kept: Kept = serde_json::from_str(text).context("not a file of this version of Glint")?;
     ensure!(kept.checksum == checksum(&kept.state)?, "the checksum is wrong: it was changed");

@@ -1,8 +1,8 @@
-//! Proves an accuracy contract in factors: every place of its sweep for `f`, every word `f` with every colour, and what
-//! both give together. And, of a device with few bits of operands, checks every combination of them clock by clock.
+//! Proves an accuracy contract in factors: every place of its sweep for `f`, every word `f` with every colour, and the sum of
+//! both errors. For a device with few bits of operands, it also checks every combination of operands clock by clock.
 //!
-//! Places are numbered, the last axis fastest, and cut into blocks; any set of blocks can be checked
-//! anywhere, in any order, and the outcomes joined: the result does not depend on how the work was divided.
+//! Places are numbered, the last axis fastest, and cut into blocks. Any set of blocks may be checked on any machine and in
+//! any order, and the outcomes are joined. The result does not depend on how the work was divided.
 
 pub mod axis;
 mod backing;
@@ -33,7 +33,7 @@ const F64: f64 = 1e-6;
 /// The result of the proof.
 #[derive(Clone, Debug)]
 pub struct Proof {
-    /// Whether what is swept is the f of a highlight, and not the outputs themselves.
+    /// Whether the sweep measures the f of a highlight, and not the outputs themselves.
     of_f: bool,
     /// The largest error of `f`, or of an output in units.
     pub f: Peak,

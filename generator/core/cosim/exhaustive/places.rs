@@ -11,7 +11,7 @@ use glint_golden::{Axis, Contract, Sweep, Values};
 /// Places of a block: some milliseconds of work.
 pub const BLOCK: u64 = 1 << 17;
 
-/// Places of which the time is taken.
+/// The number of places that are timed, and about the number of places of a glimpse.
 const SAMPLE: u64 = 4096;
 
 /// The largest error of some places, and the first of them at which it occurs.
@@ -44,7 +44,7 @@ impl Peak {
 /// The quantity that is measured at a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Measure {
-    /// As [`Contract::sweep_error`] has it: of a highlight the error of `f`.
+    /// The error that [`Contract::sweep_error`] returns: for a highlight, the error of `f`.
     F,
     /// The error that a colour multiplier adds, in output units.
     Colour,
@@ -63,7 +63,7 @@ impl<'a> Places<'a> {
         Self::of_sweep(contract, contract.sweep())
     }
 
-    /// Makes the places of a sweep of `f` with other values than those of the contract.
+    /// Makes the places of a sweep of `f` with other values than the contract's sweep.
     pub fn of_sweep(contract: &'a dyn Contract, sweep: Sweep) -> Self {
         Self { contract, measure: Measure::F, sweep }
     }
@@ -86,7 +86,7 @@ impl<'a> Places<'a> {
         Self { contract, measure: Measure::Colour, sweep: Sweep { axes, omits: String::new() } }
     }
 
-    /// Returns the axes, and what they leave out.
+    /// Returns the axes, and the operands that they leave out.
     pub fn sweep(&self) -> &Sweep {
         &self.sweep
     }

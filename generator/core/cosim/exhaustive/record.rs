@@ -1,5 +1,5 @@
-//! Reads the record of an exhaustive check, as `{Program} cosim --exhaustive --json` writes it: finds it by what it was
-//! made of, and checks it again in part.
+//! Reads the record of an exhaustive check, as `glint cosim --exhaustive --json` writes it. It finds the record by the
+//! contract's digest, and checks a part of the record again.
 
 use std::path::{Path, PathBuf};
 
@@ -11,7 +11,7 @@ use glint_base::input;
 use glint_base::program::Program;
 use glint_golden::{Axis, Contract, Sweep, Values};
 
-/// How near a recorded figure must come to that of today.
+/// The largest difference between a recorded figure and the figure that is computed today.
 const SAME: f64 = 1e-9;
 
 /// The record of a check.
@@ -22,7 +22,7 @@ pub struct Record {
     pub evaluations: u64,
     /// Words f times colours; 0 of a device that is no highlight.
     pub colour_products: u64,
-    /// The largest error of f; of a device that is no highlight, of an output in units.
+    /// The largest error of f. For a device that is no highlight, the largest error of an output, in units.
     pub f: RecordedPeak,
     /// The largest error of a colour multiplier, in output units.
     colour_units: f64,
@@ -30,7 +30,7 @@ pub struct Record {
     pub together: f64,
     /// Whether the bound held everywhere.
     pub holds: bool,
-    /// The file that it stands in.
+    /// The file that contains the record.
     #[serde(skip)]
     pub path: PathBuf,
 }
@@ -76,16 +76,17 @@ impl RecordedAxis {
 
 #[derive(Deserialize)]
 struct Report {
-    /// Each tells by `configuration` what was checked: [`crate::core::Core::contract_digest`].
+    /// In each, `configuration` identifies the checked contract: [`crate::core::Core::contract_digest`].
     configurations: Vec<serde_json::Value>,
 }
 
 impl Record {
-    /// Returns the record of a configuration, among all in a directory; `None` where there is none, and where there is no
-    /// such directory. Files that are no records are left alone.
+    /// Returns the record of a configuration, among all in a directory. Returns `None` if the directory or the record does
+    /// not exist. Files that are no records are ignored.
     ///
     /// # Errors
-    /// The directory or a file in it cannot be read, a record is damaged; the record's sweep is not that of the contract.
+    /// Fails if the directory or a file in it cannot be read, if a record is damaged, or if the record's sweep is not the
+    /// contract's.
     pub fn find(directory: &Path, digest: &str, contract: &dyn Contract) -> Result<Option<Self>> {
         for (path, report) in input::records::<Report>(directory)? {
             let found = report.configurations.into_iter().find(|it| it["configuration"] == digest);
@@ -106,8 +107,8 @@ impl Record {
         Sweep { axes, omits: contract.sweep().omits }
     }
 
-    /// Refuses a record that leaves out a part of the contract's sweep. Its bound is that of its day: what it found is
-    /// held against today's.
+    /// Refuses a record that leaves out a part of the contract's sweep. The bound in the record may be out of date, so its
+    /// errors are compared with today's bound.
     fn is_of(&self, contract: &dyn Contract) -> Result<()> {
         let sweep = contract.sweep();
         let same_axes = self.axes.len() == sweep.axes.len()
@@ -121,8 +122,8 @@ impl Record {
         Ok(())
     }
 
-    /// Returns whether the check went through every combination of operands, and what it found is within today's bound. The
-    /// error at its place is computed again.
+    /// Returns whether the check went through every combination of operands, and its errors are within today's bound. The
+    /// error at the recorded place is computed again.
     pub fn proves(&self, contract: &dyn Contract) -> bool {
         let sweep = self.sweep(contract);
         let is_whole = sweep.omits.is_empty();
@@ -149,8 +150,8 @@ impl Record {
         f.visits(part(&f, places).into_iter()) + colours.count()
     }
 
-    /// Checks a part of the places again, about `places` spread evenly over all, the place of the largest error,
-    /// and all products with colours; says how many evaluations of `f` these were, and what is not as recorded.
+    /// Checks a part of the places again: about `places` spread evenly over all, the place of the largest error, and all
+    /// products with colours. Returns the number of evaluations of `f`, and the differences from the record.
     pub fn recheck(
         &self,
         contract: &dyn Contract,

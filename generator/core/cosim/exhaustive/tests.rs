@@ -1,4 +1,4 @@
-//! Places, division and joining, on a contract whose errors are known.
+//! Tests places, division into shards and joining, on a contract whose errors are known.
 
 use std::ops::ControlFlow;
 
@@ -81,13 +81,13 @@ fn an_interrupted_run_ends_as_an_uninterrupted_one() {
     let job = Job::new(&Counting);
     let mut state = State::new("digest", Shard { number: 2, of: 3 });
     assert_eq!(job.remaining(&state), 2 * (1 << 17));
-    // Broken off as soon as something is done, and gone on with from what a file would hold.
+    // Interrupted as soon as one block is done, and resumed from the text that a file would hold.
     let broken = job.run(&mut state, &|_| (), &mut |_| ControlFlow::Break(()));
     assert_eq!(broken.unwrap(), ControlFlow::Break(()));
     let text = serde_json::to_string(&state).unwrap();
     let state = completed(serde_json::from_str(&text).unwrap());
     assert_eq!(job.remaining(&state), 0);
-    // Blocks 1 and 4 of 0 to 6; the largest error of block 4 is that of its last place.
+    // The shard has blocks 1 and 4 of blocks 0 to 6. The largest error of block 4 is at its last place.
     assert_eq!(state.f.done, 2);
     assert_eq!(state.f.peak.error, f64::from(5 * (1 << 17) - 1));
 }

@@ -1,8 +1,9 @@
 //! Predicts a pipelined core clock by clock, from the golden model of the sequential core.
 //!
-//! The model runs each point on its own. After every clock the handshake is predicted, and the results and the side
-//! channel where there are any. At each checkpoint, the value of a register of the sequential core is predicted for the
-//! point in that stage: what the model's register holds in that microinstruction.
+//! The model runs each point on its own. After every clock the handshake is predicted, and so are the results and the side
+//! channel if there are any. A checkpoint is a net of the pipeline with the value that a register of the sequential core has
+//! in some microinstruction. The net's value for the point in its stage is predicted as the value of the model's register in
+//! that microinstruction.
 
 mod reference;
 #[cfg(test)]
@@ -54,11 +55,11 @@ enum Column {
 }
 
 impl Pipe {
-    /// Returns a pipeline without points; the nets that are compared after a clock, the first to be told first; and those of the
-    /// results among them.
+    /// Returns a pipeline without points. It also returns the nets that are compared after a clock, the first to be reported
+    /// first, and the nets of the results among them.
     ///
     /// # Errors
-    /// A name of one side that the other does not have.
+    /// Fails if one side has a name that the other does not have.
     pub(super) fn new(
         design: &Design,
         pipeline: &Pipeline,
@@ -97,7 +98,7 @@ impl Pipe {
     /// by `measure`, if there is one.
     ///
     /// # Errors
-    /// A model that does not come to an end.
+    /// Fails if the model does not end.
     pub(super) fn clock(
         &mut self,
         ports: &Ports,
@@ -129,7 +130,7 @@ impl Pipe {
         Ok(())
     }
 
-    /// Returns the value expected after the latest clock of the net at this position among those that are compared.
+    /// Returns the expected value, after the latest clock, of the compared net at this position.
     #[inline]
     pub(super) fn expected(&self, at: usize) -> Option<u64> {
         let (column, stage) = self.columns[at];

@@ -37,7 +37,7 @@ impl Reference {
     /// Finds the signals of the model that the checkpoints and the results are compared with.
     ///
     /// # Errors
-    /// A name of one side that the other does not have.
+    /// Fails if one side has a name that the other does not have.
     pub(super) fn new(
         design: &Design,
         pipeline: &Pipeline,
@@ -68,7 +68,7 @@ impl Reference {
     /// its registers at the checkpoints.
     ///
     /// # Errors
-    /// A model that does not come to an end.
+    /// Fails if the model does not end.
     pub(super) fn point(&mut self, patterns: impl Iterator<Item = u64>) -> Result<Expected> {
         self.model.start(patterns);
         self.visits.fill(0);

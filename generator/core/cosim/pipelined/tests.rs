@@ -9,7 +9,7 @@ fn pipelined(device: &Device, keys: &[(&str, Value)]) -> Config {
     Config::from_values(&(device.schema)(), "device", values).expect("keys that there are")
 }
 
-/// Runs so many points through a pipeline of a device with these keys, beside its golden model.
+/// Runs `points` points through a pipeline of a device with these keys, beside its golden model.
 fn outcome(device: &Device, keys: &[(&str, Value)], points: u64) -> Outcome {
     let config = pipelined(device, keys);
     let design = device.design(&config).unwrap_or_else(|wrong| panic!("{wrong}"));
@@ -89,7 +89,7 @@ fn a_wrong_side_value_is_noticed() {
     assert_eq!(mismatch.signal, "side_out");
 }
 
-/// Every point of a list comes out, in its order, behind those that are drawn: none is withdrawn or reset.
+/// Every point of a list comes out, in its order, after the drawn points: none is withdrawn or reset.
 #[test]
 fn a_recording_goes_through_every_point_of_a_list() {
     let registry = Registry::catalogue();

@@ -13,7 +13,7 @@ fresh_names!(Variables { points, results, read, clocks, offered, total, tick, du
 /// Returns the bench of a pipeline, whose last results come in less than `limit` clocks.
 ///
 /// # Errors
-/// A design without the handshake of a pipeline.
+/// Fails if the design lacks the handshake of a pipeline.
 pub fn points_bench(design: &Design, limit: u32) -> Result<PointsBench> {
     let port_name = |port: &Port| design.net(port.net).name.clone();
     let of_role = |role: Role| {

@@ -38,7 +38,7 @@ struct Stream<'a> {
 /// Adds the module.
 ///
 /// # Errors
-/// A core that CSRs cannot drive, and that has no stream.
+/// Fails if CSRs cannot drive the core and it has no stream.
 pub fn file(job: &Job, tops: &[Top], files: &mut Artifacts) -> Result<()> {
     let (name, design, is_line) = (job.name(), job.design, job.is_line());
     let find = |face: fn(Face) -> bool| tops.iter().find(|top| face(top.face));

@@ -1,7 +1,7 @@
-//! Generates `software/<name>/`: what a driver's author starts from before there is hardware.
+//! Generates `software/<name>/`: the files from which a driver's author can start before there is hardware.
 //!
-//! The model in C computes what the core computes, bit for bit. It is made of the netlist, by its microprogram, and
-//! knows nothing of the golden model, with which tests compare it.
+//! The model in C computes the same results as the core, bit for bit. It is generated from the netlist, by way of its
+//! microprogram, and does not use the golden model. Tests compare it with the golden model.
 
 mod litex;
 mod model;
@@ -17,10 +17,10 @@ use super::artifact::{Artifacts, Job};
 use super::tops::Top;
 pub use recompute::check as check_recomputation;
 
-/// Adds what the configuration asks for.
+/// Adds the software files that the configuration asks for.
 ///
 /// # Errors
-/// A core that does not fit.
+/// Fails if the core does not fit.
 pub fn files(job: &Job, tops: &[Top], files: &mut Artifacts) -> Result<()> {
     if job.inputs.around.software {
         let read = model::files(job, files)?;

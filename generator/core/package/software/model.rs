@@ -110,11 +110,11 @@ impl Field {
     }
 }
 
-/// Adds the model, and returns the ROMs that it reads. It is made of the design with the microprogram.
+/// Adds the model, and returns the ROMs that it reads. The model is generated from the design with the microprogram.
 ///
 /// # Errors
-/// A core of which no function can be made: one that waits for `start` in the middle, has a loop without a bound, or
-/// whose results depend on what it did before.
+/// Fails if the core cannot become a function. It must not wait for `start` in the middle, have a loop without a bound, or have
+/// results that depend on an earlier computation.
 pub fn files(job: &Job, files: &mut Artifacts) -> Result<Vec<RomId>> {
     let (name, inputs, line) = (job.name(), job.inputs, job.is_line());
     let design = inputs.sequential.as_ref().unwrap_or(job.design);
@@ -142,7 +142,7 @@ pub fn files(job: &Job, files: &mut Artifacts) -> Result<Vec<RomId>> {
         title: String = outside_comments(&about.title),
         formula: String = outside_comments(&about.formula),
         regenerate: &'a str,
-        // Of a pipeline, the upper-case name of its latency, and the clocks.
+        // Only for a pipeline: the upper-case name of its latency, and the clocks.
         latency: Option<(String, usize)> =
             latency.map(|clocks| (format!("{}_LATENCY", constant_name(name)), clocks)),
         operands: Vec<Field> = operands(),
@@ -207,7 +207,7 @@ fn of_point(design: &Design, tables: &[String]) -> Result<(Vec<String>, Vec<RomI
         body.extend(statement(4, &text));
     }
     if !body.iter().any(|line| line.contains("operands.")) {
-        // A constant reads no operand, of which a compiler warns.
+        // A constant reads no operand, and a compiler would warn of the unused parameter.
         body.push("    (void)operands;".to_owned());
     }
     body.push(String::new());
@@ -304,7 +304,7 @@ fn clocked(
         if text == *name {
             continue;
         }
-        // What is computed from the state has to be computed before any of it changes.
+        // A value that depends on the state must be computed before any part of the state changes.
         if !printer.is_settled(it.after) {
             let next = names.fresh(&format!("next_{name}"));
             let kind = pattern_type(graph.width(it.before));

@@ -1,7 +1,7 @@
 //! Prints values of a computation as expressions and statements of C99.
 //!
-//! Every value is a bit pattern in an unsigned type of 32 or 64 bits, with zeros above its width: the only
-//! arithmetic that C defines on every machine. Signs are made by `(x ^ s) - s`, with s the sign bit's weight.
+//! Every value is a bit pattern in an unsigned type of 32 or 64 bits, with zeros above its width. C defines only this
+//! arithmetic on every machine. Signs are made by `(x ^ s) - s`, with s the sign bit's weight.
 
 use std::collections::BTreeMap;
 
@@ -45,7 +45,7 @@ pub fn literal(bits: u64, width: u32) -> String {
     }
 }
 
-/// An expression, and whether it stands without brackets beside any operator.
+/// An expression, and whether it needs no brackets beside any operator.
 struct Text(String, bool);
 
 impl Text {
@@ -77,7 +77,7 @@ pub struct Line {
 }
 
 impl<'a> Printer<'a> {
-    /// Makes a printer of the values of a computation; `states` names those that registers and memories hold.
+    /// Makes a printer of the values of a computation. `states` names the values that registers and memories hold.
     pub fn new(
         design: &'a Design,
         of: &'a Unrolled,
@@ -121,7 +121,7 @@ impl<'a> Printer<'a> {
         lines
     }
 
-    /// Returns whether a value stands for itself, whatever becomes of the state.
+    /// Returns whether a value stays the same, whatever becomes of the state.
     pub fn is_settled(&self, id: NodeId) -> bool {
         self.locals.contains_key(&id) || self.graph.constant_of(id).is_some()
     }

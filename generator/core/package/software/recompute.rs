@@ -1,6 +1,6 @@
 //! Writes a C program that recomputes the result of every operand and compares it with the formula, evaluated by MPFR.
 //!
-//! It is evidence for the error bound that does not rest on Glint's own arithmetic.
+//! The program is evidence for the error bound that does not depend on Glint's own arithmetic.
 
 use anyhow::Result;
 
@@ -17,7 +17,7 @@ use glint_rtl::verilog::text::{ascii, statement};
 /// The most values that the program makes for a part of a formula.
 const VALUES: usize = 8;
 
-/// What the program needs of a contract: one operand with its domain, one result, and its formula.
+/// The parts of a contract that the program needs: one operand with its domain, one result, and its formula.
 struct Subject<'f> {
     operand: &'f str,
     domain: (i64, i64),

@@ -76,7 +76,7 @@ impl Operand {
 /// Adds the files.
 ///
 /// # Errors
-/// A template that fails.
+/// Fails if a template fails.
 pub fn files(job: &Job, bus: &Bus, map: &Map, files: &mut Artifacts) -> Result<()> {
     let (name, regenerate, bus) = (job.name(), job.regenerate(), bus.title);
     let title = ascii(&job.design.about.title).replace("*/", "* /").replace('"', "'");

@@ -1,5 +1,5 @@
-//! Generates the host's part of a device that walks lines, in C and Python, which computes the operands from vectors or
-//! angles at the ends of a line. The formulas are those of `render::setup`, against which tests hold these.
+//! Generates the host's part of a device that walks lines, in C and Python. It computes the operands from vectors or angles
+//! at the ends of a line. The formulas are the formulas of `render::setup`, and tests compare both.
 
 use anyhow::Result;
 use glint_base::fill;
@@ -39,10 +39,10 @@ impl Line<'_> {
     }
 }
 
-/// Adds the files: none of a device that walks no line, or takes other operands.
+/// Adds the files. Adds none if the device walks no line, or takes other operands.
 ///
 /// # Errors
-/// A template that fails.
+/// Fails if a template fails.
 pub fn files(job: &Job, files: &mut Artifacts) -> Result<()> {
     let (name, inputs) = (job.name(), job.inputs);
     let design = inputs.sequential.as_ref().unwrap_or(job.design);

@@ -89,10 +89,10 @@ impl Bytes {
     }
 }
 
-/// Adds what a program needs that fills and empties the memory of the streams.
+/// Adds the files for a program that fills and empties the memory of the streams.
 ///
 /// # Errors
-/// A template that fails.
+/// Fails if a template fails.
 pub fn files(job: &Job, files: &mut Artifacts) -> Result<()> {
     let (name, regenerate) = (job.name(), job.regenerate());
     let (sent, received) = (Transfer::sent(job)?, Transfer::received(job)?);

@@ -1,5 +1,5 @@
-//! Generates `<top>.sdc` and `<top>.xdc`: constraints of the clock, and of nothing that is not known of the system
-//! around.
+//! Generates `<top>.sdc` and `<top>.xdc`: constraints of the clock. They constrain nothing that depends on the unknown system
+//! around the module.
 
 use anyhow::Result;
 use glint_base::fill;
@@ -10,7 +10,7 @@ use crate::package::tops::Top;
 /// Adds both files of each module.
 ///
 /// # Errors
-/// A template that fails.
+/// Fails if a template fails.
 pub fn files(job: &Job, tops: &[Top], clock_mhz: f64, files: &mut Artifacts) -> Result<()> {
     for top in tops {
         for (ending, reader) in [
@@ -30,7 +30,7 @@ pub fn files(job: &Job, tops: &[Top], clock_mhz: f64, files: &mut Artifacts) -> 
     Ok(())
 }
 
-/// Returns the period in nanoseconds, with picoseconds. What is rounded off makes the clock faster, never slower.
+/// Returns the period in nanoseconds, with picoseconds. Rounding makes the clock faster, never slower.
 fn period(clock_mhz: f64) -> String {
     let picoseconds = libm::floor(1e6 / clock_mhz);
     format!("{:.3}", picoseconds / 1e3)

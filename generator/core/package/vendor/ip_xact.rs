@@ -22,7 +22,7 @@ struct Component<'a> {
     memories: Vec<String>,
 }
 
-/// A bus interface, of a bus definition that ARM has published, or of an interrupt AMD.
+/// A bus interface. ARM published the definitions of the buses, and AMD the definition of an interrupt.
 struct BusInterface {
     name: &'static str,
     /// Vendor and library of the definition, as attributes.
@@ -81,7 +81,7 @@ impl Bits {
 /// Adds a component of each module.
 ///
 /// # Errors
-/// A template that fails.
+/// Fails if a template fails.
 pub fn files(job: &Job, tops: &[Top], files: &mut Artifacts) -> Result<()> {
     for top in tops {
         let registers: &[Register] = match (top.face, &job.registers) {
@@ -105,7 +105,8 @@ pub fn files(job: &Job, tops: &[Top], files: &mut Artifacts) -> Result<()> {
     Ok(())
 }
 
-/// Returns the buses of a module, and its interrupt. IEEE 1685-2014 has none of its own, and Vivado's is known to other tools too.
+/// Returns the buses of a module, and its interrupt. IEEE 1685-2014 defines no interrupt of its own, and other tools know
+/// Vivado's definition too.
 fn buses(top: &Top) -> Vec<BusInterface> {
     let mut buses = Vec::new();
     for protocol in top.protocols {
@@ -140,7 +141,7 @@ fn escaped(text: &str) -> String {
     ascii(text).replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
-/// Returns a part of a comment of XML, in which two hyphens may not stand side by side.
+/// Returns a part of an XML comment. XML forbids two adjacent hyphens in a comment.
 fn comment(text: &str) -> String {
     let mut text = text.to_owned();
     while text.contains("--") {

@@ -12,7 +12,7 @@ use super::tops::Top;
 /// Adds the files that the configuration asks for.
 ///
 /// # Errors
-/// A template that fails.
+/// Fails if a template fails.
 pub fn files(job: &Job, tops: &[Top], files: &mut Artifacts) -> Result<()> {
     let around = &job.inputs.around;
     if let Some(clock_mhz) = around.clock_mhz {

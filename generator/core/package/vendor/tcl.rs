@@ -32,7 +32,7 @@ impl TopPort {
 /// Adds `<name>_vivado.tcl` and `<name>_vivado_ip.tcl`.
 ///
 /// # Errors
-/// A template that fails.
+/// Fails if a template fails.
 pub fn vivado(job: &Job, tops: &[Top], files: &mut Artifacts) -> Result<()> {
     let (name, around) = (job.name(), &job.inputs.around);
     let version = around.version.as_str();
@@ -63,7 +63,7 @@ pub fn vivado(job: &Job, tops: &[Top], files: &mut Artifacts) -> Result<()> {
 /// Adds `<name>_quartus.tcl`, and `<top>_hw.tcl` of each module.
 ///
 /// # Errors
-/// A template that fails.
+/// Fails if a template fails.
 pub fn quartus(job: &Job, tops: &[Top], files: &mut Artifacts) -> Result<()> {
     let (name, around) = (job.name(), &job.inputs.around);
     let build = fill!("quartus.tcl" {
@@ -105,7 +105,7 @@ fn interfaces(top: &Top) -> Vec<Interface<'_>> {
     top.protocols.iter().map(interface).collect()
 }
 
-/// Escapes a text to stand between the quotation marks of a Tcl word.
+/// Escapes a text for use between the quotation marks of a Tcl word.
 fn quoted(text: &str) -> String {
     let mut quoted = String::new();
     for c in ascii(text).chars() {

@@ -24,7 +24,7 @@ struct Access {
 /// Adds the benches of a core's wrappers and their files; none without a computation in the vectors.
 ///
 /// # Errors
-/// A core without its handshake.
+/// Fails if the core lacks its handshake.
 pub fn files(job: &Job, vectors: &Vectors, files: &mut Artifacts) -> Result<()> {
     let (design, name) = (job.design, job.name());
     let points = points(design, vectors)?;
@@ -49,7 +49,7 @@ pub fn files(job: &Job, vectors: &Vectors, files: &mut Artifacts) -> Result<()> 
             limit: usize = clocks + 64,
             in_high: u32,
             out_high: u32,
-            // Of a line's results, which say whether they are the last.
+            // A line's results carry one bit more, which says whether they are the last.
             word_high: u32 = out_high + u32::from(job.is_line()),
             user_bits: u32,
             keep: bool = job.inputs.around.keep,
@@ -62,7 +62,8 @@ pub fn files(job: &Job, vectors: &Vectors, files: &mut Artifacts) -> Result<()> 
     }
     if let Some((bus, map)) = &job.registers {
         let top = format!("{name}_{}", bus.suffix);
-        // Addresses of registers that are neither operands nor results with what is read there after a reset.
+        // The addresses of registers that are neither operands nor results, with the values that are read there after a
+        // reset.
         let (constants, read_only) = fixed(map);
         let text = fill!("registers_tb.v" {
             name: &'a str,
@@ -108,7 +109,7 @@ fn address(place: u32) -> String {
     format!("32'h{:02x}", 4 * place)
 }
 
-/// Returns the registers before the operands with their values after a reset, and those that cannot be written.
+/// Returns the registers before the operands with their values after a reset, and the registers that cannot be written.
 fn fixed(map: &Map) -> (Vec<(String, String)>, Vec<String>) {
     let value = |register: &Register| {
         let value = register.bits.iter().map(|bits| bits.reset << bits.low).sum::<u64>();

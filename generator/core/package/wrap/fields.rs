@@ -1,4 +1,5 @@
-//! Lays operands and results side by side in whole bytes, as the transfers of a stream carry them.
+//! Lays operands and results side by side in whole bytes, as the transfers of a stream carry them. For example, a result of
+//! 12 bits occupies 2 bytes.
 
 use anyhow::{Context, Result};
 
@@ -15,12 +16,12 @@ pub struct Field {
     pub width: u32,
     /// Its lowest bit.
     pub low: u32,
-    /// The port that writes it, of an operand of a core with a microprogram.
+    /// The port that writes it, if it is an operand of a core with a microprogram.
     pub strobe: String,
 }
 
 impl Field {
-    /// Returns its bits and those that fill its last byte.
+    /// Returns the number of its bits, including the padding of its last byte.
     pub fn padded(&self) -> u32 {
         self.width.next_multiple_of(8)
     }
@@ -91,18 +92,18 @@ pub struct Transfer {
 }
 
 impl Transfer {
-    /// Returns a transfer to the core: the operands.
+    /// Returns the transfer to the core: the operands.
     ///
     /// # Errors
-    /// There is none.
+    /// Fails if the core has no operands.
     pub fn sent(job: &Job) -> Result<Self> {
         Self::new(job, operands(job.design))
     }
 
-    /// Returns a transfer from the core: the results.
+    /// Returns the transfer from the core: the results.
     ///
     /// # Errors
-    /// There is none.
+    /// Fails if the core has no results.
     pub fn received(job: &Job) -> Result<Self> {
         Self::new(job, results(job.design))
     }
@@ -119,7 +120,7 @@ impl Transfer {
         self.bits - 1
     }
 
-    /// Returns the bits that fields fill, with those of their last bytes.
+    /// Returns the number of bits that the fields occupy, including the padding in the last byte of each.
     pub fn filled(&self) -> u32 {
         self.fields.last().map_or(0, |last| last.low + last.padded())
     }
@@ -157,7 +158,7 @@ impl Transfer {
     }
 }
 
-/// Returns a wire that reads what nothing else does, for linters; nothing for nothing.
+/// Returns a wire that reads all nets that nothing else reads, for linters. Returns nothing if there are no such nets.
 pub fn sink(unused: &[String]) -> Vec<String> {
     match unused {
         [] => Vec::new(),

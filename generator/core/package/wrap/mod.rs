@@ -16,10 +16,10 @@ use glint_rtl::netlist::{Design, Port, Role};
 use glint_rtl::verilog::rows::separated;
 use glint_rtl::verilog::text::range;
 
-/// Adds the wrappers that the configuration asks for, and where there is a bench, theirs and what is proved of them.
+/// Adds the wrappers that the configuration asks for. If there is a bench, it also adds the wrappers' benches and proofs.
 ///
 /// # Errors
-/// A core that they do not fit.
+/// Fails if a wrapper does not fit the core.
 pub fn files(job: &Job, files: &mut Artifacts) -> Result<()> {
     let streams = job.inputs.around.stream;
     if streams {
@@ -38,7 +38,7 @@ pub fn files(job: &Job, files: &mut Artifacts) -> Result<()> {
     bench::files(job, vectors, files)
 }
 
-/// Adds what is proved of a wrapper, and the commands of Yosys that make the problem, where there is a bench.
+/// Adds the properties of a wrapper, and the Yosys commands that make the problem, if there is a bench.
 fn add_proof(job: &Job, wrapper: &str, text: String, files: &mut Artifacts) -> Result<()> {
     if job.inputs.vectors.is_some() {
         let script = fill!("wrapper_formal.ys" { name: &'a str = wrapper })?;
@@ -72,7 +72,7 @@ fn core_wire(design: &Design, port: &Port) -> String {
     format!("wire {} core_{};", range(net.format.width()), net.name).replace("  ", " ")
 }
 
-/// Lets the results of the module that stands in for the core be anything.
+/// Lets a solver choose the results of the stub, which replaces the core in a proof.
 fn stub_free(design: &Design) -> Vec<String> {
     let is_free = |port: &&Port| matches!(port.role, Role::Result | Role::Status);
     let free = design.ports.iter().filter(is_free).flat_map(|port| {
@@ -83,7 +83,7 @@ fn stub_free(design: &Design) -> Vec<String> {
     free.collect()
 }
 
-/// Returns the ports of a module that stands in for the core, in the order of the core's.
+/// Returns the ports of the stub, which replaces the core in a proof, in the order of the core's ports.
 fn stub_ports(design: &Design) -> Vec<String> {
     let port = |port: &Port| {
         let net = design.net(port.net);

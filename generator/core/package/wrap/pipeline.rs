@@ -11,23 +11,23 @@ use glint_rtl::netlist::{Pipeline, Role};
 use glint_rtl::verilog::rows::separated;
 use glint_rtl::verilog::text::literal;
 
-/// The lowest and the highest bit of tlast and tuser of a stage's point among those of all stages.
+/// The lowest and the highest bit of a stage's tlast and tuser, among the bits of all stages.
 struct Side {
     low: u32,
     high: u32,
 }
 
-/// A result among the bits of all, without those that fill bytes.
+/// A result among the bits of all results, without padding.
 struct Raw<'a> {
     name: &'a str,
     low: u32,
     width: u32,
 }
 
-/// Adds the wrapper, and what is proved of it.
+/// Adds the wrapper and its proof.
 ///
 /// # Errors
-/// A pipeline that cannot be held back; one without operands or results.
+/// Fails if the pipeline cannot be held back, or has no operands or results.
 pub fn modules(job: &Job, pipeline: &Pipeline, files: &mut Artifacts) -> Result<()> {
     let (name, design) = (job.name(), job.design);
     ensure!(
@@ -116,7 +116,7 @@ pub fn modules(job: &Job, pipeline: &Pipeline, files: &mut Artifacts) -> Result<
         raw_high: u32 = raw_bits - 1,
         packed: Vec<String> = separated(results.packed("dut.core.")),
         checks: Vec<String> = operands.fields.iter().map(check).collect(),
-        // Declarations of what the proof sees of the inside.
+        // Declarations of the inner nets that the proof reads.
         inside: Vec<String> = nets.into_iter().map(seen_inside).collect(),
         stages: usize,
         memory: Option<u32>,

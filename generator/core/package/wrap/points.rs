@@ -23,7 +23,7 @@ pub struct Point {
 /// Returns the computations that run to their end, in the order in which they do.
 ///
 /// # Errors
-/// A design without its handshake.
+/// Fails if the design lacks its handshake.
 pub fn points(design: &Design, vectors: &Vectors) -> Result<Vec<Point>> {
     let clocks = vectors.inputs.iter().zip(&vectors.expected);
     let rows = clocks.map(|(inputs, outputs)| Row { design, inputs, outputs });
@@ -70,7 +70,8 @@ impl Row<'_> {
     }
 }
 
-/// Returns a microprogram's: operands are written one by one, and start takes what they are then.
+/// Returns the computations of a microprogram. Operands are written one by one, and `start` takes the values that are written
+/// by then.
 fn computed<'a>(design: &Design, rows: impl Iterator<Item = Row<'a>>) -> Option<Vec<Point>> {
     let overlaps = design.control.overlaps;
     let mut done = Vec::new();

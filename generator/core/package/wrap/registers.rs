@@ -32,10 +32,10 @@ struct Lane {
     data: String,
 }
 
-/// Adds the registers and their bus, and what is proved of them.
+/// Adds the registers and their bus, and the proofs of both.
 ///
 /// # Errors
-/// A template that fails.
+/// Fails if a template fails.
 pub fn modules(job: &Job, bus: &Bus, map: &Map, files: &mut Artifacts) -> Result<()> {
     let [module, module_proof] =
         (bus.module)(job.name(), job.regenerate(), map.address_bits() - 1)?;
@@ -78,7 +78,7 @@ fn block(job: &Job, map: &Map) -> Result<String> {
         address_high: u32 = map.address_bits() - 1,
         word_high: u32 = word_bits - 1,
         operands: Vec<Operand> = operands(map),
-        // What is read of the first registers, and of all others.
+        // The values that a read of the first registers gives, and of all other registers.
         constants: Vec<String> = constants(map),
         words: Vec<Word> = words(design, map),
         last_number: u32 = map.last(),
@@ -147,7 +147,8 @@ fn operands(map: &Map) -> Vec<Operand> {
     map.operands.iter().map(operand).collect()
 }
 
-/// Returns the word that a read of a register gives, by the map alone: its bits where they stand, and 0 between them.
+/// Returns the word that a read of a register gives, according to the map alone: each field at its place, and 0 between the
+/// fields.
 fn read(map: &Map, register: &Register) -> Vec<String> {
     let mut parts = Vec::new();
     let mut above = 32;
@@ -237,11 +238,11 @@ fn proof(job: &Job, map: &Map) -> Result<String> {
         first_result_number: u32 = map.last_operand() + 1,
         last_result_number: u32 = map.last(),
         operands: Vec<Operand> = operands(map),
-        // The place of each register, and what is read there.
+        // The place of each register, and the word that a read of it gives.
         reads: Vec<(u32, Vec<String>)> = reads.collect(),
         stub_ports: Vec<String> = stub_ports(job.design),
         stub_free: Vec<String> = stub_free(job.design),
-        // Declarations of what the proof sees of the inside.
+        // Declarations of the inner nets that the proof reads.
         inside: Vec<String> = inside.into_iter().map(seen_inside).collect(),
     })
 }

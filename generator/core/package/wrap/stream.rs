@@ -44,10 +44,10 @@ impl Line {
     }
 }
 
-/// Adds the wrapper, of a core that walks lines its buffer too, and what is proved of them.
+/// Adds the wrapper and its proof. If the core walks lines, it also adds the wrapper's buffer.
 ///
 /// # Errors
-/// A core without the handshake of a microprogram, or without operands or results.
+/// Fails if the core lacks the handshake of a microprogram, operands or results.
 pub fn modules(job: &Job, files: &mut Artifacts) -> Result<()> {
     let (name, design, regenerate) = (job.name(), job.design, job.regenerate());
     design.handshake()?;
@@ -96,7 +96,7 @@ pub fn modules(job: &Job, files: &mut Artifacts) -> Result<()> {
         result_wires: Vec<String>,
         packed: Vec<String> = separated(results.packed("core_")),
         connections: Vec<String>,
-        // What drives the outputs: a register, or the buffer.
+        // The kind of net that drives the outputs: a register, or a wire from the buffer.
         output: &'a str = if line.is_some() { "wire" } else { "reg " },
         line: Option<&'a Line> = line.as_ref(),
         unused: Vec<String> = sink(&unused),
@@ -123,7 +123,7 @@ pub fn modules(job: &Job, files: &mut Artifacts) -> Result<()> {
         stub_free: Vec<String> = stub_free(design),
         stub_packed: Vec<String> = separated(results.packed("dut.core.")),
         stub_checks: Vec<String> = operands.fields.iter().map(check).collect(),
-        // Declarations of what the proof sees of the inside.
+        // Declarations of the inner nets that the proof reads.
         inside: Vec<String> = inside(&operands, &results, line.as_ref(), user_bits)?,
         strobes: Vec<&'a String> = operands.fields.iter().map(|field| &field.strobe).collect(),
         line: Option<&'a Line> = line.as_ref(),

@@ -1,4 +1,5 @@
-//! Writes the Verilog of registers: whether an address is one of some, and what is read of each.
+//! Writes the Verilog of registers: the test whether an address is within a range, and the word that a read of each register
+//! gives.
 
 use super::fields::{Transfer, results};
 use crate::package::map::{self, Map, Part, Placed, Register};
@@ -94,7 +95,7 @@ pub fn words(design: &Design, map: &Map) -> Vec<Word> {
     (u64::from(map::CONSTANTS)..).zip(reads).map(word).collect()
 }
 
-/// Returns a part of a port in 32 bits, of a result with copies of the sign.
+/// Returns a part of a port in 32 bits. A result is extended with copies of its sign.
 fn extended(port: &Placed, part: &Part, net: &str, is_result: bool) -> String {
     let width = port.format.width();
     let bits = format!("{net}{}", select(width, part.low, part.low + part.width - 1));

@@ -1,4 +1,5 @@
-//! Checks the rules of a description beyond those of a netlist: on operands, products and the microprogram.
+//! Checks the rules of a description that go beyond the rules of a netlist: on operands, products and the
+//! microprogram.
 
 mod operands;
 mod products;
@@ -13,8 +14,8 @@ use glint_base::diagnostic::Diagnostic;
 pub(super) use operands::read_by;
 pub(super) use unused::warnings;
 
-/// Returns every rule that `design` breaks; `views` are the products that a selection gives their meaning, `picked` the select
-/// lines of which a microinstruction makes a choice.
+/// Returns a diagnostic for every rule that `design` breaks. `views` are the products that mean something only under
+/// a selection. `picked` are the select lines for which some microinstruction makes a choice.
 pub(super) fn check(
     design: &Design,
     views: &HashMap<NetId, SelectedProduct>,

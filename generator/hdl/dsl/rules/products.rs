@@ -71,7 +71,8 @@ impl Checker<'_> {
         }
     }
 
-    /// Returns the diagnostic: microinstruction `at` loads `register` under a selection, that of `under`, which is wrong for it.
+    /// Returns the diagnostic that microinstruction `at` loads `register` with the product `view`, but that the
+    /// selection of microinstruction `under` is for another product.
     fn wrong_product(
         &self,
         at: usize,

@@ -36,7 +36,7 @@ fn silent(design: &Design) -> Option<Diagnostic> {
     })
 }
 
-/// Finds select lines of which no microinstruction makes a choice.
+/// Finds select lines for which no microinstruction makes a choice.
 fn unpicked(design: &Design, picked: &HashSet<FieldId>) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     for (at, field) in design.control.fields.iter().enumerate() {
@@ -56,8 +56,8 @@ fn unpicked(design: &Design, picked: &HashSet<FieldId>) -> Vec<Diagnostic> {
     found
 }
 
-/// Finds microinstructions that raise `valid` and load a register that a result shows, where control can come to them without
-/// having loaded it before: what is on the output is not yet the result.
+/// Finds microinstructions that raise `valid` and load a register that a result shows, if control can come to them
+/// without having loaded the register before. The output does not show the result yet in that clock.
 fn early(design: &Design) -> Vec<Diagnostic> {
     let control = &design.control;
     let valid = design.port(|role| role == Role::Valid).map(|port| port.net);
@@ -116,15 +116,15 @@ fn comes_without_load(design: &Design, at: usize, register: RegId) -> bool {
     at == 0 || goes(0) && controlled(&design.control, 0, goes).contains(&at)
 }
 
-/// Returns the microinstructions to which control comes from microinstruction `from`, which is one of them, going on
-/// from those that `goes` holds for.
+/// Returns the microinstructions that control can reach from `from`, including `from` itself. Control goes on only
+/// from microinstructions for which `goes` is true.
 fn controlled(control: &Control, from: usize, goes: impl Fn(usize) -> bool) -> HashSet<usize> {
     reached([from], |now| if goes(now) { control.successors(now) } else { Vec::new() })
 }
 
-/// Returns the nets on which a net depends within the clock of microinstruction `at`, and itself. Of a mux that the
-/// microinstruction controls, only the
-/// chosen input counts; fields are what the microinstruction says.
+/// Returns the net `net` and all nets on which it depends within the clock of microinstruction `at`. If the
+/// microinstruction controls a mux, only the chosen input counts. Fields have the values that the microinstruction
+/// gives them.
 fn cone(design: &Design, at: usize, net: NetId) -> HashSet<NetId> {
     reached([net], |id| match design.net(id).driver {
         Driver::Field(_) => Vec::new(),
@@ -132,7 +132,8 @@ fn cone(design: &Design, at: usize, net: NetId) -> HashSet<NetId> {
     })
 }
 
-/// Finds loops whose condition depends only on what no microinstruction of the loop changes, and that have no other way out.
+/// Finds loops that never end: no microinstruction of the loop changes anything that the condition depends on, and
+/// the loop has no other way out.
 fn endless(design: &Design) -> Vec<Diagnostic> {
     let control = &design.control;
     let mut found = Vec::new();

@@ -9,8 +9,8 @@ use glint_base::codes;
 use glint_base::cone::reached;
 use glint_base::diagnostic::Diagnostic;
 
-/// Finds logic that no output depends on, muxes that always pass on the same, and choices that no microinstruction makes.
-/// `partly_used` are select lines of which that is intended.
+/// Finds logic that no output depends on, muxes that always pass on the same input, and choices that no
+/// microinstruction makes. The select lines in `partly_used` may have such choices.
 pub(in crate::dsl) fn warnings(design: &Design, partly_used: &HashSet<FieldId>) -> Vec<Diagnostic> {
     let mut found = dead(design);
     found.extend(constant(design));

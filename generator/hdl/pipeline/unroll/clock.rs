@@ -19,7 +19,7 @@ pub(super) struct State {
 pub(super) struct Clock<'e, 'a> {
     executor: &'e mut Executor<'a>,
     state: &'e State,
-    /// The microinstruction that is executed; none if the sequencer's registers say which.
+    /// The microinstruction that is executed; `None` if the sequencer's registers decide.
     address: Option<usize>,
     /// The clock that takes `start`.
     first: bool,
@@ -136,7 +136,7 @@ impl<'e, 'a> Clock<'e, 'a> {
         self.graph().read(rom, address, words, net.format, &label(net))
     }
 
-    /// Performs the rising edge: returns what registers and synchronous ROMs hold after it.
+    /// Performs the rising edge: returns the contents of registers and synchronous ROMs after it.
     pub(super) fn edge(&mut self) -> State {
         let design = self.executor.design;
         let mut after = self.state.clone();

@@ -11,7 +11,7 @@ use glint_base::fixed::Format;
 /// A clock of a design that runs.
 #[derive(Debug)]
 pub struct Cycle {
-    /// The values, those of the clock that takes `start` among them; results are every output.
+    /// The values, including the values of the clock that takes `start`. The results are all outputs.
     pub unrolled: Unrolled,
     /// Registers and synchronous ROMs.
     pub held: Vec<Held>,
@@ -22,11 +22,12 @@ pub struct Cycle {
 pub struct Held {
     /// The net that it drives.
     pub net: NetId,
-    /// After the clock that takes `start` and all operands; of a ROM what it holds before any clock, which no result shows.
+    /// After the clock that takes `start` and all operands. For a ROM it is the word before any clock, which no
+    /// result shows.
     pub first: NodeId,
     /// Before any clock.
     pub before: NodeId,
-    /// After that clock, made of what is held before.
+    /// After any clock, as a function of the values `before` it.
     pub after: NodeId,
 }
 

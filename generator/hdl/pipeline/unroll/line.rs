@@ -1,13 +1,15 @@
-//! Unrolls a computation of several results: finds how each point of a line follows from operands and the point before.
+//! Unrolls a computation of several results: finds how each point of a line follows from operands and the point
+//! before.
 //!
-//! A microinstruction that writes a point sets `valid` a fixed number of clocks later, D. Nothing is assumed of what the registers hold
-//! before it but that operands are in theirs: every way through the microprogram is gone for D clocks from any
-//! microinstruction. What is found is shown for all points of lines of any length, by induction on their number:
+//! A microinstruction that writes a point sets `valid` a fixed number of clocks later, D. Nothing is assumed about
+//! the registers before it, except that the operand registers hold operands. The search follows every path through
+//! the microprogram for D clocks, from any microinstruction. By induction on the number of points, its findings hold
+//! for all points of lines of any length:
 //!
 //! - The results are the same function of the operands and of a few registers, the *walk*, whatever was executed
-//!   between: each point shows that function of the walk as it was after the point was written.
-//! - The first point writes values of operands alone into the walk; every other writes one function of walk and
-//!   operands; and nothing else writes it between them.
+//!   between. Each point shows that function of the walk as it was after the point was written.
+//! - The first point writes values of operands alone into the walk. Every other point writes one function of walk and
+//!   operands. Nothing else writes the walk between points.
 
 use super::{Clock, Executor, Iterations, State, Unrolled};
 use crate::netlist::{Design, NetId, RegisterKind, Role, Sequence};
@@ -42,7 +44,7 @@ pub struct WalkRegister {
 /// Executes the points of a line.
 ///
 /// # Errors
-/// The points are not alike in the way that is described above.
+/// Fails if the points are not alike in the way that the head of this module describes.
 pub fn unroll_line(design: &Design) -> Result<Line, Diagnostics> {
     let executor = Executor::new(design, Iterations::OneByOne);
     Points { executor }.line().map_err(|diagnostic| Diagnostics(vec![diagnostic]))
@@ -182,7 +184,7 @@ impl Points<'_> {
     fn in_order(&self, first: usize, writes: &[usize]) -> Result<(), Diagnostic> {
         let design = self.executor.design;
         let is_write = |at: usize| writes.contains(&at);
-        // Of those that write points, no further.
+        // The search does not go on behind microinstructions that write points.
         let until_a_write = |at| if is_write(at) { Vec::new() } else { successors(design, at) };
         if reached([0], until_a_write).into_iter().any(|at| is_write(at) && at != first) {
             return Err(self.cannot(first, "is not the first point on every way"));
@@ -197,7 +199,7 @@ impl Points<'_> {
         Clock::new(&mut self.executor, state, Some(address), false).edge()
     }
 
-    /// Asks in the clock of the last microinstruction, after those before it.
+    /// Calls `ask` in the clock of the last microinstruction of `path`, after the clocks of all others.
     fn at_end<T>(
         &mut self,
         state: &State,
@@ -236,7 +238,7 @@ fn successors(design: &Design, at: usize) -> Vec<usize> {
     }
 }
 
-/// Returns every way of this number of clocks from one of these microinstructions: it and those that follow.
+/// Returns every path of `clocks` steps that begins at one of the microinstructions `from`.
 fn paths(design: &Design, from: &[usize], clocks: usize) -> Vec<Vec<usize>> {
     let begin: Vec<Vec<usize>> = from.iter().map(|&at| vec![at]).collect();
     (0..clocks).fold(begin, |paths, _| {

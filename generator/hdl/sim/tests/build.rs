@@ -73,7 +73,7 @@ impl Build {
         data
     }
 
-    /// Returns a field of the control word, below those that are there.
+    /// Returns a new field of the control word, below the fields that are already there.
     pub fn field(&mut self, name: &str, width: u32) -> NetId {
         let id = FieldId(self.design.control.fields.len() as u32);
         let format = Format::unsigned(width as i32, 0);

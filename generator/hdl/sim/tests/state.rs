@@ -1,4 +1,4 @@
-//! Tests what registers and memories do at the clock edge.
+//! Tests the behaviour of registers and memories at the clock edge.
 
 use rust_hdl::core::simulate::simulate;
 

@@ -157,7 +157,7 @@ fn names_widths_and_values() {
             _ => {}
         }
     }
-    // A timestamp comes before its changes: what holds until a time stands with it.
+    // A timestamp comes before its changes, so the values until a time are filed under that time.
     let stamps: Vec<_> = times.iter().map(|(time, _)| *time).collect();
     assert_eq!(stamps, [0, 5000, 10000, 15000, 20000, 25000, 30000, 35000]);
     let until = |time: u64, name: &str| {

@@ -4,11 +4,11 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use glint_rtl::netlist::{Design, Driver, NetId};
 
-/// Vertices of the flow: each net is divided, and what flows into it goes through its bits.
+/// Vertices of the flow: each net is divided in two, and the flow into it goes through its bits.
 type Vertex = (NetId, bool);
 
-/// Returns the nets with the fewest bits together that determine `wanted`, and of which none is in
-/// `affected`. `None` if they have more than `most` bits, or a net of `affected` is no cell.
+/// Returns the nets with the fewest bits together that determine `wanted`, without any net in `affected`. Returns
+/// `None` if they have more than `most` bits, or if a net of `affected` is no cell.
 pub(super) fn smallest_cut(
     design: &Design,
     wanted: &BTreeSet<NetId>,
@@ -25,8 +25,8 @@ pub(super) fn smallest_cut(
     if affected.iter().any(|net| source(*net)) {
         return None;
     }
-    // From what is wanted back: through affected nets freely, through others by their bits. The amounts are by where they
-    // flow to first.
+    // The flow goes back from the wanted nets: freely through affected nets, and through others limited by their
+    // bits. The amounts are by where they flow to first.
     let mut flow: BTreeMap<(Vertex, Vertex), u32> = BTreeMap::new();
     let at = |(net, through): Vertex| 2 * net.index() + usize::from(through);
     for _ in 0..=most {
@@ -57,14 +57,14 @@ pub(super) fn smallest_cut(
             } else {
                 let free = affected.contains(&net);
                 visit(far, free || used(near, far) < bits(net));
-                // Back along what flows here already.
+                // Back along the flow that is already there.
                 let (first, last) = ((NetId(0), false), (NetId(u32::MAX), true));
                 let here = flow.range((near, first)..=(near, last));
                 here.for_each(|((_, from), amount)| visit(*from, *amount > 0));
             }
         }
         let Some(mut end) = end else {
-            // What was seen on this side only is the cut.
+            // The cut is the nets that were seen on this side only.
             let cut = seen
                 .into_iter()
                 .filter(|&(net, through)| !through && came[at((net, true))].is_none());

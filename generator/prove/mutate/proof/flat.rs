@@ -1,14 +1,14 @@
-//! Makes of a pipeline what one point sees of it: its registers hand on what they take.
+//! Makes the design that one point sees of a pipeline: its registers pass on their inputs.
 
 use std::collections::BTreeMap;
 
 use glint_rtl::netlist::{Design, Driver, Net, NetId, Op, Pipeline};
 
-/// A pipeline whose registers hand on what they take, so that a window reaches over stages. What decides when points move stays
-/// as it is.
+/// A pipeline whose registers pass on their inputs, so that a window reaches over stages. The logic that decides when
+/// points move stays as it is.
 pub(super) struct Flat {
     pub(super) design: Design,
-    /// For each net of a multiplier that several products share, a net a product in its place.
+    /// For each net of a multiplier that several products share, one net for each product.
     pub(super) copies: BTreeMap<NetId, Vec<NetId>>,
     /// For each of these, in the order of the nets, the slot in which its factors are chosen.
     chosen: Vec<usize>,

@@ -1,7 +1,7 @@
-//! Finds the interval of values of each net, from what it is made of.
+//! Finds the interval of values of each net from its driver and the driver's operands.
 //!
-//! The intervals that the description states are not used but for registers: that of a view of a shared
-//! multiplier holds under some selections only.
+//! Only registers use the intervals that the description states. The stated interval of a view of a shared multiplier
+//! holds under some selections only.
 
 use super::pairs::{self, Pairs};
 use glint_base::interval::{Interval, fits, hull, of_values};
@@ -14,8 +14,8 @@ pub(super) fn trusted(design: &Design, register: &Register) -> bool {
     register.kind != RegisterKind::Internal && low <= 0 && high >= 0
 }
 
-/// Returns the interval of each net, whatever the inputs are; where an operand stands behind a net in the order, it may have
-/// any value of its format.
+/// Returns the interval of each net, whatever the inputs are. If an operand comes after a net in the order, it may
+/// have any value of its format.
 pub(super) fn of_all(design: &Design, order: &[NetId]) -> Vec<Interval> {
     let mut intervals: Vec<Option<Interval>> = vec![None; design.nets.len()];
     for &id in order {
@@ -77,7 +77,7 @@ pub(super) fn of(
     }
 }
 
-/// Returns the net whose sign a bit is, and whether the bit is 1 where it is negative.
+/// Returns the net whose sign is `bit`, and whether the bit is 1 for a negative value.
 fn sign(design: &Design, bit: NetId) -> Option<(NetId, bool)> {
     match &design.net(pairs::named(design, bit)).driver {
         Driver::Op(Op::Not(a)) => sign(design, *a).map(|(of, negative)| (of, !negative)),

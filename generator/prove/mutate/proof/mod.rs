@@ -1,10 +1,10 @@
 //! Proves that a fault changes nothing that is compared.
 //!
-//! One proof is an induction over clocks. In every microinstruction, fault-free design and mutant are
-//! evaluated side by side over the pairs of bits that a net can have in both ([`pairs`]). Where neither an
-//! output nor a register that the golden model predicts differs in any microinstruction, while registers inside of
-//! blocks may differ as far as those before have left them so, they never do. The other tries every
-//! combination of values around the fault ([`window`]).
+//! One proof is an induction over clocks. In every microinstruction, it evaluates the fault-free design and the
+//! mutant side by side, over the pairs of bits that a net can have in both ([`pairs`]). Registers inside of blocks
+//! may differ as far as earlier microinstructions let them. If no output and no register that the golden model
+//! predicts differs in any microinstruction, they never do. The other proof tries every combination of values around
+//! the fault ([`window`]).
 
 mod cut;
 mod flat;
@@ -25,9 +25,10 @@ use glint_rtl::netlist::{Design, Driver, NetId, RegId, RegisterKind};
 /// Proves faults of one design equivalent.
 pub(super) struct Prover<'a> {
     order: Order<'a>,
-    /// For each microinstruction, what the fault-free design can have on each net, whatever the inputs are.
+    /// For each microinstruction, the values that each net of the fault-free design can have, whatever the inputs
+    /// are.
     nets: Vec<Vec<Pairs>>,
-    /// For each microinstruction those that may follow it.
+    /// For each microinstruction, the microinstructions that may follow it.
     following: Vec<Vec<usize>>,
     /// For each microinstruction the bits of each net that are compared in it.
     compared: Vec<Vec<u64>>,
@@ -92,7 +93,7 @@ impl<'a> Prover<'a> {
         let design = self.order.design;
         let resets = |id: &RegId| design.register(*id).reset;
         match site {
-            // What reset does is no part of the proof.
+            // The effect of a reset is no part of the proof.
             Site::Reset(_) => return false,
             Site::Bit(net, bit, how) => {
                 if let Driver::Register(id) = &design.net(*net).driver

@@ -54,7 +54,7 @@ impl Pairs {
         Self(from_fn(|pair| sound[pair & 1] & mutant[pair >> 1]))
     }
 
-    /// Keeps the pairs of which the fault-free bit can be as it is in `sound`.
+    /// Keeps the pairs whose fault-free bit is possible in `sound`.
     pub(super) fn within(self, sound: Self) -> Self {
         let sound = sound.fault_free();
         Self(from_fn(|pair| self.0[pair] & sound[pair & 1]))
@@ -96,7 +96,7 @@ impl Pairs {
         (self.differ() == 0 && self.0[0] ^ self.0[3] == mask(width)).then_some(self.0[3])
     }
 
-    /// Returns the bits from `low` up, of which `all` is the mask.
+    /// Returns the bits from `low` up that the mask `all` selects.
     fn cut(self, low: u32, all: u64) -> Self {
         Self(self.0.map(|pair| pair >> low & all))
     }
@@ -122,8 +122,8 @@ impl Pairs {
         Self(all)
     }
 
-    /// Goes from the lowest bit up: a bit of each and what comes from below give a bit of the result, and what goes on
-    /// to the next. Returns both results.
+    /// Goes from the lowest bit up. In each bit, `step` takes a bit of each operand and a carry from below, and gives
+    /// a bit of the result and the carry to the next bit. Returns the result and the last carry.
     fn rippled(
         self,
         other: Self,
@@ -165,7 +165,8 @@ impl Pairs {
     }
 }
 
-/// Returns the pairs of a cell's result; of an input of a mux `same` says which nets the fault-free design has alike.
+/// Returns the pairs of a cell's result. For the inputs of a mux, `same` says which nets are alike in the fault-free
+/// design.
 pub(super) fn cell(
     design: &Design,
     op: &Op,
@@ -215,7 +216,7 @@ pub(super) fn cell(
     }
 }
 
-/// Returns the pairs of a mux, of whose inputs those with the same number are alike in the fault-free design.
+/// Returns the pairs of a mux. Inputs with the same number are alike in the fault-free design.
 pub(super) fn chosen(select: Pairs, lines: u32, inputs: &[(Pairs, NetId)]) -> Pairs {
     let input = |number: u64| inputs[(number as usize).min(inputs.len() - 1)];
     let mut all = Pairs([0; 4]);
@@ -247,8 +248,8 @@ pub(super) fn choices(select: Pairs, lines: u32, inputs: &[NetId]) -> impl Itera
     possible.map(|number: u64| inputs[(number as usize).min(inputs.len() - 1)])
 }
 
-/// Returns what is known of a product: leading and trailing zeros of an unsigned product, and of a square; from the
-/// lowest bit on that may differ in a factor any may.
+/// Returns the known pairs of a product. An unsigned product and a square have known leading and trailing zeros. From
+/// the lowest bit that may differ in a factor on, any bit of the product may differ.
 fn product(
     design: &Design,
     a: NetId,

@@ -25,7 +25,7 @@ pub(super) struct Order<'a> {
     words: Vec<Pairs>,
 }
 
-/// A fault, and what the fault-free design has on every net in the microinstruction.
+/// A fault, and the values of every net of the fault-free design in the microinstruction.
 pub(super) type Injected<'s> = (&'s Site, &'s [Pairs]);
 
 impl<'a> Order<'a> {
@@ -59,13 +59,13 @@ impl<'a> Order<'a> {
         Some(Self { design, same: same(design, &order), order, counter, in_all_slots, words })
     }
 
-    /// Returns the nets of which a [`State`] is: those of the registers, then those of the ROMs.
+    /// Returns the nets of a [`State`]: first the nets of the registers, then the nets of the ROMs.
     pub(super) fn held(&self) -> impl Iterator<Item = NetId> {
         let registers = self.design.registers.iter().map(|register| register.q);
         registers.chain(self.design.roms.iter().map(|rom| rom.data))
     }
 
-    /// Returns all nets in a microinstruction: those of the fault-free design, or of the mutant beside it.
+    /// Returns the pairs of all nets in a microinstruction, for the fault-free design or for the mutant beside it.
     pub(super) fn settle(&self, at: usize, state: &State, fault: Option<Injected>) -> Vec<Pairs> {
         let design = self.design;
         let mut nets = vec![Pairs::constant(0, 0); design.nets.len()];
@@ -110,7 +110,7 @@ impl<'a> Order<'a> {
                 None => {
                     let of = |net: NetId| intervals[net.index()];
                     let interval = match (&net.driver, self.in_all_slots.get(id.index())) {
-                        // It has what was made in the slot before.
+                        // The register has the value that was made in the slot before.
                         (Driver::Register(_), Some(interval)) => *interval,
                         _ => interval::of(design, id, &of, &|net| nets[net.index()]),
                     };
@@ -119,7 +119,7 @@ impl<'a> Order<'a> {
                 }
                 Some((site, sound)) => {
                     let value = match (site, &net.driver) {
-                        // What it takes is at fault.
+                        // The fault is in the value that the register takes.
                         (_, Driver::Register(_)) => value,
                         (Site::Bit(at_fault, bit, how), _) if *at_fault == id => {
                             value.at_fault(*bit, *how)
@@ -200,7 +200,7 @@ impl<'a> Order<'a> {
                 }
                 _ => {}
             }
-            // Nothing new to those who know the fault-free design.
+            // If nothing differs, the fault-free design already has the answer.
             if fault.is_some() && [enable, held.0, offered.0].iter().all(|it| it.differ() == 0) {
                 return held.0;
             }

@@ -1,8 +1,8 @@
-//! Proves faults equivalent whose neighbourhood is small: every combination of values around the fault is tried.
+//! Proves faults equivalent if their neighbourhood is small, by trying every combination of values around the fault.
 //!
-//! A window reaches from the fault forward over some cells, at most to multipliers, registers, ROMs and
-//! outputs, and backward to the fewest bits that determine it: a minimum cut. Each net of the cut takes
-//! every value of its interval.
+//! A window reaches from the fault forward over some cells, at most to multipliers, registers, ROMs and outputs. It
+//! reaches backward to the fewest bits that determine it: a minimum cut. Each net of the cut takes every value of its
+//! interval.
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
@@ -23,14 +23,14 @@ const LANES: usize = 128;
 /// A net in all lanes.
 type Lanes = [u64; LANES];
 
-/// The lanes of nets, by their numbers; of a mutant those of its own.
+/// The lanes of nets, by their numbers; for a mutant, only its own nets have lanes.
 type Values = Vec<Option<Box<Lanes>>>;
 
 /// The most combinations that are tried, as a power of two.
 const BITS: u32 = 22;
 
-/// How far apart lanes that are tried one after the other lie: prime, so that all are tried, and large, as values beside each
-/// other tend to be alike in what they show.
+/// The distance between lanes that are tried one after the other. It is prime, so that all are tried. It is large,
+/// because neighbouring values tend to show the same.
 const STRIDE: u64 = 40_009;
 
 /// Windows of one design.
@@ -44,9 +44,9 @@ pub(super) struct Windows<'a> {
     sinks: Vec<bool>,
     /// Whether a multiplier reads it.
     multiplied: Vec<bool>,
-    /// For each net of a multiplier that products share, a net a product in its place.
+    /// For each net of a multiplier that products share, one net for each product.
     copies: BTreeMap<NetId, Vec<NetId>>,
-    /// For each ROM the words that may be read, once asked for; none if they are too many to tell.
+    /// For each ROM, the words that may be read, once they are asked for; `None` if there are too many.
     read: Vec<OnceLock<Option<BTreeSet<u64>>>>,
 }
 
@@ -76,7 +76,7 @@ impl<'a> Windows<'a> {
         let registers = design.registers.iter();
         let read = registers.flat_map(|register| [register.data, register.enable]);
         let read = read.flatten().chain(design.roms.iter().map(|rom| rom.address));
-        // What a golden model's register is compared with is seen where it is.
+        // A net that is compared with a golden model's register is observed itself.
         let checkpoints = design.pipeline.iter().flat_map(|pipeline| &pipeline.checkpoints);
         let seen = design.outputs().map(|port| port.net).chain(checkpoints.map(|it| it.net));
         for net in read.chain(seen) {
@@ -99,7 +99,8 @@ impl<'a> Windows<'a> {
         match site {
             Site::Words(rom, words) if *rom != self.design.control.rom => {
                 let known = &self.read[rom.index()];
-                // Not while others wait for it: what is tried at the same time may ask for it too.
+                // Not inside `get_or_init`, which would make others wait: work that is tried at the same time may ask
+                // for it too.
                 let read = match known.get() {
                     Some(read) => read,
                     None => {
@@ -119,7 +120,7 @@ impl<'a> Windows<'a> {
             Site::Driver(net, _) if self.copies.contains_key(net) => false,
             Site::Bit(net, ..) | Site::Driver(net, _) => {
                 let driver = &self.design.net(*net).driver;
-                // What a register takes and what an input brings is at fault elsewhere.
+                // The value that a register takes, or that an input brings, is at fault in another net.
                 !matches!(driver, Driver::Register(_) | Driver::Input)
                     && self.stays_inside(*net, site)
             }
@@ -140,15 +141,15 @@ impl<'a> Windows<'a> {
         read.into_inner().ok()
     }
 
-    /// Returns whether what leaves some neighbourhood of the net is the same with the fault.
+    /// Returns whether all nets that leave some neighbourhood of the net are the same with the fault.
     fn stays_inside(&self, net: NetId, site: &Site) -> bool {
         // Short of multipliers first: beyond them is more to try.
         let mut tried = Vec::new();
         [false, true].into_iter().any(|through| self.stays_within(net, site, through, &mut tried))
     }
 
-    /// Tries all nets that the net reaches within some number of cells, fewer before more, but for those that were `tried`;
-    /// with multipliers or without.
+    /// Tries the sets of nets that the net reaches within some number of cells, smaller sets first, except the sets
+    /// that were `tried`. With `through`, they reach through multipliers.
     fn stays_within(
         &self,
         net: NetId,
@@ -197,9 +198,9 @@ impl<'a> Windows<'a> {
         readers.filter(move |reader| through || !multiplies(*reader))
     }
 
-    /// Evaluates `wanted` for every combination of the values that determine them, none of which are in
-    /// `affected`, and with the fault too. `None` if there are too many; whether `holds` always returned
-    /// true, given both and how many lanes count.
+    /// Evaluates `wanted`, without and with the fault, for every combination of the values that determine it. None of
+    /// these values is in `affected`. Returns whether `holds` always returned true; it gets both results and the
+    /// number of lanes that count. Returns `None` if there are too many combinations.
     fn try_all(
         &self,
         wanted: &BTreeSet<NetId>,
@@ -289,7 +290,7 @@ impl<'a> Windows<'a> {
         }
     }
 
-    /// Returns a net in all lanes; what the mutant has of its own stands before what the fault-free design has.
+    /// Returns a net in all lanes. The mutant's own lanes come before the lanes of the fault-free design.
     fn evaluate(
         &self,
         net: NetId,
@@ -318,7 +319,7 @@ fn put(values: &mut Values, net: NetId, lanes: Lanes) {
     }
 }
 
-/// Returns the lanes of a net: what the mutant has of its own before what the fault-free design has.
+/// Returns the lanes of a net: the mutant's own lanes if it has them, else the lanes of the fault-free design.
 fn of<'v>(sound: &'v Values, mutant: Option<&'v Values>, net: NetId) -> &'v Lanes {
     let own = mutant.and_then(|mutant| mutant[net.index()].as_deref());
     own.or(sound[net.index()].as_deref()).expect("a net stands behind its operands")

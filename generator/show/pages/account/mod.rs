@@ -1,6 +1,6 @@
 //! Writes tables and sentences about a configuration, for pages of any format.
 //!
-//! A cell and a sentence are plain text in which names stand in backquotes.
+//! A cell and a sentence are plain text with names in backquotes: for example, `clk`.
 
 pub mod blocks;
 mod table;
@@ -64,7 +64,7 @@ pub fn format_text(format: Format) -> String {
     }
 }
 
-/// Returns the key that would bring the bound down most, in a sentence; nothing when there is none.
+/// Returns the key that would bring the bound down most, in a sentence; empty if there is no such key.
 pub fn limit(inputs: &PageInputs) -> String {
     inputs
         .advice
@@ -131,11 +131,11 @@ fn number(number: Option<u16>) -> String {
     number.map_or_else(String::new, |number| number.to_string())
 }
 
-/// Returns the ports; a strobe stands with its operand.
+/// Returns the ports; a strobe is in the row of its operand.
 pub fn ports(design: &Design) -> Table {
     let mut table = Table::of("port | no.: | direction | role | format | written by | what it is");
     let ports = facts::ports(design);
-    // A strobe stands with its operand.
+    // A strobe is in the row of its operand.
     for port in ports.iter().filter(|port| port.role != "strobe") {
         let strobe = ports.iter().find(|strobe| port.strobe == Some(strobe.name));
         let written = strobe.map_or_else(String::new, |strobe| match strobe.block {
@@ -164,7 +164,7 @@ pub fn ports(design: &Design) -> Table {
     table.without_empty(NUMBER).without_empty("written by")
 }
 
-/// Returns the ROMs, that of the microprogram among them.
+/// Returns the ROMs, including the ROM of the microprogram.
 pub fn roms(design: &Design, config: &Config) -> Table {
     let naming = Naming::new(design).styled(Surroundings::new(config, None).style);
     let mut table = Table::of("ROM | no.: | words × bits: | bits: | reads | file | an entry");
@@ -305,7 +305,7 @@ pub fn domain(design: &Design, contract: &dyn Contract) -> Table {
             format_text(operand.format),
             value(operand.domain.0),
             value(operand.domain.1),
-            // Where the contract does not say what it is, the description does.
+            // If the contract says nothing about the operand, the description does.
             match (operand.doc.as_str(), design.find(&operand.name)) {
                 ("", Some(port)) => design.net(port).doc.clone(),
                 (doc, _) => doc.to_owned(),
@@ -341,7 +341,7 @@ pub fn example(contract: &dyn Contract, example: &WorkedExample) -> Table {
     table
 }
 
-/// Returns the keys of the device, and those that every device shares where they are not at their defaults.
+/// Returns the keys of the device, and the keys that every device shares if they are not at their defaults.
 pub fn keys(schema: &Schema, config: &Config) -> Table {
     let mut table = Table::of("key | value | accepts | what it governs");
     let changed = |key: &&Key| *config.value(key.name) != key.default;
@@ -360,7 +360,7 @@ pub fn keys(schema: &Schema, config: &Config) -> Table {
     table
 }
 
-/// Returns a text of at most so many characters as a cell has room for.
+/// Returns a text that is cut to the number of characters that a cell has room for.
 fn shortened(text: String) -> String {
     const ROOM: usize = 520;
     match text.char_indices().nth(ROOM) {

@@ -1,6 +1,6 @@
 //! A table of text, with headings and alignment, for pages of any format.
 
-/// Where a column's cells stand.
+/// The alignment of the cells of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Align {
     /// Words.
@@ -14,7 +14,7 @@ pub enum Align {
 pub struct Column {
     /// The text of the column's head.
     pub heading: String,
-    /// Where.
+    /// The alignment of the column.
     pub align: Align,
 }
 

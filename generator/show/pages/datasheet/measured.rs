@@ -35,7 +35,7 @@ impl RecordView {
     }
 }
 
-/// Returns the frequency and the rate on the target where points come fastest of those that are FPGAs, for a reader in a hurry.
+/// Returns the frequency and the rate on the FPGA with the most points a second, for a reader in a hurry.
 pub fn fastest(record: &Record) -> Option<(&Figures, Frequency, Rate)> {
     let timed = record
         .targets

@@ -39,17 +39,18 @@ pub struct Subject<'a> {
     pub path: &'a str,
     /// The evidence for its contract's bound.
     pub backing: Backing,
-    /// The record of its exhaustive check, where there is one.
+    /// The record of the core's exhaustive check, if there is one.
     pub proof: Option<Record>,
-    /// The measurements of `glint synth`, where there is a record.
+    /// The measurements of `glint synth`, if there is a record.
     pub figures: Option<figures::Record>,
-    /// The tool that synthesises it where there is none; without it the page says how to.
+    /// The tool that synthesises the core if there is no record. Without the tool, the page says how to synthesise
+    /// it.
     pub synthesis: Option<&'a dyn Synthesis>,
 }
 
 /// A datasheet that was written.
 pub struct Datasheet {
-    /// The page, whose last line vouches for those above; see [`glint_core::package::is_sealed`].
+    /// The page. Its last line vouches for the lines above; see [`glint_core::package::is_sealed`].
     pub page: String,
     /// The timing diagram for WaveDrom.
     pub wavedrom: String,
@@ -91,7 +92,7 @@ pub fn steps(synthesis: bool) -> usize {
 /// Makes the page of a configuration.
 ///
 /// # Errors
-/// The device never ends, or synthesis fails.
+/// Fails if the device never ends, or if synthesis fails.
 pub fn datasheet(subject: &Subject, done: &(dyn Fn() + Sync)) -> Result<Datasheet> {
     let core = subject.core;
     let contract = core.contract.as_ref();
@@ -122,10 +123,10 @@ pub fn datasheet(subject: &Subject, done: &(dyn Fn() + Sync)) -> Result<Datashee
     Ok(Datasheet { page: page::page(subject, &measured)?, wavedrom: measured.waves.wavedrom()? })
 }
 
-/// Returns the timing diagram of a core as a file of its own, and what it shows in words.
+/// Returns the timing diagram of a core as a file of its own, and its description in words.
 ///
 /// # Errors
-/// A device that never ends.
+/// Fails if the device never ends.
 pub fn timing_diagram(core: &Core) -> Result<(String, String)> {
     let waves = Waves::record(core)?;
     Ok((timing::drawing(&waves).file()?, waves.described()))

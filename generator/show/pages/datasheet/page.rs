@@ -99,7 +99,7 @@ impl Program {
 struct ProofView {
     holds: bool,
     evaluations: String,
-    /// None where nothing multiplies colours.
+    /// `None` if nothing multiplies colours.
     products: Option<String>,
     /// The largest errors.
     found: String,
@@ -116,7 +116,7 @@ struct HighlightView {
 /// Returns the page.
 ///
 /// # Errors
-/// A chart that cannot be plotted, or a template that fails to print.
+/// Fails if a chart cannot be plotted, or if a template cannot be printed.
 pub fn page(subject: &Subject, measured: &Measured) -> Result<String> {
     let core = subject.core;
     let path = &input::label(subject.path);
@@ -279,7 +279,7 @@ fn multipliers(design: &Design) -> String {
     }
 }
 
-/// Returns the rate at the clock that was measured, where one was.
+/// Returns the rate at the measured clock, if a clock was measured.
 fn rate(subject: &Subject) -> Option<String> {
     let (figures, frequency, rate) = measured::fastest(subject.figures.as_ref()?)?;
     Some(format!("{:.1} million at {:.1} MHz ({})", rate.points, frequency.median, figures.device))

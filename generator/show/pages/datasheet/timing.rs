@@ -20,10 +20,10 @@ const CLOCK: std::ops::RangeInclusive<i32> = 34..=104;
 /// How slanted edges are.
 const SLANT: i32 = 3;
 
-/// For values, beside what they say.
+/// The space that a value needs in addition to its text.
 const MARGIN: i32 = 10;
 
-/// How wide the drawing may be: what a page shows without scrolling.
+/// The largest width of the drawing, which a page shows without scrolling.
 const ROOM: i32 = 1120;
 
 /// Between strips of a waveform that is wider.
@@ -62,8 +62,8 @@ fn label(lane: &Lane) -> String {
     }
 }
 
-/// Returns how wide a clock should be, within reason: for all that is said in it, and where addresses stand in place of
-/// the names of microinstructions.
+/// Returns the width that a clock should have, within limits. The first width has room for all texts. The second one
+/// is for drawings with addresses in place of the names of microinstructions.
 fn clock_widths(waves: &Waves) -> [i32; 2] {
     let wanted = |lanes: &mut dyn Iterator<Item = &Lane>| {
         let widths = lanes.filter(|lane| lane.shape == LaneStyle::Bus).flat_map(|lane| {
@@ -90,7 +90,7 @@ fn segments(lane: &Lane, places: Range<usize>) -> Vec<(usize, usize)> {
     lane.values[places].chunk_by(|a, b| a == b).map(stretch).collect()
 }
 
-/// A strip: where its clocks are.
+/// A strip, with the place of its clocks.
 struct Grid<'a> {
     waves: &'a Waves,
     places: Range<usize>,
@@ -125,7 +125,7 @@ impl Grid<'_> {
         }
     }
 
-    /// Returns the edge that begins a clock, by its place among those shown.
+    /// Returns the x coordinate of the edge that begins a clock, by the clock's place among the shown ones.
     fn x(&self, at: usize) -> i32 {
         self.left + self.clock * (at - self.places.start) as i32
     }
@@ -170,7 +170,7 @@ impl Grid<'_> {
     fn bus(&self, lane: &Lane, top: i32, items: &mut Vec<Item>) {
         let (middle, low) = (top + SWING / 2, top + SWING);
         let segments = segments(lane, self.places.clone());
-        // Where names of microinstructions have no room, their addresses stand.
+        // If the names of microinstructions do not fit, their addresses are drawn.
         let fits = |&(from, to): &(usize, usize)| {
             let text = lane.values[from].as_deref().unwrap_or_default();
             text.chars().count() <= self.room(from, to)

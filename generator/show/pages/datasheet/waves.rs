@@ -45,7 +45,7 @@ pub struct Lane {
     pub number: Option<u16>,
     /// How it is drawn.
     pub shape: LaneStyle,
-    /// In each clock that is shown; `None` where the value means nothing yet.
+    /// The value in each clock that is shown; `None` if it means nothing yet.
     pub values: Vec<Option<String>>,
 }
 
@@ -77,10 +77,11 @@ enum Meaning {
 }
 
 impl Waves {
-    /// Simulates the worked example; of a pipeline, points behind one another, the first of them that of the example.
+    /// Simulates the worked example. In a pipeline, it simulates points behind one another, and the first point is
+    /// the example.
     ///
     /// # Errors
-    /// A device that never ends.
+    /// Fails if the device never ends.
     pub fn record(core: &Core) -> Result<Self> {
         match core.design.pipeline {
             None => Self::computation(core),
@@ -149,7 +150,7 @@ impl Waves {
         Ok(Self::cut(design, "one computation", clocks.len(), lanes))
     }
 
-    /// Cuts lanes of so many clocks to those that are shown.
+    /// Cuts lanes of `clocks` clocks to the clocks that are shown.
     fn cut(design: &Design, what: &'static str, clocks: usize, mut lanes: Vec<Lane>) -> Self {
         let shown = shown(clocks);
         for lane in &mut lanes {
@@ -166,7 +167,7 @@ impl Waves {
         u32::try_from(self.clocks[at]).ok()
     }
 
-    /// Describes the timing diagram in words, for those who do not see it.
+    /// Describes the timing diagram in words, for readers who do not see it.
     pub fn described(&self) -> String {
         if self.pipelined {
             return format!(
@@ -188,7 +189,7 @@ impl Waves {
     /// Returns the waveform as WaveDrom's JSON, ending with a newline.
     ///
     /// # Errors
-    /// None that a user could cause.
+    /// Fails only through a bug, not through anything that a user gives.
     pub fn wavedrom(&self) -> Result<String> {
         let signal: Vec<Value> = self.lanes.iter().map(|lane| self.signal(lane)).collect();
         sealed_json(json!({
@@ -226,7 +227,7 @@ impl Waves {
     }
 }
 
-/// Lists what is recorded: the handshake, the registers of the source's datapath, and the results.
+/// Lists the recorded nets: the handshake, the registers of the source's datapath, and the results.
 fn probes(design: &Design, handshake: [NetId; 4]) -> Vec<Probe> {
     let control = handshake.into_iter().map(|net| (net, Meaning::Control));
     let registers = design.registers.iter();

@@ -13,7 +13,7 @@ pub struct Graph {
     pub boxes: Vec<Node>,
     /// From the output of a box to another's input, one for each input.
     pub wires: Vec<Wire>,
-    /// How many stages there are; none without a pipeline.
+    /// The number of stages; 0 without a pipeline.
     pub stages: usize,
 }
 
@@ -34,7 +34,7 @@ pub struct Node {
     pub control: String,
     /// Its tooltip.
     pub title: String,
-    /// In a pipeline, the stage that it is in; none of a port.
+    /// In a pipeline, the stage of the box; `None` for a port.
     pub stage: Option<usize>,
 }
 
@@ -114,7 +114,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Adds a wire to an input of a block; a constant stands beside what takes it.
+    /// Adds a wire to an input of a block. A constant gets a box beside the block that takes it.
     fn takes(&mut self, net: NetId, to: usize) {
         if self.driver.contains_key(&net)
             || !matches!(self.design.net(net).driver, Driver::Constant(_))
@@ -154,7 +154,8 @@ impl<'a> Builder<'a> {
         })
     }
 
-    /// Returns a caption with the clocks for which registers hold a value that a stage makes, where they are several.
+    /// Returns a caption with the number of clocks for which registers hold a value that a stage makes, if they are
+    /// several.
     fn held(&self, caption: String, net: NetId, stage: usize) -> String {
         let Some(pipeline) = &self.design.pipeline else { return caption };
         let held = self.blocks.held(net);
@@ -165,7 +166,8 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Adds operands, `start`, and what goes with a point; strobes stand at the registers that they write.
+    /// Adds operands, `start`, and the inputs that go with a point. Strobes are drawn at the registers that they
+    /// write.
     fn inputs(&mut self) {
         for port in self.design.inputs() {
             if matches!(

@@ -1,8 +1,9 @@
-//! Draws the block diagram: the blocks of the netlist, laid out in ranks from the inputs to the outputs; of a pipeline
-//! with a band for each stage, and a mark where a wire goes through a register from one to the next.
+//! Draws the block diagram: the blocks of the netlist, laid out in ranks from the inputs to the outputs.
 //!
-//! `place` and `route` lay it out from left to right. The page shows it turned, from top to bottom: a datapath has more
-//! ranks than blocks in one, so that this is the form that fits a page, on a screen and on paper.
+//! For a pipeline, each stage has a band, and a wire has a mark where it goes through a register from one stage to
+//! the next. `place` and `route` lay the diagram out from left to right, and the page shows it turned, from top to
+//! bottom. A datapath has more ranks than blocks in one rank, so the turned form fits a page, on a screen and on
+//! paper.
 
 mod graph;
 mod place;
@@ -103,7 +104,7 @@ pub fn drawing(design: &Design) -> Drawing {
 /// Returns the drawing as a file of its own, ending with a newline.
 ///
 /// # Errors
-/// A template that fails to print.
+/// Fails if the template cannot be printed.
 pub fn svg(design: &Design) -> Result<String> {
     drawing(design).file()
 }

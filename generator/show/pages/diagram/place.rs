@@ -12,17 +12,17 @@ const BOXES: f64 = 12.0;
 /// Between wires that pass a column.
 const WIRES: f64 = 8.0;
 
-/// How much a wire between a port and what it leads to counts when columns are chosen.
+/// The weight of a wire at a port when columns are chosen.
 const PORT: i32 = 4;
 
-/// How much it counts that outputs stand at the end. Inputs stand where they are taken, so that no wire to a late one
-/// has to pass by everything else.
+/// The weight of the rule that outputs are at the end. Inputs are placed where they are taken, so that no wire to a
+/// late one has to pass by everything else.
 const LAST: i32 = 20;
 
 /// The end of the diagram, to which the outputs of the datapath are tied.
 const END: &str = "outputs";
 
-/// Where everything is, from above; columns are numbered from the left.
+/// The place of everything, from above. Columns are numbered from the left.
 pub struct Placement {
     /// The column of each box.
     pub column: Vec<usize>,
@@ -32,13 +32,13 @@ pub struct Placement {
     pub columns: usize,
     /// Whether each wire leads back to the left.
     pub back: Vec<bool>,
-    /// Where each wire passes the columns between its ends, in its own direction.
+    /// The places at which each wire passes the columns between its ends, in the wire's own direction.
     pub passes: Vec<Vec<(usize, f64)>>,
 }
 
 impl Placement {
-    /// Puts boxes that take so much height into columns, with wires that lead back as [`back`] says; of a few layouts
-    /// the one that takes the least height, which is the width of the page.
+    /// Puts boxes of these `heights` into columns; `back` marks the wires that lead back, as [`back`] does. Among
+    /// four layouts, it takes the one with the least height, which is the width of the page.
     pub fn new(graph: &Graph, heights: &[f64], back: &[bool]) -> Self {
         let rankers = [Ranker::NetworkSimplex, Ranker::LongestPath];
         let variants = rankers.into_iter().flat_map(|it| [(it, false), (it, true)]);
@@ -55,7 +55,8 @@ impl Placement {
         boxes().map(|(middle, height)| middle + height / 2.0).fold(0.0, f64::max) - top
     }
 
-    /// Makes a layout by one way to rank boxes, with the outputs of the handshake at the end or where there is room.
+    /// Makes a layout by one way to rank boxes. With `handshake`, the outputs of the handshake are at the end;
+    /// otherwise they are placed where there is room.
     fn variant(
         graph: &Graph,
         heights: &[f64],
@@ -87,7 +88,7 @@ impl Placement {
             (from.to_string(), to.to_string(), first.to_string())
         };
         for (at, wire) in graph.wires.iter().enumerate() {
-            // What leads from a box to itself goes around it.
+            // A wire from a box to itself goes around the box.
             if wire.from == wire.to {
                 continue;
             }
@@ -170,7 +171,8 @@ fn driven_by_control(graph: &Graph, output: usize) -> bool {
     drivers.any(|wire| graph.boxes[wire.from].form == BoxForm::Control)
 }
 
-/// Marks the wires that lead back: of each loop the one into the mux that chooses among the most, where it has one.
+/// Marks the wires that lead back. In each loop, it is the wire into the mux that chooses among the most inputs, if
+/// the loop has one.
 pub fn back(graph: &Graph) -> Vec<bool> {
     let weight = |at: usize| match graph.boxes[at].form {
         BoxForm::Block(BlockKind::Mux(inputs)) if !graph.boxes[at].control.is_empty() => 2 + inputs,

@@ -22,7 +22,7 @@ pub const LANE: f64 = 10.0;
 /// A box as the routes see it, from above.
 #[derive(Clone, Copy, Debug)]
 pub struct Body {
-    /// Where lanes around it begin.
+    /// The y coordinate at which lanes around it begin.
     pub top: f64,
     /// The upper edge of the box.
     pub upper: f64,
@@ -55,9 +55,9 @@ pub struct Piece {
 pub struct Net {
     /// In no order.
     pub pieces: Vec<Piece>,
-    /// Where three or more pieces meet.
+    /// The places at which three or more pieces meet.
     pub junctions: Vec<(f64, f64)>,
-    /// Where arrows point into boxes.
+    /// The places at which arrows point into boxes.
     pub pins: Vec<(f64, f64)>,
 }
 
@@ -69,7 +69,7 @@ pub struct Routes {
     pub nets: Vec<Net>,
     /// From left to right.
     pub width: f64,
-    /// Where each column begins and ends.
+    /// The beginning and the end of each column.
     pub columns: Vec<(f64, f64)>,
 }
 
@@ -110,7 +110,7 @@ pub fn lanes(graph: &Graph, back: &[bool]) -> Vec<Vec<usize>> {
     lanes
 }
 
-/// Routes the wires between boxes that stand where `placement` says.
+/// Routes the wires between boxes at the places of `placement`.
 pub fn routes(
     graph: &Graph,
     placement: &Placement,
@@ -143,14 +143,15 @@ struct Router<'a> {
     lanes: &'a [Vec<usize>],
     /// Gap number k is left of column k.
     gaps: Vec<Vec<Trunk>>,
-    /// The net that crosses a column, and where.
+    /// The net that crosses a column, and the place.
     crossings: Vec<(usize, usize, f64)>,
-    /// Where a net passes a column, to the right or back.
+    /// The place at which a net passes a column, to the right or back.
     passes: HashMap<(usize, usize, bool), f64>,
 }
 
 impl Router<'_> {
-    /// Returns where the output of a box is: in the middle of its place, where wires that pass other columns begin.
+    /// Returns the y coordinate of a box's output. It is in the middle of the box's place, where wires that pass
+    /// other columns begin.
     fn out(&self, at: usize) -> f64 {
         let body = &self.bodies[at];
         self.placement.middle[at].clamp(body.upper + EDGE, body.lower - EDGE)
@@ -173,7 +174,8 @@ impl Router<'_> {
             .collect()
     }
 
-    /// Returns where each wire enters its box: pins from above in the order in which the wires come.
+    /// Returns the y coordinate at which each wire enters its box. Pins are from above, in the order in which the
+    /// wires come.
     fn pins(&mut self, order: &[usize]) -> Vec<f64> {
         let mut coming: Vec<Vec<(f64, usize)>> = vec![Vec::new(); self.graph.boxes.len()];
         for &at in order {

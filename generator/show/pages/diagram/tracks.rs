@@ -21,9 +21,9 @@ pub enum Side {
 pub struct Trunk {
     /// The box that drives it.
     pub net: usize,
-    /// Where it comes in; the first tap.
+    /// The place and the side at which it comes in; the first tap.
     pub entry: (f64, Side),
-    /// Where it leaves.
+    /// The places and the sides at which it leaves.
     pub exits: Vec<(f64, Side)>,
     /// From the left; set by [`assign`].
     pub track: usize,

@@ -1,4 +1,4 @@
-//! Writes the page of a configuration in Markdown: what the device is, for people.
+//! Writes the page of a configuration in Markdown: a description of the device for people.
 
 mod prose;
 
@@ -36,7 +36,7 @@ struct Page<'a> {
 
 /// The control of a computation, as tables.
 enum Program {
-    /// With what happens to writes while it is busy.
+    /// With the fate of writes while the device is busy.
     Microprogram {
         blocks: String,
         fields: String,
@@ -71,7 +71,7 @@ impl Program {
 /// Returns the page of a design, ending with a newline.
 ///
 /// # Errors
-/// A template that fails to print.
+/// Fails if the template cannot be printed.
 pub fn page(design: &Design, inputs: &PageInputs) -> Result<String> {
     let about = &design.about;
     let bound = inputs.contract.bound();

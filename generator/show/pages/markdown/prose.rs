@@ -39,7 +39,7 @@ pub fn table(table: &Table) -> String {
     lines.join("\n")
 }
 
-/// Escapes prose so that no sign is Markdown's, but for names in backquotes.
+/// Escapes prose so that no sign is Markdown's, except names in backquotes.
 pub fn prose(text: &str) -> String {
     let mut plain = String::with_capacity(text.len());
     let mut name = false;

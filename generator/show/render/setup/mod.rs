@@ -1,10 +1,10 @@
 //! Computes the host's set-up of a line, in f64, for devices that walk lines (seed 000).
 //!
-//! Along a line the half vector goes from H₁ to H₂ on a great circle while the normal goes from N₁ to N₂. The
-//! seed turns the second end so that the normals coincide: H₂′ is H₂ turned as N₂ is turned into N₁. What is
-//! left is one half vector on the circle through H₁ and H₂′, and the cosine of its angle to N₁ is
-//! `A·cos(ζ)`, with ζ growing evenly: [`Arc`]. So `I·k_s·cosⁿδ = C·cosⁿζ` with `C = I·k_s·Aⁿ`: [`Line`].
-//! The raw operands are [`Feed::line`](super::Feed::line)'s.
+//! Along a line the half vector goes from H₁ to H₂ on a great circle while the normal goes from N₁ to N₂. The seed
+//! turns the second end so that the normals coincide: H₂′ is H₂ turned as N₂ is turned into N₁. The result is one
+//! half vector on the circle through H₁ and H₂′. The cosine of its angle to N₁ is `A·cos(ζ)`, with ζ growing evenly:
+//! [`Arc`]. So `I·k_s·cosⁿδ = C·cosⁿζ` with `C = I·k_s·Aⁿ`: [`Line`]. The raw operands are the operands of
+//! [`Feed::line`](super::Feed::line).
 //!
 //! `templates/setup.c` and `templates/setup.py` compute the same, in the same order.
 //!
@@ -24,11 +24,11 @@ use super::vector::Vector;
 /// A cosine below which two normals count as opposite: a rotation of half a turn.
 const OPPOSITE: f64 = -1.0 + 1e-12;
 
-/// A larger γ, in radians, is that of opposite half vectors.
+/// A larger γ, in radians, means opposite half vectors.
 const LARGEST_GAMMA: f64 = PI - 1e-6;
 
-/// Up to this γ, in radians, the half vector stands still: what rounding leaves of its way has no direction, and the angle
-/// changes by less than half an ulp of the usual operand.
+/// Up to this γ, in radians, the half vector does not move. After rounding, so short a way has no direction, and the
+/// angle changes by less than half an ulp of the usual operand.
 const STILL: f64 = 1e-8;
 
 /// By how much the cosine of the least angle to the normal may exceed 1 through rounding.
@@ -67,10 +67,9 @@ impl std::error::Error for Error {}
 
 /// The half vector's way from H₁ to H₂′ as seen from N₁. Angles are in radians.
 ///
-/// Everything is defined where the seed divides by zero: for γ = 0 the angle stands still at λ = 0;
-/// for cos θ₁ ≤ 0, where `arctan P` would be in the wrong half plane, λ is the angle of the point (cos θ₁, P·cos θ₁),
-/// from −180° to 180°, and A is never negative; for N₁ = −N₂ the turn is half of one in the plane of N₂ and H₂,
-/// so that H₂′ = −H₂.
+/// Everything is defined even if the seed divides by zero. For γ = 0, the angle stays at λ = 0. For cos θ₁ ≤ 0,
+/// `arctan P` would be in the wrong half plane; λ is the angle of the point (cos θ₁, P·cos θ₁), from −180° to 180°,
+/// and A is never negative. For N₁ = −N₂, the turn is half of one in the plane of N₂ and H₂, so that H₂′ = −H₂.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arc {
     /// θ₁ = ∠(N₁, H₁).
@@ -91,7 +90,7 @@ impl Arc {
     /// Sets up an arc from the normals and half vectors at the ends of the line. The vectors may have any length.
     ///
     /// # Errors
-    /// [`Error::NoDirection`] and [`Error::OppositeHalves`].
+    /// Fails with [`Error::NoDirection`] or [`Error::OppositeHalves`].
     pub fn new(
         normal_1: Vector,
         half_1: Vector,
@@ -117,7 +116,7 @@ impl Arc {
     /// Sets up an arc from θ₁, θ₂ and γ, each from 0 to π.
     ///
     /// # Errors
-    /// [`Error::OppositeHalves`] and [`Error::NoSuchAngles`].
+    /// Fails with [`Error::OppositeHalves`] or [`Error::NoSuchAngles`].
     pub fn of_angles(theta_1: f64, theta_2: f64, gamma: f64) -> Result<Self, Error> {
         let (cosine_1, cosine_2) = (libm::cos(theta_1), libm::cos(theta_2));
         let rise = (cosine_2 - cosine_1 * libm::cos(gamma)) / libm::sin(gamma);
@@ -144,8 +143,8 @@ impl Arc {
         Ok(Self { theta_1, theta_2, gamma, rise, lambda, peak })
     }
 
-    /// Returns cos δ at the part `t` of the way, 0 … 1: A·cos ζ. Negative where the surface faces away, but for γ = 0,
-    /// where it is 0 then.
+    /// Returns cos δ at the part `t` of the way, 0 … 1: A·cos ζ. It is negative if the surface faces away, except
+    /// that it is 0 for γ = 0.
     pub fn cosine(&self, t: f64) -> f64 {
         self.peak * libm::cos(t * self.gamma - self.lambda)
     }
@@ -155,8 +154,8 @@ impl Arc {
         self.rise / libm::cos(self.theta_1)
     }
 
-    /// Returns ζ at H₁: −λ, or a turn less where that brings the part of the way that has light near ζ = 0. The whole
-    /// way lies within three right angles of 0 then.
+    /// Returns ζ at H₁: −λ, or a turn less if that brings the lit part of the way near ζ = 0. The whole way then lies
+    /// within three right angles of 0.
     pub fn zeta_start(&self) -> f64 {
         if self.gamma - self.lambda > 1.5 * PI { -self.lambda - TAU } else { -self.lambda }
     }
@@ -179,7 +178,7 @@ impl Arc {
 /// Returns the direction of the vector `name`.
 ///
 /// # Errors
-/// [`Error::NoDirection`].
+/// Fails with [`Error::NoDirection`].
 pub fn direction(name: &'static str, vector: Vector) -> Result<Vector, Error> {
     vector.unit().ok_or(Error::NoDirection(name))
 }
@@ -187,7 +186,7 @@ pub fn direction(name: &'static str, vector: Vector) -> Result<Vector, Error> {
 /// Returns the half vector (L + V)/|L + V| of the directions toward the light and the viewer, whose names come first.
 ///
 /// # Errors
-/// [`Error::NoDirection`], of the sum too.
+/// Fails with [`Error::NoDirection`] if a direction, or their sum, has none.
 pub fn half(names: [&'static str; 3], light: Vector, view: Vector) -> Result<Vector, Error> {
     let [of_light, of_view, of_both] = names;
     direction(of_both, direction(of_light, light)? + direction(of_view, view)?)
@@ -204,7 +203,7 @@ fn turned(normal_1: Vector, normal_2: Vector, half_2: Vector) -> Vector {
     half_2 - once + v.cross(once) * (1.0 / (1.0 + cosine))
 }
 
-/// Returns the angle between unit vectors; exact for small angles too, where the arc cosine is not.
+/// Returns the angle between unit vectors. It is exact for small angles too, unlike the arc cosine.
 fn angle(a: Vector, b: Vector) -> f64 {
     libm::atan2(a.cross(b).length(), a.dot(b))
 }

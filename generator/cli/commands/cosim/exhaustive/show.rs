@@ -13,7 +13,7 @@ use glint_base::text;
 use glint_core::cosim::exhaustive::{Difference, Job, Proof, Shard, State};
 use glint_golden::Values;
 
-/// Announces the work ahead, and what it leaves out.
+/// Announces the work ahead, and the part that it leaves out.
 pub fn announce(one: &Loaded, job: &Job<'_>, state: &State) {
     say!("{}: {} ({})", one.path, job.words(), job.f.sweep().words(),);
     if !job.f.sweep().omits.is_empty() {
@@ -37,10 +37,10 @@ pub fn announce(one: &Loaded, job: &Job<'_>, state: &State) {
     }
 }
 
-/// Says what a state means; whether it is within the bound, and nothing differs.
+/// Reports a state, and returns whether it is within the bound and nothing differs.
 ///
 /// # Errors
-/// A design that cannot be simulated; the waveform of a difference cannot be written.
+/// Fails if the design cannot be simulated, or if the waveform of a difference cannot be written.
 pub fn report(
     output: Output,
     one: &Loaded,
@@ -158,7 +158,7 @@ fn as_json(
     value
 }
 
-/// Returns a difference for scripts: that of a run, with the combination in place of a seed.
+/// Returns a difference for scripts. It is like the difference of a run, with the combination in place of a seed.
 fn mismatch_json((difference, reproducer): &(Difference, Reproducer)) -> Value {
     let mut value = reproducer.json(&difference.mismatch);
     let operands: BTreeMap<&str, String> = difference

@@ -1,7 +1,7 @@
 //! Groups nets into blocks: one block for each statement of the description.
 //!
-//! A net is *made from* sources: blocks, ports and tables that reach it through wires and gates. Where several meet, and an operator
-//! takes the result, is a *joint*, a block of gates or wiring.
+//! A net is *made from* sources: blocks, ports and tables that reach it through wires and gates. If several sources
+//! meet and an operator takes the result, the meeting point is a *joint*, a block of gates or wiring.
 
 use std::collections::BTreeSet;
 
@@ -26,8 +26,8 @@ pub struct Groups<'a> {
 }
 
 impl<'a> Groups<'a> {
-    /// Groups the nets of a design. In a `figure`, gates and wiring are blocks only where the source numbers them, or
-    /// where several signals meet.
+    /// Groups the nets of a design. In a `figure`, gates and wiring are blocks only if the source numbers them, or if
+    /// several signals meet in them.
     pub fn new(design: &'a Design, figure: bool) -> Self {
         let ports: Vec<NetId> = design.ports.iter().map(|port| port.net).collect();
         let cell = design.iter().map(|(id, net)| {
@@ -50,7 +50,7 @@ impl<'a> Groups<'a> {
             joints: BTreeSet::new(),
         };
         groups.form(true);
-        // Statements whose operators feed each other through others, as those in a loop, fall apart.
+        // Statements are taken apart if their operators feed each other through other statements, as in a loop.
         if groups.is_tangled() {
             groups.form(false);
         }
@@ -58,7 +58,7 @@ impl<'a> Groups<'a> {
         groups
     }
 
-    /// Forms the groups, and finds what each net is made from.
+    /// Forms the groups, and finds the sources of each net.
     fn form(&mut self, statements: bool) {
         let design = self.design;
         self.group = (0..design.nets.len()).collect();
@@ -71,7 +71,7 @@ impl<'a> Groups<'a> {
         self.head = vec![None; self.group.len()];
         for (id, net) in design.iter().filter(|(id, _)| self.cell[id.index()]) {
             let head = &mut self.head[self.group[id.index()]];
-            // A net that the source numbers is the block, and what serves it is inside.
+            // A net that the source numbers is the block. The nets that serve it are inside.
             let better = head.is_none_or(|head| {
                 let head = design.net(head);
                 (net.block.is_some(), net.named) >= (head.block.is_some(), head.named)
@@ -94,7 +94,7 @@ impl<'a> Groups<'a> {
         at
     }
 
-    /// Puts a net into the group of what it is made from, where one statement made both.
+    /// Puts a net into the group of the nets that it is made from, if one statement made both.
     fn join(&mut self, id: NetId) {
         let design = self.design;
         let net = design.net(id);
@@ -125,7 +125,7 @@ impl<'a> Groups<'a> {
         let named = |id: NetId| design.net(id).named;
         match (a, b) {
             (MUX, MUX) => !shown(from),
-            // A multiplier begins a statement; what is added to it by another, or rounds it, is apart.
+            // A multiplier begins a statement. Logic that adds to its product, or rounds it, is a block apart.
             (_, MULTIPLIER) => false,
             (MULTIPLIER, _) if design.pipeline.is_none() => false,
             (_, MUX) => !(shown(from) || named(from) && named(to) && design.pipeline.is_none()),
@@ -177,7 +177,8 @@ impl<'a> Groups<'a> {
         found
     }
 
-    /// Returns the nets that a net is made from: those of its cell, the data of a register and the address of a table.
+    /// Returns the nets from which a net is made: the operands of its cell, the data of a register or the address of
+    /// a table.
     pub fn operands(&self, id: NetId) -> Vec<NetId> {
         match &self.design.net(id).driver {
             Driver::Op(op) => op.operands(),
@@ -191,7 +192,7 @@ impl<'a> Groups<'a> {
         }
     }
 
-    /// Finds the sources of a net behind those of its operands.
+    /// Finds the sources of a net, after the sources of its operands.
     fn trace(&self, id: NetId, sources: &mut [Option<Vec<NetId>>]) {
         let mut pending = vec![id];
         while let Some(&id) = pending.last() {
@@ -228,7 +229,7 @@ impl<'a> Groups<'a> {
         }
     }
 
-    /// Returns whether the blocks of a pipeline form a cycle; of a sequential core, always false.
+    /// Returns whether the blocks of a pipeline form a cycle. It is always false for a sequential core.
     fn is_tangled(&self) -> bool {
         if self.design.pipeline.is_none() {
             return false;
@@ -267,7 +268,8 @@ impl<'a> Groups<'a> {
         self.joints = read.into_iter().filter_map(|it| self.joint(it)).collect();
     }
 
-    /// Returns whether what meets at an operand of a block meets inside of it: bits beside its result, or gates of its statement.
+    /// Returns whether the sources of an operand meet inside a block: they are bits beside its result, or gates of
+    /// its statement.
     pub fn is_part(&self, operand: NetId, head: NetId) -> bool {
         let location = |id: NetId| self.design.net(id).location;
         let product = self.group.iter().filter(|it| **it == self.group[head.index()]).count() > 1;
@@ -300,7 +302,7 @@ impl<'a> Groups<'a> {
         inside.filter(|id| self.sources[id.index()] == [head]).collect()
     }
 
-    /// Returns the block or port that drives what a net carries.
+    /// Returns the block or port that drives the value of a net.
     pub fn driver(&self, net: NetId) -> Option<NetId> {
         match self.sources[net.index()][..] {
             [] => None,
@@ -309,7 +311,7 @@ impl<'a> Groups<'a> {
         }
     }
 
-    /// Returns the registers of a pipeline that hold what a block or port gives.
+    /// Returns the registers of a pipeline that hold the value of a block or port.
     pub fn held(&self, source: NetId) -> Vec<NetId> {
         let nets = self.design.iter().filter(|(id, net)| {
             let register = matches!(net.driver, Driver::Register(_)) && !self.cell[id.index()];
@@ -318,7 +320,8 @@ impl<'a> Groups<'a> {
         nets.map(|(id, _)| id).collect()
     }
 
-    /// Returns the block or port whose value a register of a pipeline holds; of a part of a gate, that gate.
+    /// Returns the block or port whose value a register of a pipeline holds. If the register holds a part of a gate,
+    /// it returns the gate.
     fn holds(&self, register: NetId) -> Option<NetId> {
         let driver = self.driver(register);
         if self.sources[register.index()].len() < 2

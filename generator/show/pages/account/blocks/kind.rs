@@ -1,4 +1,4 @@
-//! The kinds of blocks in a datapath (register, ROM, adder, mux, …), and what they are called.
+//! The kinds of blocks in a datapath (register, ROM, adder, mux, …), and their names.
 
 use std::fmt;
 

@@ -14,7 +14,7 @@ use groups::Groups;
 pub use kind::BlockKind;
 use kind::{ADDER, MULTIPLIER, operator};
 
-/// Returns the blocks in order of their number; those that the source does not number follow.
+/// Returns the blocks in order of their number. Blocks without a number in the source follow.
 pub fn table(design: &Design) -> Table {
     let blocks = Blocks::new(design, false);
     let mut table = Table::of("no.: | block | kind | format | takes | what it is");
@@ -73,13 +73,13 @@ pub struct Blocks<'a> {
 }
 
 impl<'a> Blocks<'a> {
-    /// Finds the blocks of a design. In a `figure`, gates and wiring are blocks only where the source numbers them, or
-    /// where several signals meet.
+    /// Finds the blocks of a design. In a `figure`, gates and wiring are blocks only if the source numbers them, or
+    /// if several signals meet in them.
     pub fn new(design: &'a Design, figure: bool) -> Self {
         Self { design, groups: Groups::new(design, figure) }
     }
 
-    /// Returns all blocks, in order of their number; those without one follow.
+    /// Returns all blocks, in order of their number. Blocks without a number follow.
     pub fn all(&self) -> Vec<Block> {
         let heads = self.groups.head.iter().copied().flatten();
         let mut blocks: Vec<Block> = heads
@@ -99,7 +99,7 @@ impl<'a> Blocks<'a> {
         // Operators first: bits that go around them come from the same signals.
         let (own, around): (Vec<NetId>, Vec<NetId>) =
             inside.iter().partition(|it| self.groups.cell[it.index()]);
-        // Of a mux that is alone they are its inputs, masked by what selects where one input is 0.
+        // For a mux alone, the bits around it are its inputs, masked by the select if one input is 0.
         let is_mux = |it: &NetId| matches!(design.net(*it).driver, Driver::Op(Op::Mux { .. }));
         let around = if matches!(&own[..], [only] if is_mux(only)) { Vec::new() } else { around };
         for id in own.into_iter().chain(around) {
@@ -127,7 +127,7 @@ impl<'a> Blocks<'a> {
         }
         let kind = self.kind(head, &cells, &inputs, &selected_by);
         match kind {
-            // What selects says nothing new.
+            // The select says nothing new.
             BlockKind::Limiter | BlockKind::Rounding | BlockKind::RoundingLimiter => {
                 inputs.retain(|it| !self.is_constant(*it));
                 inputs.dedup();
@@ -147,7 +147,7 @@ impl<'a> Blocks<'a> {
         let doc = of(&|it| *it == head && !net.doc.is_empty())
             .or(of(&|it| !design.net(*it).doc.is_empty()))
             .map_or(String::new(), |it| design.net(it).doc.clone());
-        // The result is what comes last; the shortest name says what all of it is for.
+        // The result is the last net. The shortest name describes the whole block.
         let result = match kind {
             BlockKind::Several(_) if design.pipeline.is_some() => inside.last().copied(),
             _ => None,
@@ -184,7 +184,8 @@ impl<'a> Blocks<'a> {
         nets.chain(self.groups.held(head)).collect()
     }
 
-    /// Returns the block, port or constant that an operand comes from; none for what the control unit gives.
+    /// Returns the block, port or constant that an operand comes from. Returns `None` for a signal of the control
+    /// unit.
     fn source(&self, operand: NetId) -> Option<NetId> {
         match self.groups.sources[operand.index()][..] {
             [] => self.constant(operand),
@@ -204,7 +205,7 @@ impl<'a> Blocks<'a> {
         }
     }
 
-    /// Returns the name of a block: in a pipeline the shortest of those of its parts, without the stage.
+    /// Returns the name of a block. In a pipeline, it is the shortest name of the block's parts, without the stage.
     fn called(&self, inside: &[NetId], head: NetId) -> String {
         let design = self.design;
         let Some(pipeline) = &design.pipeline else { return design.net(head).name.clone() };
@@ -234,7 +235,7 @@ impl<'a> Blocks<'a> {
         names
     }
 
-    /// Returns where signals meet by gates or side by side.
+    /// Returns the block in which signals meet by gates or side by side.
     fn meeting(&self, joint: NetId) -> Block {
         let net = self.design.net(joint);
         let inputs = self.groups.sources[joint.index()].clone();
@@ -307,7 +308,7 @@ impl<'a> Blocks<'a> {
     }
 
     fn kind_of_net(&self, id: NetId) -> BlockKind {
-        // Of what is multiplied, before it is extended to a sign.
+        // The width of an operand before it is extended for a sign.
         let width = |net: &NetId| match &self.design.net(*net).driver {
             Driver::Op(Op::Extend(of)) => self.design.width(*of),
             _ => self.design.width(*net),
@@ -360,8 +361,8 @@ impl<'a> Blocks<'a> {
         }
     }
 
-    /// Returns the fields of the control word that control a block: its select or enable, and what its logic takes of them; and
-    /// the strobes that write it.
+    /// Returns the fields of the control word that control a block, and the strobes that write it. The fields are its
+    /// select or enable, and the fields that its logic takes.
     pub fn controls(&self, block: &Block) -> (Vec<FieldId>, Vec<NetId>) {
         let design = self.design;
         let mut pending: Vec<NetId> = Vec::new();
@@ -402,12 +403,12 @@ impl<'a> Blocks<'a> {
         (fields, strobes)
     }
 
-    /// Returns the block or port that drives what a net carries.
+    /// Returns the block or port that drives the value of a net.
     pub fn driver(&self, net: NetId) -> Option<NetId> {
         self.groups.driver(net)
     }
 
-    /// Returns the registers of a pipeline that hold what a block or port gives.
+    /// Returns the registers of a pipeline that hold the value of a block or port.
     pub fn held(&self, source: NetId) -> Vec<NetId> {
         self.groups.held(source)
     }
