@@ -163,7 +163,9 @@ def a_drawing_enlarges_by_keyboard(page):
 
 
 def a_slider_and_the_picture_are_seen_together(page):
-    page.locator("[id='key-cosine.fraction']").scroll_into_view_if_needed()
+    page.locator("#toml").fill('device = "rough"\n')
+    settled(page)
+    page.locator("[id='key-cosine.fraction']").evaluate("it => it.scrollIntoView({ block: 'end' })")
     boxes = [page.locator(it).bounding_box() for it in ("[id='key-cosine.fraction']", "#results")]
     assert all(0 <= box["y"] < 900 for box in boxes), boxes
     assert boxes[0]["y"] >= boxes[1]["y"] + boxes[1]["height"], boxes
