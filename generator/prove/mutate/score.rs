@@ -15,8 +15,8 @@ pub const TOLERATED: f64 = 0.01;
 /// a longer bench notices.
 pub const GOAL_TEXT: f64 = 0.98;
 
-/// The same share for the bits in the upper half of the words of tables, among the bits whose inversion some check
-/// notices. Words that are never read are not counted.
+/// The share of the bits in the upper half of the words of tables whose inversion the shipped bench should notice, among
+/// the bits whose inversion some check notices. Words that are never read are not counted.
 pub const GOAL_MEMORY: f64 = 0.95;
 
 /// Some of the faults.

@@ -6,7 +6,8 @@
 //!
 //! - For each ROM word that any computation reads, and each bit of its upper half: one computation whose results differ if
 //!   the bit is inverted. If the pool has none, one near its computations is searched for. Lines, which read a word a clock,
-//!   are chosen if they read the word.
+//!   are chosen if they read the word. If this takes too many clocks, only every second word has such a computation, or
+//!   every third, and so on.
 //! - For a device that walks lines: one line to the end of the domain of its length.
 //! - Every combination of the ends of the control operands.
 //! - For each bit of each net, each input of a mux, each outcome of a comparison and each other watched feature: some
