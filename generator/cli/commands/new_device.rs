@@ -115,7 +115,8 @@ fn check_name(registry: &Registry, name: &str) -> Result<()> {
 /// Returns a file of the template for another device.
 fn text_for(text: &str, name: &str, glint: &str) -> String {
     let module = name.replace('-', "_");
+    let glint = toml::Value::from(glint.replace('\\', "/")).to_string();
     text.replace("parabola_device", &format!("{module}_device"))
         .replace("parabola", name)
-        .replace("GLINT", &glint.replace('\\', "/"))
+        .replace("\"GLINT\"", &glint)
 }

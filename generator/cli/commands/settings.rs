@@ -5,7 +5,6 @@ use anyhow::Result;
 use crate::wrong_usage;
 
 /// A key with the value that a user gave it.
-#[derive(Clone)]
 pub struct Setting {
     /// The dotted name, as `cosine.fraction`.
     pub key: String,
