@@ -260,7 +260,7 @@ impl Whole<'_> {
     /// Returns the binary logarithm of the formula's value, which may be beyond the range of `f64` itself.
     fn logarithm_at(&self, x: f64) -> Result<f64, Refusal> {
         let kind = Kind::Unary(Log2, Box::new(self.formula.clone()));
-        self.value_of(&Formula { kind, span: self.formula.span.clone() }, x)
+        self.value_of(&Formula::new(kind, self.formula.span.clone()), x)
     }
 
     fn value_of(&self, formula: &Formula, x: f64) -> Result<f64, Refusal> {

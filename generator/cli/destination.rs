@@ -1,11 +1,13 @@
-//! Writes a single file whole or not at all, and makes sure before the work for it that it can be written.
+//! Writes a single file whole or not at all, and makes sure before the work for it that it can be written. Missing directories
+//! above the file are made, as they are for commands that write many files.
 
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, ErrorKind, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, anyhow, bail};
+use anyhow::{Context, Result, bail};
 
+use super::directories::MadeDirectories;
 use glint_tools::transient::Directory;
 
 /// The file while it is written, in a directory of its own.
@@ -16,6 +18,8 @@ const UNFINISHED: &str = "unfinished";
 pub struct Destination {
     path: PathBuf,
     sink: Sink,
+    /// Dropped after the sink, which is inside the directories.
+    made: MadeDirectories,
 }
 
 enum Sink {
@@ -28,12 +32,12 @@ impl Destination {
     /// behind it is replaced, and not the link.
     ///
     /// # Errors
-    /// Fails if `path` cannot be written, if a link leads nowhere, or if the directory is missing.
+    /// Fails if `path` cannot be written, if a link leads nowhere, or if its directory cannot be made.
     pub fn open(path: &Path) -> Result<Self> {
         if fs::metadata(path).is_ok_and(|found| !found.is_file()) {
             let file = OpenOptions::new().write(true).open(path);
             let sink = Sink::Itself(file.with_context(|| cannot(path))?);
-            return Ok(Self { path: path.to_owned(), sink });
+            return Ok(Self { path: path.to_owned(), sink, made: MadeDirectories::default() });
         }
         let path = match path.is_symlink() {
             true => fs::canonicalize(path).with_context(|| {
@@ -45,19 +49,14 @@ impl Destination {
             Some(parent) if parent != Path::new("") => parent,
             _ => Path::new("."),
         };
-        let missing = |error: io::Error| match error.kind() {
-            ErrorKind::NotFound => {
-                anyhow!("there is no directory `{}`; make it", directory.display())
-            }
-            _ => error.into(),
-        };
-        let made = || -> Result<Directory> {
-            let beside = Directory::beside(directory).map_err(missing)?;
+        let made = MadeDirectories::make(directory).with_context(|| cannot(&path))?;
+        let staged = || -> Result<Directory> {
+            let beside = Directory::beside(directory)?;
             File::create(beside.path().join(UNFINISHED))?;
             Ok(beside)
         };
-        let sink = Sink::Beside(made().with_context(|| cannot(&path))?);
-        Ok(Self { path, sink })
+        let sink = Sink::Beside(staged().with_context(|| cannot(&path))?);
+        Ok(Self { path, sink, made })
     }
 
     /// Opens a file that is not there yet, as [`Destination::open`] does, or one that may be replaced by `force`.
@@ -97,12 +96,13 @@ impl Destination {
     ///
     /// # Errors
     /// Fails if the file cannot be moved; then nothing was changed.
-    pub fn commit(self) -> Result<()> {
-        match self.sink {
-            Sink::Itself(_) => Ok(()),
-            Sink::Beside(staged) => fs::rename(staged.path().join(UNFINISHED), &self.path)
-                .with_context(|| cannot(&self.path)),
+    pub fn commit(mut self) -> Result<()> {
+        if let Sink::Beside(staged) = &self.sink {
+            fs::rename(staged.path().join(UNFINISHED), &self.path)
+                .with_context(|| cannot(&self.path))?;
         }
+        self.made.keep();
+        Ok(())
     }
 
     /// Writes the whole file and moves it into its place.
@@ -126,4 +126,21 @@ pub fn replace(path: &Path, contents: impl AsRef<[u8]>) -> Result<()> {
 /// Returns the message when it cannot be written.
 fn cannot(path: &Path) -> String {
     format!("cannot write `{}`", path.display())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn directories_are_made_for_a_file_and_removed_without_it() {
+        let place = tempfile::tempdir().unwrap();
+        let path = place.path().join("made/for/it.txt");
+        drop(Destination::open(&path).unwrap());
+        assert!(!place.path().join("made").exists());
+        Destination::open(&path).unwrap().write("text").unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), "text");
+        drop(Destination::open(&place.path().join("made/other/it.txt")).unwrap());
+        assert!(path.exists() && !place.path().join("made/other").exists());
+    }
 }

@@ -2,6 +2,7 @@
 
 mod commands;
 mod destination;
+mod directories;
 mod failure;
 mod interrupt;
 mod own_file;

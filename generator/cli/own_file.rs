@@ -7,8 +7,8 @@ use anyhow::{Context, Result, bail};
 use serde::Serialize;
 
 use super::destination::Destination;
+use super::directories::create_directory;
 use super::record_text::record_text;
-use super::store::create_directory;
 
 /// A file to be, with the place to write it in.
 pub struct OwnFile {

@@ -19,6 +19,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail};
 
 use super::destination;
+use super::directories::{create_directory, create_parent};
 use glint_core::package::{OutputFile, Seal, is_sealed};
 use staging::Staging;
 use survey::Survey;
@@ -140,20 +141,4 @@ pub fn differs(out: &Path, file: &OutputFile) -> Result<bool> {
 /// Returns the directories of a configuration.
 fn directories(out: &Path, name: &str) -> [PathBuf; 3] {
     ["rtl_out", "testbench", "software"].map(|top| out.join(top).join(name))
-}
-
-fn create_parent(path: &Path) -> Result<()> {
-    match path.parent() {
-        Some(parent) => create_directory(parent),
-        None => Ok(()),
-    }
-}
-
-/// Makes a directory, and the directories above it.
-///
-/// # Errors
-/// Fails if the directory cannot be made.
-pub fn create_directory(path: &Path) -> Result<()> {
-    fs::create_dir_all(path)
-        .with_context(|| format!("cannot create the directory `{}`", path.display()))
 }

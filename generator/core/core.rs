@@ -8,8 +8,8 @@ use anyhow::{Context, Result};
 use crate::cosim::exhaustive::{Backing, Clocks, Job, Places};
 use crate::cosim::{Lockstep, directed, trial};
 use crate::package::{
-    self, ContractFacts, EmitInputs, LineClocks, OutputFile, Surroundings, Timing, Vectors,
-    WorkedExample,
+    self, ContractFacts, EmitInputs, InstanceExample, LineClocks, OutputFile, Surroundings, Timing,
+    Vectors, WorkedExample,
 };
 use crate::registry::Device;
 use glint_base::input;
@@ -287,6 +287,19 @@ impl Core {
             sequential,
         };
         package::emit(&self.design, &inputs)
+    }
+
+    /// Returns an instance in Verilog of each module that a system can instantiate, the outermost first.
+    ///
+    /// # Errors
+    /// Fails if a wrapper that the configuration asks for does not fit the core.
+    pub fn instances(&self) -> Result<Vec<InstanceExample>> {
+        let inputs = EmitInputs {
+            accuracy: Some(ContractFacts::new(self.contract.as_ref())),
+            around: Surroundings::new(&self.config, self.design.pipeline.as_ref()),
+            ..EmitInputs::default()
+        };
+        package::instances(&self.design, &inputs)
     }
 
     /// Returns only the files that synthesis needs, Verilog and ROM contents, as pairs of a plain name and contents.

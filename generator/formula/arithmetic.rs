@@ -18,6 +18,9 @@ pub(super) trait Arithmetic {
 
     fn integer(&self, value: i64) -> Self::Value;
 
+    /// Returns the value of a constant part that this arithmetic has computed before, as limits in `f64`.
+    fn folded(&self, constant: Enclosure) -> Option<Self::Value>;
+
     fn add(&self, a: &Self::Value, b: &Self::Value) -> Result<Self::Value, String>;
 
     fn subtract(&self, a: &Self::Value, b: &Self::Value) -> Result<Self::Value, String>;
@@ -75,6 +78,10 @@ impl Arithmetic for Double {
 
     fn constant(&self, _name: &str, below: f64) -> Enclosure {
         Enclosure::between(below, below.next_up())
+    }
+
+    fn folded(&self, constant: Enclosure) -> Option<Enclosure> {
+        Some(constant)
     }
 
     fn integer(&self, value: i64) -> Enclosure {

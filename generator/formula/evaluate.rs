@@ -92,6 +92,9 @@ impl Formula {
         arithmetic: &A,
         operands: &[(&str, A::Value)],
     ) -> Result<A::Value, Fault> {
+        if let Some(value) = self.constant.and_then(|constant| arithmetic.folded(constant)) {
+            return Ok(value);
+        }
         let fault = |message: String| Fault::new(self.span.clone(), message);
         let value = match &self.kind {
             Kind::Number(literal) => arithmetic.literal(literal),

@@ -29,6 +29,9 @@ pub struct Formula {
     pub kind: Kind,
     /// The bytes of the text that it came from.
     pub span: Range<usize>,
+    /// The value, if the part has no operand and no word of a ROM. It is computed once, because formulas are evaluated at
+    /// millions of operands.
+    constant: Option<Enclosure>,
 }
 
 /// The kinds of parts of a formula.
@@ -135,7 +138,18 @@ impl PartialEq for Formula {
 impl Formula {
     /// Makes the operand of this name, which comes from no text.
     pub fn operand(name: &str) -> Self {
-        Self { kind: Kind::Operand(name.to_owned()), span: 0..0 }
+        Self::new(Kind::Operand(name.to_owned()), 0..0)
+    }
+
+    /// Makes a part of this kind, which came from the bytes `span` of a text.
+    pub fn new(kind: Kind, span: Range<usize>) -> Self {
+        let mut formula = Self { kind, span, constant: None };
+        let is_constant = formula.parts().iter().all(|part| part.constant.is_some())
+            && !matches!(formula.kind, Kind::Operand(_) | Kind::Word(..));
+        if is_constant {
+            formula.constant = formula.enclose(&[]).ok();
+        }
+        formula
     }
 
     /// Returns the parts that it is made of.
@@ -210,7 +224,7 @@ impl Formula {
             }
             leaf => leaf.clone(),
         };
-        Self { kind, span: call.clone() }
+        Self::new(kind, call.clone())
     }
 }
 

@@ -189,7 +189,7 @@ impl Parser<'_> {
 
     /// Returns a part from the token `from` to the last that was read.
     fn made(&self, from: usize, kind: Kind) -> Formula {
-        Formula { kind, span: self.tokens[from].start..self.tokens[self.at - 1].end }
+        Formula::new(kind, self.tokens[from].start..self.tokens[self.at - 1].end)
     }
 
     fn choice(&mut self) -> Result<Formula, Fault> {

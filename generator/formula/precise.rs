@@ -291,6 +291,11 @@ impl Arithmetic for Precise {
         PreciseValue::between(low, high)
     }
 
+    /// Returns nothing: limits in `f64` are not precise enough.
+    fn folded(&self, _constant: Enclosure) -> Option<Self::Value> {
+        None
+    }
+
     fn integer(&self, value: i64) -> PreciseValue {
         self.exactly(Exact::integer(value))
     }

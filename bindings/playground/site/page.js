@@ -58,6 +58,11 @@ function next() {
 let core = null;
 let exponent = null;
 
+// Returns a text as nodes: what stands between backquotes is code.
+function prose(text) {
+  return text.split("`").map((part, at) => (at % 2 === 1 ? element("code", { textContent: part }) : part));
+}
+
 const MORE = ["interface", "package", "operands", "output.registered", "strict", "domain"];
 const SLIDER = 64;
 
@@ -100,7 +105,7 @@ function showForm() {
     $("form").dataset.signature = signature;
     const row = (key) => {
       const label = element("label", { htmlFor: `key-${key.name}`, textContent: key.name });
-      return element("div", { className: "key" }, label, element("div", {}, ...control(key)), element("small", { className: "quiet", textContent: key.doc }));
+      return element("div", { className: "key" }, label, element("div", {}, ...control(key)), element("small", { className: "quiet" }, ...prose(key.doc)));
     };
     const [more, first] = [true, false].map((wanted) => applied.filter((key) => MORE.some((it) => is(key, it)) === wanted));
     $("form").replaceChildren(...first.map(row));
@@ -154,7 +159,7 @@ function showAtFields(problems) {
     const input = key && $(`key-${key}`);
     if (!input) continue;
     input.setAttribute("aria-invalid", "true");
-    input.closest(".key").append(element("p", { className: "wrong", textContent: remedy ? `${message}; ${remedy}` : message }));
+    input.closest(".key").append(element("p", { className: "wrong" }, ...prose(remedy ? `${message}; ${remedy}` : message)));
     if (input.closest("details")) input.closest("details").open = true;
   }
 }

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
 
-use super::{create_directory, create_parent};
+use crate::directories::{create_directory, create_parent};
 use glint_core::package::OutputFile;
 use glint_tools::transient::{self, Directory};
 

@@ -1,29 +1,75 @@
-//! Writes an example of a device's use in Verilog: wires for its ports, and an instance.
+//! Writes examples of a device's use in Verilog: wires for the ports of a module, and an instance of it.
 
+use anyhow::Result;
+
+use super::artifact::{Artifacts, Job};
+use super::inputs::EmitInputs;
+use super::map::Map;
+use super::tops::{Face, Top, TopPort, tops};
 use glint_rtl::netlist::Design;
-use glint_rtl::verilog::naming::remark;
+use glint_rtl::verilog::naming::{Naming, remark};
 use glint_rtl::verilog::rows::{Row, separated};
 
-/// Writes declarations of the wires that the ports are connected to, and an instance. The clock must be declared already.
-pub fn instance(design: &Design) -> String {
-    let wires: Vec<Row> = design
-        .ports
-        .iter()
-        .map(|port| {
-            let net = design.net(port.net);
-            let kind = if port.role.is_input() { "reg" } else { "wire" };
-            let format = net.format;
-            let note = remark(design, port.net);
-            Row::port("", kind, format.width(), format.signed, &net.name, &note)
-        })
-        .collect();
-    let names = || {
-        let ports = design.ports.iter().map(|port| port.net);
-        std::iter::once("clk").chain(ports.map(|net| design.net(net).name.as_str()))
+/// An example of a module's use.
+pub struct InstanceExample {
+    /// The module.
+    pub module: String,
+    /// What the module is, in a few words: `the core between two AXI4-Streams`.
+    pub what: String,
+    /// Declarations of the wires that its ports are connected to, and an instance. The clock must be declared already.
+    pub verilog: String,
+}
+
+/// Writes an instance of each module that a system can instantiate: the wrappers that the configuration asks for, and the
+/// core.
+///
+/// # Errors
+/// Fails if a stream surrounds a core without operands or results, or if the registers do not fit their bus.
+pub fn instances(design: &Design, inputs: &EmitInputs) -> Result<Vec<InstanceExample>> {
+    let naming = Naming::new(design);
+    let registers = match inputs.around.registers {
+        Some(bus) => Some((bus, Map::new(design, inputs)?)),
+        None => None,
     };
-    let width = names().map(str::len).max().unwrap_or(0);
-    let connections =
-        separated(names().map(|name| format!("    .{name:width$} ({name})")).collect());
-    let (wires, name) = (Row::declarations(&wires).join("\n"), &design.name);
-    format!("{wires}\n{name} u_{name} (\n{}\n);\n", connections.join("\n"))
+    let job = Job { design, inputs, naming: &naming, registers };
+    let modules = tops(&job, &Artifacts::default())?;
+    // The outermost module is what most systems use.
+    Ok(modules.into_iter().rev().map(|top| instance(design, top)).collect())
+}
+
+fn instance(design: &Design, top: Top) -> InstanceExample {
+    let wires = match top.face {
+        Face::Core => core_wires(design),
+        Face::Stream | Face::Registers(_) => {
+            let ports = top.ports.iter().filter(|port| port.name != top.clock);
+            ports.map(wire).collect()
+        }
+    };
+    let wires = Row::declarations(&wires).join("\n");
+    let width = top.ports.iter().map(|port| port.name.len()).max().unwrap_or(0);
+    let connection = |port: &TopPort| format!("    .{0:width$} ({0})", port.name);
+    let connections = separated(top.ports.iter().map(connection).collect()).join("\n");
+    let module = top.module;
+    let verilog = format!("{wires}\n{module} u_{module} (\n{connections}\n);\n");
+    InstanceExample { module, what: top.what, verilog }
+}
+
+/// Returns the wires of the core, with the formats of operands and results.
+fn core_wires(design: &Design) -> Vec<Row> {
+    let wires = design.ports.iter().map(|port| {
+        let net = design.net(port.net);
+        let kind = kind_of(port.role.is_input());
+        let note = remark(design, port.net);
+        Row::port("", kind, net.format.width(), net.format.signed, &net.name, &note)
+    });
+    wires.collect()
+}
+
+fn wire(port: &TopPort) -> Row {
+    Row::port("", kind_of(port.input), port.width, false, &port.name, &port.doc)
+}
+
+/// Returns the kind of net that a system connects to a port.
+fn kind_of(is_input: bool) -> &'static str {
+    if is_input { "reg" } else { "wire" }
 }

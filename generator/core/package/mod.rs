@@ -59,7 +59,7 @@ pub use crate::observation::{
 pub use cocotb::driver;
 pub use glint_rtl::netlist::Timing;
 pub use inputs::EmitInputs;
-pub use instance::instance;
+pub use instance::{InstanceExample, instances};
 pub use output_file::{OutputFile, digest, sources, sources_for};
 pub use points::{POINTS_FILE, PointsBench, RESULTS_FILE};
 pub use seal::{Seal, is_sealed, sealed, sealed_json};

@@ -165,7 +165,7 @@ pub fn branches(
         Kind::Word(rom, place) => Ok(plain(word(rom, place, setting, terms)?)),
         Kind::Constant(name, _) => Err(format!("the constant `{name}` has no translation")),
         Kind::Unary(Function::Negate, a) => {
-            let zero = Formula { kind: Kind::Number(Literal::zero()), span: formula.span.clone() };
+            let zero = Formula::new(Kind::Number(Literal::zero()), formula.span.clone());
             operation(terms, &zero, a, Term::Sub)
         }
         Kind::Unary(function, _) => Err(untranslated(*function)),

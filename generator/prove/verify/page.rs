@@ -2,6 +2,7 @@
 
 use anyhow::Result;
 use glint_base::template::Template;
+use glint_show::pages::markup::html;
 use serde::Serialize;
 use serde_json::json;
 
@@ -20,9 +21,32 @@ struct Page<'a> {
     timings: Vec<(&'static str, String)>,
 }
 
+/// A check with its texts as HTML.
 struct View<'a> {
     answer: &'a Answer,
     class: String,
+    question: String,
+    domain: String,
+    words: String,
+    open: String,
+    reads: String,
+    tools: String,
+}
+
+impl<'a> View<'a> {
+    fn new(answer: &'a Answer) -> Self {
+        let finding = &answer.finding;
+        Self {
+            class: class(finding.verdict),
+            question: html(answer.question),
+            domain: html(&finding.domain),
+            words: html(&finding.words),
+            open: html(&finding.open),
+            reads: html(answer.reads),
+            tools: html(&answer.tools.join("; ")),
+            answer,
+        }
+    }
 }
 
 /// Returns the page; nothing before its last section depends on the timings.
@@ -37,10 +61,7 @@ pub fn page(record: &Record, timings: &[CheckTime]) -> Result<String> {
         record,
         class: class(record.conclusion),
         counts: counts.map(|(&it, &count)| (class(it), it.words(), count)).collect(),
-        checks: checks
-            .clone()
-            .map(|answer| View { answer, class: class(answer.finding.verdict) })
-            .collect(),
+        checks: checks.clone().map(View::new).collect(),
         timings: checks
             .zip(timings)
             .map(|(answer, timing)| (answer.title, format!("{:.1}", timing.seconds)))

@@ -7,7 +7,7 @@ pub mod drawing;
 pub mod figure;
 pub mod formula;
 mod markdown;
-mod markup;
+pub mod markup;
 pub mod plots;
 pub mod stages;
 

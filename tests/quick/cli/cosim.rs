@@ -203,6 +203,7 @@ fn in_parts(text: &str) {
     dir.write("core.toml", "device = \"cosine-power\"\npower = 4\n");
     let error = refused(&["merge", "core.toml", "part1.json", "part2.json"]);
     assert!(error.contains("not of `core.toml` as it stands"), "{error}");
-    let error = refused(&["cosim", "core.toml", "--exhaustive", "--resume", "gone/state.json"]);
-    assert!(error.contains("gone/state.json"), "{error}");
+    let error =
+        refused(&["cosim", "core.toml", "--exhaustive", "--resume", "core.toml/state.json"]);
+    assert!(error.contains("core.toml/state.json"), "{error}");
 }

@@ -18,14 +18,17 @@ pub struct RecordView {
 }
 
 impl RecordView {
-    pub fn new(record: &Record) -> Self {
+    /// Makes the tables of a record. The first row is that of `target`, if there is one.
+    pub fn new(record: &Record, target: Option<&str>) -> Self {
+        let mut measured: Vec<&Figures> = record.targets.iter().collect();
+        measured.sort_by_key(|figures| Some(figures.target.name()) != target);
         let mut table = Table::of(
             "target | LUT: | DSP: | RAM: | FF: | gates: | MHz: | M points/s: | k/s per LUT: | M/s per DSP:",
         );
-        table.rows = record.targets.iter().map(|it| row(it, record.clocks_per_point)).collect();
+        table.rows = measured.iter().map(|it| row(it, record.clocks_per_point)).collect();
         let of = |figures: &Figures, text: String| (figures.device.clone(), text);
-        let timed = record.targets.iter().filter(|it| !it.critical_path.is_empty());
-        let untimed = record.targets.iter();
+        let timed = measured.iter().filter(|it| !it.critical_path.is_empty());
+        let untimed = measured.iter();
         Self {
             table: TableView::new("Area and speed", &table),
             paths: timed.map(|it| of(it, it.path_in_words())).collect(),
@@ -35,14 +38,19 @@ impl RecordView {
     }
 }
 
-/// Returns the frequency and the rate on the FPGA with the most points a second, for a reader in a hurry.
-pub fn fastest(record: &Record) -> Option<(&Figures, Frequency, Rate)> {
-    let timed = record
-        .targets
-        .iter()
-        .filter(|it| it.area.luts.is_some())
-        .filter_map(|it| Some((it, it.frequency?, Rate::new(it, record.clocks_per_point)?)));
-    timed.max_by(|a, b| a.2.points.total_cmp(&b.2.points))
+/// Returns the frequency and the rate on an FPGA, for a reader in a hurry: on `target` if it was measured, and else on the FPGA
+/// with the most points a second.
+pub fn leading<'r>(
+    record: &'r Record,
+    target: Option<&str>,
+) -> Option<(&'r Figures, Frequency, Rate)> {
+    let on_fpgas = record.targets.iter().filter(|it| it.area.luts.is_some());
+    let timed: Vec<(&Figures, Frequency, Rate)> = on_fpgas
+        .filter_map(|it| Some((it, it.frequency?, Rate::new(it, record.clocks_per_point)?)))
+        .collect();
+    let on_target = timed.iter().find(|(figures, ..)| Some(figures.target.name()) == target);
+    let fastest = timed.iter().max_by(|a, b| a.2.points.total_cmp(&b.2.points));
+    on_target.or(fastest).copied()
 }
 
 fn row(figures: &Figures, clocks_per_point: f64) -> Vec<String> {

@@ -20,8 +20,9 @@ use crate::pages::figure::{Figure, figures};
 use crate::pages::formula;
 use crate::pages::markup::html;
 use crate::pages::stages;
+use glint_base::target::FAMILIES;
 use glint_base::{input, text};
-use glint_core::package::{self, Seal, Timing};
+use glint_core::package::{self, InstanceExample, Seal, Timing};
 use glint_rtl::netlist::Design;
 
 #[glint_base::template::template("datasheet.html")]
@@ -57,7 +58,7 @@ struct Page<'a> {
     highlight: Option<HighlightView>,
     record: Option<RecordView>,
     synthesis: Option<&'a (String, Vec<FamilyUsage>)>,
-    instance: String,
+    instances: Vec<InstanceExample>,
     keys: TableView,
     toml: String,
 }
@@ -193,9 +194,9 @@ pub fn page(subject: &Subject, measured: &Measured) -> Result<String> {
             },
             gain: highlight.gain,
         }),
-        record: subject.figures.as_ref().map(RecordView::new),
+        record: subject.figures.as_ref().map(|record| RecordView::new(record, target(design))),
         synthesis: measured.synthesis.as_ref(),
-        instance: package::instance(design),
+        instances: core.instances()?,
         keys: TableView::new("Keys of the configuration", &account::keys(&schema, &core.config)),
         toml: core.config.to_toml(&schema),
     };
@@ -253,7 +254,7 @@ fn glance(subject: &Subject, measured: &Measured) -> Vec<(&'static str, String)>
         glance.push(("Points a second", rate));
     }
     if let Some((_, usage)) = &measured.synthesis
-        && let Some(usage) = usage.first()
+        && let Some(usage) = first_usage(usage, target(design))
     {
         glance.push((
             "LUTs, DSPs, block RAMs",
@@ -261,6 +262,18 @@ fn glance(subject: &Subject, measured: &Measured) -> Vec<(&'static str, String)>
         ));
     }
     glance
+}
+
+/// Returns the target that a pipeline is scheduled for.
+fn target(design: &Design) -> Option<&str> {
+    design.pipeline.as_ref().map(|pipeline| pipeline.target.as_str())
+}
+
+/// Returns the cells on the target, or on the first family if there is no target.
+fn first_usage<'u>(usage: &'u [FamilyUsage], target: Option<&str>) -> Option<&'u FamilyUsage> {
+    let family = FAMILIES.iter().find(|family| Some(family.name()) == target);
+    let on_target = usage.iter().find(|it| family.is_some_and(|own| own.title == it.family));
+    on_target.or_else(|| usage.first())
 }
 
 /// Returns how many there are of each size, the largest first.
@@ -281,7 +294,8 @@ fn multipliers(design: &Design) -> String {
 
 /// Returns the rate at the measured clock, if a clock was measured.
 fn rate(subject: &Subject) -> Option<String> {
-    let (figures, frequency, rate) = measured::fastest(subject.figures.as_ref()?)?;
+    let target = target(&subject.core.design);
+    let (figures, frequency, rate) = measured::leading(subject.figures.as_ref()?, target)?;
     Some(format!("{:.1} million at {:.1} MHz ({})", rate.points, frequency.median, figures.device))
 }
 

@@ -1,0 +1,63 @@
+//! Makes the directories that files are written to.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+
+/// Directories that were made for a file. If the file is not written, they are removed again, unless something else is in them.
+#[derive(Default)]
+pub struct MadeDirectories {
+    /// The outermost first.
+    paths: Vec<PathBuf>,
+}
+
+impl MadeDirectories {
+    /// Makes a directory, and the directories above it that are missing.
+    ///
+    /// # Errors
+    /// Fails if a directory cannot be made.
+    pub fn make(directory: &Path) -> Result<Self> {
+        let missing =
+            directory.ancestors().take_while(|it| !it.as_os_str().is_empty() && !it.exists());
+        let mut paths: Vec<PathBuf> = missing.map(Path::to_owned).collect();
+        paths.reverse();
+        let made = Self { paths };
+        create_directory(directory)?;
+        Ok(made)
+    }
+
+    /// Keeps the directories: the file is written.
+    pub fn keep(&mut self) {
+        self.paths.clear();
+    }
+}
+
+impl Drop for MadeDirectories {
+    fn drop(&mut self) {
+        for path in self.paths.iter().rev() {
+            // A directory with something in it stays.
+            let _ = fs::remove_dir(path);
+        }
+    }
+}
+
+/// Makes a directory, and the directories above it.
+///
+/// # Errors
+/// Fails if the directory cannot be made.
+pub fn create_directory(path: &Path) -> Result<()> {
+    fs::create_dir_all(path)
+        .with_context(|| format!("cannot create the directory `{}`", path.display()))
+}
+
+/// Makes the directory that a file is to be in, and the directories above it.
+///
+/// # Errors
+/// Fails if a directory cannot be made.
+pub fn create_parent(path: &Path) -> Result<()> {
+    match path.parent() {
+        Some(parent) => create_directory(parent),
+        None => Ok(()),
+    }
+}
