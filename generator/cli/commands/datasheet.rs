@@ -73,7 +73,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     for one in &loaded {
         let (core, contract) = (&one.core, one.core.contract.as_ref());
         let proof = Record::find(&arguments.proofs, &core.contract_digest(), contract)?;
-        let figures = synth::Record::find(&arguments.figures, &core.core_digest())?;
+        let figures = synth::SynthesisRecord::find(&arguments.figures, &core.core_digest())?;
         records.push((core.backing(&arguments.proofs)?, proof, figures));
         store::may_write(&path(arguments, one, single), Seal::Markup, arguments.force)?;
     }
