@@ -10,7 +10,7 @@ use serde_json::json;
 
 use super::{cosim, load_sequential};
 use crate::own_file::OwnFile;
-use crate::{Configs, Output, progress, say, tables};
+use crate::{Configs, OutputOptions, progress, say, tables};
 use glint_base::{input, text};
 use glint_core::cosim::exhaustive::Certificate;
 use glint_core::package::digest;
@@ -70,7 +70,7 @@ fn tell_terms(bound: &Bound) {
 }
 
 /// Runs `glint certify`, and returns whether every bound is proved.
-pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load_sequential(registry, &arguments.configs.paths, "certify")?;
     let limit = Duration::from_secs(arguments.time_limit);
     if let Some(out) = arguments.out.as_deref().filter(|out| out.exists() && !out.is_dir()) {

@@ -10,7 +10,7 @@ use clap::Args;
 use rayon::prelude::*;
 
 use super::{load, yosys};
-use crate::{Output, TimeLimit, progress, wrong_usage};
+use crate::{OutputOptions, TimeLimit, progress, wrong_usage};
 use glint_base::target::{FAMILIES, Family};
 use glint_config::{Config, Schema, Value};
 use glint_core::core::Core;
@@ -86,7 +86,7 @@ struct ModelFigures {
 }
 
 /// Runs `glint compare`.
-pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     if arguments.csv && output.json {
         wrong_usage!("--csv and --json are two ways to print the same: give one");
     }

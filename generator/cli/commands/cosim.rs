@@ -16,7 +16,7 @@ use super::mismatch::{self, Reproducer};
 use super::{Loaded, load, verdict};
 use crate::destination::Destination;
 use crate::failure::WrongUsage;
-use crate::{Configs, Force, Output, TimeLimit, count, progress, say, wrong_usage};
+use crate::{Configs, Force, OutputOptions, TimeLimit, count, progress, say, wrong_usage};
 use benches::benches;
 use glint_base::text;
 use glint_core::core::{TEST_POINTS, TEST_SEED};
@@ -99,7 +99,7 @@ pub enum SimulatorChoice {
 }
 
 /// Runs `glint cosim`, and returns whether everything that it checks holds.
-pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     if arguments.exhaustive {
         return exhaustive::run(registry, output, arguments);
     }
@@ -124,7 +124,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     benches(output, &loaded, arguments, which)
 }
 
-fn built_in(output: Output, loaded: &[Loaded], arguments: &Arguments) -> Result<bool> {
+fn built_in(output: OutputOptions, loaded: &[Loaded], arguments: &Arguments) -> Result<bool> {
     let points = arguments.points.unwrap_or(TEST_POINTS);
     let bar = progress::bar(output, points.saturating_mul(loaded.len() as u64), "points checked");
     let outcomes: Vec<Outcome> = loaded

@@ -5,7 +5,7 @@ use clap::Args;
 use serde_json::{Value, json};
 
 use super::{Loaded, load};
-use crate::{Configs, Output, say, tables};
+use crate::{Configs, OutputOptions, say, tables};
 use glint_base::program::Program;
 use glint_core::registry::Registry;
 use glint_prove::synth::{TARGETS, Target};
@@ -35,7 +35,7 @@ struct EstimateRow {
 }
 
 /// Runs `glint estimate`.
-pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     let estimates: Vec<(&Loaded, Vec<EstimateRow>)> =
         loaded.iter().map(|one| (one, rows(one))).collect();

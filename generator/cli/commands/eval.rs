@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 
 use super::{Loaded, load_one};
 use crate::failure::WrongUsage;
-use crate::{Output, say, tables, wrong_usage};
+use crate::{OutputOptions, say, tables, wrong_usage};
 use glint_base::fixed::Format;
 use glint_core::cosim::Driven;
 use glint_core::registry::Registry;
@@ -49,7 +49,7 @@ pub struct Arguments {
 const LIMIT: u64 = 1 << 16;
 
 /// Runs `glint eval`: one point, or as many as a CSV file has.
-pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let one = load_one(registry, &registry.schemas(), &arguments.config)?;
     let given =
         operands::given(one.core.contract.operands(), &arguments.operands).map_err(WrongUsage)?;
@@ -81,7 +81,12 @@ fn outside(operands: &[Operand], raw: &[i64]) -> Vec<String> {
 }
 
 /// Returns one point, with every signal of the golden model.
-fn point(output: Output, one: &Loaded, given: &[Option<i64>], typical: bool) -> Result<bool> {
+fn point(
+    output: OutputOptions,
+    one: &Loaded,
+    given: &[Option<i64>],
+    typical: bool,
+) -> Result<bool> {
     let contract = one.core.contract.as_ref();
     let operands = contract.operands();
     let (raw, missing) = match typical {

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use super::mismatch::Reproducer;
 use super::{CONFIGS, FAILS, HOLDS, Loaded, OUTSIDE, cosim, generate, load, verdict};
-use crate::{Output, progress, say, tables};
+use crate::{OutputOptions, progress, say, tables};
 use glint_base::text;
 use glint_core::core::{TEST_POINTS, TEST_SEED};
 use glint_core::cosim::Outcome;
@@ -27,7 +27,7 @@ struct MainJobResult {
 
 /// Runs the main job. With `details` it says for each configuration where the largest error is, and prints the
 /// remarks on its formula.
-pub fn run(registry: &Registry, output: Output, details: bool) -> Result<bool> {
+pub fn run(registry: &Registry, output: OutputOptions, details: bool) -> Result<bool> {
     let loaded = load(registry, &[])?;
     for one in &loaded {
         one.bound()?;

@@ -12,7 +12,7 @@ use super::mismatch::{self, first_clock, traced};
 use super::{Loaded, load};
 use crate::destination::Destination;
 use crate::own_file::OwnFile;
-use crate::{Configs, Output, TimeLimit, progress, say, tables, wrong_usage};
+use crate::{Configs, OutputOptions, TimeLimit, progress, say, tables, wrong_usage};
 use glint_base::program::Program;
 use glint_core::registry::Registry;
 use glint_prove::mutate::{
@@ -83,7 +83,7 @@ impl Scored {
 }
 
 /// Runs `glint mutate`.
-pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     if let Some(id) = &arguments.only {
         return match &loaded[..] {
@@ -146,7 +146,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
 }
 
 /// Prints the names of all faults, which always succeeds.
-fn list(output: Output, loaded: &[Loaded], faults: &[Faults]) -> bool {
+fn list(output: OutputOptions, loaded: &[Loaded], faults: &[Faults]) -> bool {
     let mut list = Vec::new();
     for (one, faults) in loaded.iter().zip(faults) {
         if output.json {
@@ -164,7 +164,7 @@ fn list(output: Output, loaded: &[Loaded], faults: &[Faults]) -> bool {
 }
 
 /// Plants one fault, and prints its verdict with the means to reproduce it.
-fn only(output: Output, one: &Loaded, id: &str) -> Result<bool> {
+fn only(output: OutputOptions, one: &Loaded, id: &str) -> Result<bool> {
     let faults = Faults::of(&one.core.design);
     let Some(fault) = faults.find(id) else {
         wrong_usage!(

@@ -8,7 +8,7 @@ use serde_json::json;
 use super::none_of;
 use super::settings::KeyAssignment;
 use crate::failure::WrongUsage;
-use crate::{Output, number, tables, wrong_usage};
+use crate::{OutputOptions, number, tables, wrong_usage};
 use glint_base::program::Program;
 use glint_base::target::TIMING_NAMES;
 use glint_config::{self as config, Config, Schema};
@@ -58,7 +58,7 @@ const SCHEMA: &str =
     "#:schema glint.schema.json\n# Editors check keys by it: glint schema > glint.schema.json\n\n";
 
 /// Runs `glint new`.
-pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let device = &arguments.device;
     let preset = presets::values(device);
     let device_of_preset = preset.as_ref().and_then(|_| registry.device(presets::DEVICE));

@@ -10,7 +10,7 @@ use serde_json::json;
 use super::load_one;
 use crate::destination::Destination;
 use crate::failure::{self, WrongUsage};
-use crate::{Force, Output, TimeLimit, number, progress, say, tables, wrong_usage};
+use crate::{Force, OutputOptions, TimeLimit, number, progress, say, tables, wrong_usage};
 use glint_base::{input, text};
 use glint_core::core::Core;
 use glint_core::cosim::batch::{Engine, Golden, RustHdl};
@@ -133,7 +133,7 @@ enum Through {
 }
 
 /// Runs `glint render`.
-pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let (name, core) = core(registry, arguments.config.as_deref())?;
     let settings = settings(&core, arguments)?;
     if let Some(extension) = arguments.out.extension()
@@ -259,7 +259,7 @@ fn read(path: &Path) -> Result<Vec<u8>> {
 
 /// Prints the result.
 fn tell(
-    output: Output,
+    output: OutputOptions,
     arguments: &Arguments,
     name: &str,
     core: &Core,

@@ -9,7 +9,7 @@ use serde_json::{Map, Value, json};
 
 use super::{Loaded, load_one, none_of, rows};
 use crate::failure::WrongUsage;
-use crate::{Output, say, tables, wrong_usage};
+use crate::{OutputOptions, say, tables, wrong_usage};
 use glint_base::program::Program;
 use glint_core::registry::Registry;
 use glint_show::render::setup::{Arc, direction, half};
@@ -113,7 +113,7 @@ struct SetUp {
 }
 
 /// Runs `glint setup`: one line or point, or as many as a CSV file has.
-pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let one = load_one(registry, &registry.schemas(), &arguments.config)?;
     let host = HostInputs::new(&one)?;
     let mut given = vec![[None; 3]; host.inputs.len()];

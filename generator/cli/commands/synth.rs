@@ -12,7 +12,7 @@ use serde::Serialize;
 
 use super::{Loaded, load};
 use crate::own_file::OwnFile;
-use crate::{Configs, Output, TimeLimit, progress, say};
+use crate::{Configs, OutputOptions, TimeLimit, progress, say};
 use cache::Cache;
 use glint_core::registry::Registry;
 use glint_prove::synth::{Figures, Flow, Rate, SynthesisRecord, SynthesisSubject, TARGETS, Target};
@@ -81,7 +81,7 @@ struct FigureRecord<'a> {
 }
 
 /// Runs `glint synth`.
-pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     let (flows, notes) = flows(arguments, &loaded)?;
     let record = |one: &Loaded| OwnFile::record(arguments.out.as_deref(), &one.core.config.name);

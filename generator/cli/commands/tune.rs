@@ -12,7 +12,7 @@ use serde_json::{Value as Json, json};
 use super::settings::KeyAssignment;
 use crate::destination::Destination;
 use crate::tables;
-use crate::{Force, Output, failure, number, progress, say, wrong_usage};
+use crate::{Force, OutputOptions, failure, number, progress, say, wrong_usage};
 use glint_base::program::Program;
 use glint_base::text;
 use glint_config::{self as config, Config, Value};
@@ -81,7 +81,7 @@ pub struct Arguments {
 }
 
 /// Runs `glint tune`.
-pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     if output.json && arguments.csv {
         wrong_usage!("--json and --csv are two forms of the same: give one");
     }

@@ -9,7 +9,7 @@ use serde_json::json;
 
 use super::{Loaded, load};
 use crate::own_file::OwnFile;
-use crate::{Configs, Output, TimeLimit, progress, say, tables};
+use crate::{Configs, OutputOptions, TimeLimit, progress, say, tables};
 use glint_base::text::counted;
 use glint_core::cosim::exhaustive::PROOFS;
 use glint_core::registry::Registry;
@@ -86,7 +86,7 @@ impl Files {
 }
 
 /// Runs `glint verify`.
-pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     let files = loaded.iter().map(|one| Files::new(&arguments.out, &one.core.config.name));
     let files = files.collect::<Result<Vec<_>>>()?;
@@ -107,7 +107,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
 }
 
 fn one_configuration(
-    output: Output,
+    output: OutputOptions,
     one: &Loaded,
     arguments: &Arguments,
 ) -> Result<(VerificationRecord, Vec<CheckTime>)> {

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Loaded, load};
 use crate::own_file::OwnFile;
-use crate::{Configs, Output, count, progress, say};
+use crate::{Configs, OutputOptions, count, progress, say};
 use glint_base::program::Program;
 use glint_base::{input, text};
 use glint_core::cosim::search::{self, Reached};
@@ -75,7 +75,7 @@ struct WorstReport {
 }
 
 /// Runs `glint worst`, and returns whether every bound holds.
-pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     let records = loaded.iter().map(|one| record(one, arguments)).collect::<Result<Vec<_>>>()?;
     let total = search::steps(arguments.starts).saturating_mul(loaded.len() as u64);

@@ -5,7 +5,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::{Arguments, ComparisonEntry};
-use crate::{Output, failure, say, tables};
+use crate::{OutputOptions, failure, say, tables};
 use glint_base::program::Program;
 use glint_base::target::FAMILIES;
 use glint_base::text;
@@ -16,7 +16,7 @@ use glint_tools::synthesis::Usage;
 
 /// Prints everything in the form that was asked for.
 pub fn show(
-    output: Output,
+    output: OutputOptions,
     arguments: &Arguments,
     entries: &[ComparisonEntry],
     notes: &[String],

@@ -8,7 +8,7 @@ use super::Arguments;
 use crate::commands::Loaded;
 use crate::commands::mismatch::{first_clock, waveform_of};
 use crate::failure;
-use crate::{Output, destination, progress, say, tables, wrong_usage};
+use crate::{OutputOptions, destination, progress, say, tables, wrong_usage};
 use glint_base::program::Program;
 use glint_core::package;
 use glint_tools::{BenchDifference, BenchOutcome, VerilogSimulator, bench_waveform, run_bench};
@@ -41,7 +41,7 @@ struct BenchMismatch {
 /// # Errors
 /// Fails for wrong usage, or if the simulator is missing, refuses a bench, or does not end in time.
 pub fn benches(
-    output: Output,
+    output: OutputOptions,
     loaded: &[Loaded],
     arguments: &Arguments,
     which: VerilogSimulator,

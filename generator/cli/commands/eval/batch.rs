@@ -9,7 +9,7 @@ use serde_json::{Map, Value, json};
 use super::operands;
 use crate::commands::setup::REAL;
 use crate::commands::{Loaded, rows};
-use crate::{Output, failure, tables};
+use crate::{OutputOptions, failure, tables};
 use glint_golden::Contract;
 
 /// The result of a point. Its room is used again for the next.
@@ -27,7 +27,12 @@ struct PointResult {
 
 /// Computes every row of a CSV file with the golden model's arithmetic and in f64. For a line, it computes every
 /// point. `given` holds for all rows.
-pub fn batch(output: Output, one: &Loaded, given: &[Option<i64>], path: &Path) -> Result<bool> {
+pub fn batch(
+    output: OutputOptions,
+    one: &Loaded,
+    given: &[Option<i64>],
+    path: &Path,
+) -> Result<bool> {
     let contract = one.core.contract.as_ref();
     let (mut text, mut json) = (headings(contract), Vec::new());
     let mut row = PointResult::default();
