@@ -7,7 +7,7 @@ use super::cases::Case;
 use super::exact::{self, Branch, FormulaContext};
 use super::hardware::{self, Hardware, NodeValue, Variables};
 use super::premises;
-use super::script::Script;
+use super::script::GappaScript;
 use super::statement::Statements;
 use super::task::Task;
 use super::terms::{RealTerm, RealTermId, RealTerms};
@@ -98,7 +98,7 @@ impl Task<'_> {
                 if chosen.iter().any(|way| way.is_never(&terms)) {
                     continue;
                 }
-                let script = Script {
+                let script = GappaScript {
                     terms: &terms,
                     hardware_terms,
                     placed: &hardware.variables,

@@ -5,7 +5,7 @@ use super::cases::{Case, UnrolledComputation};
 use super::hardware::{Hardware, NodeValue};
 use super::polynomial::RawPolynomial;
 use super::quotient::Quotient;
-use super::script::Script;
+use super::script::GappaScript;
 use super::terms::{RealTerm, RealTermId, RealTerms, number};
 use glint_base::fixed::exp2;
 use glint_rtl::pipeline::NodeId;
@@ -111,7 +111,7 @@ impl PremiseTask<'_> {
         for (name, range) in self.operands {
             presupposed.insert(terms.insert(RealTerm::Variable(name.clone()), name), *range);
         }
-        let script = Script {
+        let script = GappaScript {
             terms: &terms,
             hardware_terms: terms.count(),
             placed: &self.hardware.variables,

@@ -16,7 +16,7 @@ const SAMPLES: usize = 24;
 const TRIES: usize = 2_000;
 
 /// The common part of a case's statements.
-pub struct Script<'a> {
+pub struct GappaScript<'a> {
     /// Hardware and formula.
     pub terms: &'a RealTerms,
     /// Terms below this number are the hardware's.
@@ -29,7 +29,7 @@ pub struct Script<'a> {
     pub ways: &'a [Branch],
 }
 
-impl Script<'_> {
+impl GappaScript<'_> {
     /// Writes the statement that the output `out` is within the bound of the formula `f` times a factor, or asks how
     /// far from it.
     pub fn text(

@@ -21,7 +21,7 @@ use std::fmt::Write as _;
 
 use super::cases::{self, Case};
 use super::hardware::{self, Hardware, NodeValue, Variables};
-use super::script::{Script, goal};
+use super::script::{GappaScript, goal};
 use super::statement::{Statement, Statements};
 use super::task::Task;
 use super::terms::{RealTerm, RealTermId, RealTerms, number};
@@ -335,7 +335,7 @@ fn about_output(
     let [product, exact, colour, word, f] =
         [unrounded, exact, factor, word, f].map(|id| terms.name(id));
     let hint = format!("{product} - {exact} -> {colour} * ({word} - {f});");
-    let script = Script {
+    let script = GappaScript {
         terms: &terms,
         hardware_terms,
         placed: &hardware.variables,
