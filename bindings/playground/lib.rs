@@ -37,7 +37,7 @@ thread_local! {
 /// A question of the page.
 #[derive(Deserialize)]
 #[serde(tag = "ask", rename_all = "lowercase")]
-enum Request {
+enum Question {
     /// The devices and the presets of `function`.
     Devices,
     /// The keys of a preset.
@@ -94,7 +94,7 @@ fn failed(error: &anyhow::Error) -> Value {
 
 fn answered(request: &[u8]) -> Result<Value> {
     match serde_json::from_slice(request).context("no request")? {
-        Request::Devices => {
+        Question::Devices => {
             let devices = Registry::shipped();
             let devices: Vec<Value> = devices
                 .devices()
@@ -104,27 +104,27 @@ fn answered(request: &[u8]) -> Result<Value> {
             let presets: Vec<&str> = presets::names().collect();
             Ok(json!({ "ok": true, "devices": devices, "presets": presets }))
         }
-        Request::Preset { name } => {
+        Question::Preset { name } => {
             let values = presets::values(&name).context("no such preset")?;
             let values: Map<String, Value> =
                 values.into_iter().map(|(key, value)| (key, plain(&value))).collect();
             Ok(json!({ "ok": true, "values": values }))
         }
-        Request::Core { toml } => of(&toml, described),
-        Request::Picture { toml, exponent, side } => {
+        Question::Core { toml } => of(&toml, described),
+        Question::Picture { toml, exponent, side } => {
             of(&toml, |core| picture(core, exponent, side))
         }
-        Request::Charts { toml } => of(&toml, charts),
-        Request::Waves { toml } => of(&toml, |core| {
+        Question::Charts { toml } => of(&toml, charts),
+        Question::Waves { toml } => of(&toml, |core| {
             let (svg, described) = datasheet::timing_diagram(core)?;
             Ok(json!({ "ok": true, "svg": svg, "described": described }))
         }),
-        Request::Files { toml } => of(&toml, |core| {
+        Question::Files { toml } => of(&toml, |core| {
             let mut files = core.files(FILE, core.shipped_vectors()?)?;
             files.push(package::driver());
             Ok(listed(&files))
         }),
-        Request::Sources { toml } => of(&toml, |core| {
+        Question::Sources { toml } => of(&toml, |core| {
             let mut files = core.files(FILE, None)?;
             // Manifest and FuseSoC core list the bench, too.
             files.retain(|it| ![".json", ".core"].iter().any(|ending| it.path.ends_with(ending)));

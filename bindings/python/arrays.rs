@@ -18,7 +18,7 @@ const PIECE: usize = 1 << 12;
 ///
 /// Arrays come first: before NumPy 2.4, an array of one integer is an integer to Python as well.
 #[derive(FromPyObject)]
-pub enum Column<'py> {
+pub enum OperandColumn<'py> {
     Integers(PyReadonlyArray1<'py, i64>),
     Values(PyReadonlyArray1<'py, f64>),
     Integer(i64),
@@ -26,25 +26,29 @@ pub enum Column<'py> {
 }
 
 /// The raw operands of many points.
-pub struct Operands<'a> {
-    columns: Vec<Raw<'a>>,
+pub struct OperandTable<'a> {
+    columns: Vec<RawColumn<'a>>,
     points: usize,
 }
 
 /// A column.
-enum Raw<'a> {
+enum RawColumn<'a> {
     All(i64),
     Integers(&'a [i64]),
     /// Values that are rounded to the format as they are read.
     Values(&'a [f64], Format),
 }
 
-impl<'a> Operands<'a> {
+impl<'a> OperandTable<'a> {
     /// Takes a column for each operand of a contract; of values, or of raw integers.
     ///
     /// # Errors
     /// Columns of different lengths, and numbers that the format of the operand has not.
-    pub fn new(contract: &dyn Contract, columns: &'a [Column<'_>], raw: bool) -> PyResult<Self> {
+    pub fn new(
+        contract: &dyn Contract,
+        columns: &'a [OperandColumn<'_>],
+        raw: bool,
+    ) -> PyResult<Self> {
         let mut points = None;
         let mut taken = Vec::new();
         for (operand, column) in contract.operands().iter().zip(columns) {
@@ -67,30 +71,32 @@ impl<'a> Operands<'a> {
             let holds = |integer: i64| (first..=last).contains(&integer);
             let near = |value: f64| format.nearest_raw(value).is_some();
             let column = match column {
-                Column::Integer(it) if raw && holds(*it) => Raw::All(*it),
-                Column::Integer(it) if !raw && near(*it as f64) => {
-                    Raw::All(format.quantise(*it as f64) as i64)
+                OperandColumn::Integer(it) if raw && holds(*it) => RawColumn::All(*it),
+                OperandColumn::Integer(it) if !raw && near(*it as f64) => {
+                    RawColumn::All(format.quantise(*it as f64) as i64)
                 }
-                Column::Integer(it) => return Err(refused(None, it.to_string())),
-                Column::Value(it) if !raw && near(*it) => Raw::All(format.quantise(*it) as i64),
-                Column::Value(it) => return Err(refused(None, it.to_string())),
-                Column::Integers(array) if raw => {
+                OperandColumn::Integer(it) => return Err(refused(None, it.to_string())),
+                OperandColumn::Value(it) if !raw && near(*it) => {
+                    RawColumn::All(format.quantise(*it) as i64)
+                }
+                OperandColumn::Value(it) => return Err(refused(None, it.to_string())),
+                OperandColumn::Integers(array) if raw => {
                     let all = array.as_slice()?;
                     if !all.iter().fold(true, |all, it| all & holds(*it))
                         && let Some(at) = all.iter().position(|it| !holds(*it))
                     {
                         return Err(refused(Some(at), all[at].to_string()));
                     }
-                    Raw::Integers(all)
+                    RawColumn::Integers(all)
                 }
-                Column::Values(array) if !raw => {
+                OperandColumn::Values(array) if !raw => {
                     let all = array.as_slice()?;
                     if !all.iter().fold(true, |all, it| all & near(*it))
                         && let Some(at) = all.iter().position(|it| !near(*it))
                     {
                         return Err(refused(Some(at), all[at].to_string()));
                     }
-                    Raw::Values(all, format)
+                    RawColumn::Values(all, format)
                 }
                 _ => {
                     let wanted = if raw { "int64" } else { "float64" };
@@ -99,9 +105,9 @@ impl<'a> Operands<'a> {
                 }
             };
             let count = match column {
-                Raw::All(_) => None,
-                Raw::Integers(all) => Some(all.len()),
-                Raw::Values(all, _) => Some(all.len()),
+                RawColumn::All(_) => None,
+                RawColumn::Integers(all) => Some(all.len()),
+                RawColumn::Values(all, _) => Some(all.len()),
             };
             if let (Some(count), Some(before)) = (count, points)
                 && count != before
@@ -129,11 +135,11 @@ impl<'a> Operands<'a> {
         for (at, column) in self.columns.iter().enumerate() {
             let into = rows.iter_mut().skip(at).step_by(width);
             match column {
-                Raw::All(it) => into.for_each(|raw| *raw = *it),
-                Raw::Integers(all) => {
+                RawColumn::All(it) => into.for_each(|raw| *raw = *it),
+                RawColumn::Integers(all) => {
                     into.zip(&all[points.clone()]).for_each(|(raw, it)| *raw = *it);
                 }
-                Raw::Values(all, format) => {
+                RawColumn::Values(all, format) => {
                     let values = into.zip(&all[points.clone()]);
                     let (scale, most) = (1.0 / format.to_f64(1), format.max_raw() as i64);
                     values.for_each(|(raw, value)| *raw = nearest(value * scale).min(most));
@@ -144,14 +150,14 @@ impl<'a> Operands<'a> {
 }
 
 /// Columns of results.
-pub enum Computed {
+pub enum ResultColumns {
     Integers(Vec<Vec<i64>>),
     Values(Vec<Vec<f64>>),
 }
 
-impl Computed {
+impl ResultColumns {
     /// The results of the golden model, raw or as values.
-    pub fn golden(contract: &dyn Contract, operands: &Operands, raw: bool) -> Self {
+    pub fn golden(contract: &dyn Contract, operands: &OperandTable, raw: bool) -> Self {
         let results = |points: ChunksExact<i64>, out: &mut Vec<i64>| {
             points.for_each(|point| contract.results(point, 0, out));
         };
@@ -167,7 +173,7 @@ impl Computed {
     }
 
     /// Computes the formula.
-    pub fn exact(contract: &dyn Contract, operands: &Operands) -> Self {
+    pub fn exact(contract: &dyn Contract, operands: &OperandTable) -> Self {
         let mut columns = each(contract, operands, |points, out| {
             for point in points {
                 contract.exact(point, 0, out);
@@ -179,7 +185,7 @@ impl Computed {
     }
 
     /// How far the golden model is from the formula, in units of the outputs' last place.
-    pub fn errors(contract: &dyn Contract, operands: &Operands) -> Self {
+    pub fn errors(contract: &dyn Contract, operands: &OperandTable) -> Self {
         let units = units(contract);
         Self::Values(each(contract, operands, |points, out| {
             let (mut raw, mut exact) = (Vec::new(), Vec::new());
@@ -226,7 +232,7 @@ fn units(contract: &dyn Contract) -> Vec<f64> {
 /// Returns a column for each output of what `of` appends for points: a number for each output, point after point.
 fn each<T: Copy + Default + Send>(
     contract: &dyn Contract,
-    operands: &Operands,
+    operands: &OperandTable,
     of: impl Fn(ChunksExact<i64>, &mut Vec<T>) + Sync,
 ) -> Vec<Vec<T>> {
     let (inputs, width) = (operands.columns.len(), contract.outputs().len());

@@ -13,7 +13,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString};
 
-use arrays::{Column, Computed};
+use arrays::{OperandColumn, ResultColumns};
 use glint::config::{self, Config};
 use glint::core::Core;
 use glint::cosim::batch::{Engine, Golden, Points, RustHdl};
@@ -197,16 +197,16 @@ impl PyCore {
     fn compute<'py>(
         &self,
         py: Python<'py>,
-        columns: Vec<Column<'py>>,
+        columns: Vec<OperandColumn<'py>>,
         what: &str,
         raw: bool,
     ) -> PyResult<Vec<Bound<'py, PyAny>>> {
         let contract = self.core.contract.as_ref();
-        let points = arrays::Operands::new(contract, &columns, raw)?;
+        let points = arrays::OperandTable::new(contract, &columns, raw)?;
         let computed = py.detach(|| match what {
-            "exact" => Computed::exact(contract, &points),
-            "error" => Computed::errors(contract, &points),
-            _ => Computed::golden(contract, &points, raw),
+            "exact" => ResultColumns::exact(contract, &points),
+            "error" => ResultColumns::errors(contract, &points),
+            _ => ResultColumns::golden(contract, &points, raw),
         });
         Ok(computed.into_arrays(py))
     }
@@ -216,12 +216,12 @@ impl PyCore {
     fn run<'py>(
         &self,
         py: Python<'py>,
-        columns: Vec<Column<'py>>,
+        columns: Vec<OperandColumn<'py>>,
         simulated: bool,
         raw: bool,
     ) -> PyResult<Vec<Bound<'py, PyArray1<i64>>>> {
         let contract = self.core.contract.as_ref();
-        let operands = arrays::Operands::new(contract, &columns, raw)?;
+        let operands = arrays::OperandTable::new(contract, &columns, raw)?;
         let length =
             contract.operands().iter().position(|it| Some(it.name.as_str()) == contract.length());
         let count = columns.len();

@@ -42,7 +42,7 @@ struct Cli {
     #[arg(long, value_name = "N", global = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
     #[command(flatten)]
-    output: Output,
+    output: OutputOptions,
 }
 
 const EXAMPLES: &str = "\
@@ -76,7 +76,7 @@ macro_rules! commands {
         }
 
         impl Command {
-            fn run(&self, registry: &Registry, output: Output) -> anyhow::Result<bool> {
+            fn run(&self, registry: &Registry, output: OutputOptions) -> anyhow::Result<bool> {
                 match self {
                     $(Self::$command(arguments) => commands::$module::run(registry, output, arguments),)*
                 }
@@ -126,7 +126,7 @@ impl<const DEFAULT: u64> TimeLimit<DEFAULT> {
 }
 
 #[derive(Args, Clone, Copy)]
-struct Output {
+struct OutputOptions {
     /// Print JSON, for scripts
     #[arg(long, global = true)]
     json: bool,
@@ -135,7 +135,7 @@ struct Output {
     quiet: bool,
 }
 
-impl Output {
+impl OutputOptions {
     /// Returns whether everything `holds`. With `--json`, it first prints the findings about each configuration.
     fn concluded(self, holds: bool, configurations: impl Serialize) -> bool {
         if self.json {

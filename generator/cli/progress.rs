@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle, WeakProgressBar};
 
-use super::Output;
+use super::OutputOptions;
 
 /// The narrowest terminal that shows the counts beside the bar.
 const WIDE: usize = 100;
@@ -28,7 +28,7 @@ const FIRST: Duration = Duration::from_secs(10);
 const EVERY: Duration = Duration::from_secs(60);
 
 /// Returns a bar over `total` steps; hidden when output is for scripts or on request, and a line a minute without a terminal.
-pub fn bar(output: Output, total: u64, what: &str) -> ProgressBar {
+pub fn bar(output: OutputOptions, total: u64, what: &str) -> ProgressBar {
     let target = if output.json || output.quiet {
         ProgressDrawTarget::hidden()
     } else {

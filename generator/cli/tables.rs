@@ -12,7 +12,7 @@ const FRAME: usize = 3;
 
 /// A column of a table.
 #[derive(Clone, Copy)]
-struct Column<'a> {
+struct TerminalColumn<'a> {
     heading: &'a str,
     /// Whether it has numbers: aligned to the right, and never broken.
     number: bool,
@@ -20,7 +20,7 @@ struct Column<'a> {
     dispensable: u8,
 }
 
-impl<'a> Column<'a> {
+impl<'a> TerminalColumn<'a> {
     /// Returns the columns of some headings, which are separated by bars.
     ///
     /// The cells below a heading with a colon are numbers. Other cells are words, which may be broken into lines. A
@@ -40,7 +40,7 @@ impl<'a> Column<'a> {
 /// the cells of a row are printed below each other.
 pub fn print(headings: &str, rows: impl IntoIterator<Item = Vec<String>>) {
     let rows: Vec<Vec<String>> = rows.into_iter().collect();
-    print_line(&text(&Column::all(headings), &rows, width()));
+    print_line(&text(&TerminalColumn::all(headings), &rows, width()));
 }
 
 /// Returns the largest width of a line: the value of `COLUMNS`, or else the width of the terminal. Returns `None`
@@ -51,7 +51,7 @@ fn width() -> Option<usize> {
     said.or_else(terminal).filter(|width| *width > 0)
 }
 
-fn text(columns: &[Column<'_>], rows: &[Vec<String>], room: Option<usize>) -> String {
+fn text(columns: &[TerminalColumn<'_>], rows: &[Vec<String>], room: Option<usize>) -> String {
     let mut shown: Vec<usize> = (0..columns.len()).collect();
     loop {
         if let Some(widths) = fit(columns, rows, &shown, room) {
@@ -75,7 +75,7 @@ fn text(columns: &[Column<'_>], rows: &[Vec<String>], room: Option<usize>) -> St
 
 /// Returns the widths of the columns shown, if the table has room; numbers and words stay whole.
 fn fit(
-    columns: &[Column<'_>],
+    columns: &[TerminalColumn<'_>],
     rows: &[Vec<String>],
     shown: &[usize],
     room: Option<usize>,
@@ -114,7 +114,7 @@ fn length(text: &str) -> usize {
 }
 
 fn drawn(
-    columns: &[Column<'_>],
+    columns: &[TerminalColumn<'_>],
     rows: &[Vec<String>],
     shown: &[usize],
     widths: &[usize],
@@ -142,7 +142,7 @@ fn drawn(
 }
 
 /// Returns each row as a paragraph: its first cell, and the others below it with their headings.
-fn stacked(columns: &[Column<'_>], rows: &[Vec<String>], room: Option<usize>) -> String {
+fn stacked(columns: &[TerminalColumn<'_>], rows: &[Vec<String>], room: Option<usize>) -> String {
     let row = |row: &Vec<String>| {
         let mut lines = vec![format!("{}:", row[0])];
         for (column, cell) in columns.iter().zip(row).skip(1) {
@@ -241,27 +241,28 @@ mod tests {
     #[test]
     fn a_table_takes_what_room_there_is() {
         for room in 36..100 {
-            let text = text(&Column::all(HEADINGS), &rows(), Some(room));
+            let text = text(&TerminalColumn::all(HEADINGS), &rows(), Some(room));
             assert!(widest(&text) <= room, "{room}:\n{text}");
             for (column, number) in [("points", "100 000"), ("clocks", "1 305 235")] {
                 let said = text.contains(number) || text.contains("no room for");
                 assert!(said, "{column} at {room}:\n{text}");
             }
         }
-        let all = text(&Column::all(HEADINGS), &rows(), None);
+        let all = text(&TerminalColumn::all(HEADINGS), &rows(), None);
         assert_eq!(all.lines().count(), 3, "{all}");
     }
 
     #[test]
     fn the_least_important_column_goes_first_and_is_named() {
-        let text = text(&Column::all(HEADINGS), &rows(), Some(40));
+        let text = text(&TerminalColumn::all(HEADINGS), &rows(), Some(40));
         assert!(text.contains("(no room for points; --json"), "{text}");
         assert!(text.contains("1 305 235"), "{text}");
     }
 
     #[test]
     fn without_room_for_a_table_rows_are_stacked() {
-        let columns = Column::all("device | clocks, all of them: | points: | what it computes");
+        let columns =
+            TerminalColumn::all("device | clocks, all of them: | points: | what it computes");
         let text = text(&columns, &rows(), Some(40));
         assert_eq!(
             text,

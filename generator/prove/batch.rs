@@ -11,7 +11,7 @@ use glint_core::cosim::batch::{Engine, Points};
 use glint_core::package::{POINTS_FILE, RESULTS_FILE, points_bench};
 use glint_golden::Contract;
 use glint_rtl::netlist::Design;
-use glint_tools::{BuiltBench, Simulator, Waveform};
+use glint_tools::{BuiltBench, VerilogSimulator, Waveform};
 
 /// More clocks than any computation takes.
 const LIMIT: u32 = 1 << 16;
@@ -33,7 +33,7 @@ impl Verilog {
     /// # Errors
     /// Fails if [`BuiltBench::build`] fails, or if the contract names ports that the design does not have.
     pub fn new(
-        simulator: Simulator,
+        simulator: VerilogSimulator,
         design: &Design,
         contract: &dyn Contract,
         mut files: Vec<(String, String)>,

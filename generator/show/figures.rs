@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use glint_base::target::{FAMILIES, Family, Usage};
 
-pub use record::{DIRECTORY, Rate, Record, tools};
+pub use record::{DIRECTORY, Rate, SynthesisRecord, tools};
 
 /// A family or library for which a core is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -81,7 +81,7 @@ pub struct Figures {
     pub frequency: Option<Frequency>,
     /// The longest path between registers in the median run, by names of the description.
     #[serde(skip_serializing_if = "Vec::is_empty", default)]
-    pub critical_path: Vec<Step>,
+    pub critical_path: Vec<PathPoint>,
     /// Why there is no frequency.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub untimed: Option<String>,
@@ -127,7 +127,7 @@ pub struct Frequency {
 
 /// A point of a path.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Step {
+pub struct PathPoint {
     /// The net, as the description names it. The name of a ROM has `ROM` before it.
     pub name: String,
     /// When it settles, after the clock's edge, in nanoseconds.
@@ -155,7 +155,7 @@ impl Figures {
     }
 
     /// Puts the runs in, each a frequency in MHz and its longest path.
-    pub fn with_runs(mut self, mut runs: Vec<(f64, Vec<Step>)>) -> Self {
+    pub fn with_runs(mut self, mut runs: Vec<(f64, Vec<PathPoint>)>) -> Self {
         runs.sort_by(|one, other| one.0.total_cmp(&other.0));
         let (Some(first), Some(last)) = (runs.first(), runs.last()) else {
             return self;

@@ -14,7 +14,7 @@ use crate::transient::Directory;
 
 /// An event-driven or compiling Verilog simulator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Simulator {
+pub enum VerilogSimulator {
     /// Icarus Verilog: starts at once, runs slowly.
     Icarus,
     /// Verilator: compiles for seconds, runs fast, knows two states only.
@@ -42,7 +42,7 @@ pub struct BenchOutcome {
     pub transcript: String,
 }
 
-impl fmt::Display for Simulator {
+impl fmt::Display for VerilogSimulator {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.write_str(match self {
             Self::Icarus => "Icarus Verilog",
@@ -60,7 +60,7 @@ impl fmt::Display for Simulator {
 /// running take more than `limit` in all, or if the bench crashes or ends without a verdict. A bench that fails is no
 /// error but an outcome.
 pub fn run_bench<N: AsRef<str>, C: AsRef<[u8]>>(
-    simulator: Simulator,
+    simulator: VerilogSimulator,
     files: &[(N, C)],
     top: &str,
     limit: Duration,
@@ -72,7 +72,7 @@ pub fn run_bench<N: AsRef<str>, C: AsRef<[u8]>>(
 /// Does the same as [`run_bench`], with another search path than `PATH` for the simulator.
 pub(super) fn run_bench_in<N: AsRef<str>, C: AsRef<[u8]>>(
     search: &OsStr,
-    simulator: Simulator,
+    simulator: VerilogSimulator,
     files: &[(N, C)],
     top: &str,
     limit: Duration,
@@ -85,7 +85,7 @@ pub(super) fn run_bench_in<N: AsRef<str>, C: AsRef<[u8]>>(
 /// A bench that was built, in a temporary directory of its own, and that can be run again and again.
 pub struct BuiltBench {
     dir: Directory,
-    simulator: Simulator,
+    simulator: VerilogSimulator,
     top: String,
     /// The program to run and its arguments.
     program: (Tool, &'static [&'static str]),
@@ -100,7 +100,7 @@ impl BuiltBench {
     /// Fails if the simulator is missing or rejects the sources (Verilator: or warns of them), or if building takes
     /// more than `limit`.
     pub fn build<N: AsRef<str>, C: AsRef<[u8]>>(
-        simulator: Simulator,
+        simulator: VerilogSimulator,
         files: &[(N, C)],
         top: &str,
         waveform: Waveform,
@@ -112,7 +112,7 @@ impl BuiltBench {
 
     fn build_in<N: AsRef<str>, C: AsRef<[u8]>>(
         search: &OsStr,
-        simulator: Simulator,
+        simulator: VerilogSimulator,
         files: &[(N, C)],
         top: &str,
         waveform: Waveform,
@@ -120,24 +120,24 @@ impl BuiltBench {
     ) -> Result<Self> {
         // Missing tools are reported before anything is written.
         let (compiler, runner) = match simulator {
-            Simulator::Icarus => {
+            VerilogSimulator::Icarus => {
                 (Tool::find_in("iverilog", search)?, Some(Tool::find_in("vvp", search)?))
             }
-            Simulator::Verilator => (Tool::find_in("verilator", search)?, None),
+            VerilogSimulator::Verilator => (Tool::find_in("verilator", search)?, None),
         };
         let dir = Directory::new().context("cannot make a temporary directory")?;
         let directory = dir.path();
         let sources = write_files(directory, files)?;
 
         let mut arguments: Vec<&str> = match simulator {
-            Simulator::Icarus => vec!["-g2012", "-Wall", "-s", top, "-o", "bench.vvp"],
-            Simulator::Verilator => {
+            VerilogSimulator::Icarus => vec!["-g2012", "-Wall", "-s", top, "-o", "bench.vvp"],
+            VerilogSimulator::Verilator => {
                 // The time scale is for sources without one, if other sources have one.
                 let options = "--binary --timing --timescale 1ns/1ps -j 1 --Mdir build -o bench";
                 options.split(' ').chain(["--top-module", top]).collect()
             }
         };
-        if (simulator, waveform) == (Simulator::Verilator, Waveform::Written) {
+        if (simulator, waveform) == (VerilogSimulator::Verilator, Waveform::Written) {
             arguments.push("--trace");
         }
         arguments.extend(sources);

@@ -15,10 +15,10 @@ const QUOTED_CHARACTERS: usize = 200;
 
 /// Output as far as it has come; clones share it.
 #[derive(Clone, Default)]
-pub(super) struct Capture(Arc<Mutex<Kept>>);
+pub(super) struct Capture(Arc<Mutex<CaptureBuffer>>);
 
 #[derive(Default)]
-struct Kept {
+struct CaptureBuffer {
     first: Vec<u8>,
     last: VecDeque<u8>,
     left_out: u64,
@@ -52,7 +52,7 @@ impl Capture {
     }
 }
 
-impl Kept {
+impl CaptureBuffer {
     fn push(&mut self, bytes: &[u8]) {
         let (first, rest) = bytes.split_at(bytes.len().min(KEEP_FIRST - self.first.len()));
         self.first.extend_from_slice(first);

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use anyhow::{Context, Result};
 
-use super::Simulator;
+use super::VerilogSimulator;
 use super::bench::{BuiltBench, Waveform};
 use crate::window::{WINDOW_FILE, window};
 
@@ -56,7 +56,7 @@ impl BenchDifference {
 /// # Errors
 /// Fails as [`super::run_bench`] does, or if there is no waveform.
 pub fn bench_waveform(
-    simulator: Simulator,
+    simulator: VerilogSimulator,
     files: &[(String, String)],
     top: &str,
     (from, to): (u64, u64),

@@ -6,7 +6,7 @@ use anyhow::Result;
 use serde_json::Value;
 
 use super::Tool;
-use super::sources::Sources;
+use super::sources::YosysSources;
 
 /// Reads Verilog and memory files, pairs of a plain name and contents, and returns the module `top` with everything
 /// that it instantiates. The result has word-level cells, registers and memories. Only logic that nothing reads is
@@ -21,7 +21,7 @@ pub fn elaborate(
     limit: Duration,
 ) -> Result<Value> {
     const NETLIST: &str = "netlist.json";
-    let sources = Sources::new(yosys, files, limit)?;
+    let sources = YosysSources::new(yosys, files, limit)?;
     sources.run(&format!(
         "hierarchy -check -top {top}; proc; flatten; memory_collect; opt_clean; write_json {NETLIST}"
     ))?;

@@ -30,7 +30,7 @@ pub mod transient;
 mod trial;
 mod window;
 
-pub use bench::{BenchOutcome, BuiltBench, Simulator, Waveform, run_bench};
+pub use bench::{BenchOutcome, BuiltBench, VerilogSimulator, Waveform, run_bench};
 use capture::Capture;
 pub use difference::{BenchDifference, bench_waveform};
 pub use elaborate::elaborate;

@@ -11,14 +11,14 @@ use super::Tool;
 use crate::transient::Directory;
 
 /// Files with the Yosys that reads them.
-pub struct Sources<'a> {
+pub struct YosysSources<'a> {
     directory: Directory,
     yosys: &'a Tool,
     verilog: String,
     limit: Duration,
 }
 
-impl<'a> Sources<'a> {
+impl<'a> YosysSources<'a> {
     /// Writes `files`, pairs of a plain name and contents. Yosys reads the files that end in `.v`. No run of Yosys
     /// takes longer than `limit`.
     ///

@@ -6,7 +6,7 @@ use anyhow::{Context, Result};
 use serde_json::Value;
 
 use super::Tool;
-use super::sources::Sources;
+use super::sources::YosysSources;
 pub use glint_base::target::Usage;
 use glint_base::target::{Family, Kinds};
 
@@ -22,7 +22,7 @@ pub fn synthesise(
     family: &Family,
     limit: Duration,
 ) -> Result<Usage> {
-    let sources = Sources::new(yosys, files, limit)?;
+    let sources = YosysSources::new(yosys, files, limit)?;
     sources.run(&format!("{}; {STATISTICS_COMMAND}", family.script(top)))?;
     usage(&sources, top, family)
         .with_context(|| format!("`{}` for {}", family.command, family.title))
@@ -35,7 +35,7 @@ pub const STATISTICS_COMMAND: &str = "tee -q -o statistics.json stat -json";
 ///
 /// # Errors
 /// Fails if the file is not there, or does not tell the cells of the module `top`.
-pub fn usage(sources: &Sources, top: &str, family: &Family) -> Result<Usage> {
+pub fn usage(sources: &YosysSources, top: &str, family: &Family) -> Result<Usage> {
     let text = sources.text("statistics.json").context("`yosys` wrote no statistics")?;
     let statistics: Value =
         serde_json::from_str(&text).context("the statistics of `yosys` are no JSON")?;

@@ -37,7 +37,7 @@ impl Fakes {
         self.tool(name).run([] as [&str; 0], self.0.path(), limit)
     }
 
-    fn bench(&self, simulator: Simulator) -> Result<BenchOutcome> {
+    fn bench(&self, simulator: VerilogSimulator) -> Result<BenchOutcome> {
         let files = [("tb.v", "module tb; endmodule\n"), ("rom.mem", "0\n")];
         run_bench_in(self.0.path().as_os_str(), simulator, &files, "tb", LIMIT)
     }
@@ -60,9 +60,9 @@ fn message<T>(result: Result<T>) -> String {
 fn a_missing_tool_is_named_with_its_remedy() {
     let fakes = Fakes::new(&[]);
     std::fs::write(fakes.file("iverilog"), "not executable").unwrap();
-    for simulator in [Simulator::Icarus, Simulator::Verilator] {
+    for simulator in [VerilogSimulator::Icarus, VerilogSimulator::Verilator] {
         let text = message(fakes.bench(simulator));
-        let name = if simulator == Simulator::Icarus { "`iverilog`" } else { "`verilator`" };
+        let name = if simulator == VerilogSimulator::Icarus { "`iverilog`" } else { "`verilator`" };
         assert!(text.contains(name) && text.contains("bash tools/install"), "{text}");
     }
 }
@@ -144,7 +144,7 @@ fn of_enormous_output_both_ends_are_kept() {
 fn garbage_is_kept_readable() {
     let script = "printf '\\377\\376\\033[31m\\000 garbage \\007\\n'\nexit 1";
     let fakes = Fakes::new(&[("iverilog", script), ("vvp", "")]);
-    let text = message(fakes.bench(Simulator::Icarus));
+    let text = message(fakes.bench(VerilogSimulator::Icarus));
     assert!(text.contains("Icarus Verilog cannot build the bench `tb`"), "{text}");
     assert!(text.contains(" garbage ") && text.contains('\u{fffd}'), "{text}");
     assert!(text.chars().all(|c| c == '\n' || !c.is_control()), "{text:?}");
@@ -153,7 +153,7 @@ fn garbage_is_kept_readable() {
 #[test]
 fn the_verdict_is_a_line_and_the_exit_status_counts() {
     let verdict =
-        |vvp: &str| Fakes::new(&[("iverilog", ""), ("vvp", vvp)]).bench(Simulator::Icarus);
+        |vvp: &str| Fakes::new(&[("iverilog", ""), ("vvp", vvp)]).bench(VerilogSimulator::Icarus);
     for (script, passed) in [
         ("echo PASS", true),
         ("echo 'PASS: rough, 1000 clocks'; echo done", true),
@@ -183,10 +183,10 @@ fn verilator_s_program_is_run_and_its_verdict_read() {
     let build =
         "mkdir build\nprintf '#!/bin/sh\\necho PASS\\n' > build/bench\nchmod +x build/bench";
     let fakes = Fakes::new(&[("verilator", &format!("{build}\necho \"$@\""))]);
-    let outcome = fakes.bench(Simulator::Verilator).unwrap();
+    let outcome = fakes.bench(VerilogSimulator::Verilator).unwrap();
     assert!(outcome.passed);
     assert!(outcome.build.ends_with(" tb.v\n"), "only sources are compiled: {}", outcome.build);
-    let text = message(Fakes::new(&[("verilator", "")]).bench(Simulator::Verilator));
+    let text = message(Fakes::new(&[("verilator", "")]).bench(VerilogSimulator::Verilator));
     assert!(text.contains("made no program of `tb`"), "{text}");
 }
 
@@ -195,7 +195,7 @@ fn only_plain_distinct_names_are_written() {
     let fakes = Fakes::new(&[("iverilog", ""), ("vvp", "echo PASS")]);
     let run = |names: &[&str]| {
         let files: Vec<_> = names.iter().map(|name| (name, "")).collect();
-        run_bench_in(fakes.0.path().as_os_str(), Simulator::Icarus, &files, "tb", LIMIT)
+        run_bench_in(fakes.0.path().as_os_str(), VerilogSimulator::Icarus, &files, "tb", LIMIT)
     };
     assert!(run(&["a.v", "b.mem"]).is_ok());
     for names in [&["../a.v"][..], &["/tmp/a.v"], &["-o.v"], &[""], &[".."], &["a/b.v"]] {

@@ -3,7 +3,7 @@
 use std::fs;
 
 use super::Sure;
-use glint::tools::{Run, Simulator};
+use glint::tools::{Run, VerilogSimulator};
 use tempfile::TempDir;
 
 use super::cores::{Files, write};
@@ -12,7 +12,7 @@ use super::tools::{LIMIT, tool};
 /// A built bench beside its memories, which it reads when it starts.
 pub struct Bench {
     dir: TempDir,
-    simulator: Simulator,
+    simulator: VerilogSimulator,
 }
 
 impl Bench {
@@ -20,9 +20,9 @@ impl Bench {
     ///
     /// # Panics
     /// The simulator refuses it, or warns of it.
-    pub fn build(simulator: Simulator, files: &Files, top: &str) -> Self {
+    pub fn build(simulator: VerilogSimulator, files: &Files, top: &str) -> Self {
         let (bench, output) = Self::build_with(simulator, files, top);
-        if simulator == Simulator::Icarus {
+        if simulator == VerilogSimulator::Icarus {
             assert_eq!(output, "", "{top}: iverilog has remarks");
         }
         bench
@@ -32,19 +32,19 @@ impl Bench {
     ///
     /// # Panics
     /// The simulator refuses it.
-    pub fn build_quietly(simulator: Simulator, files: &Files, top: &str) -> Self {
+    pub fn build_quietly(simulator: VerilogSimulator, files: &Files, top: &str) -> Self {
         Self::build_with(simulator, files, top).0
     }
 
-    fn build_with(simulator: Simulator, files: &Files, top: &str) -> (Self, String) {
+    fn build_with(simulator: VerilogSimulator, files: &Files, top: &str) -> (Self, String) {
         let dir = tempfile::tempdir().expect("a directory");
         write(dir.path(), files);
         let sources =
             files.iter().map(|(name, _)| name.as_str()).filter(|name| name.ends_with(".v"));
         let (compiler, arguments) = match simulator {
-            Simulator::Icarus => ("iverilog", "-g2012 -Wall -o bench.vvp -s"),
+            VerilogSimulator::Icarus => ("iverilog", "-g2012 -Wall -o bench.vvp -s"),
             // It takes a warning for an error. The bench runs for an instant: optimising it takes longer.
-            Simulator::Verilator => {
+            VerilogSimulator::Verilator => {
                 ("verilator", "--binary --timing -j 1 -CFLAGS -O0 -o bench --top-module")
             }
         };
@@ -69,8 +69,8 @@ impl Bench {
         let directory = self.dir.path();
         match self.simulator {
             // -n: a $stop ends the run instead of asking the terminal.
-            Simulator::Icarus => tool("vvp").run(["-n", "bench.vvp"], directory, LIMIT),
-            Simulator::Verilator => tool("env").run(["./obj_dir/bench"], directory, LIMIT),
+            VerilogSimulator::Icarus => tool("vvp").run(["-n", "bench.vvp"], directory, LIMIT),
+            VerilogSimulator::Verilator => tool("env").run(["./obj_dir/bench"], directory, LIMIT),
         }
         .sure()
     }

@@ -3,7 +3,7 @@
 use super::Sure;
 use super::files::{json, read};
 use glint::target::Family;
-use glint::tools::Simulator;
+use glint::tools::VerilogSimulator;
 use glint::tools::gates;
 use serde_json::Value;
 
@@ -53,5 +53,5 @@ pub fn synthesise(emitted: &Emitted, family: &Family) -> Netlist {
 pub fn bench(emitted: &Emitted, netlist: String, family: &Family) -> Bench {
     let rtl: Vec<String> = emitted.rtl().into_iter().map(|(name, _)| name).collect();
     let files = gates::bench(&tool("yosys"), emitted.simulated(), &rtl, netlist, family).sure();
-    Bench::build_quietly(Simulator::Icarus, &files, &emitted.bench())
+    Bench::build_quietly(VerilogSimulator::Icarus, &files, &emitted.bench())
 }

@@ -12,8 +12,8 @@ use super::Sure;
 use super::cores::{Files, write};
 use super::files::{paths, root};
 use glint::core::Core;
-use glint::tools::{BenchOutcome, Simulator, Tool, lint, run_bench};
-use glint::verify::{CHECKS, Effort, Finding, Subject};
+use glint::tools::{BenchOutcome, Tool, VerilogSimulator, lint, run_bench};
+use glint::verify::{CHECKS, CheckSubject, Effort, Finding};
 
 /// The time limit of any tool.
 pub const LIMIT: Duration = Duration::from_secs(1200);
@@ -87,7 +87,7 @@ pub const EFFORT: Effort = Effort { full: false, without_tools: false, time_limi
 /// There is no such check.
 pub fn finding(core: &Core, id: &str, effort: Effort) -> Finding {
     let check = CHECKS.iter().find(|check| check.id == id).expect("the check");
-    let subject = Subject::new("core.toml", core, effort, Path::new("records/proofs"));
+    let subject = CheckSubject::new("core.toml", core, effort, Path::new("records/proofs"));
     check.run(&subject, &|_| ()).finding
 }
 
@@ -96,7 +96,7 @@ pub fn finding(core: &Core, id: &str, effort: Effort) -> Finding {
 /// # Panics
 /// It cannot be built or run.
 #[track_caller]
-pub fn benched(simulator: Simulator, files: &[(String, String)], top: &str) -> BenchOutcome {
+pub fn benched(simulator: VerilogSimulator, files: &[(String, String)], top: &str) -> BenchOutcome {
     run_bench(simulator, files, top, LIMIT).sure_of(format_args!("{top} under {simulator}"))
 }
 
@@ -105,13 +105,13 @@ pub fn benched(simulator: Simulator, files: &[(String, String)], top: &str) -> B
 /// # Panics
 /// It cannot be built or run, warns under Icarus Verilog, or does not pass.
 pub fn assert_bench_passes(
-    simulator: Simulator,
+    simulator: VerilogSimulator,
     files: &[(String, String)],
     top: &str,
 ) -> BenchOutcome {
     let outcome = benched(simulator, files, top);
     assert!(outcome.passed, "{top} under {simulator}:\n{}", outcome.transcript);
-    if simulator == Simulator::Icarus {
+    if simulator == VerilogSimulator::Icarus {
         assert_eq!(outcome.build, "", "{top}: warnings of iverilog -Wall");
     }
     outcome

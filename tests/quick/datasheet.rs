@@ -27,7 +27,7 @@ fn make(path: &str, core: &Core) -> Datasheet {
         path,
         backing: core.backing(Path::new("records/proofs")).sure_of(path),
         proof: proof.sure_of(path),
-        figures: synth::Record::find(Path::new(synth::DIRECTORY), &core.core_digest())
+        figures: synth::SynthesisRecord::find(Path::new(synth::DIRECTORY), &core.core_digest())
             .sure_of(path),
         synthesis: None,
     };

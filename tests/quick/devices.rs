@@ -12,7 +12,7 @@ use glint::golden::device::{self, Formula};
 use glint::golden::frame::{Frame, idle, step as execute};
 use glint::golden::{Bound, Contract, Operand, Term};
 use glint::registry::Device;
-use glint::verify::Verdict;
+use glint::verify::CheckVerdict;
 
 use crate::common::Sure;
 use crate::common::cores::{assert_agrees, default, device, random, with_keys};
@@ -360,7 +360,7 @@ fn a_reference_without_a_value_is_a_failure_everywhere() {
         assert_eq!((worst.units, worst.operands[0] >= 5), (f64::INFINITY, true));
 
         for id in ["lockstep", "contract"] {
-            assert_eq!(finding(&core, id, EFFORT).verdict, Verdict::Failed, "{id}");
+            assert_eq!(finding(&core, id, EFFORT).verdict, CheckVerdict::Failed, "{id}");
         }
     }
     let two = Device { contract: |_| copying().contract(Two), ..of_nan };

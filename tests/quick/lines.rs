@@ -7,7 +7,7 @@ use std::f64::consts::FRAC_PI_2;
 use glint::core::Core;
 use glint::golden::formulas;
 use glint::package::Computation;
-use glint::render::setup::{Arc, Line};
+use glint::render::setup::{Arc, LineParameters};
 use glint::render::{Feed, Vector};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
@@ -196,7 +196,7 @@ fn every_word_of_the_tables_is_rounded_right() {
 }
 
 /// Random set-ups of lines whose highlight is on them, of the longest length.
-fn set_ups(count: usize) -> impl Iterator<Item = Line> {
+fn set_ups(count: usize) -> impl Iterator<Item = LineParameters> {
     let mut source = ChaCha8Rng::seed_from_u64(3);
     let mut real = move || f64::from(source.next_u32()) / f64::from(u32::MAX) - 0.5;
     std::iter::repeat_with(move || {
@@ -214,7 +214,7 @@ fn set_ups(count: usize) -> impl Iterator<Item = Line> {
 
 /// Returns the largest difference over a line between the outputs that the contract gives for its operands and the
 /// unquantised formula.
-fn drift(core: &Core, line: &Line, f: impl Fn(f64) -> f64) -> f64 {
+fn drift(core: &Core, line: &LineParameters, f: impl Fn(f64) -> f64) -> f64 {
     let highlight = core.contract.highlight().expect("a highlight");
     let feed = Feed::new(core.device.name, core.contract.as_ref()).expect("operands of a line");
     let operands = feed.line(line).expect("operands");
@@ -264,7 +264,7 @@ fn the_worst_rounding_of_the_longest_line_stays_within_two_units() {
         let end = FRAC_PI_2 * f64::from(end) / 1600.0;
         // Δζ of about half a degree a point, so that the line ends where the formula is steep.
         let delta = ((end / ulp + RIGHT as f64) / 4095.0).round() + half;
-        let line = Line {
+        let line = LineParameters {
             amplitude: 254.5,
             exponent: 1000,
             length: 4095,

@@ -4,7 +4,7 @@
 //! another point.
 
 use glint::hdl::netlist::{Driver, NetId, Op, Role};
-use glint::mutate::{self, Fault, Faults, Verdict};
+use glint::mutate::{self, Faults, MutantVerdict, NetlistFault};
 use glint::package::{self, EmitInputs};
 use regex::Regex;
 
@@ -72,19 +72,19 @@ fn faults_of_a_pipeline_are_noticed_or_proved() {
         configuration_with("configs/reduced/cosine_power.toml", "architecture = \"pipelined\"\n");
     let faults = Faults::of(&core.design);
     let shows = ["valid_s1:no-reset", "valid_s2[0]:inverted", "red_out[0]:inverted"];
-    let shows = shows.iter().filter_map(|id| faults.find(id)).collect::<Vec<&Fault>>();
+    let shows = shows.iter().filter_map(|id| faults.find(id)).collect::<Vec<&NetlistFault>>();
     assert!(shows.len() >= 2, "ids have changed");
     let sample = sampled("faults of a pipeline", faults.iter(), 250);
     let known = shows.len();
-    let planted: Vec<&Fault> = shows.into_iter().chain(sample).collect();
+    let planted: Vec<&NetlistFault> = shows.into_iter().chain(sample).collect();
     let found = mutate::run(&core, planted, &|| ()).expect("they can be simulated");
     for found in &found[..known] {
-        assert!(matches!(found.verdict, Verdict::Caught(..)), "{}", found.fault.id);
+        assert!(matches!(found.verdict, MutantVerdict::Caught(..)), "{}", found.fault.id);
     }
-    let undecided = found.iter().filter(|it| it.verdict == Verdict::Undecided);
+    let undecided = found.iter().filter(|it| it.verdict == MutantVerdict::Undecided);
     let undecided: Vec<&str> = undecided.map(|it| it.fault.id.as_str()).collect();
     assert!(undecided.len() * 50 < found.len(), "{undecided:?}");
-    let caught = found.iter().filter(|it| matches!(it.verdict, Verdict::Caught(..))).count();
+    let caught = found.iter().filter(|it| matches!(it.verdict, MutantVerdict::Caught(..))).count();
     assert!(caught * 2 > found.len(), "{caught} of {}", found.len());
 }
 

@@ -17,7 +17,7 @@ use glint::keys::function::{found, schema};
 use glint::keys::presets;
 use glint::mutate::{GOAL_MEMORY, GOAL_TEXT};
 use glint::registry::Registry;
-use glint::synth::{self, Figures, Frequency, Rate, Record, Target};
+use glint::synth::{self, Figures, Frequency, Rate, SynthesisRecord, Target};
 use glint::tune::{Cost, Features};
 use rayon::prelude::*;
 use serde::Deserialize;
@@ -218,14 +218,14 @@ fn choice(row: &mut Row) {
 }
 
 fn area_and_speed(rows: &mut Vec<Row>) {
-    let records = input::records::<Record>(Path::new(synth::DIRECTORY)).expect("records");
-    let mut records: Vec<Record> = records.into_iter().map(|(_, record)| record).collect();
+    let records = input::records::<SynthesisRecord>(Path::new(synth::DIRECTORY)).expect("records");
+    let mut records: Vec<SynthesisRecord> = records.into_iter().map(|(_, record)| record).collect();
     let catalogue = Registry::catalogue();
     records.sort_by_key(|it| {
         let place = catalogue.devices().iter().position(|device| device.name == it.device);
         (it.name.ends_with("_pipelined"), place)
     });
-    let row = |record: &Record| {
+    let row = |record: &SynthesisRecord| {
         let rate = |figures: &Figures| Rate::new(figures, record.clocks_per_point);
         let one = |number: Option<f64>| number.map_or("–".to_owned(), |it| format!("{it:.1}"));
         let [ice40, ecp5, cells] =
@@ -289,7 +289,8 @@ fn registered_multipliers(row: &mut Row) {
 /// twentieth, and so is the estimated clock, which `benches/tune/fit` reads. `glint synth CONFIG --out synthesis` makes it anew.
 #[test]
 fn records_of_synthesis_are_of_todays_netlists() {
-    let records = input::records::<Record<Recorded>>(Path::new(synth::DIRECTORY)).expect("records");
+    let records =
+        input::records::<SynthesisRecord<Recorded>>(Path::new(synth::DIRECTORY)).expect("records");
     assert!(!records.is_empty());
     for (path, record) in records {
         let path = path.display();
@@ -316,19 +317,19 @@ struct Recorded {
     estimated_mhz: f64,
 }
 
-fn record(name: &str) -> Record {
+fn record(name: &str) -> SynthesisRecord {
     let path = format!("{}/{name}.json", synth::DIRECTORY);
     serde_json::from_value(json(&path)).sure_of(path)
 }
 
 /// Returns the core of a record, which is of today's configuration.
-fn today<T>(record: &Record<T>) -> Core {
+fn today<T>(record: &SynthesisRecord<T>) -> Core {
     let core = configuration(&record.config);
     assert_eq!(core.core_digest(), record.core, "{}: another configuration", record.name);
     core
 }
 
-fn figures(record: &Record, target: Target) -> &Figures {
+fn figures(record: &SynthesisRecord, target: Target) -> &Figures {
     record.of(target).unwrap_or_else(|| panic!("{}: no figures for {target}", record.name))
 }
 
@@ -347,8 +348,9 @@ fn frequency(figures: &Figures) -> String {
 /// Rows of the records in a folder of `benches/` with a frequency for the target, and of cores in `records/synthesis/` beside them. Records
 /// of the `other` target have no row.
 fn small(rows: &mut Vec<Row>, folder: &str, other: &str, target: Target) {
-    let small = input::records::<Record>(&Path::new("benches").join(folder)).expect("records");
-    let own: BTreeMap<String, Record> =
+    let small =
+        input::records::<SynthesisRecord>(&Path::new("benches").join(folder)).expect("records");
+    let own: BTreeMap<String, SynthesisRecord> =
         small.into_iter().map(|(_, record)| (record.name.clone(), record)).collect();
     for name in own.keys() {
         let listed = rows.iter().any(|row| key(row) == name);
@@ -368,7 +370,9 @@ fn small(rows: &mut Vec<Row>, folder: &str, other: &str, target: Target) {
 /// Rows of Glint's own devices: gates and rate of the records in `benches/literature/`, and the error against cosⁿγ at n = 20,
 /// over γ = 0…90°.
 fn literature(rows: &mut [Row]) {
-    for (_, record) in input::records::<Record>(Path::new("benches/literature")).expect("records") {
+    for (_, record) in
+        input::records::<SynthesisRecord>(Path::new("benches/literature")).expect("records")
+    {
         let row = rows.iter_mut().find(|row| key(row) == record.name);
         let row = row.unwrap_or_else(|| panic!("no row {}", record.name));
         let cells = figures(&record, Target::Osu018);

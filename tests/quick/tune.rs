@@ -4,8 +4,8 @@ use std::path::Path;
 
 use glint::base::input;
 use glint::config::{Config, Value};
-use glint::synth::{self, Record, Target};
-use glint::tune::{Answer, Candidate, Cost, ErrorUnit, Goal, Objective, exhaustive, tune};
+use glint::synth::{self, SynthesisRecord, Target};
+use glint::tune::{Answer, Candidate, Cost, ErrorUnit, Objective, TuningGoal, exhaustive, tune};
 
 use crate::common::cores::{configuration, device};
 use crate::common::sample::sampled;
@@ -47,8 +47,8 @@ fn spaces() -> Vec<(&'static str, f64, Vec<Values>)> {
     ]
 }
 
-fn goal(error: f64, target: Target) -> Goal {
-    Goal {
+fn goal(error: f64, target: Target) -> TuningGoal {
+    TuningGoal {
         error,
         unit: ErrorUnit::Output,
         target,
@@ -60,7 +60,7 @@ fn goal(error: f64, target: Target) -> Goal {
 }
 
 /// Returns the best of a device from its defaults on, of which every key is free.
-fn tuned(name: &str, goal: &Goal) -> anyhow::Result<Answer> {
+fn tuned(name: &str, goal: &TuningGoal) -> anyhow::Result<Answer> {
     tune(&device(name), &device(name).defaults(), &[], goal, &|_| ())
 }
 
@@ -93,7 +93,7 @@ fn the_answer_is_within_a_tenth_of_the_best_there_is() {
 #[test]
 fn half_the_error_takes_a_bit_more() {
     let bits = |error: f64| {
-        let goal = Goal { unit: ErrorUnit::F, ..goal(error, Target::Ecp5) };
+        let goal = TuningGoal { unit: ErrorUnit::F, ..goal(error, Target::Ecp5) };
         tuned("cosine-power", &goal).expect("an answer").best.config.integer("intensity.fraction")
     };
     // 31 · 2⁻¹⁶ = 0.000473.
@@ -168,8 +168,8 @@ fn the_front_falls_and_has_the_answer() {
 #[test]
 fn a_goal_out_of_reach_says_what_is_in_the_way() {
     let within = |error| goal(error, Target::Ecp5);
-    let fast = Goal { clock: Some(5000.0), ..within(0.9) };
-    let many = Goal { rate: Some(500.0), ..within(0.9) };
+    let fast = TuningGoal { clock: Some(5000.0), ..within(0.9) };
+    let many = TuningGoal { rate: Some(500.0), ..within(0.9) };
     for (goal, said) in [
         // Rounding to eight bits costs half a unit, whatever f is.
         (within(0.1), "no configuration keeps 0.1 output units"),
@@ -189,7 +189,7 @@ fn a_rate_asks_for_the_clock_that_the_clocks_of_a_point_need() {
     assert_eq!(slow.clocks, Some(8.0));
     assert_eq!(slow.rate(), Some(slow.cost.mhz / 8.0));
     let wanted = slow.rate().expect("a rate") * 0.99;
-    let kept = Goal { rate: Some(wanted), ..goal(0.9, Target::Ecp5) };
+    let kept = TuningGoal { rate: Some(wanted), ..goal(0.9, Target::Ecp5) };
     let kept = tuned("cosine-power", &kept).expect("an answer").best;
     assert!(kept.cost.mhz >= 8.0 * wanted, "{} MHz", kept.cost.mhz);
 }
@@ -214,21 +214,21 @@ fn a_rate_chooses_architecture_and_interval() {
         (&pipelined, &architecture[..], 30.0, "4", 2),
         (&plain, &[][..], 5.0, "8", 1),
     ] {
-        let goal = Goal { rate: Some(rate), ..goal(0.75, Target::Ecp5) };
+        let goal = TuningGoal { rate: Some(rate), ..goal(0.75, Target::Ecp5) };
         let best = tune(&device, base, fixed, &goal, &|_| ()).expect("an answer").best;
         assert_eq!(best.config.choice("architecture"), "pipelined", "{rate}");
         assert_eq!(best.config.choice("pipeline.interval"), interval, "{rate}");
         assert_eq!(best.cost.dsps, multipliers, "{rate}");
     }
     // No rate, and a single multiplier.
-    let goal_of_one = Goal { most_dsps: Some(1), ..goal(0.75, Target::Ecp5) };
+    let goal_of_one = TuningGoal { most_dsps: Some(1), ..goal(0.75, Target::Ecp5) };
     let one = tune(&device, &plain, &[], &goal_of_one, &|_| ()).expect("an answer").best;
     assert_eq!((one.cost.dsps, one.config.choice("pipeline.interval")), (1, "8"));
-    let none = Goal { most_dsps: Some(0), ..goal(0.75, Target::Ecp5) };
+    let none = TuningGoal { most_dsps: Some(0), ..goal(0.75, Target::Ecp5) };
     let refused = tune(&device, &plain, &[], &none, &|_| ()).expect_err("there is none");
     assert!(format!("{refused:#}").contains("0 are allowed"), "{refused:#}");
     // A sequential core that somebody asks for stays one, and is too slow.
-    let goal = Goal { rate: Some(30.0), ..goal(0.75, Target::Ecp5) };
+    let goal = TuningGoal { rate: Some(30.0), ..goal(0.75, Target::Ecp5) };
     assert!(tune(&device, &plain, &architecture, &goal, &|_| ()).is_err());
 }
 
@@ -236,7 +236,7 @@ fn a_rate_chooses_architecture_and_interval() {
 /// at most. Where there is a frequency the estimates are as often above as below.
 #[test]
 fn estimates_are_as_near_to_synthesis_as_is_said() {
-    let records = input::records::<Record>(Path::new(synth::DIRECTORY)).expect("records");
+    let records = input::records::<SynthesisRecord>(Path::new(synth::DIRECTORY)).expect("records");
     let cores: Vec<_> =
         records.iter().map(|(_, record)| (configuration(&record.config), record)).collect();
     // The model is fitted to highlights; an estimate of a function may be further off.

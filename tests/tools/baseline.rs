@@ -7,7 +7,7 @@ use std::path::Path;
 use crate::common::files::read;
 use crate::common::tools;
 use glint::cosim::Random;
-use glint::tools::Simulator;
+use glint::tools::VerilogSimulator;
 
 const COSINE: u32 = 17;
 const ONE: u64 = 1 << COSINE;
@@ -117,7 +117,7 @@ fn the_hand_written_core_computes_what_rough_does() {
             (name.clone(), bench.clone()),
             ("rough_hand_points.mem".to_owned(), lines.clone()),
         ];
-        let outcome = tools::assert_bench_passes(Simulator::Icarus, &files, "rough_hand_tb");
+        let outcome = tools::assert_bench_passes(VerilogSimulator::Icarus, &files, "rough_hand_tb");
         let verdict = format!("PASS: {POINTS} points");
         assert!(outcome.transcript.contains(&verdict), "{}", outcome.transcript);
     }

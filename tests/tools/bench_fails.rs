@@ -6,7 +6,7 @@ use glint::dsl::{Designer, end, step, valid};
 use glint::fixed::{Format, Overflow, Rounding};
 use glint::hdl::netlist::Design;
 use glint::package::{EmitInputs, Vectors, emit, sources};
-use glint::tools::{BenchDifference, BenchOutcome, Simulator, bench_waveform};
+use glint::tools::{BenchDifference, BenchOutcome, VerilogSimulator, bench_waveform};
 
 /// y = x², of an operand of four bits, to four bits.
 fn squarer() -> Design {
@@ -48,7 +48,7 @@ fn files(vectors: Vectors) -> Vec<(String, String)> {
     sources(emit(&squarer(), &inputs).sure())
 }
 
-fn run(simulator: Simulator, vectors: Vectors) -> BenchOutcome {
+fn run(simulator: VerilogSimulator, vectors: Vectors) -> BenchOutcome {
     benched(simulator, &files(vectors), "squarer_tb")
 }
 
@@ -57,7 +57,7 @@ fn the_clocks_before_a_difference_can_be_seen_in_both_simulators() {
     let mut wrong = vectors();
     wrong.expected[5][3] ^= 1;
     // Clock 3 begins at 30 units of time, clock 5 ends at 60; a unit is 1 s in Icarus, 1 ns in Verilator.
-    for (simulator, unit) in [(Simulator::Icarus, 1), (Simulator::Verilator, 1000)] {
+    for (simulator, unit) in [(VerilogSimulator::Icarus, 1), (VerilogSimulator::Verilator, 1000)] {
         let transcript = run(simulator, wrong.clone()).transcript;
         let found = BenchDifference::first(&transcript).expect("a difference");
         assert_eq!((found.clock, found.during.as_str()), (5, "microinstruction `idle 100%`"));
@@ -77,7 +77,7 @@ fn the_clocks_before_a_difference_can_be_seen_in_both_simulators() {
 
 #[test]
 fn true_vectors_pass_and_every_wrong_output_fails_in_both_simulators() {
-    for simulator in [Simulator::Icarus, Simulator::Verilator] {
+    for simulator in [VerilogSimulator::Icarus, VerilogSimulator::Verilator] {
         let outcome = run(simulator, vectors());
         assert!(outcome.passed, "{simulator}:\n{}", outcome.transcript);
         let outputs = [
@@ -102,7 +102,7 @@ fn true_vectors_pass_and_every_wrong_output_fails_in_both_simulators() {
 fn results_are_not_compared_before_they_are_known() {
     let mut early = vectors();
     early.expected[3][3] ^= 1;
-    assert!(run(Simulator::Icarus, early).passed);
+    assert!(run(VerilogSimulator::Icarus, early).passed);
 }
 
 #[test]

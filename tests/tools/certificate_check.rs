@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use glint::core::Core;
 use glint::hdl::netlist::{Driver, Op};
-use glint::verify::{Effort, Finding, Verdict};
+use glint::verify::{CheckVerdict, Effort, Finding};
 
 use crate::common::cores::configuration;
 use crate::common::tools::{EFFORT, finding};
@@ -17,14 +17,14 @@ fn found(core: &Core) -> Finding {
 #[test]
 fn statements_that_gappa_proves_are_proved() {
     let finding = found(&configuration("configs/cosine_power.toml"));
-    assert_eq!(finding.verdict, Verdict::Proved, "{}", finding.words);
+    assert_eq!(finding.verdict, CheckVerdict::Proved, "{}", finding.words);
 }
 
 #[test]
 fn what_cannot_be_stated_is_not_confirmed() {
     for (path, verdict) in [
-        ("configs/quad_cosine.toml", Verdict::Unconfirmed),
-        ("configs/cosine_power_pipelined.toml", Verdict::NotApplicable),
+        ("configs/quad_cosine.toml", CheckVerdict::Unconfirmed),
+        ("configs/cosine_power_pipelined.toml", CheckVerdict::NotApplicable),
     ] {
         let finding = found(&configuration(path));
         assert_eq!(finding.verdict, verdict, "{path}: {}", finding.words);
@@ -40,7 +40,7 @@ fn faulty_hardware_is_not_proved() {
     let Driver::Op(Op::Less(a, b)) = driver else { panic!("{driver:?} is no comparison") };
     std::mem::swap(a, b);
     let finding = found(&core);
-    assert_eq!(finding.verdict, Verdict::Unconfirmed, "{}", finding.words);
+    assert_eq!(finding.verdict, CheckVerdict::Unconfirmed, "{}", finding.words);
     assert!(finding.words.starts_with("Gappa has no proof of statement"), "{}", finding.words);
     assert_eq!(found(&core).words, finding.words);
 }

@@ -6,7 +6,7 @@ mod smoothstep;
 
 use std::time::Duration;
 
-use glint::certify::{self, Outcome, Statement, prove, questions, statements};
+use glint::certify::{self, ProofOutcome, Statement, prove, questions, statements};
 use glint::config::Config;
 use glint::core::Core;
 use glint::golden::Contract;
@@ -304,7 +304,7 @@ fn coq_accepts_certificates() {
     let all: Vec<_> = all.collect();
     all.par_iter().for_each(|(name, statement)| {
         let outcome = prove(&gappa, Some(&coq), statement, LIMIT_COQ).expect("tools that work");
-        if let Outcome::Open(why) = outcome {
+        if let ProofOutcome::Open(why) = outcome {
             panic!("{name}: {}, statement {}: {why}", statement.output, statement.number);
         }
     });

@@ -1,7 +1,7 @@
 //! Delay lines of the emitted Verilog: memories in place of registers. A bench fails where one is too long or too short,
 //! or does not wait when points do.
 
-use glint::tools::Simulator;
+use glint::tools::VerilogSimulator;
 
 use crate::common::cores::{Emitted, Files, configuration, configuration_with};
 use crate::common::sample::sampled;
@@ -12,7 +12,7 @@ const POINTS: u64 = 60;
 
 const CONFIG: &str = "configs/threshold_pipelined.toml";
 
-fn passes(simulator: Simulator, files: &Files, bench: &str) -> bool {
+fn passes(simulator: VerilogSimulator, files: &Files, bench: &str) -> bool {
     benched(simulator, files, bench).passed
 }
 
@@ -48,7 +48,7 @@ fn a_line_that_is_too_long_or_too_short_is_noticed() {
     let slots = slots(&text.expect("a module").1);
     assert!(!slots.is_empty(), "no delay lines");
     let mut cases = Vec::new();
-    for simulator in [Simulator::Icarus, Simulator::Verilator] {
+    for simulator in [VerilogSimulator::Icarus, VerilogSimulator::Verilator] {
         assert!(passes(simulator, &emitted.simulated(), &emitted.bench()), "{simulator}");
         for &words in &slots {
             cases.extend([words - 1, words + 1].map(|other| (simulator, words, other)));
@@ -69,9 +69,11 @@ fn a_line_that_does_not_wait_is_noticed() {
         let lines = lines.replace(".enable(advance)", ".enable(1'b1)");
         format!("{stages}    // Delay lines{lines}")
     };
-    for simulator in
-        sampled("simulators of delay lines", [Simulator::Icarus, Simulator::Verilator], 1)
-    {
+    for simulator in sampled(
+        "simulators of delay lines",
+        [VerilogSimulator::Icarus, VerilogSimulator::Verilator],
+        1,
+    ) {
         let files = changed(&emitted, &forgets);
         assert!(!passes(simulator, &files, &emitted.bench()), "{simulator}");
     }
@@ -85,7 +87,7 @@ fn lines_without_stalls_and_registers_in_their_place_do_the_same() {
         let emitted = Emitted::new(&core, POINTS, 2);
         let has = emitted.rtl().iter().any(|(_, text)| text.contains("// Delay lines"));
         assert_eq!(has, lines, "{keys}");
-        let simulators = [Simulator::Icarus, Simulator::Verilator];
+        let simulators = [VerilogSimulator::Icarus, VerilogSimulator::Verilator];
         for simulator in sampled("simulators of delay lines", simulators, 1) {
             assert!(
                 passes(simulator, &emitted.simulated(), &emitted.bench()),

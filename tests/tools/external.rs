@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use crate::common::Sure;
 use crate::common::tools;
-use glint::tools::{Simulator, run_bench};
+use glint::tools::{VerilogSimulator, run_bench};
 
 const COUNTER: &str = include_str!("benches/counter.v");
 
@@ -16,7 +16,7 @@ fn bench(expected: &str, wait: &str) -> Vec<(String, String)> {
     vec![("counter.v".into(), COUNTER.into()), ("tb.v".into(), bench)]
 }
 
-const BOTH: [Simulator; 2] = [Simulator::Icarus, Simulator::Verilator];
+const BOTH: [VerilogSimulator; 2] = [VerilogSimulator::Icarus, VerilogSimulator::Verilator];
 
 #[test]
 fn a_right_bench_passes() {
@@ -39,7 +39,7 @@ fn a_wrong_bench_fails() {
 fn an_endless_bench_is_killed() {
     let limit = Duration::from_secs(2);
     let endless = bench("4'd5", "forever @(negedge clk);");
-    let error = run_bench(Simulator::Icarus, &endless, "tb", limit).unwrap_err();
+    let error = run_bench(VerilogSimulator::Icarus, &endless, "tb", limit).unwrap_err();
     assert!(format!("{error:#}").contains("`vvp` did not end within"), "{error:#}");
 }
 

@@ -13,7 +13,7 @@ use crate::common::tools::{EFFORT, LIMIT, finding};
 use crate::faults::{Fault, faults};
 use glint::core::Core;
 use glint::tools::{LimitReached, Limits, PROOF_LIMITS, prove};
-use glint::verify::Verdict;
+use glint::verify::CheckVerdict;
 use rayon::prelude::*;
 
 #[test]
@@ -128,13 +128,13 @@ fn emitted(core: &Core) -> (tempfile::TempDir, String) {
 fn verify_covers_the_wrappers() {
     let core = configuration("configs/cosine_power.toml");
     let found = finding(&core, "formal", EFFORT);
-    assert_eq!(found.verdict, Verdict::Proved, "{}", found.words);
+    assert_eq!(found.verdict, CheckVerdict::Proved, "{}", found.words);
     for wrapper in ["axis", "registers", "wb"] {
         let file = format!("cosine_power_{wrapper}_formal.sv");
         assert!(found.words.contains(&file), "{}", found.words);
     }
     for id in ["lint", "icarus", "verilator"] {
         let found = finding(&core, id, EFFORT);
-        assert_eq!(found.verdict, Verdict::Passed, "{id}: {:?}", found.failures);
+        assert_eq!(found.verdict, CheckVerdict::Passed, "{id}: {:?}", found.failures);
     }
 }

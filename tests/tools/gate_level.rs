@@ -8,7 +8,7 @@ use crate::common::netlist::{self, POINTS, synthesise};
 use crate::common::sample::sampled;
 use crate::common::tools::{LIMIT, benched, tool};
 use glint::target::{ECP5, FAMILIES, Family};
-use glint::tools::Simulator;
+use glint::tools::VerilogSimulator;
 use glint::tools::gates;
 use glint::tools::gates::cells::{self, Start};
 use rayon::prelude::*;
@@ -106,7 +106,7 @@ fn netlists_of_cells_pass_and_wrong_gates_fail() {
         let passes = |netlist: &str, start: Start| {
             let models = cells::models(start).expect("models");
             let files = gates::around(emitted.simulated(), &names, netlist.to_owned(), models);
-            benched(Simulator::Icarus, &files, &emitted.bench()).passed
+            benched(VerilogSimulator::Icarus, &files, &emitted.bench()).passed
         };
         let starts = Start::of(core.design.pipeline.is_some());
         for &start in starts {

@@ -8,7 +8,7 @@ use std::path::Path;
 use glint::core::Core;
 use glint::fixed::Format;
 use glint::hdl::netlist::{Design, Role};
-use glint::tools::Simulator;
+use glint::tools::VerilogSimulator;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 use rayon::prelude::*;
@@ -76,7 +76,7 @@ fn the_entity_in_vhdl_is_the_core() {
             }
         }
         files.push((format!("{top}.v"), format!("module {entity}")));
-        let outcome = benched(Simulator::Icarus, &files, &emitted.bench());
+        let outcome = benched(VerilogSimulator::Icarus, &files, &emitted.bench());
         assert!(outcome.passed, "{name}:\n{}\n{}", outcome.build, outcome.transcript);
     });
 }

@@ -9,7 +9,7 @@ use crate::common::netlist::{self, POINTS, synthesise};
 use crate::common::tools::{ran, tool};
 use crate::faults::faults;
 use glint::target::{ECP5, ICE40};
-use glint::tools::{Simulator, gates};
+use glint::tools::{VerilogSimulator, gates};
 use rayon::prelude::*;
 
 const CONFIGURATION: &str = "configs/studies/threshold_dsp.toml";
@@ -38,7 +38,7 @@ fn twins(emitted: &Emitted, own: &str, step: u32) -> Bench {
         TWINS.replace("MODULE", &module).replace("STEP", &step.to_string()),
     ));
     files.extend(gates::models(&tool("yosys"), &ECP5).expect("models"));
-    Bench::build_quietly(Simulator::Icarus, &files, "twins")
+    Bench::build_quietly(VerilogSimulator::Icarus, &files, "twins")
 }
 
 #[test]

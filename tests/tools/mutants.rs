@@ -13,7 +13,9 @@ use crate::common::sample::sampled;
 use crate::common::tools::LIMIT;
 use glint::core::{Core, TEST_POINTS};
 use glint::cosim::Lockstep;
-use glint::mutate::{self, Faults, Found, ShippedBench, Text, TextVerdict, Verdict};
+use glint::mutate::{
+    self, FaultResult, Faults, MutantVerdict, ShippedBench, TextMutantVerdict, VerilogText,
+};
 use glint::registry::Registry;
 use serde_json::Value;
 
@@ -51,9 +53,9 @@ fn record(core: &Core) -> Value {
 }
 
 /// Proofs are of the whole design; another test must not find what they exclude.
-fn assert_unnoticed(path: &str, core: &Core, found: &[Found]) {
-    let proved = |it: &&Found| matches!(it.verdict, Verdict::Equivalent(_));
-    let proved: Vec<&Found> = found.iter().filter(proved).collect();
+fn assert_unnoticed(path: &str, core: &Core, found: &[FaultResult]) {
+    let proved = |it: &&FaultResult| matches!(it.verdict, MutantVerdict::Equivalent(_));
+    let proved: Vec<&FaultResult> = found.iter().filter(proved).collect();
     let step = (proved.len() / PROVED).max(1);
     for one in proved.into_iter().step_by(step) {
         let mutant = one.fault.planted(&core.design);
@@ -84,9 +86,9 @@ fn the_records_hold_today() {
         let found = mutate::run(&core, planted, &|| ()).sure_of(&path);
         let open: BTreeSet<&str> =
             netlist["undecided"].list().iter().filter_map(Value::as_str).collect();
-        for Found { fault, verdict, .. } in &found {
+        for FaultResult { fault, verdict, .. } in &found {
             let is_open = open.contains(fault.id.as_str());
-            assert_eq!(*verdict == Verdict::Undecided, is_open, "{}: {stale}", fault.id);
+            assert_eq!(*verdict == MutantVerdict::Undecided, is_open, "{}: {stale}", fault.id);
         }
         assert_unnoticed(&path, &core, &found);
     }
@@ -101,7 +103,7 @@ fn faults_have_names_of_their_own() {
         assert!(faults.len() > 500, "{path}: a kind of fault is missing");
     }
     for (path, core) in defaults() {
-        let faults = Text::of(&core).sure_of(&path).faults();
+        let faults = VerilogText::of(&core).sure_of(&path).faults();
         let ids: BTreeSet<&str> = faults.iter().map(|fault| fault.id.as_str()).collect();
         assert_eq!(ids.len(), faults.len(), "{path}: the Verilog");
     }
@@ -127,7 +129,7 @@ fn faults_of_the_verilog_are_noticed() {
             ids.iter().filter_map(Value::as_str).collect()
         };
         let [undecided, missed] = ["undecided", "missed"].map(named);
-        let text = Text::of(&core).sure_of(&path);
+        let text = VerilogText::of(&core).sure_of(&path);
         let all = text.faults();
         assert_eq!(verilog["planted"], all.len(), "{stale}");
         let ids: BTreeSet<&str> = all.iter().map(|fault| fault.id.as_str()).collect();
@@ -139,7 +141,7 @@ fn faults_of_the_verilog_are_noticed() {
         let found = text.run(&faults, LIMIT, &|| ()).sure_of(&path);
         for (fault, found) in faults.iter().zip(found) {
             let id = fault.id.as_str();
-            assert_ne!(found.verdict, TextVerdict::Undecided, "{id}: {found:?}: {stale}");
+            assert_ne!(found.verdict, TextMutantVerdict::Undecided, "{id}: {found:?}: {stale}");
             let was_missed = found.shipped == ShippedBench::Missed;
             assert_eq!(was_missed, missed.contains(id), "{id}: {found:?}: {stale}");
         }

@@ -10,7 +10,7 @@ use crate::common::tools::{assert_bench_passes, assert_files_are_clean};
 use glint::core::Core;
 use glint::keys::presets::DEVICE as FUNCTION;
 use glint::registry::{Device, Registry};
-use glint::tools::Simulator;
+use glint::tools::VerilogSimulator;
 use rayon::prelude::*;
 
 /// Configurations of each device that are simulated inside the program.
@@ -84,7 +84,7 @@ fn passes_outside(toml: &str, core: &Core, seed: u64) {
     let check = || {
         let emitted = Emitted::new(core, BENCH_POINTS, seed);
         assert_files_are_clean(&emitted.rtl(), &emitted.name);
-        assert_bench_passes(Simulator::Icarus, &emitted.simulated(), &emitted.bench());
+        assert_bench_passes(VerilogSimulator::Icarus, &emitted.simulated(), &emitted.bench());
     };
     if let Err(panic) = catch_unwind(AssertUnwindSafe(check)) {
         eprintln!("the configuration was:\n{toml}");

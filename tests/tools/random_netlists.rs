@@ -10,7 +10,7 @@ use crate::common::random_netlist::{Random, SMALL, design};
 use crate::common::tools::{assert_bench_passes, assert_files_are_clean};
 use glint::hdl::netlist::{Design, Interpreter, Role};
 use glint::package::{EmitInputs, Vectors, emit};
-use glint::tools::Simulator;
+use glint::tools::VerilogSimulator;
 
 const DESIGNS: u64 = 60;
 const CLOCKS: usize = 120;
@@ -31,7 +31,7 @@ fn emitted_verilog_means_what_the_netlist_means() {
         files.iter().for_each(|file| check_text(file.name(), &file.contents));
         let emitted = Emitted { files, name: design.name };
         assert_files_are_clean(&emitted.rtl(), &emitted.name);
-        assert_bench_passes(Simulator::Icarus, &emitted.simulated(), &emitted.bench());
+        assert_bench_passes(VerilogSimulator::Icarus, &emitted.simulated(), &emitted.bench());
     }
 }
 

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use glint::core::Core;
 use glint::tools::transient::Directory;
-use glint::verify::Verdict;
+use glint::verify::CheckVerdict;
 use rayon::prelude::*;
 
 use crate::common::cores::{configuration, parsed};
@@ -109,10 +109,10 @@ fn a_wrong_word_is_noticed() {
 #[test]
 fn the_check_proves_functions_and_asks_nothing_of_highlights() {
     let found = finding(&core(FUNCTIONS[0], ""), "recomputation", EFFORT);
-    assert_eq!(found.verdict, Verdict::Proved, "{found:?}");
+    assert_eq!(found.verdict, CheckVerdict::Proved, "{found:?}");
     assert!(found.words.ends_with(" holds."), "{found:?}");
     let found = finding(&configuration("configs/cosine_power.toml"), "recomputation", EFFORT);
-    assert_eq!(found.verdict, Verdict::NotApplicable, "{found:?}");
+    assert_eq!(found.verdict, CheckVerdict::NotApplicable, "{found:?}");
 }
 
 #[test]

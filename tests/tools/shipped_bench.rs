@@ -11,7 +11,7 @@ use crate::common::cores::Files;
 use crate::common::files::{paths, read};
 use crate::common::tools::{assert_bench_passes, benched};
 use crate::faults::{Fault, faults};
-use glint::tools::Simulator;
+use glint::tools::VerilogSimulator;
 
 /// Returns the committed Verilog and memories of a core and of its bench.
 fn shipped(core: &str) -> Files {
@@ -35,7 +35,7 @@ fn faults_in_the_datapath_make_it_fail() {
         let (_, text) = files.iter_mut().find(|(name, _)| *name == datapath).expect("a datapath");
         assert_eq!(text.matches(right).count(), 1, "{core}: `{right}`");
         *text = text.replace(right, wrong);
-        let outcome = benched(Simulator::Icarus, &files, &format!("{core}_tb"));
+        let outcome = benched(VerilogSimulator::Icarus, &files, &format!("{core}_tb"));
         assert!(!outcome.passed, "{core}: `{wrong}` for `{right}` passes");
     });
 }
@@ -43,6 +43,6 @@ fn faults_in_the_datapath_make_it_fail() {
 #[test]
 fn without_a_fault_it_passes() {
     for core in ["quad_cosine", "cosine_squared", "lyon", "rough", "quadratic", "blinn"] {
-        assert_bench_passes(Simulator::Icarus, &shipped(core), &format!("{core}_tb"));
+        assert_bench_passes(VerilogSimulator::Icarus, &shipped(core), &format!("{core}_tb"));
     }
 }

@@ -9,7 +9,7 @@ use glint::dsl::{Designer, end, step, valid};
 use glint::fixed::{Format, Overflow, Rounding};
 use glint::hdl::netlist::Design;
 use glint::package::{self, EmitInputs};
-use glint::synth::{self, Area, Figures, Flow, Record, Subject, Target};
+use glint::synth::{self, Area, Figures, Flow, SynthesisRecord, SynthesisSubject, Target};
 
 use crate::common::Sure;
 use crate::common::cores::configuration;
@@ -36,7 +36,7 @@ fn flow(target: Target) -> Flow {
 fn measured(target: Target, design: &Design, seeds: u32) -> Figures {
     let files = package::emit(design, &EmitInputs::default()).expect("Verilog");
     let files = package::sources_for(files, target.name());
-    let subject = Subject { design, files: &files, seeds, limit: LIMIT };
+    let subject = SynthesisSubject { design, files: &files, seeds, limit: LIMIT };
     flow(target).measure(&subject, &|| ()).sure()
 }
 
@@ -130,7 +130,7 @@ fn frequencies_are_those_of_the_record() {
 /// Returns every configuration with a record, and its figures for each target.
 fn recorded() -> Vec<(String, Figures)> {
     let directory = root().join(synth::DIRECTORY);
-    let records = input::records::<Record>(&directory).expect("records");
+    let records = input::records::<SynthesisRecord>(&directory).expect("records");
     let pairs = records.into_iter().flat_map(|(_, record)| {
         let config = record.config.clone();
         record.targets.into_iter().map(move |figures| (config.clone(), figures))

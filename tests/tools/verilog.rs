@@ -12,7 +12,7 @@ use crate::common::tools::{LIMIT, assert_lint_clean, tool};
 use glint::core::Core;
 use glint::hdl::netlist::{Design, Driver, RomId};
 use glint::hdl::sim::Simulator;
-use glint::tools::Simulator as External;
+use glint::tools::VerilogSimulator;
 use rayon::prelude::*;
 
 /// Points of a bench here; committed benches are shorter.
@@ -68,7 +68,7 @@ fn every_configuration_is_clean_verilog() {
 fn every_configuration_passes_in_icarus() {
     let all = all_configurations();
     let noticed = all.par_iter().map(|(_, core)| {
-        let (emitted, bench) = build(core, External::Icarus);
+        let (emitted, bench) = build(core, VerilogSimulator::Icarus);
         bench.assert_passes();
         notices_every_output(core, &emitted, &bench);
         // Which word tells is known by the microprogram.
@@ -84,7 +84,7 @@ fn every_configuration_passes_in_icarus() {
 #[test]
 fn configurations_pass_in_verilator() {
     sampled("Verilator", all_configurations(), BUILT).par_iter().for_each(|(_, core)| {
-        let (_, bench) = build(core, External::Verilator);
+        let (_, bench) = build(core, VerilogSimulator::Verilator);
         bench.assert_passes();
     });
 }
@@ -116,12 +116,12 @@ fn initial_values_are_known_without_a_reset() {
 #[test]
 fn a_bench_fails_in_verilator_too() {
     let core = configuration("configs/rough.toml");
-    let (emitted, bench) = build(&core, External::Verilator);
+    let (emitted, bench) = build(&core, VerilogSimulator::Verilator);
     notices_every_output(&core, &emitted, &bench);
     assert!(notices_every_rom(&core, &emitted, &bench) > 0, "no ROM");
 }
 
-fn build(core: &Core, simulator: External) -> (Emitted, Bench) {
+fn build(core: &Core, simulator: VerilogSimulator) -> (Emitted, Bench) {
     let emitted = Emitted::new(core, POINTS, SEED);
     let bench = Bench::build(simulator, &emitted.simulated(), &emitted.bench());
     (emitted, bench)

@@ -10,13 +10,15 @@ use serde_json::json;
 
 use super::{cosim, load_sequential};
 use crate::own_file::OwnFile;
-use crate::{Configs, Output, progress, say, tables};
+use crate::{Configs, OutputOptions, progress, say, tables};
 use glint_base::{input, text};
 use glint_core::cosim::exhaustive::Certificate;
 use glint_core::package::digest;
 use glint_core::registry::Registry;
 use glint_golden::{Bound, Contract, Term};
-use glint_prove::certify::{self, Outcome, Statement, Subject, prove, questions, statements};
+use glint_prove::certify::{
+    self, ProofOutcome, ProofSubject, Statement, prove, questions, statements,
+};
 use glint_rtl::netlist::Design;
 use glint_tools::Tool;
 
@@ -68,7 +70,7 @@ fn tell_terms(bound: &Bound) {
 }
 
 /// Runs `glint certify`, and returns whether every bound is proved.
-pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load_sequential(registry, &arguments.configs.paths, "certify")?;
     let limit = Duration::from_secs(arguments.time_limit);
     if let Some(out) = arguments.out.as_deref().filter(|out| out.exists() && !out.is_dir()) {
@@ -128,7 +130,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
             }
         };
         let bar = progress::bar(output, stated.len() as u64, "statements proved");
-        let checked: Vec<Result<Outcome>> = stated
+        let checked: Vec<Result<ProofOutcome>> = stated
             .par_iter()
             .map(|statement| {
                 let outcome = prove(&gappa, coq.as_ref(), statement, limit);
@@ -145,15 +147,16 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
             .iter()
             .zip(&checked)
             .filter_map(|(statement, outcome)| match outcome {
-                Outcome::Open(why) => Some((statement, why.as_str())),
-                Outcome::Proved(..) => None,
+                ProofOutcome::Open(why) => Some((statement, why.as_str())),
+                ProofOutcome::Proved(..) => None,
             })
             .collect();
-        let of = |subject: Subject| {
-            let is = |it: &&Outcome| matches!(it, Outcome::Proved(_, own) if *own == subject);
+        let of = |subject: ProofSubject| {
+            let is =
+                |it: &&ProofOutcome| matches!(it, ProofOutcome::Proved(_, own) if *own == subject);
             checked.iter().filter(is).count()
         };
-        let (empty, unknown) = (of(Subject::Nothing), of(Subject::Unknown));
+        let (empty, unknown) = (of(ProofSubject::Nothing), of(ProofSubject::Unknown));
         whole &= open.is_empty();
         if let Some(record) = record {
             record.write_json(&certificate(bound, open.is_empty(), &stated))?;
@@ -245,22 +248,22 @@ fn write(
     directory: &Path,
     config: &str,
     statements: &[Statement],
-    outcomes: &[Outcome],
+    outcomes: &[ProofOutcome],
 ) -> Result<()> {
     let (mut names, mut files) = (Vec::new(), Vec::new());
     for (statement, outcome) in statements.iter().zip(outcomes) {
         let Statement { output, number, also, scripts } = statement;
         let (chosen, state, witness) = match outcome {
-            Outcome::Proved(chosen, Subject::Nothing) => {
+            ProofOutcome::Proved(chosen, ProofSubject::Nothing) => {
                 (*chosen, "accepted; its hypotheses contradict each other", String::new())
             }
-            Outcome::Proved(chosen, Subject::Unknown) => {
+            ProofOutcome::Proved(chosen, ProofSubject::Unknown) => {
                 (*chosen, "accepted; no witness is found", String::new())
             }
-            Outcome::Proved(chosen, Subject::Point(point)) => {
+            ProofOutcome::Proved(chosen, ProofSubject::Point(point)) => {
                 (*chosen, "accepted", format!("{WITNESS}{point}\n"))
             }
-            Outcome::Open(_) => (0, "open", String::new()),
+            ProofOutcome::Open(_) => (0, "open", String::new()),
         };
         let name = format!("{output}_{number}.g");
         let outputs = [std::slice::from_ref(output), also.as_slice()].concat().join(" and ");

@@ -10,14 +10,14 @@ use clap::Args;
 use rayon::prelude::*;
 
 use super::{load, yosys};
-use crate::{Output, TimeLimit, progress, wrong_usage};
+use crate::{OutputOptions, TimeLimit, progress, wrong_usage};
 use glint_base::target::{FAMILIES, Family};
 use glint_config::{Config, Schema, Value};
 use glint_core::core::Core;
 use glint_core::registry::{Device, Registry};
 use glint_golden::contract;
-use glint_prove::synth::Record;
-use glint_show::evidence::comparison::{self, Accuracy, Multiplier};
+use glint_prove::synth::SynthesisRecord;
+use glint_show::evidence::comparison::{self, Accuracy, MultiplierSize};
 use glint_tools::Tool;
 use glint_tools::synthesis::{self, Usage};
 
@@ -66,27 +66,27 @@ pub struct Arguments {
 }
 
 /// One configuration in the comparison.
-struct Entry {
+struct ComparisonEntry {
     /// The name of the device, or the path of the configuration.
     label: String,
     core: Core,
-    figures: Figures,
+    figures: ModelFigures,
     /// By family; empty if nothing is known.
     usage: Vec<Result<Usage, String>>,
     /// The record of `synth`.
-    record: Option<Record>,
+    record: Option<SynthesisRecord>,
 }
 
 /// The figures of a configuration that need no tool.
-struct Figures {
+struct ModelFigures {
     /// `None` when the exponent is outside the domain.
     accuracy: Option<Accuracy>,
     clocks_per_point: f64,
-    multipliers: Vec<Multiplier>,
+    multipliers: Vec<MultiplierSize>,
 }
 
 /// Runs `glint compare`.
-pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     if arguments.csv && output.json {
         wrong_usage!("--csv and --json are two ways to print the same: give one");
     }
@@ -115,9 +115,9 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
         let most = domains.iter().fold(0.0, |most: f64, (_, high)| most.max(*high));
         wrong_usage!("--exponent {n} is in no device's domain; the largest is {most}");
     }
-    let records: Vec<Option<Record>> = cores
+    let records: Vec<Option<SynthesisRecord>> = cores
         .iter()
-        .map(|(_, core)| Record::find(&arguments.figures, &core.core_digest()))
+        .map(|(_, core)| SynthesisRecord::find(&arguments.figures, &core.core_digest()))
         .collect::<Result<_>>()?;
     let mut usage: Vec<_> = records.iter().map(|it| recorded(it.as_ref())).collect();
     let missing = usage.iter().filter(|usage| usage.is_empty()).count();
@@ -126,7 +126,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     let families = if yosys.is_some() { FAMILIES.len() } else { 0 };
     let steps = cores.len() + missing * families;
     let bar = progress::bar(output, steps as u64, "devices weighed");
-    let figures: Vec<Figures> = cores
+    let figures: Vec<ModelFigures> = cores
         .par_iter()
         .map(|(label, core)| {
             let figures = figures(core, n);
@@ -141,11 +141,11 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
         places.into_iter().zip(found).for_each(|(place, found)| *place = found);
     }
     bar.finish_and_clear();
-    let entries: Vec<Entry> = cores
+    let entries: Vec<ComparisonEntry> = cores
         .into_iter()
         .zip(figures)
         .zip(usage.into_iter().zip(records))
-        .map(|(((label, core), figures), (usage, record))| Entry {
+        .map(|(((label, core), figures), (usage, record))| ComparisonEntry {
             label,
             core,
             figures,
@@ -199,9 +199,9 @@ fn with_widths(device: &Device, widths: &[(&str, Option<i64>)], notes: &mut Vec<
     config
 }
 
-fn figures(core: &Core, n: f64) -> Result<Figures> {
+fn figures(core: &Core, n: f64) -> Result<ModelFigures> {
     let contract = core.contract.as_ref();
-    Ok(Figures {
+    Ok(ModelFigures {
         accuracy: comparison::accuracy(contract, n),
         clocks_per_point: comparison::clocks_per_point(&core.design, contract, n)?,
         multipliers: comparison::multipliers(&core.design),
@@ -209,7 +209,7 @@ fn figures(core: &Core, n: f64) -> Result<Figures> {
 }
 
 /// Returns a record's usage of every family; empty if the record leaves one out.
-fn recorded(record: Option<&Record>) -> Vec<Result<Usage, String>> {
+fn recorded(record: Option<&SynthesisRecord>) -> Vec<Result<Usage, String>> {
     let usage = |family: &Family| {
         let mut targets = record?.targets.iter();
         targets.find(|figures| figures.target.name() == family.name())?.area.usage()
@@ -243,7 +243,7 @@ fn synthesise(
 }
 
 /// Returns why a configuration has no errors to show.
-fn outside(entry: &Entry, n: u32) -> String {
+fn outside(entry: &ComparisonEntry, n: u32) -> String {
     let label = &entry.label;
     match domain(&entry.core) {
         None => format!("{label}: none of its operands stand for gamma and n = {n}"),

@@ -16,7 +16,7 @@ use super::mismatch::{self, Reproducer};
 use super::{Loaded, load, verdict};
 use crate::destination::Destination;
 use crate::failure::WrongUsage;
-use crate::{Configs, Force, Output, TimeLimit, count, progress, say, wrong_usage};
+use crate::{Configs, Force, OutputOptions, TimeLimit, count, progress, say, wrong_usage};
 use benches::benches;
 use glint_base::text;
 use glint_core::core::{TEST_POINTS, TEST_SEED};
@@ -46,8 +46,8 @@ pub struct Arguments {
     #[arg(long, value_name = "S", default_value_t = TEST_SEED)]
     seed: u64,
     /// The simulator of the hardware
-    #[arg(long, value_enum, default_value_t = Simulator::RustHdl)]
-    simulator: Simulator,
+    #[arg(long, value_enum, default_value_t = SimulatorChoice::RustHdl)]
+    simulator: SimulatorChoice,
     /// Prove the accuracy contract instead: f for every combination of control operands, and every f with every
     /// colour. If all operands together have at most 26 bits, also compare every register on every clock for
     /// every combination of operands
@@ -89,7 +89,7 @@ impl SweepValues {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Simulator {
+pub enum SimulatorChoice {
     /// Built in: rust_hdl, inside this program
     RustHdl,
     /// Icarus Verilog, on the emitted files
@@ -99,7 +99,7 @@ pub enum Simulator {
 }
 
 /// Runs `glint cosim`, and returns whether everything that it checks holds.
-pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     if arguments.exhaustive {
         return exhaustive::run(registry, output, arguments);
     }
@@ -117,14 +117,14 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
         wrong_usage!("--vcd would overwrite the configuration `{}`", vcd.display());
     }
     let which = match arguments.simulator {
-        Simulator::RustHdl => return built_in(output, &loaded, arguments),
-        Simulator::Icarus => tools::Simulator::Icarus,
-        Simulator::Verilator => tools::Simulator::Verilator,
+        SimulatorChoice::RustHdl => return built_in(output, &loaded, arguments),
+        SimulatorChoice::Icarus => tools::VerilogSimulator::Icarus,
+        SimulatorChoice::Verilator => tools::VerilogSimulator::Verilator,
     };
     benches(output, &loaded, arguments, which)
 }
 
-fn built_in(output: Output, loaded: &[Loaded], arguments: &Arguments) -> Result<bool> {
+fn built_in(output: OutputOptions, loaded: &[Loaded], arguments: &Arguments) -> Result<bool> {
     let points = arguments.points.unwrap_or(TEST_POINTS);
     let bar = progress::bar(output, points.saturating_mul(loaded.len() as u64), "points checked");
     let outcomes: Vec<Outcome> = loaded

@@ -8,7 +8,7 @@ use serde_json::json;
 
 use super::{Loaded, load, yosys};
 use crate::store::{self, Written};
-use crate::{Configs, Output, TimeLimit, progress, say, tables, wrong_usage};
+use crate::{Configs, OutputOptions, TimeLimit, progress, say, tables, wrong_usage};
 use glint_core::cosim::exhaustive::{PROOFS, Record};
 use glint_core::package::Seal;
 use glint_core::registry::Registry;
@@ -58,7 +58,7 @@ pub struct Arguments {
 }
 
 /// Runs `glint datasheet`.
-pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     let single = arguments.out.extension().is_some_and(|it| it.eq_ignore_ascii_case("html"));
     if single && loaded.len() != 1 {
@@ -73,7 +73,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     for one in &loaded {
         let (core, contract) = (&one.core, one.core.contract.as_ref());
         let proof = Record::find(&arguments.proofs, &core.contract_digest(), contract)?;
-        let figures = synth::Record::find(&arguments.figures, &core.core_digest())?;
+        let figures = synth::SynthesisRecord::find(&arguments.figures, &core.core_digest())?;
         records.push((core.backing(&arguments.proofs)?, proof, figures));
         store::may_write(&path(arguments, one, single), Seal::Markup, arguments.force)?;
     }
@@ -124,7 +124,7 @@ fn path(arguments: &Arguments, one: &Loaded, single: bool) -> PathBuf {
     }
 }
 
-fn tell(output: Output, report: &[(&Loaded, String, Written)], notes: &[String]) {
+fn tell(output: OutputOptions, report: &[(&Loaded, String, Written)], notes: &[String]) {
     if output.json {
         let files = report.iter().map(|(one, path, written)| {
             json!({

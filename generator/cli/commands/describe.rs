@@ -8,7 +8,7 @@ use serde_json::json;
 
 use super::load;
 use crate::store::{self, Written};
-use crate::{Configs, Output, say, tables};
+use crate::{Configs, OutputOptions, say, tables};
 use glint_core::cosim::exhaustive::PROOFS;
 use glint_core::package::Seal;
 use glint_core::registry::Registry;
@@ -36,7 +36,7 @@ pub struct Arguments {
 }
 
 /// Runs `glint describe`.
-pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     let mut report = Vec::new();
     for (at, one) in loaded.iter().enumerate() {

@@ -5,7 +5,7 @@ use clap::Args;
 use serde_json::{Value, json};
 
 use super::{Loaded, load};
-use crate::{Configs, Output, say, tables};
+use crate::{Configs, OutputOptions, say, tables};
 use glint_base::program::Program;
 use glint_core::registry::Registry;
 use glint_prove::synth::{TARGETS, Target};
@@ -27,7 +27,7 @@ pub struct Arguments {
 }
 
 /// The estimate of a core on one family.
-struct Row {
+struct EstimateRow {
     target: Target,
     cost: Cost,
     /// The resources that the smallest chip of the family lacks, in words; empty if the core fits.
@@ -35,9 +35,10 @@ struct Row {
 }
 
 /// Runs `glint estimate`.
-pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
-    let estimates: Vec<(&Loaded, Vec<Row>)> = loaded.iter().map(|one| (one, rows(one))).collect();
+    let estimates: Vec<(&Loaded, Vec<EstimateRow>)> =
+        loaded.iter().map(|one| (one, rows(one))).collect();
     if output.json {
         let estimates: Vec<Value> =
             estimates.iter().map(|(one, rows)| as_json(one, rows)).collect();
@@ -50,16 +51,16 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     Ok(true)
 }
 
-fn rows(one: &Loaded) -> Vec<Row> {
+fn rows(one: &Loaded) -> Vec<EstimateRow> {
     let fpgas = TARGETS.into_iter().filter(|target| target.family().is_some());
     let row = |target| {
         let cost = Cost::new(&one.core.design, target);
-        Row { target, cost, excess: cost.excess(target) }
+        EstimateRow { target, cost, excess: cost.excess(target) }
     };
     fpgas.map(row).collect()
 }
 
-fn line(one: &Loaded, row: &Row) -> Vec<String> {
+fn line(one: &Loaded, row: &EstimateRow) -> Vec<String> {
     vec![
         one.core.config.name.clone(),
         row.target.title().to_owned(),
@@ -71,8 +72,8 @@ fn line(one: &Loaded, row: &Row) -> Vec<String> {
     ]
 }
 
-fn as_json(one: &Loaded, rows: &[Row]) -> Value {
-    let row = |row: &Row| {
+fn as_json(one: &Loaded, rows: &[EstimateRow]) -> Value {
+    let row = |row: &EstimateRow| {
         json!({
             "target": row.target,
             "cost": row.cost,

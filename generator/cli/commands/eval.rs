@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 
 use super::{Loaded, load_one};
 use crate::failure::WrongUsage;
-use crate::{Output, say, tables, wrong_usage};
+use crate::{OutputOptions, say, tables, wrong_usage};
 use glint_base::fixed::Format;
 use glint_core::cosim::Driven;
 use glint_core::registry::Registry;
@@ -49,7 +49,7 @@ pub struct Arguments {
 const LIMIT: u64 = 1 << 16;
 
 /// Runs `glint eval`: one point, or as many as a CSV file has.
-pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let one = load_one(registry, &registry.schemas(), &arguments.config)?;
     let given =
         operands::given(one.core.contract.operands(), &arguments.operands).map_err(WrongUsage)?;
@@ -81,7 +81,12 @@ fn outside(operands: &[Operand], raw: &[i64]) -> Vec<String> {
 }
 
 /// Returns one point, with every signal of the golden model.
-fn point(output: Output, one: &Loaded, given: &[Option<i64>], typical: bool) -> Result<bool> {
+fn point(
+    output: OutputOptions,
+    one: &Loaded,
+    given: &[Option<i64>],
+    typical: bool,
+) -> Result<bool> {
     let contract = one.core.contract.as_ref();
     let operands = contract.operands();
     let (raw, missing) = match typical {
@@ -103,16 +108,19 @@ fn point(output: Output, one: &Loaded, given: &[Option<i64>], typical: bool) -> 
         });
     }
     let design = sequential.as_ref().unwrap_or(&one.core.design);
-    let signals: Vec<Signal> = signals
+    let signals: Vec<SignalValue> = signals
         .into_iter()
         .map(|(name, bits)| match design.find(&name).map(|id| design.net(id).format) {
-            Some(format) => Signal::new(name, format, format.raw(bits)),
-            None => Signal { name, format: String::new(), raw: bits.into(), value: bits as f64 },
+            Some(format) => SignalValue::new(name, format, format.raw(bits)),
+            None => {
+                SignalValue { name, format: String::new(), raw: bits.into(), value: bits as f64 }
+            }
         })
         .collect();
     let operands = operands.iter().zip(&raw);
-    let operands: Vec<Signal> =
-        operands.map(|(it, &raw)| Signal::new(it.name.clone(), it.format, raw.into())).collect();
+    let operands: Vec<SignalValue> = operands
+        .map(|(it, &raw)| SignalValue::new(it.name.clone(), it.format, raw.into()))
+        .collect();
     if output.json {
         tables::print_json(&json!({
             "config": one.path,
@@ -140,7 +148,7 @@ fn point(output: Output, one: &Loaded, given: &[Option<i64>], typical: bool) -> 
 }
 
 /// The results of a point, beside the formula: f of a highlight, and each output.
-struct Computed {
+struct ResultComparison {
     name: String,
     value: f64,
     exact: f64,
@@ -151,8 +159,8 @@ struct Computed {
 /// The name of f among the results.
 const F: &str = "f";
 
-fn results(contract: &dyn Contract, raw: &[i64]) -> Vec<Computed> {
-    let of = |name: &str, format: Format, raw: i64, exact: [f64; 2]| Computed {
+fn results(contract: &dyn Contract, raw: &[i64]) -> Vec<ResultComparison> {
+    let of = |name: &str, format: Format, raw: i64, exact: [f64; 2]| ResultComparison {
         name: name.to_owned(),
         value: format.to_f64(i128::from(raw)),
         exact: exact[0],
@@ -170,8 +178,9 @@ fn results(contract: &dyn Contract, raw: &[i64]) -> Vec<Computed> {
     f.into_iter().chain(outputs).collect()
 }
 
-fn as_json(results: &[Computed]) -> Value {
-    let (f, outputs): (Vec<&Computed>, Vec<_>) = results.iter().partition(|it| it.name == F);
+fn as_json(results: &[ResultComparison]) -> Value {
+    let (f, outputs): (Vec<&ResultComparison>, Vec<_>) =
+        results.iter().partition(|it| it.name == F);
     let exact: Vec<f64> = outputs.iter().map(|it| it.exact).collect();
     let errors: Vec<f64> = outputs.iter().map(|it| it.error).collect();
     match f.first() {
@@ -184,7 +193,7 @@ fn as_json(results: &[Computed]) -> Value {
 
 /// A number of a device.
 #[derive(Serialize)]
-struct Signal {
+struct SignalValue {
     name: String,
     raw: i128,
     value: f64,
@@ -192,14 +201,14 @@ struct Signal {
     format: String,
 }
 
-impl Signal {
+impl SignalValue {
     fn new(name: String, format: Format, raw: i128) -> Self {
         Self { name, raw, value: format.to_f64(raw), format: format.to_string() }
     }
 }
 
-fn print_values(what: &str, values: Vec<Signal>) {
-    let row = |it: Signal| vec![it.name, it.format, it.raw.to_string(), it.value.to_string()];
+fn print_values(what: &str, values: Vec<SignalValue>) {
+    let row = |it: SignalValue| vec![it.name, it.format, it.raw.to_string(), it.value.to_string()];
     tables::print(&format!("{what} | format | raw: | value:"), values.into_iter().map(row));
 }
 

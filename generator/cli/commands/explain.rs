@@ -5,7 +5,7 @@ use clap::Args;
 use serde_json::json;
 
 use crate::failure::wrong_usage;
-use crate::{Output, say, tables};
+use crate::{OutputOptions, say, tables};
 use glint_base::codes;
 use glint_core::registry::Registry;
 
@@ -21,7 +21,7 @@ pub struct Arguments {
 }
 
 /// Runs `glint explain`.
-pub fn run(_: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+pub fn run(_: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let wanted =
         |code: &str| arguments.code.as_ref().is_none_or(|it| it.eq_ignore_ascii_case(code));
     let pages: Vec<_> = codes::pages().filter(|page| wanted(page.0)).collect();

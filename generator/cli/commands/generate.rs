@@ -9,7 +9,7 @@ use serde_json::json;
 
 use super::{Loaded, load};
 use crate::store::{self, Written};
-use crate::{Configs, Output, failure, progress, say, tables};
+use crate::{Configs, OutputOptions, failure, progress, say, tables};
 use glint_base::program::Program;
 use glint_core::cosim::directed::Known;
 use glint_core::package::{self, OutputFile, Seal};
@@ -46,7 +46,7 @@ pub struct Arguments {
 }
 
 /// Runs `glint generate`.
-pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     for one in &loaded {
         one.contract()?;
@@ -131,7 +131,7 @@ pub struct Made {
 }
 
 /// Makes every file of each configuration, in parallel; the test benches too if `with_bench`.
-pub fn all_files(output: Output, loaded: &[Loaded], with_bench: bool) -> Result<Vec<Made>> {
+pub fn all_files(output: OutputOptions, loaded: &[Loaded], with_bench: bool) -> Result<Vec<Made>> {
     let bar = progress::bar(output, loaded.len() as u64, "generating");
     let known = Known::default();
     let made: Result<_> = loaded
@@ -172,7 +172,7 @@ pub fn write(out: &Path, one: &Loaded, files: &[OutputFile], force: bool) -> Res
 }
 
 /// Runs `--check`: returns whether the files that are there equal the files that `generate` would write.
-fn compare(output: Output, out: &Path, loaded: &[Loaded], made: &[Made]) -> Result<bool> {
+fn compare(output: OutputOptions, out: &Path, loaded: &[Loaded], made: &[Made]) -> Result<bool> {
     let mut all = Vec::new();
     let driver = package::driver();
     if store::differs(out, &driver)? {

@@ -7,7 +7,7 @@ use clap::Args;
 use serde_json::json;
 
 use super::{CONFIGS, paths};
-use crate::{Output, say, tables};
+use crate::{OutputOptions, say, tables};
 use glint_base::program::Program;
 use glint_core::registry::Registry;
 
@@ -19,7 +19,7 @@ Example:
 pub struct Arguments;
 
 /// Runs `glint list`.
-pub fn run(registry: &Registry, output: Output, _: &Arguments) -> Result<bool> {
+pub fn run(registry: &Registry, output: OutputOptions, _: &Arguments) -> Result<bool> {
     let configs: Vec<String> = if Path::new(CONFIGS).is_dir() {
         paths(&[]).unwrap_or_default().iter().map(|path| path.display().to_string()).collect()
     } else {

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use super::mismatch::Reproducer;
 use super::{CONFIGS, FAILS, HOLDS, Loaded, OUTSIDE, cosim, generate, load, verdict};
-use crate::{Output, progress, say, tables};
+use crate::{OutputOptions, progress, say, tables};
 use glint_base::text;
 use glint_core::core::{TEST_POINTS, TEST_SEED};
 use glint_core::cosim::Outcome;
@@ -17,7 +17,7 @@ use glint_core::registry::Registry;
 use glint_golden::Bound;
 
 /// The result of the main job for one configuration.
-struct Finding {
+struct MainJobResult {
     timing: Timing,
     bound: Bound,
     outcome: Outcome,
@@ -27,7 +27,7 @@ struct Finding {
 
 /// Runs the main job. With `details` it says for each configuration where the largest error is, and prints the
 /// remarks on its formula.
-pub fn run(registry: &Registry, output: Output, details: bool) -> Result<bool> {
+pub fn run(registry: &Registry, output: OutputOptions, details: bool) -> Result<bool> {
     let loaded = load(registry, &[])?;
     for one in &loaded {
         one.bound()?;
@@ -36,7 +36,7 @@ pub fn run(registry: &Registry, output: Output, details: bool) -> Result<bool> {
         generate::write(Path::new("."), one, &made.files, false)?;
     }
     let bar = progress::bar(output, TEST_POINTS * loaded.len() as u64, "points checked");
-    let findings: Vec<Finding> =
+    let findings: Vec<MainJobResult> =
         loaded.par_iter().map(|one| finding(one, &bar)).collect::<Result<_>>()?;
     bar.finish_and_clear();
     let holds = findings.iter().all(|finding| finding.failures.is_empty());
@@ -48,19 +48,19 @@ pub fn run(registry: &Registry, output: Output, details: bool) -> Result<bool> {
     Ok(holds)
 }
 
-fn finding(one: &Loaded, bar: &indicatif::ProgressBar) -> Result<Finding> {
+fn finding(one: &Loaded, bar: &indicatif::ProgressBar) -> Result<MainJobResult> {
     let lockstep = one.core.lockstep(TEST_SEED)?;
     let outcome = lockstep.run(TEST_POINTS, &|points| bar.inc(points))?;
     let bound = one.core.contract.bound();
     let failures = outcome.failures(&bound);
-    Ok(Finding { timing: one.core.timing()?, bound, outcome, failures })
+    Ok(MainJobResult { timing: one.core.timing()?, bound, outcome, failures })
 }
 
 /// The columns of the table, which is the last thing on the screen except for the line that counts.
 const COLUMNS: &str = "configuration | device;6 | clocks/point:2 | points:4 | clocks:7 | registers, outputs:8 | ROM bits:3 | \
                        bound:1 | largest error: | verdict";
 
-fn print(loaded: &[Loaded], findings: &[Finding], details: bool) -> Result<()> {
+fn print(loaded: &[Loaded], findings: &[MainJobResult], details: bool) -> Result<()> {
     for (one, finding) in loaded.iter().zip(findings) {
         if let Some(worst) = finding.outcome.worst.as_ref().filter(|_| details) {
             say!(
@@ -111,7 +111,7 @@ fn short(path: &str) -> &str {
 }
 
 /// Returns how many hold, how many are outside the contract, how many fail.
-fn counts(findings: &[Finding]) -> String {
+fn counts(findings: &[MainJobResult]) -> String {
     let verdicts = findings.iter().map(|finding| verdict(&finding.bound, &finding.failures));
     let count = |wanted| verdicts.clone().filter(|verdict| *verdict == wanted).count();
     let mut parts = vec![format!("{} of {} hold", count(HOLDS), findings.len())];
@@ -125,7 +125,7 @@ fn counts(findings: &[Finding]) -> String {
     format!("{}.", parts.join("; "))
 }
 
-fn as_json(one: &Loaded, finding: &Finding) -> Result<Value> {
+fn as_json(one: &Loaded, finding: &MainJobResult) -> Result<Value> {
     let mut value = cosim::as_json(one, &finding.outcome, &finding.bound, &finding.failures)?;
     value["clocks_per_point"] = json!(finding.timing.clocks_per_point());
     Ok(value)

@@ -9,7 +9,7 @@ use super::cosim::SweepValues;
 use super::cosim::exhaustive::read;
 use super::cosim::exhaustive::show::{announce, report};
 use super::load;
-use crate::Output;
+use crate::OutputOptions;
 use glint_core::cosim::exhaustive::{Shard, State};
 use glint_core::registry::Registry;
 
@@ -30,7 +30,7 @@ pub struct Arguments {
 }
 
 /// Runs `glint merge`, and returns whether the proof that the shards of one job give together holds.
-pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let Arguments { config, files, .. } = arguments;
     let loaded = load(registry, std::slice::from_ref(config))?;
     let one = &loaded[0];

@@ -12,12 +12,12 @@ use super::mismatch::{self, first_clock, traced};
 use super::{Loaded, load};
 use crate::destination::Destination;
 use crate::own_file::OwnFile;
-use crate::{Configs, Output, TimeLimit, progress, say, tables, wrong_usage};
+use crate::{Configs, OutputOptions, TimeLimit, progress, say, tables, wrong_usage};
 use glint_base::program::Program;
 use glint_core::registry::Registry;
 use glint_prove::mutate::{
-    self, Detector, Difference, Fault, Faults, Found, GOAL_MEMORY, GOAL_TEXT, Score, Share,
-    TOLERATED, Tally, Text, TextFault, TextScore, Verdict,
+    self, Detector, FaultResult, Faults, GOAL_MEMORY, GOAL_TEXT, MutantVerdict, NetlistFault,
+    Score, Share, SignalDifference, TOLERATED, Tally, TextFault, TextScore, VerilogText,
 };
 
 /// Plant faults one at a time, and show which of them the tests notice
@@ -83,7 +83,7 @@ impl Scored {
 }
 
 /// Runs `glint mutate`.
-pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     if let Some(id) = &arguments.only {
         return match &loaded[..] {
@@ -97,11 +97,11 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     if arguments.list {
         return Ok(list(output, &loaded, &faults));
     }
-    let texts: Vec<Option<(Text, Vec<TextFault>)>> = loaded
+    let texts: Vec<Option<(VerilogText, Vec<TextFault>)>> = loaded
         .iter()
         .map(|one| {
-            let text = || Text::of(&one.core).with_context(|| format!("`{}`", one.path));
-            let with_faults = |text: Text| {
+            let text = || VerilogText::of(&one.core).with_context(|| format!("`{}`", one.path));
+            let with_faults = |text: VerilogText| {
                 let faults = text.faults();
                 (text, faults)
             };
@@ -146,11 +146,11 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
 }
 
 /// Prints the names of all faults, which always succeeds.
-fn list(output: Output, loaded: &[Loaded], faults: &[Faults]) -> bool {
+fn list(output: OutputOptions, loaded: &[Loaded], faults: &[Faults]) -> bool {
     let mut list = Vec::new();
     for (one, faults) in loaded.iter().zip(faults) {
         if output.json {
-            let named = |fault: &Fault| json!({ "id": fault.id, "kind": fault.kind });
+            let named = |fault: &NetlistFault| json!({ "id": fault.id, "kind": fault.kind });
             let faults: Vec<Value> = faults.iter().map(named).collect();
             list.push(json!({ "config": one.path, "faults": faults }));
             continue;
@@ -164,7 +164,7 @@ fn list(output: Output, loaded: &[Loaded], faults: &[Faults]) -> bool {
 }
 
 /// Plants one fault, and prints its verdict with the means to reproduce it.
-fn only(output: Output, one: &Loaded, id: &str) -> Result<bool> {
+fn only(output: OutputOptions, one: &Loaded, id: &str) -> Result<bool> {
     let faults = Faults::of(&one.core.design);
     let Some(fault) = faults.find(id) else {
         wrong_usage!(
@@ -177,7 +177,7 @@ fn only(output: Output, one: &Loaded, id: &str) -> Result<bool> {
     let found = found.into_iter().next().context("a fault without a verdict")?;
     let verdict = &found.verdict;
     let mut waveform = None;
-    if let Verdict::Caught(_, Difference { held, mismatch }) = verdict {
+    if let MutantVerdict::Caught(_, SignalDifference { held, mismatch }) = verdict {
         let mutant = fault.planted(&one.core.design);
         let lockstep = one.core.lockstep_of(&mutant, mismatch.seed)?.holding(held);
         let path = PathBuf::from(format!("{}_mutant.vcd", one.core.config.name));
@@ -187,26 +187,26 @@ fn only(output: Output, one: &Loaded, id: &str) -> Result<bool> {
     }
     if output.json {
         tables::print_json(&found_as_json(one, &found));
-        return Ok(*verdict != Verdict::Undecided);
+        return Ok(*verdict != MutantVerdict::Undecided);
     }
     let said = match verdict {
-        Verdict::Caught(check, shown) => format!("caught by {check}: {}", shown_by(shown)),
-        Verdict::Equivalent(how) => format!("equivalent, {how}"),
-        Verdict::Undecided => "UNDECIDED: not caught, and not proved equivalent".to_owned(),
+        MutantVerdict::Caught(check, shown) => format!("caught by {check}: {}", shown_by(shown)),
+        MutantVerdict::Equivalent(how) => format!("equivalent, {how}"),
+        MutantVerdict::Undecided => "UNDECIDED: not caught, and not proved equivalent".to_owned(),
     };
     say!("{}: {} ({}): {said}", one.path, fault.id, fault.kind);
     if let Some((path, from, to)) = waveform {
         say!("  `{}` shows clocks {from} to {to}", path.display());
     }
-    if !matches!(verdict, Verdict::Equivalent(_)) {
+    if !matches!(verdict, MutantVerdict::Equivalent(_)) {
         let notices = if found.shipped { "notices it" } else { "does not notice it" };
         say!("  the shipped bench {notices}");
     }
-    Ok(*verdict != Verdict::Undecided)
+    Ok(*verdict != MutantVerdict::Undecided)
 }
 
 /// Describes where and how a mutant differs.
-fn shown_by(Difference { held, mismatch }: &Difference) -> String {
+fn shown_by(SignalDifference { held, mismatch }: &SignalDifference) -> String {
     let operands: Vec<String> = held.iter().map(|(name, raw)| format!(" {name}=#{raw}")).collect();
     let holding = if operands.is_empty() { "" } else { ", with" };
     format!(
@@ -217,20 +217,20 @@ fn shown_by(Difference { held, mismatch }: &Difference) -> String {
     )
 }
 
-fn found_as_json(one: &Loaded, found: &Found) -> Value {
-    let Found { fault, verdict, shipped } = found;
+fn found_as_json(one: &Loaded, found: &FaultResult) -> Value {
+    let FaultResult { fault, verdict, shipped } = found;
     let (caught, equivalent) = match verdict {
-        Verdict::Caught(check, Difference { held, mismatch }) => {
+        MutantVerdict::Caught(check, SignalDifference { held, mismatch }) => {
             let mut caught = mismatch::as_json(mismatch);
             caught["by"] = json!(check);
             caught["held"] = json!(held.iter().cloned().collect::<BTreeMap<_, _>>());
             (Some(caught), None)
         }
-        Verdict::Equivalent(how) => (None, Some(how)),
-        Verdict::Undecided => (None, None),
+        MutantVerdict::Equivalent(how) => (None, Some(how)),
+        MutantVerdict::Undecided => (None, None),
     };
     json!({
-        "ok": *verdict != Verdict::Undecided,
+        "ok": *verdict != MutantVerdict::Undecided,
         "config": one.path,
         "id": fault.id,
         "kind": fault.kind,

@@ -6,9 +6,9 @@ use clap::builder::PossibleValuesParser;
 use serde_json::json;
 
 use super::none_of;
-use super::settings::Setting;
+use super::settings::KeyAssignment;
 use crate::failure::WrongUsage;
-use crate::{Output, number, tables, wrong_usage};
+use crate::{OutputOptions, number, tables, wrong_usage};
 use glint_base::program::Program;
 use glint_base::target::TIMING_NAMES;
 use glint_config::{self as config, Config, Schema};
@@ -58,7 +58,7 @@ const SCHEMA: &str =
     "#:schema glint.schema.json\n# Editors check keys by it: glint schema > glint.schema.json\n\n";
 
 /// Runs `glint new`.
-pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let device = &arguments.device;
     let preset = presets::values(device);
     let device_of_preset = preset.as_ref().and_then(|_| registry.device(presets::DEVICE));
@@ -73,7 +73,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     let mut settings = arguments.settings()?;
     for (key, value) in preset.iter().flatten() {
         if settings.iter().all(|setting| setting.key != *key) {
-            settings.push(Setting { key: key.clone(), value: value.toml() });
+            settings.push(KeyAssignment { key: key.clone(), value: value.toml() });
         }
     }
     let config = configuration(&schema, &name, &settings)?;
@@ -97,29 +97,29 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
 
 impl Arguments {
     /// Returns the keys that the options set.
-    fn settings(&self) -> Result<Vec<Setting>> {
+    fn settings(&self) -> Result<Vec<KeyAssignment>> {
         let mut settings = Vec::new();
         if self.pipelined {
-            settings.push(Setting::word("architecture", "pipelined"));
+            settings.push(KeyAssignment::word("architecture", "pipelined"));
         }
         if let Some(target) = &self.target {
-            settings.push(Setting::word("pipeline.target", target));
+            settings.push(KeyAssignment::word("pipeline.target", target));
         }
         if self.stream {
-            settings.push(Setting::parse("interface.stream=true")?);
+            settings.push(KeyAssignment::parse("interface.stream=true")?);
         }
         for given in &self.set {
-            settings.push(Setting::parse(given)?);
+            settings.push(KeyAssignment::parse(given)?);
         }
         if let Some(clock) = self.clock {
             let is_pipelined = settings.iter().any(|setting| {
                 setting.key == "architecture" && setting.value.contains("pipelined")
             });
             if is_pipelined {
-                settings.push(Setting::parse(&format!("pipeline.clock_mhz={clock}"))?);
+                settings.push(KeyAssignment::parse(&format!("pipeline.clock_mhz={clock}"))?);
             } else {
-                settings.push(Setting::parse("package.constraints=true")?);
-                settings.push(Setting::parse(&format!("package.clock_mhz={clock}"))?);
+                settings.push(KeyAssignment::parse("package.constraints=true")?);
+                settings.push(KeyAssignment::parse(&format!("package.clock_mhz={clock}"))?);
             }
         }
         Ok(settings)
@@ -130,9 +130,9 @@ impl Arguments {
 ///
 /// # Errors
 /// Fails if the reader would refuse a file with the name and the settings.
-fn configuration(schema: &Schema, name: &str, settings: &[Setting]) -> Result<Config> {
-    let head = [Setting::word("device", schema.device), Setting::word("name", name)];
-    let text: String = head.iter().chain(settings).map(Setting::line).collect();
+fn configuration(schema: &Schema, name: &str, settings: &[KeyAssignment]) -> Result<Config> {
+    let head = [KeyAssignment::word("device", schema.device), KeyAssignment::word("name", name)];
+    let text: String = head.iter().chain(settings).map(KeyAssignment::line).collect();
     config::parse("<new>", &text, std::slice::from_ref(schema)).map_err(|problems| {
         let lines =
             problems.iter().map(|problem| format!("{}; {}", problem.message, problem.remedy));

@@ -7,7 +7,7 @@ use anyhow::{Context, Result, bail};
 use clap::Args;
 use serde_json::json;
 
-use crate::{Output, say, tables, wrong_usage};
+use crate::{OutputOptions, say, tables, wrong_usage};
 use glint_base::identifier;
 use glint_core::registry::Registry;
 
@@ -44,7 +44,7 @@ const FILES: [(&str, &str); 6] = [
 ];
 
 /// Runs `glint new-device`.
-pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let name = &arguments.name;
     check_name(registry, name)?;
     let directory = arguments.out.clone().unwrap_or_else(|| PathBuf::from(name));

@@ -10,17 +10,17 @@ use serde_json::json;
 use super::load_one;
 use crate::destination::Destination;
 use crate::failure::{self, WrongUsage};
-use crate::{Force, Output, TimeLimit, number, progress, say, tables, wrong_usage};
+use crate::{Force, OutputOptions, TimeLimit, number, progress, say, tables, wrong_usage};
 use glint_base::{input, text};
 use glint_core::core::Core;
 use glint_core::cosim::batch::{Engine, Golden, RustHdl};
 use glint_core::registry::Registry;
 use glint_prove::batch::Verilog;
 use glint_show::render::{
-    self, BuiltIn, Difference, Light, Material, Mesh, Object, Relief, Rendered, Scene, Settings,
-    Shape, Vector, View,
+    self, BuiltIn, Light, Material, Mesh, Object, PictureDifference, Relief, Rendered, Scene,
+    Settings, Shape, Vector, View,
 };
-use glint_tools::Simulator;
+use glint_tools::VerilogSimulator;
 
 /// The largest file that is read, in bytes: about the OBJ file of the largest mesh.
 const LARGEST_FILE: u64 = 4 << 30;
@@ -133,7 +133,7 @@ enum Through {
 }
 
 /// Runs `glint render`.
-pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let (name, core) = core(registry, arguments.config.as_deref())?;
     let settings = settings(&core, arguments)?;
     if let Some(extension) = arguments.out.extension()
@@ -154,7 +154,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
         Through::Golden => Box::new(Golden(contract)),
         Through::RustHdl => Box::new(RustHdl::new(&core.design, contract)?),
         Through::Verilator => {
-            let (simulator, limit) = (Simulator::Verilator, arguments.time_limit.get());
+            let (simulator, limit) = (VerilogSimulator::Verilator, arguments.time_limit.get());
             Box::new(Verilog::new(simulator, &core.design, contract, core.verilog()?, limit)?)
         }
     };
@@ -259,7 +259,7 @@ fn read(path: &Path) -> Result<Vec<u8>> {
 
 /// Prints the result.
 fn tell(
-    output: Output,
+    output: OutputOptions,
     arguments: &Arguments,
     name: &str,
     core: &Core,
@@ -284,7 +284,7 @@ fn tell(
     let (width, height) = settings.size;
     if output.json {
         let comparison = rendered.comparison.as_ref().map(|comparison| {
-            let Difference { largest, psnr, gain, .. } = comparison.difference;
+            let PictureDifference { largest, psnr, gain, .. } = comparison.difference;
             json!({
                 "largest_difference": largest,
                 "psnr": psnr,

@@ -7,7 +7,7 @@ use clap::Args;
 use serde_json::{Value, json};
 
 use super::{Loaded, load, paths};
-use crate::{Configs, Output, say, store, tables};
+use crate::{Configs, OutputOptions, say, store, tables};
 use glint_base::text::counted;
 use glint_core::package::{Seal, sealed};
 use glint_core::registry::Registry;
@@ -37,7 +37,7 @@ pub struct Arguments {
 }
 
 /// Runs `glint schedule`.
-pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let named = paths(&arguments.configs.paths)?;
     let mut list = Vec::new();
     let mut shown = 0;

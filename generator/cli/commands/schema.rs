@@ -3,7 +3,7 @@
 use anyhow::Result;
 use clap::Args;
 
-use crate::{Output, tables};
+use crate::{OutputOptions, tables};
 use glint_config as config;
 use glint_core::registry::Registry;
 
@@ -19,7 +19,7 @@ Example:
 pub struct Arguments;
 
 /// Runs `glint schema`.
-pub fn run(registry: &Registry, _: Output, _: &Arguments) -> Result<bool> {
+pub fn run(registry: &Registry, _: OutputOptions, _: &Arguments) -> Result<bool> {
     tables::print_json(&config::json_schema(&registry.schemas()));
     Ok(true)
 }

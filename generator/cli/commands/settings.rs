@@ -5,19 +5,19 @@ use anyhow::Result;
 use crate::wrong_usage;
 
 /// A key with the value that a user gave it.
-pub struct Setting {
+pub struct KeyAssignment {
     /// The dotted name, as `cosine.fraction`.
     pub key: String,
     /// The value as TOML.
     pub value: String,
 }
 
-impl Setting {
+impl KeyAssignment {
     /// Parses `KEY=VALUE`. A word needs no quotes: `architecture=pipelined` sets `architecture = "pipelined"`.
     ///
     /// # Errors
     /// Fails if there is no `=`, or if the key has other characters than letters, digits, `_`, `-` and `.`.
-    pub fn parse(given: &str) -> Result<Setting> {
+    pub fn parse(given: &str) -> Result<KeyAssignment> {
         let Some((key, value)) = given.split_once('=') else {
             wrong_usage!("--set {given}: a key and a value are wanted, as cosine.fraction=16");
         };
@@ -30,12 +30,12 @@ impl Setting {
             || value.starts_with(['[', '"'])
             || matches!(value, "true" | "false");
         let value = if is_toml { value.to_owned() } else { quoted(value) };
-        Ok(Setting { key: key.to_owned(), value })
+        Ok(KeyAssignment { key: key.to_owned(), value })
     }
 
     /// Makes the setting of a key to a word.
-    pub fn word(key: &str, word: &str) -> Setting {
-        Setting { key: key.to_owned(), value: quoted(word) }
+    pub fn word(key: &str, word: &str) -> KeyAssignment {
+        KeyAssignment { key: key.to_owned(), value: quoted(word) }
     }
 
     /// Returns the line of TOML that sets the key.

@@ -9,7 +9,7 @@ use serde_json::{Map, Value, json};
 
 use super::{Loaded, load_one, none_of, rows};
 use crate::failure::WrongUsage;
-use crate::{Output, say, tables, wrong_usage};
+use crate::{OutputOptions, say, tables, wrong_usage};
 use glint_base::program::Program;
 use glint_core::registry::Registry;
 use glint_show::render::setup::{Arc, direction, half};
@@ -93,7 +93,7 @@ const OF_POINT: [&str; 2] =
     ["normal perturbed half light view", "gamma dgamma exponent red green blue"];
 
 /// The inputs of a device, and the operands that they determine.
-struct Host<'a> {
+struct HostInputs<'a> {
     one: &'a Loaded,
     feed: Feed,
     line: bool,
@@ -101,7 +101,7 @@ struct Host<'a> {
     inputs: Vec<Input>,
 }
 
-/// The values of each input of a [`Host`].
+/// The values of each input of a [`HostInputs`].
 type Given = Vec<[Option<f64>; 3]>;
 
 /// The operands that come out.
@@ -113,9 +113,9 @@ struct SetUp {
 }
 
 /// Runs `glint setup`: one line or point, or as many as a CSV file has.
-pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let one = load_one(registry, &registry.schemas(), &arguments.config)?;
-    let host = Host::new(&one)?;
+    let host = HostInputs::new(&one)?;
     let mut given = vec![[None; 3]; host.inputs.len()];
     for setting in &arguments.inputs {
         let Some((name, text)) = setting.split_once('=') else {
@@ -155,7 +155,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     Ok(true)
 }
 
-impl<'a> Host<'a> {
+impl<'a> HostInputs<'a> {
     fn new(one: &'a Loaded) -> Result<Self> {
         let contract = one.core.contract.as_ref();
         let feed = Feed::new(one.core.device.name, contract)?;

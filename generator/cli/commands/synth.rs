@@ -12,10 +12,10 @@ use serde::Serialize;
 
 use super::{Loaded, load};
 use crate::own_file::OwnFile;
-use crate::{Configs, Output, TimeLimit, progress, say};
+use crate::{Configs, OutputOptions, TimeLimit, progress, say};
 use cache::Cache;
 use glint_core::registry::Registry;
-use glint_prove::synth::{Figures, Flow, Rate, Record, Subject, TARGETS, Target};
+use glint_prove::synth::{Figures, Flow, Rate, SynthesisRecord, SynthesisSubject, TARGETS, Target};
 use glint_prove::tune::{Cost, Features};
 use glint_show::evidence::comparison;
 use glint_tools::gates::cells::LIBERTY;
@@ -64,7 +64,7 @@ pub struct Arguments {
 }
 
 /// A configuration with all that was measured of it.
-struct Measured<'a> {
+struct Measurement<'a> {
     one: &'a Loaded,
     clocks_per_point: f64,
     figures: Vec<Figures>,
@@ -72,7 +72,7 @@ struct Measured<'a> {
 
 /// Figures, and the features of the netlist to which the estimates of `tune` are fitted.
 #[derive(Serialize)]
-struct Recorded<'a> {
+struct FigureRecord<'a> {
     #[serde(flatten)]
     figures: &'a Figures,
     netlist: Features,
@@ -81,7 +81,7 @@ struct Recorded<'a> {
 }
 
 /// Runs `glint synth`.
-pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     let (flows, notes) = flows(arguments, &loaded)?;
     let record = |one: &Loaded| OwnFile::record(arguments.out.as_deref(), &one.core.config.name);
@@ -98,11 +98,11 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     let jobs = rayon::ThreadPoolBuilder::new()
         .num_threads(arguments.jobs.map_or_else(rayon::current_num_threads, usize::from));
     let jobs = jobs.build().context("cannot start threads")?;
-    let measured: Vec<Result<Measured>> = jobs.install(|| {
+    let measured: Vec<Result<Measurement>> = jobs.install(|| {
         let all = loaded.par_iter();
         all.map(|one| measure(one, &flows, arguments, &|steps| bar.inc(steps), &tell)).collect()
     });
-    let measured: Vec<Measured> = measured.into_iter().collect::<Result<_>>()?;
+    let measured: Vec<Measurement> = measured.into_iter().collect::<Result<_>>()?;
     bar.finish_and_clear();
     let mut written = Vec::new();
     for (one, record) in measured.iter().zip(records) {
@@ -169,13 +169,13 @@ fn measure<'a>(
     arguments: &Arguments,
     done: &(dyn Fn(u64) + Sync),
     tell: &(dyn Fn(&Loaded, &Figures) + Sync),
-) -> Result<Measured<'a>> {
+) -> Result<Measurement<'a>> {
     let core = &one.core;
     let clocks_per_point =
         comparison::clocks_per_point(&core.design, core.contract.as_ref(), EXPONENT)?;
     let figures = flows.par_iter().map(|flow| {
         let files = core.verilog_for(flow.target().name())?;
-        let subject = Subject {
+        let subject = SynthesisSubject {
             design: &core.design,
             files: &files,
             seeds: arguments.seeds,
@@ -197,13 +197,13 @@ fn measure<'a>(
         tell(one, &figures);
         Ok(figures)
     });
-    Ok(Measured { one, clocks_per_point, figures: figures.collect::<Result<_>>()? })
+    Ok(Measurement { one, clocks_per_point, figures: figures.collect::<Result<_>>()? })
 }
 
-impl Measured<'_> {
-    fn record(&self) -> Record<Recorded<'_>> {
+impl Measurement<'_> {
+    fn record(&self) -> SynthesisRecord<FigureRecord<'_>> {
         let core = &self.one.core;
-        Record {
+        SynthesisRecord {
             glint: env!("CARGO_PKG_VERSION").to_owned(),
             config: self.one.path.clone(),
             name: core.config.name.clone(),
@@ -214,9 +214,9 @@ impl Measured<'_> {
         }
     }
 
-    fn recorded<'f>(&self, figures: &'f Figures) -> Recorded<'f> {
+    fn recorded<'f>(&self, figures: &'f Figures) -> FigureRecord<'f> {
         let design = &self.one.core.design;
-        Recorded {
+        FigureRecord {
             figures,
             netlist: Features::new(design, figures.target),
             estimated_mhz: Cost::new(design, figures.target).mhz,

@@ -9,16 +9,16 @@ use clap::Args;
 use indicatif::ProgressBar;
 use serde_json::{Value as Json, json};
 
-use super::settings::Setting;
+use super::settings::KeyAssignment;
 use crate::destination::Destination;
 use crate::tables;
-use crate::{Force, Output, failure, number, progress, say, wrong_usage};
+use crate::{Force, OutputOptions, failure, number, progress, say, wrong_usage};
 use glint_base::program::Program;
 use glint_base::text;
 use glint_config::{self as config, Config, Value};
 use glint_core::registry::{Device, Registry};
 use glint_prove::synth::Target;
-use glint_prove::tune::{self, Answer, Candidate, ErrorUnit, Goal, Objective};
+use glint_prove::tune::{self, Answer, Candidate, ErrorUnit, Objective, TuningGoal};
 
 /// Find the smallest configuration of a device for an error
 ///
@@ -81,7 +81,7 @@ pub struct Arguments {
 }
 
 /// Runs `glint tune`.
-pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     if output.json && arguments.csv {
         wrong_usage!("--json and --csv are two forms of the same: give one");
     }
@@ -108,7 +108,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     let fresh = |path: &PathBuf| Destination::fresh(path, arguments.force.force);
     let file = arguments.out.as_ref().map(fresh).transpose()?;
     let drawing = arguments.plot.as_ref().map(fresh).transpose()?;
-    let goal = Goal {
+    let goal = TuningGoal {
         error: arguments.error,
         unit: arguments.unit,
         target: arguments.target,
@@ -159,7 +159,7 @@ fn base(registry: &Registry, arguments: &Arguments) -> Result<(Device, Config, V
     let mut given_text = format!("device = \"{}\"\nname = \"{name}\"\n", device.name);
     let mut fixed = Vec::new();
     for given in &arguments.set {
-        let setting = Setting::parse(given)?;
+        let setting = KeyAssignment::parse(given)?;
         given_text += &setting.line();
         fixed.push(setting.key);
     }

@@ -9,12 +9,13 @@ use serde_json::json;
 
 use super::{Loaded, load};
 use crate::own_file::OwnFile;
-use crate::{Configs, Output, TimeLimit, progress, say, tables};
+use crate::{Configs, OutputOptions, TimeLimit, progress, say, tables};
 use glint_base::text::counted;
 use glint_core::cosim::exhaustive::PROOFS;
 use glint_core::registry::Registry;
 use glint_prove::verify::{
-    Answer, CHECKS, CheckTime, Conclusion, Effort, Record, Subject, Verdict, page,
+    CHECKS, CheckAnswer, CheckSubject, CheckTime, CheckVerdict, Conclusion, Effort,
+    VerificationRecord, page,
 };
 
 /// Verify configurations by every means that Glint has, and write a page about each
@@ -74,7 +75,7 @@ impl Files {
         })
     }
 
-    fn write(self, record: &Record, timings: &[CheckTime]) -> Result<[String; 3]> {
+    fn write(self, record: &VerificationRecord, timings: &[CheckTime]) -> Result<[String; 3]> {
         let times = json!({ "glint": record.glint, "config": record.config, "seconds": timings });
         Ok([
             self.page.write(&page::page(record, timings)?)?,
@@ -85,7 +86,7 @@ impl Files {
 }
 
 /// Runs `glint verify`.
-pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     let files = loaded.iter().map(|one| Files::new(&arguments.out, &one.core.config.name));
     let files = files.collect::<Result<Vec<_>>>()?;
@@ -106,18 +107,18 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
 }
 
 fn one_configuration(
-    output: Output,
+    output: OutputOptions,
     one: &Loaded,
     arguments: &Arguments,
-) -> Result<(Record, Vec<CheckTime>)> {
+) -> Result<(VerificationRecord, Vec<CheckTime>)> {
     one.contract()?;
     let effort = Effort {
         full: arguments.full,
         without_tools: arguments.without_tools,
         time_limit: arguments.time_limit.get(),
     };
-    let subject = Subject::new(&one.path, &one.core, effort, &arguments.proofs);
-    let mut answers: Vec<Answer> = Vec::new();
+    let subject = CheckSubject::new(&one.path, &one.core, effort, &arguments.proofs);
+    let mut answers: Vec<CheckAnswer> = Vec::new();
     for check in CHECKS {
         if check.is_outside() && arguments.without_tools {
             answers.push(check.left_out("--without-tools leaves it out."));
@@ -132,11 +133,11 @@ fn one_configuration(
         answers.push(answer);
     }
     let timings = answers.iter().map(|answer| answer.timing).collect();
-    Ok((Record::new(&subject, answers), timings))
+    Ok((VerificationRecord::new(&subject, answers), timings))
 }
 
 /// Prints the conclusion, the checks that say more than that it holds, and the command that completes it.
-fn print_conclusion(one: &Loaded, record: &Record) {
+fn print_conclusion(one: &Loaded, record: &VerificationRecord) {
     let with = |verdict| record.checks.iter().filter(move |it| it.finding.verdict == verdict);
     let counts = record.counts.iter();
     let counts: Vec<String> = counts.map(|(it, count)| format!("{count} {}", it.words())).collect();
@@ -149,7 +150,9 @@ fn print_conclusion(one: &Loaded, record: &Record) {
         other => other.words().to_owned(),
     };
     tables::print_line(&format!("{}: {words}: {}", one.path, counts.join(", ")));
-    let holds = |it: &Verdict| matches!(it, Verdict::Proved | Verdict::Passed | Verdict::Failed);
+    let holds = |it: &CheckVerdict| {
+        matches!(it, CheckVerdict::Proved | CheckVerdict::Passed | CheckVerdict::Failed)
+    };
     for &verdict in record.counts.keys().filter(|it| !holds(it)) {
         let titles: Vec<&str> = with(verdict).map(|answer| answer.title).collect();
         tables::print_line(&format!("  {}: {}", verdict.words(), titles.join(", ")));
@@ -162,7 +165,7 @@ fn print_conclusion(one: &Loaded, record: &Record) {
 }
 
 /// Prints a check in a few lines, as soon as it has ended.
-fn print(one: &Loaded, answer: &Answer) {
+fn print(one: &Loaded, answer: &CheckAnswer) {
     let finding = &answer.finding;
     let domain =
         if finding.domain.is_empty() { String::new() } else { format!(" [{}]", finding.domain) };
@@ -173,7 +176,7 @@ fn print(one: &Loaded, answer: &Answer) {
         finding.verdict.words(),
         answer.timing.seconds
     );
-    if !finding.words.is_empty() && finding.verdict != Verdict::Failed {
+    if !finding.words.is_empty() && finding.verdict != CheckVerdict::Failed {
         say!("  {}", finding.words);
     }
     for failure in &finding.failures {

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Loaded, load};
 use crate::own_file::OwnFile;
-use crate::{Configs, Output, count, progress, say};
+use crate::{Configs, OutputOptions, count, progress, say};
 use glint_base::program::Program;
 use glint_base::{input, text};
 use glint_core::cosim::search::{self, Reached};
@@ -43,7 +43,7 @@ pub struct Arguments {
 
 /// The largest known error of a configuration: the contents of a record.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-struct Known {
+struct LargestError {
     /// The version; a record begins with it.
     glint: String,
     config: String,
@@ -64,18 +64,18 @@ struct Known {
 
 /// The report on a configuration.
 #[derive(Serialize)]
-struct Report {
+struct WorstReport {
     #[serde(flatten)]
-    found: Known,
+    found: LargestError,
     /// The error that the contract states, in output units.
     bound: f64,
     holds: bool,
     /// The record, if it stays because its error is no less.
-    recorded: Option<Known>,
+    recorded: Option<LargestError>,
 }
 
 /// Runs `glint worst`, and returns whether every bound holds.
-pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     let records = loaded.iter().map(|one| record(one, arguments)).collect::<Result<Vec<_>>>()?;
     let total = search::steps(arguments.starts).saturating_mul(loaded.len() as u64);
@@ -95,7 +95,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
                 None => file.write_json(&found).map(drop)?,
             }
         }
-        let report = Report { found, bound, holds, recorded };
+        let report = WorstReport { found, bound, holds, recorded };
         if !output.json {
             bar.suspend(|| print(one, &report));
         }
@@ -106,10 +106,10 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     Ok(output.concluded(holds, reports))
 }
 
-fn known(one: &Loaded, arguments: &Arguments, found: &Reached) -> Known {
+fn known(one: &Loaded, arguments: &Arguments, found: &Reached) -> LargestError {
     let contract = one.core.contract.as_ref();
     let names = contract.operands().iter().map(|it| it.name.clone());
-    Known {
+    LargestError {
         glint: env!("CARGO_PKG_VERSION").to_owned(),
         config: one.path.clone(),
         contract: one.core.contract_digest(),
@@ -123,8 +123,8 @@ fn known(one: &Loaded, arguments: &Arguments, found: &Reached) -> Known {
     }
 }
 
-fn print(one: &Loaded, report: &Report) {
-    let Report { found, bound, holds, recorded } = report;
+fn print(one: &Loaded, report: &WorstReport) {
+    let WorstReport { found, bound, holds, recorded } = report;
     let verdict = match (bound.is_finite(), holds) {
         (false, _) => "of a contract that states no bound".to_owned(),
         (true, true) => format!("within the bound of {bound:.4}"),
@@ -157,7 +157,7 @@ fn climbs(starts: u64) -> String {
 
 /// Returns the file of the record, and the record that it holds if that is of the same contract; `None` without
 /// `--out`.
-fn record(one: &Loaded, arguments: &Arguments) -> Result<Option<(OwnFile, Option<Known>)>> {
+fn record(one: &Loaded, arguments: &Arguments) -> Result<Option<(OwnFile, Option<LargestError>)>> {
     let Some(directory) = &arguments.out else { return Ok(None) };
     let name = format!("{}.json", one.core.config.name);
     let file = OwnFile::new(directory, &name, OwnFile::JSON)?;
@@ -165,9 +165,9 @@ fn record(one: &Loaded, arguments: &Arguments) -> Result<Option<(OwnFile, Option
     Ok(Some((file, before.filter(|before| before.contract == one.core.contract_digest()))))
 }
 
-fn read(path: &Path) -> Result<Option<Known>> {
+fn read(path: &Path) -> Result<Option<LargestError>> {
     let Some(text) = input::text(path)? else { return Ok(None) };
-    let known: Known = serde_json::from_str(&text)
+    let known: LargestError = serde_json::from_str(&text)
         .with_context(|| format!("`{}` is no record of `{Program} worst`", path.display()))?;
     ensure!(known.units.is_finite(), "`{}` has no error", path.display());
     Ok(Some(known))

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use super::polynomial::Polynomial;
+use super::polynomial::RawPolynomial;
 use super::quotient::Quotient;
 use glint_base::cone;
 use glint_base::interval::{self, Interval, common, wrap};
@@ -14,34 +14,34 @@ use glint_rtl::pipeline::{Cell, Graph, NodeId, Op};
 const MOST: usize = 4096;
 
 /// Intervals of raw values by node, in addition to the intervals that follow from the operands.
-pub type Known = BTreeMap<NodeId, Interval>;
+pub type NodeIntervals = BTreeMap<NodeId, Interval>;
 
 /// One way.
 #[derive(Clone, Debug)]
 pub struct Case {
     /// The hypotheses of this way, implied by the operands' values that lead here.
-    pub known: Known,
+    pub known: NodeIntervals,
     /// The raw values of every node.
     pub ranges: Vec<Interval>,
     /// The nodes whose values are the values of a parabola. Intervals alone would allow more values.
-    pub parabolas: BTreeMap<NodeId, Polynomial>,
+    pub parabolas: BTreeMap<NodeId, RawPolynomial>,
 }
 
 /// The raw value of a word of a ROM.
-pub type Words<'a> = &'a dyn Fn(RomId, u64) -> i128;
+pub type WordLookup<'a> = &'a dyn Fn(RomId, u64) -> i128;
 
 /// An unrolled computation, with its tables and quotients.
 #[derive(Clone, Copy)]
-pub struct View<'a> {
+pub struct UnrolledComputation<'a> {
     /// The computation.
     pub graph: &'a Graph,
     /// The words of its tables.
-    pub words: Words<'a>,
+    pub words: WordLookup<'a>,
     /// Its quotients, by the node that joins the bits.
     pub quotients: &'a BTreeMap<NodeId, Quotient>,
 }
 
-impl View<'_> {
+impl UnrolledComputation<'_> {
     /// Returns the nodes `roots` and every node that they need, in order. A quotient needs its operands and no bits.
     fn cone(&self, roots: &[NodeId]) -> Vec<NodeId> {
         let operands = |at| self.operands(NodeId(at as u32)).into_iter().map(NodeId::index);
@@ -62,7 +62,11 @@ impl View<'_> {
 ///
 /// # Errors
 /// Fails if there are too many ways.
-pub fn cases(view: View, results: &[NodeId], known: &Known) -> Result<Vec<Case>, String> {
+pub fn cases(
+    view: UnrolledComputation,
+    results: &[NodeId],
+    known: &NodeIntervals,
+) -> Result<Vec<Case>, String> {
     let cone = view.cone(results);
     let graph = view.graph;
     let mut found = Vec::new();
@@ -100,7 +104,7 @@ pub fn cases(view: View, results: &[NodeId], known: &Known) -> Result<Vec<Case>,
 
 /// Returns the raw values of a node, given `known` of the operands. Returns `None` if a selection on the way to it is
 /// open.
-pub fn range(view: View, node: NodeId, known: &Known) -> Option<Interval> {
+pub fn range(view: UnrolledComputation, node: NodeId, known: &NodeIntervals) -> Option<Interval> {
     let ranges = view.graph.nodes.iter().map(|node| node.range).collect();
     let mut case = Case { known: known.clone(), ranges, parabolas: BTreeMap::new() };
     match case.follow(view, &view.cone(&[node])) {
@@ -121,9 +125,9 @@ enum Decision {
 
 impl Case {
     /// Returns the raw values of the nodes of `cone`, as far as they are decided.
-    fn follow(&mut self, view: View, cone: &[NodeId]) -> Decision {
+    fn follow(&mut self, view: UnrolledComputation, cone: &[NodeId]) -> Decision {
         let graph = view.graph;
-        let mut polynomials: BTreeMap<NodeId, Polynomial> = BTreeMap::new();
+        let mut polynomials: BTreeMap<NodeId, RawPolynomial> = BTreeMap::new();
         for &id in cone {
             let node = graph.node(id);
             let of = |id: &NodeId| self.ranges[id.index()];
@@ -188,31 +192,31 @@ impl Case {
 fn polynomial(
     graph: &Graph,
     id: NodeId,
-    known: &BTreeMap<NodeId, Polynomial>,
+    known: &BTreeMap<NodeId, RawPolynomial>,
     of: &dyn Fn(&NodeId) -> Interval,
-) -> Option<Polynomial> {
+) -> Option<RawPolynomial> {
     let node = graph.node(id);
     let known = |id: &NodeId| match of(id) {
-        (low, high) if low == high => Some(Polynomial::constant(low)),
+        (low, high) if low == high => Some(RawPolynomial::constant(low)),
         _ => known.get(id).copied(),
     };
     // All that comes to the node, with one multiple of the modulus added.
-    let wrapped = |whole: Interval, polynomial: Polynomial| {
-        polynomial.plus(Polynomial::constant(wrap(whole, node.format)?), 1)
+    let wrapped = |whole: Interval, polynomial: RawPolynomial| {
+        polynomial.plus(RawPolynomial::constant(wrap(whole, node.format)?), 1)
     };
     match &node.cell {
-        Cell::Operand(_) => Some(Polynomial::operand(id)),
+        Cell::Operand(_) => Some(RawPolynomial::operand(id)),
         Cell::Op(Op::Relabel(a) | Op::Extend(a)) => wrapped(of(a), known(a)?),
         Cell::Op(Op::Slice { of: a, low: 0 }) => wrapped(of(a), known(a)?),
         Cell::Op(Op::Not(a)) => {
             let most = if node.format.signed { -1 } else { node.format.range().1 };
-            Polynomial::constant(most).plus(known(a)?, -1)
+            RawPolynomial::constant(most).plus(known(a)?, -1)
         }
         Cell::Op(Op::Concat(parts)) => {
             let [a, zeros] = parts[..] else { return None };
             let raised =
                 graph.constant_of(zeros) == Some(0) && of(&a).0 >= 0 && !node.format.signed;
-            let factor = Polynomial::constant(1 << graph.width(zeros));
+            let factor = RawPolynomial::constant(1 << graph.width(zeros));
             known(&a).filter(|_| raised)?.times(factor)
         }
         Cell::Op(Op::Mux { select, inputs }) => {
@@ -221,7 +225,7 @@ fn polynomial(
         Cell::Op(Op::Add { a, b, carry }) => {
             let one = carry.as_ref().map_or((0, 0), of);
             let whole = (of(a).0 + of(b).0 + one.0, of(a).1 + of(b).1 + one.1);
-            let carry = Polynomial::constant(one.0);
+            let carry = RawPolynomial::constant(one.0);
             wrapped(whole, known(a)?.plus(known(b)?, 1)?.plus(carry, 1)?)
         }
         Cell::Op(Op::Sub(a, b)) => {
@@ -251,14 +255,14 @@ fn decider(graph: &Graph, id: NodeId, of: &dyn Fn(&NodeId) -> Interval) -> NodeI
 /// is impossible. `ranges` are the values that nodes have without this limit.
 pub fn learn(
     graph: &Graph,
-    known: &mut Known,
+    known: &mut NodeIntervals,
     ranges: &[Interval],
     id: NodeId,
     range: Interval,
 ) -> bool {
     let node = graph.node(id);
     let before = known.get(&id).copied().unwrap_or(node.range);
-    let value = |known: &Known, id: NodeId| {
+    let value = |known: &NodeIntervals, id: NodeId| {
         let ((low, high), own) = (ranges[id.index()], known.get(&id));
         own.map_or((low, high), |own| (low.max(own.0), high.min(own.1)))
     };

@@ -5,7 +5,7 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use super::terms::{Id, Term, Terms};
+use super::terms::{RealTerm, RealTermId, RealTerms};
 use glint_base::fixed::exp2;
 use glint_formula::{Comparison, Formula, Function, Kind, Literal, Operator};
 use glint_golden::Operand;
@@ -15,13 +15,13 @@ use glint_golden::Operand;
 #[derive(Clone, Debug, Default)]
 pub struct Branch {
     /// Terms that are at least 0.
-    pub at_least: Vec<Id>,
+    pub at_least: Vec<RealTermId>,
     /// Terms that are at most 0.
-    pub at_most: Vec<Id>,
+    pub at_most: Vec<RealTermId>,
     /// The formula.
-    pub term: Id,
+    pub term: RealTermId,
     /// The side of every choice, by the number that is compared with 0 and the comparison.
-    chosen: BTreeMap<(Id, Choice), bool>,
+    chosen: BTreeMap<(RealTermId, Choice), bool>,
 }
 
 /// A comparison that decides between two sides. Choices of one kind about one number go to the same side everywhere.
@@ -34,9 +34,9 @@ enum Choice {
 
 impl Branch {
     /// Returns whether a condition of the branch is false for a number.
-    pub fn is_never(&self, terms: &Terms) -> bool {
-        let is = |id: &Id, wrong: fn(f64) -> bool| match terms.get(*id) {
-            Term::Number(value) => wrong(*value),
+    pub fn is_never(&self, terms: &RealTerms) -> bool {
+        let is = |id: &RealTermId, wrong: fn(f64) -> bool| match terms.get(*id) {
+            RealTerm::Number(value) => wrong(*value),
             _ => false,
         };
         self.at_least.iter().any(|id| is(id, |value| value < 0.0))
@@ -55,14 +55,15 @@ impl Branch {
         }
         let (least, most) = (&mut both.at_least, &mut both.at_most);
         for (all, more) in [(least, &other.at_least), (most, &other.at_most)] {
-            let new: Vec<Id> = more.iter().copied().filter(|id| !all.contains(id)).collect();
+            let new: Vec<RealTermId> =
+                more.iter().copied().filter(|id| !all.contains(id)).collect();
             all.extend(new);
         }
         Some(both)
     }
 
     /// Returns the way with a choice made about the sign of a term.
-    fn choosing(&self, difference: Id, choice: Choice, taken: bool) -> Option<Self> {
+    fn choosing(&self, difference: RealTermId, choice: Choice, taken: bool) -> Option<Self> {
         let mut own = Self { term: self.term, ..Self::default() };
         own.chosen.insert((difference, choice), taken);
         if taken {
@@ -75,7 +76,7 @@ impl Branch {
 }
 
 /// The context in which formulas are written.
-pub struct Setting<'a> {
+pub struct FormulaContext<'a> {
     /// Variable, and the power of two by which an operand is divided in it.
     pub variables: &'a HashMap<String, (String, i32)>,
     /// The values, lowest and highest, that an operand has in this case.
@@ -133,26 +134,30 @@ pub fn untranslated(function: Function) -> String {
 /// Fails if the formula has a part without a translation.
 pub fn branches(
     formula: &Formula,
-    setting: &Setting,
-    terms: &mut Terms,
+    setting: &FormulaContext,
+    terms: &mut RealTerms,
 ) -> Result<Vec<Branch>, String> {
     // For two expressions: every way that both can go together, with the term of each.
-    let pairs =
-        |terms: &mut Terms, a: &Formula, b: &Formula| -> Result<Vec<(Branch, Id, Id)>, String> {
-            let (first, second) = (branches(a, setting, terms)?, branches(b, setting, terms)?);
-            let all = first.iter().flat_map(|one| second.iter().map(move |other| (one, other)));
-            let pairs =
-                all.filter_map(|(one, other)| Some((one.and(other)?, one.term, other.term)));
-            Ok(pairs.collect())
-        };
-    let operation = |terms: &mut Terms, a: &Formula, b: &Formula, make: fn(Id, Id) -> Term| {
+    let pairs = |terms: &mut RealTerms,
+                 a: &Formula,
+                 b: &Formula|
+     -> Result<Vec<(Branch, RealTermId, RealTermId)>, String> {
+        let (first, second) = (branches(a, setting, terms)?, branches(b, setting, terms)?);
+        let all = first.iter().flat_map(|one| second.iter().map(move |other| (one, other)));
+        let pairs = all.filter_map(|(one, other)| Some((one.and(other)?, one.term, other.term)));
+        Ok(pairs.collect())
+    };
+    let operation = |terms: &mut RealTerms,
+                     a: &Formula,
+                     b: &Formula,
+                     make: fn(RealTermId, RealTermId) -> RealTerm| {
         let made = pairs(terms, a, b)?.into_iter().map(|(branch, left, right)| {
             let term = folded(terms, make(left, right));
             Branch { term, ..branch }
         });
         Ok(made.collect())
     };
-    let plain = |term: Id| vec![Branch { term, ..Branch::default() }];
+    let plain = |term: RealTermId| vec![Branch { term, ..Branch::default() }];
     if let Some((name, power @ 1..)) = quotient(formula)
         && let Some((variable, divisor)) = setting.variables.get(name)
         && *divisor == power
@@ -166,13 +171,13 @@ pub fn branches(
         Kind::Constant(name, _) => Err(format!("the constant `{name}` has no translation")),
         Kind::Unary(Function::Negate, a) => {
             let zero = Formula::new(Kind::Number(Literal::zero()), formula.span.clone());
-            operation(terms, &zero, a, Term::Sub)
+            operation(terms, &zero, a, RealTerm::Sub)
         }
         Kind::Unary(function, _) => Err(untranslated(*function)),
-        Kind::Binary(Operator::Add, a, b) => operation(terms, a, b, Term::Add),
-        Kind::Binary(Operator::Sub, a, b) => operation(terms, a, b, Term::Sub),
-        Kind::Binary(Operator::Mul, a, b) => operation(terms, a, b, Term::Mul),
-        Kind::Binary(Operator::Div, a, b) => operation(terms, a, b, Term::Div),
+        Kind::Binary(Operator::Add, a, b) => operation(terms, a, b, RealTerm::Add),
+        Kind::Binary(Operator::Sub, a, b) => operation(terms, a, b, RealTerm::Sub),
+        Kind::Binary(Operator::Mul, a, b) => operation(terms, a, b, RealTerm::Mul),
+        Kind::Binary(Operator::Div, a, b) => operation(terms, a, b, RealTerm::Div),
         Kind::Binary(Operator::Power, base, exponent) => {
             let exponent =
                 constant(exponent, setting).ok_or("a power with an exponent that varies")?;
@@ -189,7 +194,7 @@ pub fn branches(
         Kind::Binary(operator @ (Operator::Max | Operator::Min), a, b) => {
             let mut found = Vec::new();
             for (branch, left, right) in pairs(terms, a, b)? {
-                let difference = folded(terms, Term::Sub(left, right));
+                let difference = folded(terms, RealTerm::Sub(left, right));
                 let is_max = *operator == Operator::Max;
                 for (taken, term) in [(is_max, left), (!is_max, right)] {
                     let side = Branch { term, ..branch.clone() };
@@ -212,7 +217,7 @@ pub fn branches(
                     continue;
                 }
                 for (condition, left, right) in pairs(terms, &comparison.left, &comparison.right)? {
-                    let difference = folded(terms, Term::Sub(left, right));
+                    let difference = folded(terms, RealTerm::Sub(left, right));
                     let condition = condition.choosing(difference, choice, taken);
                     let both = |side: &Branch| condition.as_ref()?.and(side);
                     found.extend(sides.iter().filter_map(both));
@@ -224,7 +229,12 @@ pub fn branches(
 }
 
 /// Returns the word of a table: the number that it is wherever this case reads, or a variable.
-fn word(rom: &str, place: &Formula, setting: &Setting, terms: &mut Terms) -> Result<Id, String> {
+fn word(
+    rom: &str,
+    place: &Formula,
+    setting: &FormulaContext,
+    terms: &mut RealTerms,
+) -> Result<RealTermId, String> {
     let words = setting.words.get(rom).ok_or_else(|| format!("there is no table `{rom}`"))?;
     let (name, range) = match &place.kind {
         Kind::Operand(name) => (name.as_str(), setting.ranges.get(name).copied()),
@@ -242,10 +252,14 @@ fn word(rom: &str, place: &Formula, setting: &Setting, terms: &mut Terms) -> Res
     }
     let operand = setting.variables.get(name).map_or("", |(variable, _)| variable.as_str());
     let variable = word_variable(rom, operand);
-    Ok(terms.insert(Term::Variable(variable.clone()), &variable))
+    Ok(terms.insert(RealTerm::Variable(variable.clone()), &variable))
 }
 
-fn operand(name: &str, setting: &Setting, terms: &mut Terms) -> Result<Id, String> {
+fn operand(
+    name: &str,
+    setting: &FormulaContext,
+    terms: &mut RealTerms,
+) -> Result<RealTermId, String> {
     let (variable, divisor) =
         setting.variables.get(name).ok_or_else(|| format!("there is no operand `{name}`"))?;
     let own = variable_of(name, variable, *divisor, setting, terms);
@@ -253,24 +267,24 @@ fn operand(name: &str, setting: &Setting, terms: &mut Terms) -> Result<Id, Strin
         return Ok(own);
     }
     let factor = terms.number(exp2(*divisor));
-    Ok(folded(terms, Term::Mul(own, factor)))
+    Ok(folded(terms, RealTerm::Mul(own, factor)))
 }
 
 fn variable_of(
     name: &str,
     variable: &str,
     divisor: i32,
-    setting: &Setting,
-    terms: &mut Terms,
-) -> Id {
+    setting: &FormulaContext,
+    terms: &mut RealTerms,
+) -> RealTermId {
     match setting.ranges.get(name) {
         Some((low, high)) if low == high => terms.number(low * exp2(-divisor)),
-        _ => terms.insert(Term::Variable(variable.to_owned()), variable),
+        _ => terms.insert(RealTerm::Variable(variable.to_owned()), variable),
     }
 }
 
 /// Returns the value of a formula that does not vary in this case.
-fn constant(formula: &Formula, setting: &Setting) -> Option<f64> {
+fn constant(formula: &Formula, setting: &FormulaContext) -> Option<f64> {
     match &formula.kind {
         Kind::Number(literal) => Some(literal.nearest()),
         Kind::Operand(name) => {
@@ -281,7 +295,7 @@ fn constant(formula: &Formula, setting: &Setting) -> Option<f64> {
 }
 
 /// Returns whether a comparison of an operand with a number holds for all values of this case, or for none.
-fn decided(comparison: &Comparison, setting: &Setting) -> Option<bool> {
+fn decided(comparison: &Comparison, setting: &FormulaContext) -> Option<bool> {
     let range = |formula: &Formula| match &formula.kind {
         Kind::Number(literal) => Some((literal.nearest(), literal.nearest())),
         Kind::Operand(name) => setting.ranges.get(name).copied(),
@@ -298,19 +312,19 @@ fn decided(comparison: &Comparison, setting: &Setting) -> Option<bool> {
 }
 
 /// Writes a power as products, by squaring, as the hardware has it.
-fn power(terms: &mut Terms, base: Id, exponent: u32) -> Id {
+fn power(terms: &mut RealTerms, base: RealTermId, exponent: u32) -> RealTermId {
     let mut result = None;
     let (mut square, mut rest) = (base, exponent);
     while rest > 0 {
         if rest % 2 == 1 {
             result = Some(match result {
                 None => square,
-                Some(result) => folded(terms, Term::Mul(result, square)),
+                Some(result) => folded(terms, RealTerm::Mul(result, square)),
             });
         }
         rest /= 2;
         if rest > 0 {
-            square = folded(terms, Term::Mul(square, square));
+            square = folded(terms, RealTerm::Mul(square, square));
         }
     }
     result.unwrap_or_else(|| terms.number(1.0))
@@ -318,28 +332,28 @@ fn power(terms: &mut Terms, base: Id, exponent: u32) -> Id {
 
 /// Returns the id of a term, simplified by the rules of 0 and 1. If the term is a number and f64 holds it exactly, it
 /// is the id of that number.
-pub fn folded(terms: &mut Terms, term: Term) -> Id {
-    let value = |id: Id| match terms.get(id) {
-        Term::Number(value) => Some(*value),
+pub fn folded(terms: &mut RealTerms, term: RealTerm) -> RealTermId {
+    let value = |id: RealTermId| match terms.get(id) {
+        RealTerm::Number(value) => Some(*value),
         _ => None,
     };
-    let is = |id: Id, number: f64| value(id) == Some(number);
+    let is = |id: RealTermId, number: f64| value(id) == Some(number);
     match term {
-        Term::Add(a, b) | Term::Sub(a, b) if is(b, 0.0) => return a,
-        Term::Add(a, b) if is(a, 0.0) => return b,
-        Term::Mul(a, b) if is(a, 0.0) || is(b, 0.0) => return terms.number(0.0),
-        Term::Mul(a, b) if is(a, 1.0) => return b,
-        Term::Mul(a, b) | Term::Div(a, b) if is(b, 1.0) => return a,
+        RealTerm::Add(a, b) | RealTerm::Sub(a, b) if is(b, 0.0) => return a,
+        RealTerm::Add(a, b) if is(a, 0.0) => return b,
+        RealTerm::Mul(a, b) if is(a, 0.0) || is(b, 0.0) => return terms.number(0.0),
+        RealTerm::Mul(a, b) if is(a, 1.0) => return b,
+        RealTerm::Mul(a, b) | RealTerm::Div(a, b) if is(b, 1.0) => return a,
         _ => {}
     }
     let exact = match term {
-        Term::Add(a, b) => value(a).zip(value(b)).and_then(|(a, b)| exact_sum(a, b)),
-        Term::Sub(a, b) => value(a).zip(value(b)).and_then(|(a, b)| exact_sum(a, -b)),
-        Term::Mul(a, b) => value(a).zip(value(b)).and_then(|(a, b)| {
+        RealTerm::Add(a, b) => value(a).zip(value(b)).and_then(|(a, b)| exact_sum(a, b)),
+        RealTerm::Sub(a, b) => value(a).zip(value(b)).and_then(|(a, b)| exact_sum(a, -b)),
+        RealTerm::Mul(a, b) => value(a).zip(value(b)).and_then(|(a, b)| {
             let product = a * b;
             (a.mul_add(b, -product) == 0.0).then_some(product)
         }),
-        Term::Div(a, b) => value(a).zip(value(b)).and_then(|(a, b)| {
+        RealTerm::Div(a, b) => value(a).zip(value(b)).and_then(|(a, b)| {
             let quotient = a / b;
             (quotient.mul_add(b, -a) == 0.0).then_some(quotient)
         }),

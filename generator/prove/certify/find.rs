@@ -7,7 +7,7 @@ use std::time::Duration;
 use anyhow::{Context, Result};
 use rayon::prelude::*;
 
-use super::proof::{Outcome, prove};
+use super::proof::{ProofOutcome, prove};
 use super::statement::{ASKED, Statement};
 use glint_tools::transient::Directory;
 use glint_tools::{LimitReached, Tool};
@@ -39,7 +39,7 @@ pub fn bound(gappa: &Tool, asked: &[Statement], limit: Duration) -> Result<Resul
     for (answer, one) in largest {
         let holds = |bound: f64| -> Result<bool> {
             let outcome = prove(gappa, None, &one.within(bound), limit.min(TRY))?;
-            Ok(matches!(outcome, Outcome::Proved(..)))
+            Ok(matches!(outcome, ProofOutcome::Proved(..)))
         };
         if answer <= bound || holds(bound)? {
             continue;

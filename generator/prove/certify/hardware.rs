@@ -2,10 +2,10 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use super::cases::{Case, View};
+use super::cases::{Case, UnrolledComputation};
 use super::exact::word_variable;
 use super::quotient::{Quotient, widened};
-use super::terms::{Direction, Id, Term, Terms};
+use super::terms::{RealTerm, RealTermId, RealTerms, RoundingDirection};
 use glint_base::fixed::exp2;
 use glint_base::interval::{Interval, wrap};
 use glint_rtl::netlist::RomId;
@@ -13,13 +13,13 @@ use glint_rtl::pipeline::{Cell, Graph, NodeId, Op};
 
 /// A node's raw value.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Value {
+pub enum NodeValue {
     /// The node is this number, on this way.
     Constant(i128),
     /// The term times two to the power of `scale`.
     Term {
         /// The value with its point.
-        id: Id,
+        id: RealTermId,
         /// Fraction bits.
         scale: i32,
     },
@@ -39,14 +39,19 @@ pub struct Hardware<'a> {
     /// The names of the tables.
     tables: &'a [String],
     /// The intervals of terms that are no nodes.
-    pub facts: BTreeMap<Id, (f64, f64)>,
-    known: HashMap<NodeId, Value>,
+    pub facts: BTreeMap<RealTermId, (f64, f64)>,
+    known: HashMap<NodeId, NodeValue>,
 }
 
 impl<'a> Hardware<'a> {
     /// Prepares the translation of one way. `variables` are the operands.
-    pub fn new(view: View<'a>, case: &'a Case, variables: Variables, tables: &'a [String]) -> Self {
-        let View { graph, quotients, .. } = view;
+    pub fn new(
+        view: UnrolledComputation<'a>,
+        case: &'a Case,
+        variables: Variables,
+        tables: &'a [String],
+    ) -> Self {
+        let UnrolledComputation { graph, quotients, .. } = view;
         let (facts, known) = (BTreeMap::new(), HashMap::new());
         Self { graph, quotients, case, variables, tables, facts, known }
     }
@@ -56,20 +61,32 @@ impl<'a> Hardware<'a> {
     }
 
     /// Returns a new variable with the values that the node has.
-    fn variable(&mut self, terms: &mut Terms, node: NodeId, variable: String, scale: i32) -> Value {
-        let id = terms.insert(Term::Variable(variable.clone()), &variable);
+    fn variable(
+        &mut self,
+        terms: &mut RealTerms,
+        node: NodeId,
+        variable: String,
+        scale: i32,
+    ) -> NodeValue {
+        let id = terms.insert(RealTerm::Variable(variable.clone()), &variable);
         let (low, high) = self.range(node);
         let value = |raw: i128| raw as f64 * exp2(-scale);
         self.facts.insert(id, (value(low), value(high)));
         if !self.variables.iter().any(|(name, _)| *name == variable) {
             self.variables.push((variable, scale));
         }
-        Value::Term { id, scale }
+        NodeValue::Term { id, scale }
     }
 
     /// Returns the word of a table. If an operand addresses the table, it is the variable that a formula has for the
     /// word too.
-    fn read(&mut self, terms: &mut Terms, node: NodeId, rom: RomId, address: NodeId) -> Value {
+    fn read(
+        &mut self,
+        terms: &mut RealTerms,
+        node: NodeId,
+        rom: RomId,
+        address: NodeId,
+    ) -> NodeValue {
         let table = &self.tables[rom.index()];
         let variable = match self.graph.node(address).cell {
             Cell::Operand(at) => word_variable(table, &self.variables[at].0),
@@ -82,17 +99,17 @@ impl<'a> Hardware<'a> {
     /// Returns a quotient: a variable that the real quotient exceeds by its last place at most.
     fn quotient(
         &mut self,
-        terms: &mut Terms,
+        terms: &mut RealTerms,
         node: NodeId,
         quotient: Quotient,
-    ) -> Result<Value, String> {
+    ) -> Result<NodeValue, String> {
         let (dividend, divisor) = self.fraction(terms, quotient)?;
         let name = &self.graph.node(node).label.name;
-        let real = terms.insert(Term::Div(dividend, divisor), &format!("{name}_exact"));
+        let real = terms.insert(RealTerm::Div(dividend, divisor), &format!("{name}_exact"));
         let scale = quotient.bits as i32;
         let value = self.variable(terms, node, format!("{name}_{}", node.0), scale);
-        if let Value::Term { id, .. } = value {
-            let rest = terms.insert(Term::Sub(real, id), &format!("{name}_rest"));
+        if let NodeValue::Term { id, .. } = value {
+            let rest = terms.insert(RealTerm::Sub(real, id), &format!("{name}_rest"));
             self.facts.insert(rest, (0.0, exp2(-scale)));
         }
         Ok(value)
@@ -102,18 +119,18 @@ impl<'a> Hardware<'a> {
     /// or known not to be less. Returns `None` if a value does not vary or has no translation.
     pub fn compared(
         &mut self,
-        terms: &mut Terms,
+        terms: &mut RealTerms,
         (a, b): (NodeId, NodeId),
         less: bool,
-    ) -> Option<(Id, (f64, f64))> {
+    ) -> Option<(RealTermId, (f64, f64))> {
         let ((a_low, a_high), (b_low, b_high)) = (self.range(a), self.range(b));
         let (a, b) = (self.value(terms, a).ok()?, self.value(terms, b).ok()?);
         // Both at one point: they are compared as raw values.
-        let (Value::Term { scale, .. }, Value::Term { scale: other, .. }) = (a, b) else {
+        let (NodeValue::Term { scale, .. }, NodeValue::Term { scale: other, .. }) = (a, b) else {
             return None;
         };
-        let difference = add(terms, a, b, Term::Sub, "compared");
-        let Value::Term { id, .. } = difference else { return None };
+        let difference = add(terms, a, b, RealTerm::Sub, "compared");
+        let NodeValue::Term { id, .. } = difference else { return None };
         let value = |raw: i128| raw as f64 * exp2(-scale);
         let range =
             if less { (value(a_low - b_high), value(-1)) } else { (0.0, value(a_high - b_low)) };
@@ -121,11 +138,15 @@ impl<'a> Hardware<'a> {
     }
 
     /// Returns dividend and divisor as terms, with the points at one place.
-    pub fn fraction(&mut self, terms: &mut Terms, of: Quotient) -> Result<(Id, Id), String> {
+    pub fn fraction(
+        &mut self,
+        terms: &mut RealTerms,
+        of: Quotient,
+    ) -> Result<(RealTermId, RealTermId), String> {
         let (dividend, divisor) = (self.value(terms, of.dividend)?, self.value(terms, of.divisor)?);
         let scale = [dividend, divisor].into_iter().filter_map(|value| match value {
-            Value::Term { scale, .. } => Some(scale),
-            Value::Constant(_) => None,
+            NodeValue::Term { scale, .. } => Some(scale),
+            NodeValue::Constant(_) => None,
         });
         let scale = scale.max().unwrap_or(0);
         Ok((pointed(terms, dividend, scale, "dividend"), pointed(terms, divisor, scale, "divisor")))
@@ -135,19 +156,20 @@ impl<'a> Hardware<'a> {
     ///
     /// # Errors
     /// Fails if an operation has no translation. The error has the name of the operation's result.
-    pub fn value(&mut self, terms: &mut Terms, id: NodeId) -> Result<Value, String> {
+    pub fn value(&mut self, terms: &mut RealTerms, id: NodeId) -> Result<NodeValue, String> {
         if let Some(&value) = self.known.get(&id) {
             return Ok(value);
         }
         let (low, high) = self.range(id);
-        let value = if low == high { Value::Constant(low) } else { self.translated(terms, id)? };
+        let value =
+            if low == high { NodeValue::Constant(low) } else { self.translated(terms, id)? };
         self.known.insert(id, value);
         Ok(value)
     }
 
     /// Returns the node as a term even if it is one number in this case: this fact says something about its operands.
     /// Returns `None` if the node is made of constants, or is bits that are cut out.
-    pub fn expression(&mut self, terms: &mut Terms, id: NodeId) -> Option<Value> {
+    pub fn expression(&mut self, terms: &mut RealTerms, id: NodeId) -> Option<NodeValue> {
         let is_cut =
             matches!(self.graph.node(id).cell, Cell::Op(Op::Slice { .. }) | Cell::Operand(_));
         let (low, high) = self.range(id);
@@ -157,7 +179,7 @@ impl<'a> Hardware<'a> {
         (!is_cut).then(|| self.translated(terms, id).ok())?
     }
 
-    fn translated(&mut self, terms: &mut Terms, id: NodeId) -> Result<Value, String> {
+    fn translated(&mut self, terms: &mut RealTerms, id: NodeId) -> Result<NodeValue, String> {
         let graph = self.graph;
         let node = graph.node(id);
         let name = node.label.name.clone();
@@ -168,8 +190,8 @@ impl<'a> Hardware<'a> {
             Cell::Op(op) => op,
             Cell::Operand(at) => {
                 let (variable, scale) = self.variables[*at].clone();
-                let id = terms.insert(Term::Variable(variable.clone()), &variable);
-                return Ok(Value::Term { id, scale });
+                let id = terms.insert(RealTerm::Variable(variable.clone()), &variable);
+                return Ok(NodeValue::Term { id, scale });
             }
             Cell::Read { rom, address } => return Ok(self.read(terms, id, *rom, *address)),
             _ => return Err(format!("`{name}` is nothing that the operands determine")),
@@ -187,7 +209,7 @@ impl<'a> Hardware<'a> {
             Op::Relabel(a) | Op::Extend(a) => {
                 let wrap = wrap_of(range(a))?;
                 let a = self.value(terms, *a)?;
-                Ok(add(terms, a, Value::Constant(wrap), Term::Add, &name))
+                Ok(add(terms, a, NodeValue::Constant(wrap), RealTerm::Add, &name))
             }
             Op::Mux { select, inputs } => {
                 let chosen = range(select).0 as usize;
@@ -199,13 +221,13 @@ impl<'a> Hardware<'a> {
                 let of = self.value(terms, *of)?;
                 if graph.width(id) == 1 && *low > 0 && from >= 0 && to < 2 << low {
                     // The top bit of a fraction is the fraction to the nearest.
-                    return Ok(cut(terms, of, low + 1, Direction::Nearest, &name));
+                    return Ok(cut(terms, of, low + 1, RoundingDirection::Nearest, &name));
                 }
-                let cut = cut(terms, of, *low, Direction::Down, &name);
-                Ok(add(terms, cut, Value::Constant(wrap), Term::Add, &name))
+                let cut = cut(terms, of, *low, RoundingDirection::Down, &name);
+                Ok(add(terms, cut, NodeValue::Constant(wrap), RealTerm::Add, &name))
             }
             Op::Concat(parts) => {
-                let mut sum = Value::Constant(0);
+                let mut sum = NodeValue::Constant(0);
                 let mut position = 0;
                 for part in parts.iter().rev() {
                     let is_sign = node.format.signed && Some(part) == parts.first();
@@ -213,7 +235,7 @@ impl<'a> Hardware<'a> {
                         return Err(format!("`{name}` joins bits of a negative number"));
                     }
                     let raised = raised(self.value(terms, *part)?, position);
-                    sum = add(terms, sum, raised, Term::Add, &name);
+                    sum = add(terms, sum, raised, RealTerm::Add, &name);
                     position += graph.width(*part) as i32;
                 }
                 Ok(sum)
@@ -223,13 +245,16 @@ impl<'a> Hardware<'a> {
                 let a = self.value(terms, *a)?;
                 // The inverse of an unsigned number is 1.0 minus the number, with the point at its top.
                 let a = match (a, node.format.signed) {
-                    (Value::Term { id, scale }, false) => {
+                    (NodeValue::Term { id, scale }, false) => {
                         let wanted = node.format.width() as i32;
-                        Value::Term { id: scaled(terms, id, scale - wanted, &name), scale: wanted }
+                        NodeValue::Term {
+                            id: scaled(terms, id, scale - wanted, &name),
+                            scale: wanted,
+                        }
                     }
                     _ => a,
                 };
-                Ok(add(terms, Value::Constant(most), a, Term::Sub, &name))
+                Ok(add(terms, NodeValue::Constant(most), a, RealTerm::Sub, &name))
             }
             Op::Add { a, b, carry } => {
                 if let Some((of, low)) = self.rounded(*a, *b) {
@@ -237,40 +262,40 @@ impl<'a> Hardware<'a> {
                     let wrap =
                         wrap_of(((range(&of).0 + half) >> low, (range(&of).1 + half) >> low))?;
                     let of = self.value(terms, of)?;
-                    let cut = cut(terms, of, low, Direction::Nearest, &name);
-                    return Ok(add(terms, cut, Value::Constant(wrap), Term::Add, &name));
+                    let cut = cut(terms, of, low, RoundingDirection::Nearest, &name);
+                    return Ok(add(terms, cut, NodeValue::Constant(wrap), RealTerm::Add, &name));
                 }
                 let one = carry.as_ref().map_or((0, 0), range);
                 let wrap =
                     wrap_of((range(a).0 + range(b).0 + one.0, range(a).1 + range(b).1 + one.1))?;
                 let (a, b) = (self.value(terms, *a)?, self.value(terms, *b)?);
                 let (a, b) = match (a, b) {
-                    (Value::Constant(a), b) => (Value::Constant(a + wrap), b),
-                    (a, Value::Constant(b)) => (a, Value::Constant(b + wrap)),
-                    (a, b) => (add(terms, a, Value::Constant(wrap), Term::Add, &name), b),
+                    (NodeValue::Constant(a), b) => (NodeValue::Constant(a + wrap), b),
+                    (a, NodeValue::Constant(b)) => (a, NodeValue::Constant(b + wrap)),
+                    (a, b) => (add(terms, a, NodeValue::Constant(wrap), RealTerm::Add, &name), b),
                 };
-                let sum = add(terms, a, b, Term::Add, &name);
+                let sum = add(terms, a, b, RealTerm::Add, &name);
                 match carry {
                     None => Ok(sum),
                     Some(carry) => {
                         let carry = self.value(terms, *carry)?;
-                        Ok(add(terms, sum, carry, Term::Add, &name))
+                        Ok(add(terms, sum, carry, RealTerm::Add, &name))
                     }
                 }
             }
             Op::Sub(a, b) => {
                 let wrap = wrap_of((range(a).0 - range(b).1, range(a).1 - range(b).0))?;
                 let (a, b) = (self.value(terms, *a)?, self.value(terms, *b)?);
-                let difference = add(terms, a, b, Term::Sub, &name);
-                Ok(add(terms, difference, Value::Constant(wrap), Term::Add, &name))
+                let difference = add(terms, a, b, RealTerm::Sub, &name);
+                Ok(add(terms, difference, NodeValue::Constant(wrap), RealTerm::Add, &name))
             }
             Op::Mul(a, b) => {
                 let frac = |id: &NodeId| graph.node(*id).format.frac;
                 let (of_a, of_b) = (self.value(terms, *a)?, self.value(terms, *b)?);
                 let (a, a_scale) = placed(terms, of_a, frac(a));
                 let (b, b_scale) = placed(terms, of_b, frac(b));
-                let id = terms.insert(Term::Mul(a, b), &name);
-                Ok(Value::Term { id, scale: a_scale + b_scale })
+                let id = terms.insert(RealTerm::Mul(a, b), &name);
+                Ok(NodeValue::Term { id, scale: a_scale + b_scale })
             }
             Op::And(..)
             | Op::Or(..)
@@ -307,71 +332,85 @@ impl<'a> Hardware<'a> {
 }
 
 /// Drops `low` bits.
-fn cut(terms: &mut Terms, value: Value, low: u32, direction: Direction, name: &str) -> Value {
+fn cut(
+    terms: &mut RealTerms,
+    value: NodeValue,
+    low: u32,
+    direction: RoundingDirection,
+    name: &str,
+) -> NodeValue {
     match value {
-        Value::Constant(raw) => Value::Constant(match direction {
-            Direction::Down => raw >> low,
-            Direction::Nearest => (raw + (1 << low >> 1)) >> low,
+        NodeValue::Constant(raw) => NodeValue::Constant(match direction {
+            RoundingDirection::Down => raw >> low,
+            RoundingDirection::Nearest => (raw + (1 << low >> 1)) >> low,
         }),
-        Value::Term { .. } if low == 0 => value,
-        Value::Term { id, scale } => {
+        NodeValue::Term { .. } if low == 0 => value,
+        NodeValue::Term { id, scale } => {
             let fraction = scale - low as i32;
-            let id = terms.insert(Term::Round { of: id, fraction, direction }, name);
-            Value::Term { id, scale: fraction }
+            let id = terms.insert(RealTerm::Round { of: id, fraction, direction }, name);
+            NodeValue::Term { id, scale: fraction }
         }
     }
 }
 
 /// Returns the value with zeros below.
-fn raised(value: Value, position: i32) -> Value {
+fn raised(value: NodeValue, position: i32) -> NodeValue {
     match value {
-        Value::Constant(raw) => Value::Constant(raw << position),
-        Value::Term { id, scale } => Value::Term { id, scale: scale + position },
+        NodeValue::Constant(raw) => NodeValue::Constant(raw << position),
+        NodeValue::Term { id, scale } => NodeValue::Term { id, scale: scale + position },
     }
 }
 
 /// Returns the sum or the difference.
-fn add(terms: &mut Terms, a: Value, b: Value, operation: fn(Id, Id) -> Term, name: &str) -> Value {
+fn add(
+    terms: &mut RealTerms,
+    a: NodeValue,
+    b: NodeValue,
+    operation: fn(RealTermId, RealTermId) -> RealTerm,
+    name: &str,
+) -> NodeValue {
     let scale = match (a, b) {
-        (Value::Constant(a), Value::Constant(b)) => {
-            return Value::Constant(match operation(0, 0) {
-                Term::Sub(..) => a - b,
+        (NodeValue::Constant(a), NodeValue::Constant(b)) => {
+            return NodeValue::Constant(match operation(0, 0) {
+                RealTerm::Sub(..) => a - b,
                 _ => a + b,
             });
         }
-        (Value::Constant(0), Value::Term { .. }) if matches!(operation(0, 0), Term::Add(..)) => {
+        (NodeValue::Constant(0), NodeValue::Term { .. })
+            if matches!(operation(0, 0), RealTerm::Add(..)) =>
+        {
             return b;
         }
-        (Value::Term { .. }, Value::Constant(0)) => return a,
-        (Value::Term { scale, .. }, Value::Constant(_))
-        | (Value::Constant(_), Value::Term { scale, .. }) => scale,
-        (Value::Term { scale: a, .. }, Value::Term { scale: b, .. }) => a.max(b),
+        (NodeValue::Term { .. }, NodeValue::Constant(0)) => return a,
+        (NodeValue::Term { scale, .. }, NodeValue::Constant(_))
+        | (NodeValue::Constant(_), NodeValue::Term { scale, .. }) => scale,
+        (NodeValue::Term { scale: a, .. }, NodeValue::Term { scale: b, .. }) => a.max(b),
     };
     let (a, b) = (pointed(terms, a, scale, name), pointed(terms, b, scale, name));
-    Value::Term { id: terms.insert(operation(a, b), name), scale }
+    NodeValue::Term { id: terms.insert(operation(a, b), name), scale }
 }
 
 /// Returns the value as a term whose raw values are its values times 2^`scale`.
-fn pointed(terms: &mut Terms, value: Value, scale: i32, name: &str) -> Id {
+fn pointed(terms: &mut RealTerms, value: NodeValue, scale: i32, name: &str) -> RealTermId {
     match value {
-        Value::Constant(raw) => terms.number(raw as f64 * exp2(-scale)),
-        Value::Term { id, scale: own } => scaled(terms, id, own - scale, name),
+        NodeValue::Constant(raw) => terms.number(raw as f64 * exp2(-scale)),
+        NodeValue::Term { id, scale: own } => scaled(terms, id, own - scale, name),
     }
 }
 
 /// Returns the term times two to the power of `power`.
-pub fn scaled(terms: &mut Terms, id: Id, power: i32, name: &str) -> Id {
+pub fn scaled(terms: &mut RealTerms, id: RealTermId, power: i32, name: &str) -> RealTermId {
     if power == 0 {
         return id;
     }
     let factor = terms.number(exp2(power));
-    terms.insert(Term::Mul(id, factor), name)
+    terms.insert(RealTerm::Mul(id, factor), name)
 }
 
 /// Returns the value as a term and its fraction bits, which are `frac` for a constant.
-pub fn placed(terms: &mut Terms, value: Value, frac: i32) -> (Id, i32) {
+pub fn placed(terms: &mut RealTerms, value: NodeValue, frac: i32) -> (RealTermId, i32) {
     match value {
-        Value::Constant(raw) => (terms.number(raw as f64 * exp2(-frac)), frac),
-        Value::Term { id, scale } => (id, scale),
+        NodeValue::Constant(raw) => (terms.number(raw as f64 * exp2(-frac)), frac),
+        NodeValue::Term { id, scale } => (id, scale),
     }
 }

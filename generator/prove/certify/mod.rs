@@ -23,13 +23,13 @@ mod witness;
 
 use std::time::{Duration, Instant};
 
-use cases::View;
+use cases::UnrolledComputation;
 pub use find::bound;
 use glint_formula::{Formula, Function, Kind, parse};
 use glint_golden::Contract;
 use glint_rtl::netlist::{Design, RomId};
 use glint_rtl::pipeline::{NodeId, unroll, unroll_line};
-pub use proof::{Outcome, Subject, prove};
+pub use proof::{ProofOutcome, ProofSubject, prove};
 pub use statement::Statement;
 use statement::Statements;
 use task::Task;
@@ -86,7 +86,7 @@ fn within(
         design.net(rom.data).format.raw(word)
     };
     let quotients = quotient::quotients(&unrolled.graph, &results);
-    let view = View { graph: &unrolled.graph, words: &words, quotients: &quotients };
+    let view = UnrolledComputation { graph: &unrolled.graph, words: &words, quotients: &quotients };
     let tables: Vec<String> = design.roms.iter().map(|rom| rom.name.clone()).collect();
     let task = Task {
         design,

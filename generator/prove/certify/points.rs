@@ -4,13 +4,13 @@
 use std::collections::{BTreeMap, HashMap};
 
 use super::cases::Case;
-use super::exact::{self, Branch, Setting};
-use super::hardware::{self, Hardware, Value, Variables};
+use super::exact::{self, Branch, FormulaContext};
+use super::hardware::{self, Hardware, NodeValue, Variables};
 use super::premises;
-use super::script::Script;
+use super::script::GappaScript;
 use super::statement::Statements;
 use super::task::Task;
-use super::terms::{Id, Term, Terms};
+use super::terms::{RealTerm, RealTermId, RealTerms};
 use glint_base::fixed::exp2;
 use glint_formula::Formula;
 use glint_rtl::pipeline::{Cell, NodeId, Op};
@@ -62,7 +62,7 @@ impl Task<'_> {
                 (rom.name.clone(), words.collect())
             })
             .collect();
-        let setting = Setting {
+        let setting = FormulaContext {
             variables: &variables,
             ranges: &ranges,
             words: &words,
@@ -75,7 +75,7 @@ impl Task<'_> {
         let colours: Vec<_> =
             self.contract.operands().iter().filter(|operand| operand.colour).collect();
         for (at, (output, node)) in self.outputs()?.into_iter().enumerate() {
-            let mut terms = Terms::default();
+            let mut terms = RealTerms::default();
             let mut hardware = hardware.clone();
             let out = hardware.value(&mut terms, node)?;
             let presupposed = self.presupposed(case, &mut hardware, &mut terms, &operands);
@@ -98,7 +98,7 @@ impl Task<'_> {
                 if chosen.iter().any(|way| way.is_never(&terms)) {
                     continue;
                 }
-                let script = Script {
+                let script = GappaScript {
                     terms: &terms,
                     hardware_terms,
                     placed: &hardware.variables,
@@ -119,9 +119,9 @@ impl Task<'_> {
         &self,
         case: &Case,
         hardware: &mut Hardware,
-        terms: &mut Terms,
+        terms: &mut RealTerms,
         operands: &[(String, (f64, f64))],
-    ) -> BTreeMap<Id, (f64, f64)> {
+    ) -> BTreeMap<RealTermId, (f64, f64)> {
         let mut presupposed = BTreeMap::new();
         // The formula may read words that nothing in the hardware depends on any more.
         for (at, node) in self.graph().nodes.iter().enumerate() {
@@ -132,7 +132,7 @@ impl Task<'_> {
             }
         }
         for (&node, &(low, high)) in &case.known {
-            if let Some(Value::Term { id, scale }) = hardware.expression(terms, node) {
+            if let Some(NodeValue::Term { id, scale }) = hardware.expression(terms, node) {
                 let value = |raw: i128| raw as f64 * exp2(-scale);
                 presupposed.insert(id, (value(low), value(high)));
             }
@@ -141,7 +141,7 @@ impl Task<'_> {
             }
         }
         for (name, range) in operands {
-            let id = terms.insert(Term::Variable(name.clone()), name);
+            let id = terms.insert(RealTerm::Variable(name.clone()), name);
             presupposed.insert(id, *range);
         }
         presupposed.extend(hardware.facts.iter().map(|(&id, &range)| (id, range)));
@@ -149,7 +149,11 @@ impl Task<'_> {
     }
 }
 
-fn real_operand(name: &str, setting: &Setting, terms: &mut Terms) -> Result<Id, String> {
+fn real_operand(
+    name: &str,
+    setting: &FormulaContext,
+    terms: &mut RealTerms,
+) -> Result<RealTermId, String> {
     let branches = exact::branches(&Formula::operand(name), setting, terms)?;
     Ok(branches[0].term)
 }

@@ -5,7 +5,7 @@ use glint_rtl::pipeline::NodeId;
 
 /// `factors[0] + factors[1]·x + factors[2]·x²`, in raw values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Polynomial {
+pub struct RawPolynomial {
     /// x, if it depends on one.
     pub of: Option<NodeId>,
     /// The factors.
@@ -15,7 +15,7 @@ pub struct Polynomial {
 /// Larger factors are not followed.
 const MOST: i128 = 1 << 80;
 
-impl Polynomial {
+impl RawPolynomial {
     /// Makes a constant polynomial.
     pub fn constant(value: i128) -> Self {
         Self { of: None, factors: [value, 0, 0] }
@@ -75,24 +75,24 @@ mod tests {
 
     #[test]
     fn a_parabola_has_its_vertex() {
-        let x = Polynomial::operand(NodeId(0));
+        let x = RawPolynomial::operand(NodeId(0));
         let square = x.times(x).unwrap();
         // x² − 16·x: −64 at 8.
         let parabola = square.plus(x, -16).unwrap();
         assert_eq!(parabola.range((0, 16)), Some((-64, 0)));
         assert_eq!(parabola.range((9, 20)), Some((-63, 80)));
         // 7 − x²; x² − 3·x, least at 1 and 2.
-        let open = Polynomial::constant(7).plus(square, -1).unwrap();
+        let open = RawPolynomial::constant(7).plus(square, -1).unwrap();
         assert_eq!(open.range((-2, 3)), Some((-2, 7)));
         assert_eq!(square.plus(x, -3).unwrap().range((0, 3)), Some((-2, 0)));
     }
 
     #[test]
     fn only_one_operand_and_two_degrees_are_followed() {
-        let (x, y) = (Polynomial::operand(NodeId(0)), Polynomial::operand(NodeId(1)));
+        let (x, y) = (RawPolynomial::operand(NodeId(0)), RawPolynomial::operand(NodeId(1)));
         assert_eq!(x.plus(y, 1), None);
         assert_eq!(x.times(x).unwrap().times(x), None);
-        let line = x.times(Polynomial::constant(3)).unwrap();
+        let line = x.times(RawPolynomial::constant(3)).unwrap();
         assert_eq!(line.factors, [0, 3, 0]);
     }
 }

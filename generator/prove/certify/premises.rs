@@ -1,12 +1,12 @@
 //! Writes the premises of statements about outputs as statements of their own. One premise says that a node has only
 //! values of its parabola. Other premises say which values a divider needs and which bounds its steps keep.
 
-use super::cases::{Case, View};
-use super::hardware::{Hardware, Value};
-use super::polynomial::Polynomial;
+use super::cases::{Case, UnrolledComputation};
+use super::hardware::{Hardware, NodeValue};
+use super::polynomial::RawPolynomial;
 use super::quotient::Quotient;
-use super::script::Script;
-use super::terms::{Id, Term, Terms, number};
+use super::script::GappaScript;
+use super::terms::{RealTerm, RealTermId, RealTerms, number};
 use glint_base::fixed::exp2;
 use glint_rtl::pipeline::NodeId;
 
@@ -23,7 +23,7 @@ pub struct Premise {
 /// # Errors
 /// Fails if a value has no translation.
 pub fn of(
-    view: View,
+    view: UnrolledComputation,
     case: &Case,
     hardware: &Hardware,
     operands: &[(String, (f64, f64))],
@@ -31,7 +31,8 @@ pub fn of(
     let mut premises = Vec::new();
     let name = |node: NodeId| view.graph.node(node).label.name.clone();
     for (&node, polynomial) in &case.parabolas {
-        let mut task = Task { hardware: hardware.clone(), terms: Terms::default(), operands };
+        let mut task =
+            PremiseTask { hardware: hardware.clone(), terms: RealTerms::default(), operands };
         let script = task.parabola(node, *polynomial, case.ranges[node.index()])?;
         premises.extend(script.map(|script| Premise { about: name(node), script }));
     }
@@ -41,7 +42,8 @@ pub fn of(
         if dividend.0 >= 0 && divisor.0 > 0 && dividend.1 <= divisor.0 {
             continue;
         }
-        let mut task = Task { hardware: hardware.clone(), terms: Terms::default(), operands };
+        let mut task =
+            PremiseTask { hardware: hardware.clone(), terms: RealTerms::default(), operands };
         let mut scripts = vec![task.dividend(quotient)?];
         scripts.extend([true, false].map(step));
         premises.extend(scripts.into_iter().map(|script| Premise { about: name(node), script }));
@@ -49,25 +51,25 @@ pub fn of(
     Ok(premises)
 }
 
-struct Task<'a> {
+struct PremiseTask<'a> {
     hardware: Hardware<'a>,
-    terms: Terms,
+    terms: RealTerms,
     operands: &'a [(String, (f64, f64))],
 }
 
-impl Task<'_> {
+impl PremiseTask<'_> {
     /// Writes the statement that the values of a node, a quadratic polynomial, lie from `low` to `high`, with a hint
     /// that completes the square. Returns `None` if the node or the variable of the polynomial is a constant.
     fn parabola(
         &mut self,
         node: NodeId,
-        polynomial: Polynomial,
+        polynomial: RawPolynomial,
         (low, high): (i128, i128),
     ) -> Result<Option<String>, String> {
         let Some(x) = polynomial.of else { return Ok(None) };
         let (x, y) =
             (self.hardware.value(&mut self.terms, x)?, self.hardware.value(&mut self.terms, node)?);
-        let (Value::Term { id: x, scale: of_x }, Value::Term { id, scale }) = (x, y) else {
+        let (NodeValue::Term { id: x, scale: of_x }, NodeValue::Term { id, scale }) = (x, y) else {
             return Ok(None);
         };
         let [a, b, c] = polynomial.factors.map(|factor| factor as f64 * exp2(-scale));
@@ -86,13 +88,13 @@ impl Task<'_> {
     /// Writes the statement that the divisor is positive, and the dividend neither negative nor above it.
     fn dividend(&mut self, quotient: Quotient) -> Result<String, String> {
         let (dividend, divisor) = self.hardware.fraction(&mut self.terms, quotient)?;
-        let rest = self.terms.insert(Term::Sub(divisor, dividend), "rest");
+        let rest = self.terms.insert(RealTerm::Sub(divisor, dividend), "rest");
         let [dividend_name, divisor_name, rest_name] =
             [dividend, divisor, rest].map(|id| self.terms.name(id));
         // The other summand, if the divisor is a sum with the dividend.
         let beside = match *self.terms.get(divisor) {
-            Term::Add(a, b) if a == dividend => Some(b),
-            Term::Add(a, b) if b == dividend => Some(a),
+            RealTerm::Add(a, b) if a == dividend => Some(b),
+            RealTerm::Add(a, b) if b == dividend => Some(a),
             _ => None,
         };
         let hint = beside.map(|id| format!("{rest_name} -> {};", self.terms.name(id)));
@@ -103,13 +105,13 @@ impl Task<'_> {
         Ok(self.script(rest, &goal, hint.as_slice()))
     }
 
-    fn script(&self, about: Id, goal: &str, hints: &[String]) -> String {
+    fn script(&self, about: RealTermId, goal: &str, hints: &[String]) -> String {
         let mut terms = self.terms.clone();
         let mut presupposed = self.hardware.facts.clone();
         for (name, range) in self.operands {
-            presupposed.insert(terms.insert(Term::Variable(name.clone()), name), *range);
+            presupposed.insert(terms.insert(RealTerm::Variable(name.clone()), name), *range);
         }
-        let script = Script {
+        let script = GappaScript {
             terms: &terms,
             hardware_terms: terms.count(),
             placed: &self.hardware.variables,

@@ -12,7 +12,7 @@ use glint_tools::{LimitReached, Tool};
 
 /// The subject of a proved statement.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Subject {
+pub enum ProofSubject {
     /// A point at which its hypotheses hold, and others.
     Point(String),
     /// Nothing, as Gappa proves: its hypotheses contradict each other.
@@ -22,9 +22,9 @@ pub enum Subject {
 }
 
 /// The outcome of a statement's proof.
-pub enum Outcome {
+pub enum ProofOutcome {
     /// The script that was accepted, and its subject.
-    Proved(usize, Subject),
+    Proved(usize, ProofSubject),
     /// No proof: Gappa's answer to the last script.
     Open(String),
 }
@@ -38,7 +38,7 @@ pub fn prove(
     coq: Option<&Tool>,
     statement: &Statement,
     limit: Duration,
-) -> Result<Outcome> {
+) -> Result<ProofOutcome> {
     let dir = Directory::new().context("cannot make a temporary directory")?;
     let mut why = String::new();
     for (number, script) in statement.scripts.iter().enumerate() {
@@ -80,23 +80,23 @@ pub fn prove(
             }
         }
         let subject = subject(gappa, script, limit)?;
-        return Ok(Outcome::Proved(number, subject));
+        return Ok(ProofOutcome::Proved(number, subject));
     }
-    Ok(Outcome::Open(why))
+    Ok(ProofOutcome::Open(why))
 }
 
 /// Returns the subject of an accepted script. If no point is found, it asks Gappa for a contradiction.
-fn subject(gappa: &Tool, script: &str, limit: Duration) -> Result<Subject> {
+fn subject(gappa: &Tool, script: &str, limit: Duration) -> Result<ProofSubject> {
     if let Some(point) = witness::witness(script) {
-        return Ok(Subject::Point(point));
+        return Ok(ProofSubject::Point(point));
     }
-    let Some(asked) = witness::contradiction(script) else { return Ok(Subject::Unknown) };
+    let Some(asked) = witness::contradiction(script) else { return Ok(ProofSubject::Unknown) };
     let dir = Directory::new().context("cannot make a temporary directory")?;
     fs::write(dir.path().join("statement.g"), asked).context("cannot write a script for Gappa")?;
     match gappa.run(["statement.g"], dir.path(), limit) {
-        Ok(run) if run.status.success() => Ok(Subject::Nothing),
-        Ok(_) => Ok(Subject::Unknown),
-        Err(error) if error.is::<LimitReached>() => Ok(Subject::Unknown),
+        Ok(run) if run.status.success() => Ok(ProofSubject::Nothing),
+        Ok(_) => Ok(ProofSubject::Unknown),
+        Err(error) if error.is::<LimitReached>() => Ok(ProofSubject::Unknown),
         Err(error) => Err(error),
     }
 }

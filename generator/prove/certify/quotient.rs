@@ -45,9 +45,9 @@ fn quotient(graph: &Graph, id: NodeId) -> Option<Quotient> {
     let Cell::Op(Op::Concat(_)) = graph.node(id).cell else { return None };
     let mut bits = Vec::new();
     joined(graph, id, &mut bits);
-    let steps: Option<Vec<Step>> = bits.iter().map(|&bit| step(graph, bit)).collect();
+    let steps: Option<Vec<DivisionStep>> = bits.iter().map(|&bit| step(graph, bit)).collect();
     let steps = steps.filter(|steps| steps.len() > 1)?;
-    let Step { remainder: dividend, divisor, .. } = steps[0];
+    let DivisionStep { remainder: dividend, divisor, .. } = steps[0];
     let follows = steps
         .windows(2)
         .all(|pair| pair[1].divisor == divisor && is_left(graph, pair[1].remainder, &pair[0]));
@@ -64,7 +64,7 @@ fn joined(graph: &Graph, id: NodeId, parts: &mut Vec<NodeId>) {
 
 /// A step: `doubled` is twice the remainder, `trial` is `doubled` minus the divisor, and `bit` says whether the
 /// divisor fits.
-struct Step {
+struct DivisionStep {
     remainder: NodeId,
     divisor: NodeId,
     doubled: NodeId,
@@ -72,7 +72,7 @@ struct Step {
     bit: NodeId,
 }
 
-fn step(graph: &Graph, bit: NodeId) -> Option<Step> {
+fn step(graph: &Graph, bit: NodeId) -> Option<DivisionStep> {
     let op = |id: NodeId| match &graph.node(id).cell {
         Cell::Op(op) => Some(op),
         _ => None,
@@ -95,11 +95,17 @@ fn step(graph: &Graph, bit: NodeId) -> Option<Step> {
     let is_doubled = graph.constant_of(zero) == Some(0) && graph.width(zero) == 1;
     let (doubled, trial, divisor) = (*doubled, *trial, widened(graph, *divisor));
     let natural = [remainder, divisor].iter().all(|&id| !graph.node(id).format.signed);
-    (is_sign && is_doubled && natural).then_some(Step { remainder, divisor, doubled, trial, bit })
+    (is_sign && is_doubled && natural).then_some(DivisionStep {
+        remainder,
+        divisor,
+        doubled,
+        trial,
+        bit,
+    })
 }
 
 /// Returns whether a node is the remainder after a step, with all bits that numbers up to the divisor have.
-fn is_left(graph: &Graph, id: NodeId, step: &Step) -> bool {
+fn is_left(graph: &Graph, id: NodeId, step: &DivisionStep) -> bool {
     let Cell::Op(Op::Slice { of, low: 0 }) = graph.node(id).cell else { return false };
     let left = Op::Mux { select: step.bit, inputs: vec![step.doubled, step.trial] };
     graph.node(of).cell == Cell::Op(left) && graph.width(id) >= graph.width(step.divisor)

@@ -8,7 +8,7 @@ use rand_chacha::rand_core::{RngCore, SeedableRng};
 
 use super::exact::{self, Branch};
 use super::hardware::Variables;
-use super::terms::{Id, Term, Terms, number};
+use super::terms::{RealTerm, RealTermId, RealTerms, number};
 use glint_base::fixed::exp2;
 
 /// Points by which terms are compared, and how often one is looked for.
@@ -16,42 +16,54 @@ const SAMPLES: usize = 24;
 const TRIES: usize = 2_000;
 
 /// The common part of a case's statements.
-pub struct Script<'a> {
+pub struct GappaScript<'a> {
     /// Hardware and formula.
-    pub terms: &'a Terms,
+    pub terms: &'a RealTerms,
     /// Terms below this number are the hardware's.
     pub hardware_terms: usize,
     /// Variables with their fraction bits.
     pub placed: &'a Variables,
     /// The values that terms have.
-    pub presupposed: &'a BTreeMap<Id, (f64, f64)>,
+    pub presupposed: &'a BTreeMap<RealTermId, (f64, f64)>,
     /// How each expression of the formula goes.
     pub ways: &'a [Branch],
 }
 
-impl Script<'_> {
+impl GappaScript<'_> {
     /// Writes the statement that the output `out` is within the bound of the formula `f` times a factor, or asks how
     /// far from it.
-    pub fn text(&self, out: Id, factor: Id, f: Id, bound: Option<f64>) -> String {
+    pub fn text(
+        &self,
+        out: RealTermId,
+        factor: RealTermId,
+        f: RealTermId,
+        bound: Option<f64>,
+    ) -> String {
         let mut terms = self.terms.clone();
-        let exact = exact::folded(&mut terms, Term::Mul(f, factor));
-        let difference = terms.insert(Term::Sub(out, exact), "difference");
+        let exact = exact::folded(&mut terms, RealTerm::Mul(f, factor));
+        let difference = terms.insert(RealTerm::Sub(out, exact), "difference");
         let goal = goal(&terms.name(difference), bound);
         self.statement(terms, difference, &goal, &[])
     }
 
     /// Returns the text of a statement whose goal is about a term. `hints` are added to the hints that hardware and
     /// formula give.
-    pub fn statement(&self, mut terms: Terms, about: Id, goal: &str, hints: &[String]) -> String {
+    pub fn statement(
+        &self,
+        mut terms: RealTerms,
+        about: RealTermId,
+        goal: &str,
+        hints: &[String],
+    ) -> String {
         let mut roots = vec![about];
         for way in self.ways {
             roots.extend(way.at_least.iter().chain(&way.at_most));
         }
         let values = self.presupposed.keys().copied();
-        roots.extend(values.filter(|&id| !matches!(self.terms.get(id), Term::Variable(_))));
+        roots.extend(values.filter(|&id| !matches!(self.terms.get(id), RealTerm::Variable(_))));
         let (equal, near) = self.hints(&mut terms, about, &mut roots);
         let needed = terms.needed(&roots);
-        let is_variable = |id: Id| matches!(terms.get(id), Term::Variable(_));
+        let is_variable = |id: RealTermId| matches!(terms.get(id), RealTerm::Variable(_));
         let mut hypotheses = Vec::new();
         for (name, scale) in self.placed {
             if (0..terms.count()).any(|id| needed[id] && is_variable(id) && terms.name(id) == *name)
@@ -62,7 +74,7 @@ impl Script<'_> {
         for (&id, &(low, high)) in self.presupposed {
             // A variable of one value, which the program puts in its place, is a premise all the same.
             let is_given = is_variable(id) && low == high;
-            if !matches!(terms.get(id), Term::Number(_)) && (needed[id] || is_given) {
+            if !matches!(terms.get(id), RealTerm::Number(_)) && (needed[id] || is_given) {
                 let name = terms.name(id);
                 hypotheses.push(format!("{name} in [{},{}]", number(low), number(high)));
             }
@@ -72,7 +84,7 @@ impl Script<'_> {
             for (id, sign) in sides.chain(way.at_most.iter().map(|&id| (id, "<="))) {
                 let hypothesis = format!("{} {sign} 0", terms.name(id));
                 let is_new = !hypotheses.contains(&hypothesis);
-                if is_new && !matches!(terms.get(id), Term::Number(_)) {
+                if is_new && !matches!(terms.get(id), RealTerm::Number(_)) {
                     hypotheses.push(hypothesis);
                 }
             }
@@ -95,9 +107,9 @@ impl Script<'_> {
     /// uses.
     fn hints(
         &self,
-        terms: &mut Terms,
-        about: Id,
-        roots: &mut Vec<Id>,
+        terms: &mut RealTerms,
+        about: RealTermId,
+        roots: &mut Vec<RealTermId>,
     ) -> (Vec<String>, Vec<String>) {
         let needed = terms.needed(roots);
         let formula = self.hardware_terms..about.max(self.hardware_terms);
@@ -108,10 +120,11 @@ impl Script<'_> {
         let samples = self.samples(terms);
         let blends = (0..about).filter(|&id| needed[id]).filter_map(|id| blend(terms, id));
         let (mut equal, mut near): (Vec<String>, Vec<String>) = (blends.collect(), Vec::new());
-        let column = |id: Id| samples.iter().map(|values| values[id]).collect::<Vec<f64>>();
+        let column = |id: RealTermId| samples.iter().map(|values| values[id]).collect::<Vec<f64>>();
         let varies = |values: &[f64]| values.iter().any(|value| *value != values[0]);
-        let compound = |id: Id| !matches!(terms.get(id), Term::Number(_) | Term::Variable(_));
-        let own: Vec<(Id, Vec<f64>)> = (0..self.hardware_terms)
+        let compound =
+            |id: RealTermId| !matches!(terms.get(id), RealTerm::Number(_) | RealTerm::Variable(_));
+        let own: Vec<(RealTermId, Vec<f64>)> = (0..self.hardware_terms)
             .filter(|&id| needed[id] && compound(id))
             .map(|id| (id, column(id)))
             .filter(|(_, values)| varies(values))
@@ -150,13 +163,13 @@ impl Script<'_> {
 
     /// Returns the values of all terms at operands of this case, followed by their values at other operands of the
     /// domain.
-    fn samples(&self, terms: &Terms) -> Vec<Vec<f64>> {
+    fn samples(&self, terms: &RealTerms) -> Vec<Vec<f64>> {
         let mut random = ChaCha8Rng::seed_from_u64(1);
         let (mut samples, mut others) = (Vec::new(), Vec::new());
         for _ in 0..TRIES {
             let mut variables = HashMap::new();
             for (&id, &(low, high)) in self.presupposed {
-                if let Term::Variable(name) = self.terms.get(id) {
+                if let RealTerm::Variable(name) = self.terms.get(id) {
                     let scale = self.placed.iter().find(|(other, _)| other == name);
                     let unit = exp2(scale.map_or(0, |(_, scale)| *scale));
                     let unit_share = (random.next_u32() as f64) / f64::from(u32::MAX);
@@ -171,8 +184,9 @@ impl Script<'_> {
                 }
             }
             let values = terms.evaluate(&variables);
-            let within =
-                |(&id, &(low, high)): (&Id, &(f64, f64))| (low..=high).contains(&values[id]);
+            let within = |(&id, &(low, high)): (&RealTermId, &(f64, f64))| {
+                (low..=high).contains(&values[id])
+            };
             let ways = self.ways.iter().all(|way| {
                 way.at_least.iter().all(|&id| values[id] >= 0.0)
                     && way.at_most.iter().all(|&id| values[id] <= 0.0)
@@ -192,15 +206,15 @@ impl Script<'_> {
 }
 
 /// Writes a value between a and 1, a + (1 − a)·x, as 1 − (1 − a)·(1 − x), which shows its range.
-fn blend(terms: &Terms, id: Id) -> Option<String> {
-    let Term::Add(first, second) = *terms.get(id) else { return None };
+fn blend(terms: &RealTerms, id: RealTermId) -> Option<String> {
+    let RealTerm::Add(first, second) = *terms.get(id) else { return None };
     let (product, a) = match terms.get(first) {
-        Term::Number(_) => (second, first),
+        RealTerm::Number(_) => (second, first),
         _ => (first, second),
     };
-    let Term::Mul(b, c) = *terms.get(product) else { return None };
-    let is_rest = |id: Id| match *terms.get(id) {
-        Term::Sub(one, other) => *terms.get(one) == Term::Number(1.0) && other == a,
+    let RealTerm::Mul(b, c) = *terms.get(product) else { return None };
+    let is_rest = |id: RealTermId| match *terms.get(id) {
+        RealTerm::Sub(one, other) => *terms.get(one) == RealTerm::Number(1.0) && other == a,
         _ => false,
     };
     let (rest, x) = if is_rest(b) { (b, c) } else { (c, b) };
@@ -209,7 +223,12 @@ fn blend(terms: &Terms, id: Id) -> Option<String> {
 }
 
 /// Writes the hint that one term is factor times another and an offset.
-fn rewriting(terms: &Terms, left: Id, right: Id, (factor, offset): (f64, f64)) -> String {
+fn rewriting(
+    terms: &RealTerms,
+    left: RealTermId,
+    right: RealTermId,
+    (factor, offset): (f64, f64),
+) -> String {
     let right = terms.name(right);
     // Gappa sees through a plain difference, and not through a product by -1.
     let right = match (offset, factor) {

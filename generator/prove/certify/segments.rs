@@ -14,17 +14,17 @@
 //!
 //! The angles of each word are found by halving the angle's range until the values in the netlist are decided, as in
 //! [`super::cases`]. All points of a line are the first one at another angle: [`glint_rtl::pipeline::unroll_line`]
-//! has the induction. The formula's angle of a point is the value of the walk's register ([`Walk::angle`]).
+//! has the induction. The formula's angle of a point is the value of the walk's register ([`AngleWalk::angle`]).
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use super::cases::{self, Case};
-use super::hardware::{self, Hardware, Value, Variables};
-use super::script::{Script, goal};
+use super::hardware::{self, Hardware, NodeValue, Variables};
+use super::script::{GappaScript, goal};
 use super::statement::{Statement, Statements};
 use super::task::Task;
-use super::terms::{Id, Term, Terms, number};
+use super::terms::{RealTerm, RealTermId, RealTerms, number};
 use glint_base::fixed::exp2;
 use glint_formula::{Enclosure, Formula, Function, Kind, Operator, parse};
 use glint_rtl::netlist::NetId;
@@ -49,7 +49,7 @@ const PLACES: i32 = 42;
 const POINT: &str = "angle of the point";
 
 /// The segment of a word's angles, in right angles.
-struct Word {
+struct WordSegment {
     value: f64,
     from: f64,
     to: f64,
@@ -70,7 +70,7 @@ pub fn statements(task: &Task, walk: &[WalkRegister]) -> Result<Vec<Statement>, 
         return Err("its formula has several values".to_owned());
     };
     let (angle, power) = lobe(formula).ok_or("its formula is no power of a cosine")?;
-    let walk = Walk::new(task, walk)?;
+    let walk = AngleWalk::new(task, walk)?;
     let angle = walk.angle(angle);
     let (colours, table, outputs) = table(task)?;
     let words = words(task, table, &walk, &angle)?;
@@ -98,14 +98,14 @@ fn lobe(formula: &Formula) -> Option<(&Formula, u32)> {
 }
 
 /// An angle that is walked along, by names of operands.
-struct Walk {
+struct AngleWalk {
     /// The angle of the first point.
     start: String,
     /// The angle as a point has it, as the formula of a point that is no first one says it: wrapped around.
     wrapped: Formula,
 }
 
-impl Walk {
+impl AngleWalk {
     /// Returns the walk whose only register begins with an operand, to which another is added modulo its format.
     fn new(task: &Task, walk: &[WalkRegister]) -> Result<Self, String> {
         let graph = task.graph();
@@ -140,9 +140,9 @@ impl Walk {
 }
 
 /// The colour operand of each output, the one word that all are made of, and the outputs.
-type Products = (Vec<String>, NodeId, Vec<(String, NodeId)>);
+type ColourProducts = (Vec<String>, NodeId, Vec<(String, NodeId)>);
 
-fn table(task: &Task) -> Result<Products, String> {
+fn table(task: &Task) -> Result<ColourProducts, String> {
     let graph = task.graph();
     let outputs = task.outputs()?;
     let operands = task.contract.operands().iter();
@@ -183,7 +183,12 @@ fn table(task: &Task) -> Result<Products, String> {
 }
 
 /// Returns the words of the table with the angles that read them, by address.
-fn words(task: &Task, table: NodeId, walk: &Walk, angle: &Formula) -> Result<Vec<Word>, String> {
+fn words(
+    task: &Task,
+    table: NodeId,
+    walk: &AngleWalk,
+    angle: &Formula,
+) -> Result<Vec<WordSegment>, String> {
     let graph = task.graph();
     let Cell::Read { rom, address } = graph.node(table).cell else {
         return Err("there is no table".to_owned());
@@ -202,10 +207,10 @@ fn words(task: &Task, table: NodeId, walk: &Walk, angle: &Formula) -> Result<Vec
         return Err(format!("`{}` can leave its domain along a line", walk.start));
     }
     let data = graph.node(table).format;
-    let mut found: BTreeMap<i128, Word> = BTreeMap::new();
+    let mut found: BTreeMap<i128, WordSegment> = BTreeMap::new();
     let mut pending = vec![format.range()];
     while let Some((low, high)) = pending.pop() {
-        let mut known = cases::Known::new();
+        let mut known = cases::NodeIntervals::new();
         let value = |raw: i128| raw as f64 * exp2(-format.frac);
         let at = if task.learn(&mut known, operand, (low, high)) {
             cases::range(task.view, address, &known).filter(|at| at.0 == at.1)
@@ -224,7 +229,7 @@ fn words(task: &Task, table: NodeId, walk: &Walk, angle: &Formula) -> Result<Vec
             .filter(|angle| angle.low >= 0.0 && angle.high <= 1.0)
             .ok_or("its angle does not lie between 0 and a right angle")?;
         let word = data.to_f64((task.view.words)(rom, at as u64));
-        let known = found.entry(at).or_insert(Word { value: word, from, to });
+        let known = found.entry(at).or_insert(WordSegment { value: word, from, to });
         (known.from, known.to) = (known.from.min(from), known.to.max(to));
     }
     Ok(found.into_values().collect())
@@ -237,7 +242,7 @@ fn enclosed(angle: &Formula, (low, high): (f64, f64)) -> Option<Enclosure> {
 }
 
 /// Writes the statement that words are within `bound` of the formula at both ends of their segments.
-fn about_words(words: &[Word], first: usize, power: u32, bound: f64) -> String {
+fn about_words(words: &[WordSegment], first: usize, power: u32, bound: f64) -> String {
     let degree = 2 * TERMS + 2;
     let mut text = format!(
         "# By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^{degree}/{degree}! with |rest| <= 1.\n"
@@ -296,19 +301,19 @@ fn about_output(
 ) -> Result<String, String> {
     let graph = task.graph();
     let ranges = graph.nodes.iter().map(|node| node.range).collect();
-    let case = Case { known: cases::Known::new(), ranges, parabolas: BTreeMap::new() };
+    let case = Case { known: cases::NodeIntervals::new(), ranges, parabolas: BTreeMap::new() };
     let format =
         |port: NetId| (task.design.net(port).name.clone(), task.design.net(port).format.frac);
     let placed: Variables = task.unrolled.operands.iter().map(|&port| format(port)).collect();
     let mut hardware = Hardware::new(task.view, &case, placed, task.tables);
-    let mut terms = Terms::default();
-    let mut real = |terms: &mut Terms, node: NodeId| -> Result<Id, String> {
+    let mut terms = RealTerms::default();
+    let mut real = |terms: &mut RealTerms, node: NodeId| -> Result<RealTermId, String> {
         let value = hardware.value(terms, node)?;
         let (id, scale) = hardware::placed(terms, value, 0);
         Ok(hardware::scaled(terms, id, scale, "out"))
     };
     let out = real(&mut terms, out)?;
-    let Value::Term { id: word, scale } = hardware.value(&mut terms, table)? else {
+    let NodeValue::Term { id: word, scale } = hardware.value(&mut terms, table)? else {
         return Err("its table has a single word".to_owned());
     };
     if scale != graph.node(table).format.frac {
@@ -318,19 +323,19 @@ fn about_output(
     let operand = task.contract.operands().iter().find(|operand| operand.name == *colour);
     let operand = operand.ok_or("its contract lacks a colour")?;
     let of_colour = |raw: i64| raw as f64 * exp2(-operand.format.frac);
-    let factor = terms.insert(Term::Variable(colour.to_owned()), colour);
+    let factor = terms.insert(RealTerm::Variable(colour.to_owned()), colour);
     presupposed.insert(factor, (of_colour(operand.domain.0), of_colour(operand.domain.1)));
-    let f = terms.insert(Term::Variable("f".to_owned()), "f");
-    let apart = terms.insert(Term::Sub(word, f), "apart");
+    let f = terms.insert(RealTerm::Variable("f".to_owned()), "f");
+    let apart = terms.insert(RealTerm::Sub(word, f), "apart");
     presupposed.insert(apart, (-of_f, of_f));
     let unrounded = terms.unrounded(out, &mut std::collections::HashMap::new());
     let hardware_terms = terms.count();
-    let exact = terms.insert(Term::Mul(f, factor), "exact");
-    let difference = terms.insert(Term::Sub(out, exact), "difference");
+    let exact = terms.insert(RealTerm::Mul(f, factor), "exact");
+    let difference = terms.insert(RealTerm::Sub(out, exact), "difference");
     let [product, exact, colour, word, f] =
         [unrounded, exact, factor, word, f].map(|id| terms.name(id));
     let hint = format!("{product} - {exact} -> {colour} * ({word} - {f});");
-    let script = Script {
+    let script = GappaScript {
         terms: &terms,
         hardware_terms,
         placed: &hardware.variables,
@@ -348,7 +353,8 @@ mod tests {
     #[test]
     fn the_angle_of_a_point_is_that_of_the_walk_alone() {
         let real = |text: &str| parse(text).expect("a formula");
-        let walk = Walk { start: "a".to_owned(), wrapped: real("(a + index * d + 2) % 4 - 2") };
+        let walk =
+            AngleWalk { start: "a".to_owned(), wrapped: real("(a + index * d + 2) % 4 - 2") };
         let range = |text: &str, range| {
             enclosed(&walk.angle(&real(text)), range).map(|it| (it.low, it.high))
         };

@@ -1,7 +1,7 @@
 //! Holds the design, the contract and the unrolled computation of a proof. It cuts the domain where the formula or a
 //! table requires it.
 
-use super::cases::{self, Known, View};
+use super::cases::{self, NodeIntervals, UnrolledComputation};
 use glint_formula::{Formula, Kind, Operator};
 use glint_golden::Contract;
 use glint_rtl::netlist::{Design, RomId};
@@ -21,7 +21,7 @@ pub(super) struct Task<'a> {
     /// The bound in units of the outputs; `None` if the statements ask for it.
     pub(super) bound: Option<f64>,
     pub(super) unrolled: &'a Unrolled,
-    pub(super) view: View<'a>,
+    pub(super) view: UnrolledComputation<'a>,
     pub(super) tables: &'a [String],
     /// The formulas of a highlight's f, or else of the outputs.
     pub(super) formulas: &'a [Formula],
@@ -34,7 +34,12 @@ impl Task<'_> {
     }
 
     /// Calls [`cases::learn`] with the ranges that nodes have before any way is followed.
-    pub(super) fn learn(&self, known: &mut Known, node: NodeId, range: (i128, i128)) -> bool {
+    pub(super) fn learn(
+        &self,
+        known: &mut NodeIntervals,
+        node: NodeId,
+        range: (i128, i128),
+    ) -> bool {
         let ranges: Vec<_> = self.graph().nodes.iter().map(|node| node.range).collect();
         cases::learn(self.graph(), known, &ranges, node, range)
     }
@@ -49,8 +54,8 @@ impl Task<'_> {
     }
 
     /// Returns the values that operands have in the contract's domain.
-    pub(super) fn domain(&self) -> Result<Known, String> {
-        let mut known = Known::new();
+    pub(super) fn domain(&self) -> Result<NodeIntervals, String> {
+        let mut known = NodeIntervals::new();
         for operand in self.contract.operands() {
             let (low, high) = operand.domain;
             if let Some(node) = self.operand(&operand.name)
@@ -77,7 +82,7 @@ impl Task<'_> {
     /// addresses tables makes a part for each run of values with the same words. If there is one table with many
     /// words, and the formula reads it too, its word is a variable. This cannot be done for several tables, because
     /// their words depend on each other.
-    pub(super) fn split(&self, known: &Known) -> Vec<Known> {
+    pub(super) fn split(&self, known: &NodeIntervals) -> Vec<NodeIntervals> {
         let mut split = vec![known.clone()];
         for operand in self.contract.operands() {
             let (low, high) = operand.domain;
@@ -106,7 +111,7 @@ impl Task<'_> {
             {
                 continue;
             }
-            let learnt = |known: &Known, (from, to): (i64, i64)| {
+            let learnt = |known: &NodeIntervals, (from, to): (i64, i64)| {
                 let mut known = known.clone();
                 self.learn(&mut known, node, (from.into(), to.into())).then_some(known)
             };

@@ -5,12 +5,12 @@ use std::fmt::Write as _;
 
 use glint_base::cone;
 
-/// A number of a [`Terms`].
-pub type Id = usize;
+/// A number of a [`RealTerms`].
+pub type RealTermId = usize;
 
 /// How a value is rounded to a multiple of a power of two.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Direction {
+pub enum RoundingDirection {
     /// Down: bits are dropped.
     Down,
     /// To the nearest, halves away from 0.
@@ -19,48 +19,48 @@ pub enum Direction {
 
 /// An expression over other terms.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Term {
+pub enum RealTerm {
     /// An operand.
     Variable(String),
     /// A constant.
     Number(f64),
     /// The sum.
-    Add(Id, Id),
+    Add(RealTermId, RealTermId),
     /// The difference.
-    Sub(Id, Id),
+    Sub(RealTermId, RealTermId),
     /// The product.
-    Mul(Id, Id),
+    Mul(RealTermId, RealTermId),
     /// The quotient.
-    Div(Id, Id),
+    Div(RealTermId, RealTermId),
     /// The multiple of 2^-`fraction` next to the operand in a direction.
     Round {
         /// The term that is rounded.
-        of: Id,
+        of: RealTermId,
         /// The number of fraction bits that are kept; negative if integer bits are dropped.
         fraction: i32,
         /// The direction.
-        direction: Direction,
+        direction: RoundingDirection,
     },
 }
 
 /// Terms, each once, with the names of definitions.
 #[derive(Clone, Debug, Default)]
-pub struct Terms {
-    terms: Vec<(Term, String)>,
+pub struct RealTerms {
+    terms: Vec<(RealTerm, String)>,
     /// The variables of each term, and its degree in them.
-    shapes: Vec<(Vec<Id>, u32)>,
-    known: HashMap<String, Id>,
+    shapes: Vec<(Vec<RealTermId>, u32)>,
+    known: HashMap<String, RealTermId>,
 }
 
-impl Terms {
+impl RealTerms {
     /// Returns the term; `name` becomes the name of its definition, if it gets one.
     ///
     /// Operands of a sum and a product are put in one order, so that hardware and formula have the same: Gappa
     /// compares a product with another factor by factor.
-    pub fn insert(&mut self, term: Term, name: &str) -> Id {
+    pub fn insert(&mut self, term: RealTerm, name: &str) -> RealTermId {
         let term = match term {
-            Term::Add(a, b) if self.is_after(a, b) => Term::Add(b, a),
-            Term::Mul(a, b) if self.is_after(a, b) => Term::Mul(b, a),
+            RealTerm::Add(a, b) if self.is_after(a, b) => RealTerm::Add(b, a),
+            RealTerm::Mul(a, b) if self.is_after(a, b) => RealTerm::Mul(b, a),
             term => term,
         };
         let key = format!("{term:?}");
@@ -69,7 +69,7 @@ impl Terms {
         }
         let id = self.terms.len();
         let name = match term {
-            Term::Variable(_) => name.to_owned(),
+            RealTerm::Variable(_) => name.to_owned(),
             _ => format!("{name}_{id}"),
         };
         self.terms.push((term, name));
@@ -80,28 +80,28 @@ impl Terms {
 
     /// Returns whether `a` comes after `b` in the order of terms. Numbers come first and variables last. All other
     /// terms are ordered by their variables and degree.
-    fn is_after(&self, a: Id, b: Id) -> bool {
-        let kind = |id: Id| match self.get(id) {
-            Term::Number(_) => 0,
-            Term::Variable(_) => 2,
+    fn is_after(&self, a: RealTermId, b: RealTermId) -> bool {
+        let kind = |id: RealTermId| match self.get(id) {
+            RealTerm::Number(_) => 0,
+            RealTerm::Variable(_) => 2,
             _ => 1,
         };
-        let order = |id: Id| (kind(id), &self.shapes[id], id);
+        let order = |id: RealTermId| (kind(id), &self.shapes[id], id);
         order(a) > order(b)
     }
 
     /// Returns the variables of a term that is new, and its degree in them.
-    fn shape(&self, id: Id) -> (Vec<Id>, u32) {
+    fn shape(&self, id: RealTermId) -> (Vec<RealTermId>, u32) {
         let operands = self.operands(id);
-        let mut variables: Vec<Id> =
+        let mut variables: Vec<RealTermId> =
             operands.iter().flat_map(|&id| self.shapes[id].0.iter().copied()).collect();
         let degrees = operands.iter().map(|&id| self.shapes[id].1);
         let degree = match self.get(id) {
-            Term::Variable(_) => {
+            RealTerm::Variable(_) => {
                 variables.push(id);
                 1
             }
-            Term::Mul(..) => degrees.sum(),
+            RealTerm::Mul(..) => degrees.sum(),
             _ => degrees.max().unwrap_or(0),
         };
         variables.sort_unstable();
@@ -110,20 +110,20 @@ impl Terms {
     }
 
     /// Returns the constant.
-    pub fn number(&mut self, value: f64) -> Id {
-        self.insert(Term::Number(value), "number")
+    pub fn number(&mut self, value: f64) -> RealTermId {
+        self.insert(RealTerm::Number(value), "number")
     }
 
     /// Returns the term of a number.
-    pub fn get(&self, id: Id) -> &Term {
+    pub fn get(&self, id: RealTermId) -> &RealTerm {
         &self.terms[id].0
     }
 
     /// Returns the name in the script.
-    pub fn name(&self, id: Id) -> String {
+    pub fn name(&self, id: RealTermId) -> String {
         match self.get(id) {
-            Term::Number(value) if *value < 0.0 => format!("({})", number(*value)),
-            Term::Number(value) => number(*value),
+            RealTerm::Number(value) if *value < 0.0 => format!("({})", number(*value)),
+            RealTerm::Number(value) => number(*value),
             _ => self.terms[id].1.clone(),
         }
     }
@@ -134,12 +134,16 @@ impl Terms {
     }
 
     /// Returns whether a term is free of roundings and no constant.
-    pub fn is_exact(&self, id: Id) -> bool {
-        let of = |id: &Id| self.is_exact(*id) || matches!(self.get(*id), Term::Number(_));
+    pub fn is_exact(&self, id: RealTermId) -> bool {
+        let of =
+            |id: &RealTermId| self.is_exact(*id) || matches!(self.get(*id), RealTerm::Number(_));
         match self.get(id) {
-            Term::Variable(_) => true,
-            Term::Number(_) | Term::Round { .. } => false,
-            Term::Add(a, b) | Term::Sub(a, b) | Term::Mul(a, b) | Term::Div(a, b) => of(a) && of(b),
+            RealTerm::Variable(_) => true,
+            RealTerm::Number(_) | RealTerm::Round { .. } => false,
+            RealTerm::Add(a, b)
+            | RealTerm::Sub(a, b)
+            | RealTerm::Mul(a, b)
+            | RealTerm::Div(a, b) => of(a) && of(b),
         }
     }
 
@@ -148,18 +152,18 @@ impl Terms {
         let mut values: Vec<f64> = Vec::with_capacity(self.terms.len());
         for (term, _) in &self.terms {
             let value = match term {
-                Term::Variable(name) => variables.get(name).copied().unwrap_or(f64::NAN),
-                Term::Number(value) => *value,
-                Term::Add(a, b) => values[*a] + values[*b],
-                Term::Sub(a, b) => values[*a] - values[*b],
-                Term::Mul(a, b) => values[*a] * values[*b],
-                Term::Div(a, b) => values[*a] / values[*b],
-                Term::Round { of, fraction, direction } => {
+                RealTerm::Variable(name) => variables.get(name).copied().unwrap_or(f64::NAN),
+                RealTerm::Number(value) => *value,
+                RealTerm::Add(a, b) => values[*a] + values[*b],
+                RealTerm::Sub(a, b) => values[*a] - values[*b],
+                RealTerm::Mul(a, b) => values[*a] * values[*b],
+                RealTerm::Div(a, b) => values[*a] / values[*b],
+                RealTerm::Round { of, fraction, direction } => {
                     let unit = libm::exp2(f64::from(*fraction));
                     let scaled = values[*of] * unit;
                     match direction {
-                        Direction::Down => libm::floor(scaled) / unit,
-                        Direction::Nearest => libm::floor(scaled + 0.5) / unit,
+                        RoundingDirection::Down => libm::floor(scaled) / unit,
+                        RoundingDirection::Nearest => libm::floor(scaled + 0.5) / unit,
                     }
                 }
             };
@@ -169,22 +173,26 @@ impl Terms {
     }
 
     /// Marks the terms that a root depends on, roots included.
-    pub fn needed(&self, roots: &[Id]) -> Vec<bool> {
+    pub fn needed(&self, roots: &[RealTermId]) -> Vec<bool> {
         cone::needed(self.terms.len(), roots.iter().copied(), |id| self.operands(id))
     }
 
     /// Returns the term without its roundings. `known` holds the results so far.
-    pub fn unrounded(&mut self, id: Id, known: &mut HashMap<Id, Id>) -> Id {
+    pub fn unrounded(
+        &mut self,
+        id: RealTermId,
+        known: &mut HashMap<RealTermId, RealTermId>,
+    ) -> RealTermId {
         if let Some(&twin) = known.get(&id) {
             return twin;
         }
         let twin = match self.get(id).clone() {
-            Term::Round { of, .. } => self.unrounded(of, known),
-            Term::Variable(_) | Term::Number(_) => id,
-            Term::Add(a, b) => self.without(Term::Add, (a, b), known),
-            Term::Sub(a, b) => self.without(Term::Sub, (a, b), known),
-            Term::Mul(a, b) => self.without(Term::Mul, (a, b), known),
-            Term::Div(a, b) => self.without(Term::Div, (a, b), known),
+            RealTerm::Round { of, .. } => self.unrounded(of, known),
+            RealTerm::Variable(_) | RealTerm::Number(_) => id,
+            RealTerm::Add(a, b) => self.without(RealTerm::Add, (a, b), known),
+            RealTerm::Sub(a, b) => self.without(RealTerm::Sub, (a, b), known),
+            RealTerm::Mul(a, b) => self.without(RealTerm::Mul, (a, b), known),
+            RealTerm::Div(a, b) => self.without(RealTerm::Div, (a, b), known),
         };
         known.insert(id, twin);
         twin
@@ -192,10 +200,10 @@ impl Terms {
 
     fn without(
         &mut self,
-        make: fn(Id, Id) -> Term,
-        (a, b): (Id, Id),
-        known: &mut HashMap<Id, Id>,
-    ) -> Id {
+        make: fn(RealTermId, RealTermId) -> RealTerm,
+        (a, b): (RealTermId, RealTermId),
+        known: &mut HashMap<RealTermId, RealTermId>,
+    ) -> RealTermId {
         let (a, b) = (self.unrounded(a, known), self.unrounded(b, known));
         self.insert(make(a, b), "unrounded")
     }
@@ -204,18 +212,18 @@ impl Terms {
     pub fn definitions(&self, needed: &[bool]) -> String {
         let mut text = String::new();
         for (id, (term, name)) in self.terms.iter().enumerate() {
-            let of = |id: &Id| self.name(*id);
+            let of = |id: &RealTermId| self.name(*id);
             let right = match term {
                 _ if !needed[id] => continue,
-                Term::Variable(_) | Term::Number(_) => continue,
-                Term::Add(a, b) => format!("{} + {}", of(a), of(b)),
-                Term::Sub(a, b) => format!("{} - {}", of(a), of(b)),
-                Term::Mul(a, b) => format!("{} * {}", of(a), of(b)),
-                Term::Div(a, b) => format!("{} / {}", of(a), of(b)),
-                Term::Round { of: a, fraction, direction } => {
+                RealTerm::Variable(_) | RealTerm::Number(_) => continue,
+                RealTerm::Add(a, b) => format!("{} + {}", of(a), of(b)),
+                RealTerm::Sub(a, b) => format!("{} - {}", of(a), of(b)),
+                RealTerm::Mul(a, b) => format!("{} * {}", of(a), of(b)),
+                RealTerm::Div(a, b) => format!("{} / {}", of(a), of(b)),
+                RealTerm::Round { of: a, fraction, direction } => {
                     let direction = match direction {
-                        Direction::Down => "dn",
-                        Direction::Nearest => "na",
+                        RoundingDirection::Down => "dn",
+                        RoundingDirection::Nearest => "na",
                     };
                     format!("fixed<{},{direction}>({})", -fraction, of(a))
                 }
@@ -225,11 +233,14 @@ impl Terms {
         text
     }
 
-    fn operands(&self, id: Id) -> Vec<Id> {
+    fn operands(&self, id: RealTermId) -> Vec<RealTermId> {
         match self.get(id) {
-            Term::Variable(_) | Term::Number(_) => Vec::new(),
-            Term::Add(a, b) | Term::Sub(a, b) | Term::Mul(a, b) | Term::Div(a, b) => vec![*a, *b],
-            Term::Round { of, .. } => vec![*of],
+            RealTerm::Variable(_) | RealTerm::Number(_) => Vec::new(),
+            RealTerm::Add(a, b)
+            | RealTerm::Sub(a, b)
+            | RealTerm::Mul(a, b)
+            | RealTerm::Div(a, b) => vec![*a, *b],
+            RealTerm::Round { of, .. } => vec![*of],
         }
     }
 }
@@ -256,14 +267,16 @@ mod tests {
 
     #[test]
     fn only_what_is_needed_is_defined() {
-        let mut terms = Terms::default();
-        let x = terms.insert(Term::Variable("x".to_owned()), "x");
+        let mut terms = RealTerms::default();
+        let x = terms.insert(RealTerm::Variable("x".to_owned()), "x");
         let half = terms.number(0.5);
-        let sum = terms.insert(Term::Add(x, half), "sum");
-        let cut =
-            terms.insert(Term::Round { of: sum, fraction: 4, direction: Direction::Down }, "cut");
-        let _unneeded = terms.insert(Term::Mul(x, x), "square");
-        assert_eq!(terms.insert(Term::Add(x, half), "again"), sum);
+        let sum = terms.insert(RealTerm::Add(x, half), "sum");
+        let cut = terms.insert(
+            RealTerm::Round { of: sum, fraction: 4, direction: RoundingDirection::Down },
+            "cut",
+        );
+        let _unneeded = terms.insert(RealTerm::Mul(x, x), "square");
+        assert_eq!(terms.insert(RealTerm::Add(x, half), "again"), sum);
         assert_eq!(
             terms.definitions(&terms.needed(&[cut])),
             "sum_2 = 0.5 + x;\ncut_3 = fixed<-4,dn>(sum_2);\n"

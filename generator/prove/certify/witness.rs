@@ -9,7 +9,7 @@ use std::collections::HashMap;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 
-use super::terms::{Direction, Id, Term, Terms, number};
+use super::terms::{RealTerm, RealTermId, RealTerms, RoundingDirection, number};
 use glint_base::fixed::exp2;
 use glint_formula::{Formula, Function, Kind, Operator, parse};
 
@@ -45,18 +45,18 @@ struct Variable {
 
 /// The hypotheses of a script.
 struct Hypotheses {
-    terms: Terms,
+    terms: RealTerms,
     variables: Vec<Variable>,
     /// The numbers between which terms lie.
-    intervals: Vec<(Id, f64, f64)>,
+    intervals: Vec<(RealTermId, f64, f64)>,
 }
 
 impl Hypotheses {
     /// Parses a script; returns `None` if a part of its text is not understood.
     fn of(script: &str) -> Option<Self> {
         let (definitions, statement) = script.split_once("\n{ ")?;
-        let mut terms = Terms::default();
-        let mut names: HashMap<String, Id> = HashMap::new();
+        let mut terms = RealTerms::default();
+        let mut names: HashMap<String, RealTermId> = HashMap::new();
         for line in definitions.lines().filter(|line| !line.starts_with('#')) {
             let Some((name, right)) = line.trim_end_matches(';').split_once(" = ") else {
                 continue;
@@ -84,9 +84,9 @@ impl Hypotheses {
             }
         }
         let variables = (0..terms.count()).filter_map(|id| {
-            let Term::Variable(name) = terms.get(id) else { return None };
+            let RealTerm::Variable(name) = terms.get(id) else { return None };
             let unit = exp2(-places.get(name).copied().unwrap_or(CONTINUOUS));
-            let is_whole = |(of, low, high): &&(Id, f64, f64)| {
+            let is_whole = |(of, low, high): &&(RealTermId, f64, f64)| {
                 *of == id && low.is_finite() && high.is_finite()
             };
             let (_, low, high) = *intervals.iter().find(is_whole).unwrap_or(&(id, -FREE, FREE));
@@ -105,7 +105,7 @@ impl Hypotheses {
         let variables = self.variables.iter().zip(point);
         let variables = variables.map(|(it, &raw)| (it.name.clone(), raw as f64 * it.unit));
         let values = self.terms.evaluate(&variables.collect());
-        let away = |&(id, low, high): &(Id, f64, f64)| {
+        let away = |&(id, low, high): &(RealTermId, f64, f64)| {
             let ends = [low, high].into_iter().filter(|end| end.is_finite());
             let size = ends.fold(1.0, |most: f64, end| most.max(end.abs()));
             match values[id].is_nan() {
@@ -174,41 +174,49 @@ pub fn witness(script: &str) -> Option<String> {
 /// Parses an expression of a script into `terms` and returns its term; `None` if it is not understood.
 ///
 /// A name is its term in `names`, or else a new variable.
-fn expression(text: &str, terms: &mut Terms, names: &HashMap<String, Id>) -> Option<Id> {
+fn expression(
+    text: &str,
+    terms: &mut RealTerms,
+    names: &HashMap<String, RealTermId>,
+) -> Option<RealTermId> {
     if let Some(rounded) = text.strip_prefix("fixed<") {
         let (how, of) = rounded.split_once(">(")?;
         let (place, direction) = how.split_once(',')?;
         let direction = match direction {
-            "dn" => Direction::Down,
-            "na" => Direction::Nearest,
+            "dn" => RoundingDirection::Down,
+            "na" => RoundingDirection::Nearest,
             _ => return None,
         };
         let of = expression(of.strip_suffix(')')?, terms, names)?;
         let fraction = -place.parse::<i32>().ok()?;
-        return Some(terms.insert(Term::Round { of, fraction, direction }, ""));
+        return Some(terms.insert(RealTerm::Round { of, fraction, direction }, ""));
     }
     term(&parse(text).ok()?, terms, names)
 }
 
-fn term(formula: &Formula, terms: &mut Terms, names: &HashMap<String, Id>) -> Option<Id> {
-    let (make, a, b): (fn(Id, Id) -> Term, _, _) = match &formula.kind {
+fn term(
+    formula: &Formula,
+    terms: &mut RealTerms,
+    names: &HashMap<String, RealTermId>,
+) -> Option<RealTermId> {
+    let (make, a, b): (fn(RealTermId, RealTermId) -> RealTerm, _, _) = match &formula.kind {
         Kind::Number(literal) => return Some(terms.number(literal.nearest())),
         // A script has names of its own alone.
         Kind::Operand(_) | Kind::Constant(..) => {
             let name = formula.python();
             let known = names.get(&name).copied();
             return Some(
-                known.unwrap_or_else(|| terms.insert(Term::Variable(name.clone()), &name)),
+                known.unwrap_or_else(|| terms.insert(RealTerm::Variable(name.clone()), &name)),
             );
         }
         Kind::Unary(Function::Negate, a) => {
             let (zero, a) = (terms.number(0.0), term(a, terms, names)?);
-            return Some(terms.insert(Term::Sub(zero, a), ""));
+            return Some(terms.insert(RealTerm::Sub(zero, a), ""));
         }
-        Kind::Binary(Operator::Add, a, b) => (Term::Add, a, b),
-        Kind::Binary(Operator::Sub, a, b) => (Term::Sub, a, b),
-        Kind::Binary(Operator::Mul, a, b) => (Term::Mul, a, b),
-        Kind::Binary(Operator::Div, a, b) => (Term::Div, a, b),
+        Kind::Binary(Operator::Add, a, b) => (RealTerm::Add, a, b),
+        Kind::Binary(Operator::Sub, a, b) => (RealTerm::Sub, a, b),
+        Kind::Binary(Operator::Mul, a, b) => (RealTerm::Mul, a, b),
+        Kind::Binary(Operator::Div, a, b) => (RealTerm::Div, a, b),
         _ => return None,
     };
     let (a, b) = (term(a, terms, names)?, term(b, terms, names)?);

@@ -4,7 +4,7 @@
 
 use anyhow::{Context, Result, bail, ensure};
 
-use super::term::{ADDRESS, Id, Term, Terms};
+use super::term::{ADDRESS, VectorTerm, VectorTermId, VectorTerms};
 use glint_base::fixed::MAX_WIDTH;
 
 /// A bit of a connection.
@@ -15,19 +15,19 @@ pub enum Bit {
     Any,
 }
 
-pub type Bits = Vec<Bit>;
+pub type Connection = Vec<Bit>;
 
 /// The value of every wire: a bit of a term.
-pub struct Values(Vec<Option<(Id, u32)>>);
+pub struct WireValues(Vec<Option<(VectorTermId, u32)>>);
 
-impl Values {
+impl WireValues {
     /// Makes the values of `wires` wires. No wire has a value yet.
     pub fn new(wires: usize) -> Self {
         Self(vec![None; wires])
     }
 
     /// Has some wires carry the bits of terms, the lowest first.
-    pub fn set(&mut self, bits: &Bits, columns: &[Id]) {
+    pub fn set(&mut self, bits: &Connection, columns: &[VectorTermId]) {
         for (at, bit) in bits.iter().enumerate() {
             if let Bit::Wire(wire) = *bit {
                 let (column, place) = (at / MAX_WIDTH as usize, at as u32 % MAX_WIDTH);
@@ -37,12 +37,12 @@ impl Values {
     }
 
     /// Returns the terms of some bits, each of at most 64.
-    pub fn columns(&self, terms: &mut Terms, bits: &Bits) -> Vec<Id> {
+    pub fn columns(&self, terms: &mut VectorTerms, bits: &Connection) -> Vec<VectorTermId> {
         bits.chunks(MAX_WIDTH as usize).map(|bits| self.word(terms, bits)).collect()
     }
 
     /// Returns the term of at most 64 bits. Copies of a highest bit are an extension by a sign.
-    pub fn word(&self, terms: &mut Terms, bits: &[Bit]) -> Id {
+    pub fn word(&self, terms: &mut VectorTerms, bits: &[Bit]) -> VectorTermId {
         let copies = bits.iter().rev().take_while(|bit| Some(*bit) == bits.last()).count();
         if copies > 1 && matches!(bits.last(), Some(Bit::Wire(_))) {
             let own = self.word(terms, &bits[..=bits.len() - copies]);
@@ -54,7 +54,7 @@ impl Values {
             let (part, width) = self.run(terms, &bits[at..]);
             word = Some(match word {
                 None => part,
-                Some(lower) => terms.make(Term::Join(part, lower), (at + width) as u32),
+                Some(lower) => terms.make(VectorTerm::Join(part, lower), (at + width) as u32),
             });
             at += width;
         }
@@ -62,7 +62,7 @@ impl Values {
     }
 
     /// Returns the lowest bits that lie side by side in one term, and their number.
-    fn run(&self, terms: &mut Terms, bits: &[Bit]) -> (Id, usize) {
+    fn run(&self, terms: &mut VectorTerms, bits: &[Bit]) -> (VectorTermId, usize) {
         let source = |bit: Bit| if let Bit::Wire(wire) = bit { self.0[wire] } else { None };
         let first = source(bits[0]);
         let follows = |&(at, bit): &(usize, &Bit)| match (bits[0], first) {
@@ -85,16 +85,22 @@ impl Values {
     }
 
     /// Returns a word of a memory that is never written.
-    pub fn rom(&self, terms: &mut Terms, at: &Bits, words: &[u64], width: u32) -> Id {
+    pub fn rom(
+        &self,
+        terms: &mut VectorTerms,
+        at: &Connection,
+        words: &[u64],
+        width: u32,
+    ) -> VectorTermId {
         let address = self.word(terms, at);
         let address = terms.resized(address, ADDRESS);
         let memory = terms.memory(words);
-        let word = terms.make(Term::Word { memory, address }, width);
+        let word = terms.make(VectorTerm::Word { memory, address }, width);
         if at.len() < 32 && words.len() >= 1 << at.len() {
             return word;
         }
         let size = terms.constant(words.len() as u64, ADDRESS);
-        let inside = terms.make(Term::Less(address, size), 1);
+        let inside = terms.make(VectorTerm::Less(address, size), 1);
         let beyond = terms.beyond(memory, address, width);
         terms.choice(inside, word, beyond)
     }
@@ -105,13 +111,13 @@ impl Values {
     /// Fails if the cell is not known here, or wider than terms are.
     pub fn cell(
         &self,
-        terms: &mut Terms,
+        terms: &mut VectorTerms,
         kind: &str,
         signed: [bool; 2],
-        [a, b, s]: &[Bits; 3],
+        [a, b, s]: &[Connection; 3],
         width: usize,
-    ) -> Result<Vec<Id>> {
-        let extended = |terms: &mut Terms, bits: &Bits, signed: bool, width: usize| {
+    ) -> Result<Vec<VectorTermId>> {
+        let extended = |terms: &mut VectorTerms, bits: &Connection, signed: bool, width: usize| {
             ensure!(bits.len().max(width) <= MAX_WIDTH as usize, "it has more than 64 bits");
             let word = self.word(terms, bits);
             Ok(match signed && width > bits.len() {
@@ -120,18 +126,18 @@ impl Values {
             })
         };
         let both = signed == [true; 2];
-        let of = |terms: &mut Terms, width: usize| -> Result<[Id; 2]> {
+        let of = |terms: &mut VectorTerms, width: usize| -> Result<[VectorTermId; 2]> {
             Ok([extended(terms, a, both, width)?, extended(terms, b, both, width)?])
         };
-        let truth = |terms: &mut Terms, bits: &Bits| {
+        let truth = |terms: &mut VectorTerms, bits: &Connection| {
             let columns = self.columns(terms, bits);
             let any = columns.into_iter().map(|column| {
                 let zero = terms.constant(0, terms.width(column));
                 let none = terms.equal(column, zero);
                 terms.not(none)
             });
-            let any: Vec<Id> = any.collect();
-            let or = |terms: &mut Terms, a, b| terms.make(Term::Or(a, b), 1);
+            let any: Vec<VectorTermId> = any.collect();
+            let or = |terms: &mut VectorTerms, a, b| terms.make(VectorTerm::Or(a, b), 1);
             any.into_iter().reduce(|a, b| or(terms, a, b)).context("it has no input")
         };
         let widest = a.len().max(b.len());
@@ -162,16 +168,16 @@ impl Values {
             "$neg" => {
                 let (a, zero) =
                     (extended(terms, a, signed[0], width)?, terms.constant(0, width as u32));
-                return Ok(vec![terms.make(Term::Sub(zero, a), width as u32)]);
+                return Ok(vec![terms.make(VectorTerm::Sub(zero, a), width as u32)]);
             }
             "$and" | "$or" | "$xor" | "$xnor" | "$add" | "$sub" => {
                 let [a, b] = of(terms, width)?;
                 let op = match kind {
-                    "$and" => Term::And,
-                    "$or" => Term::Or,
-                    "$add" => Term::Add,
-                    "$sub" => Term::Sub,
-                    _ => Term::Xor,
+                    "$and" => VectorTerm::And,
+                    "$or" => VectorTerm::Or,
+                    "$add" => VectorTerm::Add,
+                    "$sub" => VectorTerm::Sub,
+                    _ => VectorTerm::Xor,
                 };
                 let word = terms.make(op(a, b), width as u32);
                 return Ok(vec![if kind == "$xnor" { terms.not(word) } else { word }]);
@@ -179,7 +185,7 @@ impl Values {
             "$mul" => {
                 ensure!(width <= MAX_WIDTH as usize, "it has more than 64 bits");
                 let [a, b] = of(terms, MAX_WIDTH as usize)?;
-                let product = terms.make(Term::Product(a, b), MAX_WIDTH);
+                let product = terms.make(VectorTerm::Product(a, b), MAX_WIDTH);
                 return Ok(vec![terms.slice(product, 0, width as u32)]);
             }
             "$eq" | "$ne" => {
@@ -190,7 +196,7 @@ impl Values {
             "$lt" | "$le" | "$gt" | "$ge" => {
                 let [a, b] = of(terms, widest)?;
                 let [a, b] = if matches!(kind, "$lt" | "$ge") { [a, b] } else { [b, a] };
-                let less = if both { Term::SignedLess(a, b) } else { Term::Less(a, b) };
+                let less = if both { VectorTerm::SignedLess(a, b) } else { VectorTerm::Less(a, b) };
                 let less = terms.make(less, 1);
                 if matches!(kind, "$lt" | "$gt") { less } else { terms.not(less) }
             }
@@ -201,7 +207,7 @@ impl Values {
             }
             "$logic_and" | "$logic_or" => {
                 let (a, b) = (truth(terms, a)?, truth(terms, b)?);
-                let op = if kind == "$logic_and" { Term::And } else { Term::Or };
+                let op = if kind == "$logic_and" { VectorTerm::And } else { VectorTerm::Or };
                 terms.make(op(a, b), 1)
             }
             "$reduce_and" => {
@@ -209,7 +215,7 @@ impl Values {
                 for column in self.columns(terms, a) {
                     let ones = terms.constant(u64::MAX, terms.width(column));
                     let full = terms.equal(column, ones);
-                    all = terms.make(Term::And(all, full), 1);
+                    all = terms.make(VectorTerm::And(all, full), 1);
                 }
                 all
             }

@@ -8,7 +8,7 @@
 use std::collections::{HashMap, HashSet};
 
 use super::symbolic::Product;
-use super::term::{Id, Term, Terms};
+use super::term::{VectorTerm, VectorTermId, VectorTerms};
 use glint_base::fixed::{MAX_WIDTH, mask};
 use glint_base::interval::{self, Interval};
 
@@ -20,21 +20,26 @@ const WORDS: usize = 16;
 
 /// Returns facts about the terms of a cone. Each fact is one bit, which is 1. With `parts`, facts also say that a
 /// product is the sum of its parts, which adds products.
-pub fn about(terms: &mut Terms, roots: &[Id], products: &[Product], parts: bool) -> Vec<Id> {
+pub fn about(
+    terms: &mut VectorTerms,
+    roots: &[VectorTermId],
+    products: &[Product],
+    parts: bool,
+) -> Vec<VectorTermId> {
     let mut facts = Vec::new();
     let mut seen = HashSet::new();
     loop {
         let cone = terms.cone(roots.iter().chain(&facts).copied());
-        let new: Vec<Id> = cone.into_iter().filter(|&id| seen.insert(id)).collect();
+        let new: Vec<VectorTermId> = cone.into_iter().filter(|&id| seen.insert(id)).collect();
         if new.is_empty() {
             break;
         }
         for id in new {
             match *terms.term(id) {
-                Term::Product(a, b) => {
+                VectorTerm::Product(a, b) => {
                     if parts {
                         let parts = [(a, b), (b, a)].map(|(a, b)| in_parts(terms, a, b));
-                        let equal = |it: &Parts| terms.equal(it.product, it.sum);
+                        let equal = |it: &ProductSum| terms.equal(it.product, it.sum);
                         facts.extend(parts.iter().flatten().map(equal));
                     }
                     for (factor, other) in [(a, b), (b, a)] {
@@ -46,7 +51,7 @@ pub fn about(terms: &mut Terms, roots: &[Id], products: &[Product], parts: bool)
                         }
                     }
                 }
-                Term::Word { memory, address } => {
+                VectorTerm::Word { memory, address } => {
                     facts.extend(contents(terms, id, memory, address));
                 }
                 _ => {}
@@ -58,25 +63,34 @@ pub fn about(terms: &mut Terms, roots: &[Id], products: &[Product], parts: bool)
 }
 
 /// Returns a product by 0, 1 and -1.
-fn by_one_or_none(terms: &mut Terms, product: Id, factor: Id, other: Id) -> [Id; 3] {
+fn by_one_or_none(
+    terms: &mut VectorTerms,
+    product: VectorTermId,
+    factor: VectorTermId,
+    other: VectorTermId,
+) -> [VectorTermId; 3] {
     let zero = terms.constant(0, MAX_WIDTH);
-    let negative = terms.make(Term::Sub(zero, other), MAX_WIDTH);
+    let negative = terms.make(VectorTerm::Sub(zero, other), MAX_WIDTH);
     [(0, zero), (1, other), (u64::MAX, negative)].map(|(value, result)| {
         let value = terms.constant(value, MAX_WIDTH);
         let (is, equal) = (terms.equal(factor, value), terms.equal(product, result));
         let not = terms.not(is);
-        terms.make(Term::Or(not, equal), 1)
+        terms.make(VectorTerm::Or(not, equal), 1)
     })
 }
 
 /// Finds the products that a cone has in parts, each with the sum that it is.
-pub fn divided(terms: &mut Terms, roots: impl IntoIterator<Item = Id>) -> HashMap<Id, Id> {
-    let is_product = |terms: &Terms, id: Id| matches!(terms.term(id), Term::Product(..));
+pub fn divided(
+    terms: &mut VectorTerms,
+    roots: impl IntoIterator<Item = VectorTermId>,
+) -> HashMap<VectorTermId, VectorTermId> {
+    let is_product =
+        |terms: &VectorTerms, id: VectorTermId| matches!(terms.term(id), VectorTerm::Product(..));
     let mut pending = terms.cone(roots);
     pending.retain(|&id| is_product(terms, id));
     let mut divided = HashMap::new();
     while let Some(part) = pending.pop() {
-        let Term::Product(a, b) = *terms.term(part) else { continue };
+        let VectorTerm::Product(a, b) = *terms.term(part) else { continue };
         for (factor, other) in [(a, b), (b, a)] {
             let parts = in_parts(terms, factor, other);
             let Some(parts) = parts.filter(|parts| parts.there) else { continue };
@@ -89,25 +103,29 @@ pub fn divided(terms: &mut Terms, roots: impl IntoIterator<Item = Id>) -> HashMa
 }
 
 /// Returns the bits of an extended number, and whether the extension has its sign.
-pub fn extended(terms: &Terms, factor: Id) -> Option<(Id, bool)> {
+pub fn extended(terms: &VectorTerms, factor: VectorTermId) -> Option<(VectorTermId, bool)> {
     match *terms.term(factor) {
-        Term::SignExtend(bits) => Some((bits, true)),
-        Term::Join(top, bits) if terms.constant_of(top) == Some(0) => Some((bits, false)),
+        VectorTerm::SignExtend(bits) => Some((bits, true)),
+        VectorTerm::Join(top, bits) if terms.constant_of(top) == Some(0) => Some((bits, false)),
         _ => None,
     }
 }
 
 /// A product and the sum that it is.
-struct Parts {
-    product: Id,
-    sum: Id,
+struct ProductSum {
+    product: VectorTermId,
+    sum: VectorTermId,
     /// The lower part was there before.
     there: bool,
 }
 
 /// Divides a product if a factor is the upper bits of a larger term. The larger term times `other` is this product,
 /// shifted, plus the product of the lower bits and `other`.
-fn in_parts(terms: &mut Terms, factor: Id, other: Id) -> Option<Parts> {
+fn in_parts(
+    terms: &mut VectorTerms,
+    factor: VectorTermId,
+    other: VectorTermId,
+) -> Option<ProductSum> {
     let (bits, signed) = extended(terms, factor)?;
     let (whole, low) = whole(terms, bits)?;
     let rest = terms.slice(whole, 0, low);
@@ -121,11 +139,11 @@ fn in_parts(terms: &mut Terms, factor: Id, other: Id) -> Option<Parts> {
     } else {
         terms.resized(whole, MAX_WIDTH)
     };
-    let product = terms.make(Term::Product(whole, other), MAX_WIDTH);
-    let upper = terms.make(Term::Product(factor, other), MAX_WIDTH);
+    let product = terms.make(VectorTerm::Product(whole, other), MAX_WIDTH);
+    let upper = terms.make(VectorTerm::Product(factor, other), MAX_WIDTH);
     let upper = shifted(terms, upper, low);
     let lower = terms.resized(rest, MAX_WIDTH);
-    let lower = Term::Product(lower, other);
+    let lower = VectorTerm::Product(lower, other);
     let is_product = terms.has(&lower, MAX_WIDTH);
     let there = is_product || has_row(terms, rest, other);
     let lower = if is_product || low > ROWS {
@@ -133,25 +151,30 @@ fn in_parts(terms: &mut Terms, factor: Id, other: Id) -> Option<Parts> {
     } else {
         rows(terms, rest, other)
     };
-    let sum = terms.make(Term::Add(upper, lower), MAX_WIDTH);
-    Some(Parts { product, sum, there })
+    let sum = terms.make(VectorTerm::Add(upper, lower), MAX_WIDTH);
+    Some(ProductSum { product, sum, there })
 }
 
 /// Returns the square of `u·2^r + l`, when `l` is multiplied by `u·2^(r+1) + l` somewhere: that product, and the square of u, shifted.
-fn square_in_parts(terms: &mut Terms, factor: Id, whole: Id, rest: Id) -> Option<Parts> {
+fn square_in_parts(
+    terms: &mut VectorTerms,
+    factor: VectorTermId,
+    whole: VectorTermId,
+    rest: VectorTermId,
+) -> Option<ProductSum> {
     let (bits, signed) = extended(terms, factor)?;
     let low = terms.width(rest);
     if terms.width(whole) >= MAX_WIDTH || 2 * low >= MAX_WIDTH {
         return None;
     }
     let zero = terms.constant(0, 1);
-    let below = terms.make(Term::Join(zero, rest), low + 1);
-    let between = terms.make(Term::Join(bits, below), terms.width(bits) + low + 1);
+    let below = terms.make(VectorTerm::Join(zero, rest), low + 1);
+    let between = terms.make(VectorTerm::Join(bits, below), terms.width(bits) + low + 1);
     let [whole, between] = [whole, between].map(|it| {
         if signed { terms.sign_extended(it, MAX_WIDTH) } else { terms.resized(it, MAX_WIDTH) }
     });
     let lower = terms.resized(rest, MAX_WIDTH);
-    let lower = Term::Product(lower, between);
+    let lower = VectorTerm::Product(lower, between);
     let lower = if terms.has(&lower, MAX_WIDTH) {
         terms.make(lower, MAX_WIDTH)
     } else if has_row(terms, rest, between) {
@@ -159,90 +182,96 @@ fn square_in_parts(terms: &mut Terms, factor: Id, whole: Id, rest: Id) -> Option
     } else {
         return None;
     };
-    let product = terms.make(Term::Product(whole, whole), MAX_WIDTH);
-    let upper = terms.make(Term::Product(factor, factor), MAX_WIDTH);
+    let product = terms.make(VectorTerm::Product(whole, whole), MAX_WIDTH);
+    let upper = terms.make(VectorTerm::Product(factor, factor), MAX_WIDTH);
     let upper = shifted(terms, upper, 2 * low);
-    let sum = terms.make(Term::Add(upper, lower), MAX_WIDTH);
-    Some(Parts { product, sum, there: true })
+    let sum = terms.make(VectorTerm::Add(upper, lower), MAX_WIDTH);
+    Some(ProductSum { product, sum, there: true })
 }
 
 /// Returns `bits` joined with the bits of the same term below their lowest, and the number of the bits below.
-fn whole(terms: &mut Terms, bits: Id) -> Option<(Id, u32)> {
+fn whole(terms: &mut VectorTerms, bits: VectorTermId) -> Option<(VectorTermId, u32)> {
     match *terms.term(bits) {
-        Term::Slice { of, low } if low > 0 => {
+        VectorTerm::Slice { of, low } if low > 0 => {
             Some((terms.slice(of, 0, low + terms.width(bits)), low))
         }
-        Term::Join(upper, lower) => {
+        VectorTerm::Join(upper, lower) => {
             let (below, low) = whole(terms, lower)?;
             let width = terms.width(bits) + low;
-            Some((terms.make(Term::Join(upper, below), width), low))
+            Some((terms.make(VectorTerm::Join(upper, below), width), low))
         }
         _ => None,
     }
 }
 
 /// Returns whether there is the first row of the product of a few bits with 64.
-fn has_row(terms: &mut Terms, bits: Id, other: Id) -> bool {
+fn has_row(terms: &mut VectorTerms, bits: VectorTermId, other: VectorTermId) -> bool {
     let narrow = match *terms.term(other) {
-        Term::SignExtend(narrow) => narrow,
-        Term::Join(top, narrow) if terms.constant_of(top) == Some(0) => narrow,
+        VectorTerm::SignExtend(narrow) => narrow,
+        VectorTerm::Join(top, narrow) if terms.constant_of(top) == Some(0) => narrow,
         _ => other,
     };
     let (bit, width) = (terms.slice(bits, 0, 1), terms.width(narrow));
     let (zero, all) = (terms.constant(0, width), terms.sign_extended(bit, width));
-    terms.has(&Term::Choice(bit, narrow, zero), width) || terms.has(&Term::And(narrow, all), width)
+    terms.has(&VectorTerm::Choice(bit, narrow, zero), width)
+        || terms.has(&VectorTerm::And(narrow, all), width)
 }
 
 /// Returns the product of a few bits with 64.
-fn rows(terms: &mut Terms, bits: Id, other: Id) -> Id {
+fn rows(terms: &mut VectorTerms, bits: VectorTermId, other: VectorTermId) -> VectorTermId {
     let zero = terms.constant(0, MAX_WIDTH);
     (0..terms.width(bits)).fold(zero, |sum, row| {
         let bit = terms.slice(bits, row, 1);
         let taken = shifted(terms, other, row);
         let taken = terms.choice(bit, taken, zero);
-        terms.make(Term::Add(sum, taken), MAX_WIDTH)
+        terms.make(VectorTerm::Add(sum, taken), MAX_WIDTH)
     })
 }
 
 /// Shifts a term up by `by` bits, with zeros below; the result has 64 bits.
-pub fn shifted(terms: &mut Terms, id: Id, by: u32) -> Id {
+pub fn shifted(terms: &mut VectorTerms, id: VectorTermId, by: u32) -> VectorTermId {
     if by == 0 {
         return id;
     }
     let (kept, zeros) = (terms.slice(id, 0, MAX_WIDTH - by), terms.constant(0, by));
-    terms.make(Term::Join(kept, zeros), MAX_WIDTH)
+    terms.make(VectorTerm::Join(kept, zeros), MAX_WIDTH)
 }
 
 /// Returns the fact that the product is between the products at the ends of the ranges, if the factors are within
 /// their ranges.
-fn within(terms: &mut Terms, product: &Product) -> Option<Id> {
+fn within(terms: &mut VectorTerms, product: &Product) -> Option<VectorTermId> {
     let [a, b] = product.factors;
     let [x, y] = product.ranges;
     let (least, most) = interval::product(x, y);
     let range = (if a == b { least.max(0) } else { least }, most);
     let premises = [between(terms, a, x)?, between(terms, b, y)?];
-    let value = terms.make(Term::Product(a, b), MAX_WIDTH);
+    let value = terms.make(VectorTerm::Product(a, b), MAX_WIDTH);
     let conclusion = between(terms, value, range)?;
-    let both = terms.make(Term::And(premises[0], premises[1]), 1);
+    let both = terms.make(VectorTerm::And(premises[0], premises[1]), 1);
     let not = terms.not(both);
-    Some(terms.make(Term::Or(not, conclusion), 1))
+    Some(terms.make(VectorTerm::Or(not, conclusion), 1))
 }
 
 /// Returns whether 64 bits are a number of an interval, two's complement. Returns `None` if the ends of the interval
 /// do not fit into 64 bits.
-fn between(terms: &mut Terms, value: Id, range: Interval) -> Option<Id> {
+fn between(terms: &mut VectorTerms, value: VectorTermId, range: Interval) -> Option<VectorTermId> {
     let low = i64::try_from(range.0).ok()?;
     let high = i64::try_from(range.1).ok()?;
     let (low, high) =
         (terms.constant(low as u64, MAX_WIDTH), terms.constant(high as u64, MAX_WIDTH));
-    let below = terms.make(Term::SignedLess(value, low), 1);
-    let above = terms.make(Term::SignedLess(high, value), 1);
-    let outside = terms.make(Term::Or(below, above), 1);
+    let below = terms.make(VectorTerm::SignedLess(value, low), 1);
+    let above = terms.make(VectorTerm::SignedLess(high, value), 1);
+    let outside = terms.make(VectorTerm::Or(below, above), 1);
     Some(terms.not(outside))
 }
 
 /// Returns the possible values of a memory's word: the words one by one, or the bits that any of them has, and the interval of all.
-fn contents(terms: &mut Terms, word: Id, memory: usize, address: Id) -> Vec<Id> {
+fn contents(
+    terms: &mut VectorTerms,
+    word: VectorTermId,
+    memory: usize,
+    address: VectorTermId,
+) -> Vec<VectorTermId> {
     let words = terms.memories[memory].clone();
     let width = terms.width(word);
     if words.len() <= WORDS {
@@ -250,27 +279,27 @@ fn contents(terms: &mut Terms, word: Id, memory: usize, address: Id) -> Vec<Id> 
             let at = terms.constant(at as u64, terms.width(address));
             let (here, bits) = (terms.equal(address, at), terms.constant(bits, width));
             let (elsewhere, right) = (terms.not(here), terms.equal(word, bits));
-            terms.make(Term::Or(elsewhere, right), 1)
+            terms.make(VectorTerm::Or(elsewhere, right), 1)
         });
         return exact.collect();
     }
     let used = words.iter().fold(0, |used, word| used | word);
     let unused = terms.constant(!used & mask(width), width);
-    let masked = terms.make(Term::And(word, unused), width);
+    let masked = terms.make(VectorTerm::And(word, unused), width);
     let zero = terms.constant(0, width);
     let bits = terms.equal(masked, zero);
     // Beyond the contents there is 0.
     let all = || words.iter().copied().chain([0]);
     let most = terms.constant(all().max().unwrap_or(0), width);
-    let above = terms.make(Term::Less(most, word), 1);
+    let above = terms.make(VectorTerm::Less(most, word), 1);
     let sign = |word: u64| (word << (MAX_WIDTH - width)) as i64;
     let least = all().min_by_key(|&word| sign(word)).unwrap_or(0);
     let greatest = all().max_by_key(|&word| sign(word)).unwrap_or(0);
     let (least, greatest) = (terms.constant(least, width), terms.constant(greatest, width));
     let outside = [
         above,
-        terms.make(Term::SignedLess(word, least), 1),
-        terms.make(Term::SignedLess(greatest, word), 1),
+        terms.make(VectorTerm::SignedLess(word, least), 1),
+        terms.make(VectorTerm::SignedLess(greatest, word), 1),
     ];
     outside.map(|outside| terms.not(outside)).into_iter().chain([bits]).collect()
 }

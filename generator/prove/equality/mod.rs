@@ -30,11 +30,11 @@ use rand_chacha::rand_core::{RngCore, SeedableRng};
 use glint_base::fixed::mask;
 use glint_rtl::netlist::{Checkpoint, Design, NetId, Role};
 use glint_tools::Tool;
-use random_precheck::Pair;
-use solver::{Outcome, Solver};
+use random_precheck::DesignPair;
+use solver::{Solver, SolverAnswer};
 use split_products::Candidates;
-use symbolic::{Execution, Product, State};
-use term::{Id, Term, Terms};
+use symbolic::{Execution, Product, SymbolicState};
+use term::{VectorTerm, VectorTermId, VectorTerms};
 
 pub use text::{TextProof, TextVerdict, compare_text};
 
@@ -48,9 +48,9 @@ const MOST_CLOCKS: usize = 8192;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// Every output is the same for every point.
-    Equal(Proof),
+    Equal(EqualityProof),
     /// An output differs.
-    Different(Difference),
+    Different(OutputDifference),
     /// The solver does not decide it, and no point was found that differs.
     Open(Open),
 }
@@ -66,7 +66,7 @@ pub enum Open {
 
 /// The parts of a proof.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Proof {
+pub struct EqualityProof {
     /// Outputs that are equal.
     pub outputs: usize,
     /// Registers on the way that are equal, in all ways.
@@ -81,7 +81,7 @@ pub struct Proof {
 
 /// A point for which the cores compute different outputs.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Difference {
+pub struct OutputDifference {
     /// Bit patterns, by name.
     pub operands: Vec<(String, u64)>,
     /// The output.
@@ -92,7 +92,7 @@ pub struct Difference {
     pub pipeline: u64,
 }
 
-impl fmt::Display for Difference {
+impl fmt::Display for OutputDifference {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { output, sequential, pipeline, .. } = self;
         write!(
@@ -113,15 +113,15 @@ pub fn compare(
     solver: &Tool,
     limit: Duration,
 ) -> Result<Verdict> {
-    let pair = Pair::new(sequential, pipeline)?;
+    let pair = DesignPair::new(sequential, pipeline)?;
     if let Some(difference) = tried(&pair, None)? {
         return Ok(Verdict::Different(difference));
     }
-    Comparison::new(&pair, solver, limit)?.run()
+    PipelineComparison::new(&pair, solver, limit)?.run()
 }
 
 /// Returns a point that differs among some at random; near one, some of whose operands each of them has.
-fn tried(pair: &Pair<'_>, near: Option<&[u64]>) -> Result<Option<Difference>> {
+fn tried(pair: &DesignPair<'_>, near: Option<&[u64]>) -> Result<Option<OutputDifference>> {
     let mut random = ChaCha8Rng::seed_from_u64(1);
     for _ in 0..TRIALS {
         let operands: Vec<u64> = (0..pair.operands.len())
@@ -150,7 +150,7 @@ fn drawn(random: &mut ChaCha8Rng) -> u64 {
 }
 
 /// Returns how the cores differ at a point, if they do.
-fn differs(pair: &Pair<'_>, operands: &[u64]) -> Result<Option<Difference>> {
+fn differs(pair: &DesignPair<'_>, operands: &[u64]) -> Result<Option<OutputDifference>> {
     let widths = pair.operands.iter().map(|name| {
         let net = pair.pipeline.find(name);
         net.map_or(1, |net| pair.pipeline.width(net))
@@ -159,7 +159,7 @@ fn differs(pair: &Pair<'_>, operands: &[u64]) -> Result<Option<Difference>> {
         operands.iter().zip(widths).map(|(bits, width)| bits & mask(width)).collect();
     let [sequential, pipeline] = pair.outputs(&operands)?;
     let at = sequential.iter().zip(&pipeline).position(|(one, other)| one != other);
-    Ok(at.map(|at| Difference {
+    Ok(at.map(|at| OutputDifference {
         operands: pair.operands.iter().cloned().zip(operands).collect(),
         output: pair.outputs[at].0.clone(),
         sequential: sequential[at],
@@ -168,39 +168,39 @@ fn differs(pair: &Pair<'_>, operands: &[u64]) -> Result<Option<Difference>> {
 }
 
 /// A way through the microprogram.
-struct Branch {
+struct MicroprogramPath {
     /// The bits that operands decided, and their values.
-    conditions: Vec<(Id, bool)>,
-    state: State,
+    conditions: Vec<(VectorTermId, bool)>,
+    state: SymbolicState,
     /// How often each microinstruction was executed.
     visits: Vec<usize>,
     clocks: usize,
 }
 
-struct Comparison<'p> {
-    pair: &'p Pair<'p>,
-    terms: Terms,
+struct PipelineComparison<'p> {
+    pair: &'p DesignPair<'p>,
+    terms: VectorTerms,
     solver: Solver<'p>,
     products: Vec<Product>,
     /// The sums that products are which the pipeline has in parts.
-    divided: HashMap<Id, Id>,
+    divided: HashMap<VectorTermId, VectorTermId>,
     /// Products that the pipeline has, at once or in parts.
-    parts: Vec<Id>,
+    parts: Vec<VectorTermId>,
     /// The operands of the point.
-    operands: Vec<Id>,
-    proof: Proof,
+    operands: Vec<VectorTermId>,
+    proof: EqualityProof,
 }
 
 /// The answer to a question.
-enum Answer {
+enum EqualityAnswer {
     Equal,
-    Different(Difference),
+    Different(OutputDifference),
     Open(Open),
 }
 
-impl<'p> Comparison<'p> {
-    fn new(pair: &'p Pair<'p>, solver: &'p Tool, limit: Duration) -> Result<Self> {
-        let mut terms = Terms::default();
+impl<'p> PipelineComparison<'p> {
+    fn new(pair: &'p DesignPair<'p>, solver: &'p Tool, limit: Duration) -> Result<Self> {
+        let mut terms = VectorTerms::default();
         let operands = pair.operands.iter().map(|name| {
             let net = pair.pipeline.find(name).context("an operand is a port")?;
             Ok(terms.unknown(pair.pipeline.width(net)))
@@ -214,7 +214,7 @@ impl<'p> Comparison<'p> {
             divided: HashMap::new(),
             parts: Vec::new(),
             operands,
-            proof: Proof::default(),
+            proof: EqualityProof::default(),
         })
     }
 
@@ -225,13 +225,14 @@ impl<'p> Comparison<'p> {
         let mut ways = vec![self.start(&core)];
         while let Some(way) = ways.pop() {
             match self.follow(&core, way, &stages, &mut ways)? {
-                Answer::Equal => {}
-                Answer::Different(difference) => return Ok(Verdict::Different(difference)),
-                Answer::Open(open) => return Ok(Verdict::Open(open)),
+                EqualityAnswer::Equal => {}
+                EqualityAnswer::Different(difference) => return Ok(Verdict::Different(difference)),
+                EqualityAnswer::Open(open) => return Ok(Verdict::Open(open)),
             }
         }
         let cone = self.terms.cone(self.results_of(&stages));
-        let is_product = |id: &&Id| matches!(self.terms.term(**id), Term::Product(..));
+        let is_product =
+            |id: &&VectorTermId| matches!(self.terms.term(**id), VectorTerm::Product(..));
         self.proof.products = cone.iter().filter(is_product).count();
         self.proof.outputs = self.pair.outputs.len();
         self.proof.questions = self.solver.asked;
@@ -239,7 +240,7 @@ impl<'p> Comparison<'p> {
     }
 
     /// Returns the term of every net of the pipeline in each clock from the one that takes the point on.
-    fn pipeline(&mut self) -> Result<Vec<Vec<Id>>> {
+    fn pipeline(&mut self) -> Result<Vec<Vec<VectorTermId>>> {
         let pair = self.pair;
         let execution = Execution::new(&mut self.terms, pair.pipeline);
         let mut state = execution.power_up(&mut self.terms);
@@ -278,12 +279,12 @@ impl<'p> Comparison<'p> {
     fn settle(
         &mut self,
         execution: &Execution<'_>,
-        state: &State,
+        state: &SymbolicState,
         known: impl Fn(Role) -> Option<u64>,
         point: bool,
-    ) -> Vec<Id> {
+    ) -> Vec<VectorTermId> {
         let (pair, operands) = (self.pair, &self.operands);
-        let input = |terms: &mut Terms, net: NetId, role: Role| {
+        let input = |terms: &mut VectorTerms, net: NetId, role: Role| {
             let width = execution.design.width(net);
             if let Some(bits) = known(role) {
                 return terms.constant(bits, width);
@@ -299,7 +300,7 @@ impl<'p> Comparison<'p> {
     }
 
     /// Returns the core's branch after the clock that takes `start`, with all operands.
-    fn start(&mut self, core: &Execution<'_>) -> Branch {
+    fn start(&mut self, core: &Execution<'_>) -> MicroprogramPath {
         let mut state = core.power_up(&mut self.terms);
         for point in [false, true] {
             let now = u64::from(point);
@@ -316,7 +317,7 @@ impl<'p> Comparison<'p> {
             state = core.edge(&mut self.terms, &state, &values);
         }
         let visits = vec![0; core.design.control.microprogram.len()];
-        Branch { conditions: Vec::new(), state, visits, clocks: 0 }
+        MicroprogramPath { conditions: Vec::new(), state, visits, clocks: 0 }
     }
 
     /// Executes the microprogram to the results, or to a point at which operands decide. The ways from there are
@@ -324,10 +325,10 @@ impl<'p> Comparison<'p> {
     fn follow(
         &mut self,
         core: &Execution<'_>,
-        mut way: Branch,
-        stages: &[Vec<Id>],
-        ways: &mut Vec<Branch>,
-    ) -> Result<Answer> {
+        mut way: MicroprogramPath,
+        stages: &[Vec<VectorTermId>],
+        ways: &mut Vec<MicroprogramPath>,
+    ) -> Result<EqualityAnswer> {
         let control = &core.design.control;
         let sequencer = [control.address.index(), control.run.index()];
         let valid = core.design.handshake()?.valid;
@@ -341,8 +342,10 @@ impl<'p> Comparison<'p> {
             }
             let address = self.terms.constant_of(way.state.registers[sequencer[0]]);
             let address = address.unwrap_or_default() as usize;
-            if let Answer::Different(difference) = self.lemmas(core, &mut way, address, stages)? {
-                return Ok(Answer::Different(difference));
+            if let EqualityAnswer::Different(difference) =
+                self.lemmas(core, &mut way, address, stages)?
+            {
+                return Ok(EqualityAnswer::Different(difference));
             }
             if let Some(visits) = way.visits.get_mut(address) {
                 *visits += 1;
@@ -363,9 +366,14 @@ impl<'p> Comparison<'p> {
 
     /// Adds both ways from a point at which a register of the sequencer depends on operands. A way that is impossible
     /// is left out.
-    fn fork(&mut self, way: Branch, undecided: Id, ways: &mut Vec<Branch>) -> Result<Answer> {
+    fn fork(
+        &mut self,
+        way: MicroprogramPath,
+        undecided: VectorTermId,
+        ways: &mut Vec<MicroprogramPath>,
+    ) -> Result<EqualityAnswer> {
         let condition = match *self.terms.term(undecided) {
-            Term::Choice(condition, ..) => condition,
+            VectorTerm::Choice(condition, ..) => condition,
             _ if self.terms.width(undecided) == 1 => undecided,
             _ => bail!("the sequencer depends on operands otherwise than by a choice"),
         };
@@ -373,19 +381,19 @@ impl<'p> Comparison<'p> {
             let mut conditions = way.conditions.clone();
             conditions.push((condition, value));
             let wanted = self.holding(&conditions);
-            if let Outcome::Unsatisfiable = self.ask(wanted)? {
+            if let SolverAnswer::Unsatisfiable = self.ask(wanted)? {
                 continue;
             }
             let mut state = way.state.clone();
             state.assume(&mut self.terms, condition, value);
             let visits = way.visits.clone();
-            ways.push(Branch { conditions, state, visits, clocks: way.clocks });
+            ways.push(MicroprogramPath { conditions, state, visits, clocks: way.clocks });
         }
-        Ok(Answer::Equal)
+        Ok(EqualityAnswer::Equal)
     }
 
     /// Returns terms that are 1 if the conditions hold.
-    fn holding(&mut self, conditions: &[(Id, bool)]) -> Vec<Id> {
+    fn holding(&mut self, conditions: &[(VectorTermId, bool)]) -> Vec<VectorTermId> {
         let terms = &mut self.terms;
         conditions.iter().map(|&(it, value)| if value { it } else { terms.not(it) }).collect()
     }
@@ -395,11 +403,11 @@ impl<'p> Comparison<'p> {
     fn lemmas(
         &mut self,
         core: &Execution<'_>,
-        way: &mut Branch,
+        way: &mut MicroprogramPath,
         address: usize,
-        stages: &[Vec<Id>],
-    ) -> Result<Answer> {
-        let Some(pipeline) = &self.pair.pipeline.pipeline else { return Ok(Answer::Equal) };
+        stages: &[Vec<VectorTermId>],
+    ) -> Result<EqualityAnswer> {
+        let Some(pipeline) = &self.pair.pipeline.pipeline else { return Ok(EqualityAnswer::Equal) };
         let visit = way.visits.get(address).copied().unwrap_or(0);
         let due = |it: &&Checkpoint| it.address == address && it.visit == visit;
         for checkpoint in pipeline.checkpoints.iter().filter(due) {
@@ -411,39 +419,46 @@ impl<'p> Comparison<'p> {
             let staged = stages[pipeline.clock_of(checkpoint.net)][checkpoint.net.index()];
             let staged = self.terms.resized(staged, self.terms.width(held));
             match self.equal(&way.conditions, held, staged)? {
-                Answer::Equal => {
+                EqualityAnswer::Equal => {
                     way.state.registers[register] = staged;
                     self.proof.registers += 1;
                 }
-                Answer::Different(difference) => return Ok(Answer::Different(difference)),
+                EqualityAnswer::Different(difference) => {
+                    return Ok(EqualityAnswer::Different(difference));
+                }
                 // The results may be equal all the same.
-                Answer::Open(_) => {}
+                EqualityAnswer::Open(_) => {}
             }
         }
-        Ok(Answer::Equal)
+        Ok(EqualityAnswer::Equal)
     }
 
-    fn results(&mut self, way: &Branch, values: &[Id], stages: &[Vec<Id>]) -> Result<Answer> {
+    fn results(
+        &mut self,
+        way: &MicroprogramPath,
+        values: &[VectorTermId],
+        stages: &[Vec<VectorTermId>],
+    ) -> Result<EqualityAnswer> {
         self.proof.ways += 1;
         for (_, staged, own) in &self.pair.outputs {
             let staged = stages[self.pair.latency][staged.index()];
             let own = values[own.index()];
             match self.equal(&way.conditions, own, staged)? {
-                Answer::Equal => {}
+                EqualityAnswer::Equal => {}
                 other => return Ok(other),
             }
         }
-        Ok(Answer::Equal)
+        Ok(EqualityAnswer::Equal)
     }
 
     /// Returns the outputs of the pipeline for the point.
-    fn results_of(&self, stages: &[Vec<Id>]) -> Vec<Id> {
+    fn results_of(&self, stages: &[Vec<VectorTermId>]) -> Vec<VectorTermId> {
         let last = &stages[self.pair.latency];
         self.pair.outputs.iter().map(|&(_, net, _)| last[net.index()]).collect()
     }
 
     /// Notes how the pipeline divides products: as sums of their parts, or where it has the whole in turn, as that.
-    fn divide(&mut self, stages: &[Vec<Id>]) -> Result<()> {
+    fn divide(&mut self, stages: &[Vec<VectorTermId>]) -> Result<()> {
         let checkpoints = self.pair.pipeline.pipeline.iter().flat_map(|it| {
             it.checkpoints.iter().map(|at| stages[it.clock_of(at.net)][at.net.index()])
         });
@@ -451,16 +466,17 @@ impl<'p> Comparison<'p> {
         let nets = self.terms.cone(checkpoints.chain(results));
         let divided = facts::divided(&mut self.terms, nets.iter().copied());
         self.parts = nets.iter().chain(divided.keys()).copied().collect();
-        self.parts.retain(|&it| matches!(self.terms.term(it), Term::Product(..)));
+        self.parts.retain(|&it| matches!(self.terms.term(it), VectorTerm::Product(..)));
         self.parts.sort();
         self.parts.dedup();
         let wholes = Candidates::new(&self.terms, &nets, divided.values());
-        let mut pending: Vec<Id> = divided.keys().copied().collect();
+        let mut pending: Vec<VectorTermId> = divided.keys().copied().collect();
         pending.sort();
         while let Some(&product) = pending.last() {
             let sum = divided[&product];
             let cone = self.terms.cone([sum]);
-            let is_open = |it: &&Id| divided.contains_key(it) && !self.divided.contains_key(it);
+            let is_open =
+                |it: &&VectorTermId| divided.contains_key(it) && !self.divided.contains_key(it);
             let part = cone.iter().find(is_open);
             if let Some(&part) = part.filter(|_| !self.divided.contains_key(&product)) {
                 pending.push(part);
@@ -480,7 +496,7 @@ impl<'p> Comparison<'p> {
                 let equal = self.terms.equal(low, net);
                 let differ = self.terms.not(equal);
                 let said = self.solver.ask(&mut self.terms, &[differ], &self.products, false)?;
-                if let Outcome::Unsatisfiable = said {
+                if let SolverAnswer::Unsatisfiable = said {
                     whole = self.terms.with_low(whole, net);
                 }
             }
@@ -490,29 +506,34 @@ impl<'p> Comparison<'p> {
     }
 
     /// Returns whether terms can all be 1: with the products divided as the pipeline has them, and else with all that is known of parts.
-    fn ask(&mut self, wanted: Vec<Id>) -> Result<Outcome> {
+    fn ask(&mut self, wanted: Vec<VectorTermId>) -> Result<SolverAnswer> {
         self.divide_by_lowest(&wanted)?;
         let mut divided = wanted.clone();
         self.terms.replace(&self.divided, &mut divided);
         match self.solver.ask(&mut self.terms, &divided, &self.products, false)? {
-            Outcome::Unsatisfiable => Ok(Outcome::Unsatisfiable),
+            SolverAnswer::Unsatisfiable => Ok(SolverAnswer::Unsatisfiable),
             _ => self.solver.ask(&mut self.terms, &wanted, &self.products, true),
         }
     }
 
-    fn equal(&mut self, conditions: &[(Id, bool)], one: Id, other: Id) -> Result<Answer> {
+    fn equal(
+        &mut self,
+        conditions: &[(VectorTermId, bool)],
+        one: VectorTermId,
+        other: VectorTermId,
+    ) -> Result<EqualityAnswer> {
         let equal = self.terms.equal(one, other);
         let differ = self.terms.not(equal);
         if self.terms.constant_of(differ) == Some(0) {
-            return Ok(Answer::Equal);
+            return Ok(EqualityAnswer::Equal);
         }
         let mut wanted = self.holding(conditions);
         wanted.push(differ);
         match self.ask(wanted)? {
-            Outcome::Unsatisfiable => Ok(Answer::Equal),
-            Outcome::Undecided(open) => Ok(Answer::Open(open)),
-            Outcome::Satisfiable(values) => {
-                let of = |operand: &Id| {
+            SolverAnswer::Unsatisfiable => Ok(EqualityAnswer::Equal),
+            SolverAnswer::Undecided(open) => Ok(EqualityAnswer::Open(open)),
+            SolverAnswer::Satisfiable(values) => {
+                let of = |operand: &VectorTermId| {
                     values.iter().find(|(id, _)| id == operand).map_or(0, |&(_, bits)| bits)
                 };
                 let operands: Vec<u64> = self.operands.iter().map(of).collect();
@@ -521,7 +542,8 @@ impl<'p> Comparison<'p> {
                     None => tried(self.pair, Some(&operands))?,
                     found => found,
                 };
-                Ok(difference.map_or(Answer::Open(Open::Unknown), Answer::Different))
+                Ok(difference
+                    .map_or(EqualityAnswer::Open(Open::Unknown), EqualityAnswer::Different))
             }
         }
     }

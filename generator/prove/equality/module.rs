@@ -7,8 +7,8 @@ use std::collections::HashMap;
 use anyhow::{Context, Result, bail, ensure};
 use serde_json::Value;
 
-use super::cells::{Bit, Bits, Values};
-use super::term::{Id, Terms};
+use super::cells::{Bit, Connection, WireValues};
+use super::term::{VectorTermId, VectorTerms};
 use glint_base::fixed::MAX_WIDTH;
 
 /// The driver of wires in the same clock.
@@ -30,15 +30,15 @@ pub struct Read {
     pub port: usize,
 }
 
-struct Cell {
+struct ModuleCell {
     what: What,
-    inputs: [Bits; 3],
-    output: Bits,
+    inputs: [Connection; 3],
+    output: Connection,
 }
 
-struct Register {
-    data: Bits,
-    output: Bits,
+struct ModuleRegister {
+    data: Connection,
+    output: Connection,
 }
 
 /// A memory that is written.
@@ -46,31 +46,31 @@ pub struct Memory {
     /// Read ports.
     pub reads: Vec<Read>,
     width: usize,
-    addresses: Vec<Bits>,
+    addresses: Vec<Connection>,
     write: Write,
 }
 
 struct Write {
-    address: Bits,
-    data: Bits,
-    enable: Bits,
+    address: Connection,
+    data: Connection,
+    enable: Connection,
 }
 
 /// A module.
 pub struct Module {
-    inputs: Vec<(String, Bits)>,
-    outputs: Vec<(String, Bits)>,
+    inputs: Vec<(String, Connection)>,
+    outputs: Vec<(String, Connection)>,
     /// Each cell comes after the cells that it reads.
-    cells: Vec<Cell>,
-    registers: Vec<Register>,
+    cells: Vec<ModuleCell>,
+    registers: Vec<ModuleRegister>,
     pub memories: Vec<Memory>,
     wires: usize,
 }
 
 /// The contents of the registers, each in terms of at most 64 bits, the lowest first.
-pub type Held = Vec<Vec<Id>>;
+pub type RegisterContents = Vec<Vec<VectorTermId>>;
 
-fn bits(value: &Value) -> Result<Bits> {
+fn bits(value: &Value) -> Result<Connection> {
     let bits = value.as_array().context("a connection of the netlist has no bits")?;
     let bit = |bit: &Value| {
         Ok(match (bit.as_u64(), bit.as_str()) {
@@ -123,11 +123,11 @@ impl Module {
         Ok(module)
     }
 
-    fn add(&mut self, cell: &Value, clock: &Bits) -> Result<()> {
+    fn add(&mut self, cell: &Value, clock: &Connection) -> Result<()> {
         let kind = cell["type"].as_str().unwrap_or_default();
         let parameter = |name: &str| &cell["parameters"][name];
         let optional = |name: &str| match &cell["connections"][name] {
-            Value::Null => Ok(Bits::new()),
+            Value::Null => Ok(Connection::new()),
             connection => bits(connection),
         };
         match kind {
@@ -136,12 +136,13 @@ impl Module {
                     optional("CLK")? == *clock && number(parameter("CLK_POLARITY"))? == 1,
                     "it does not change at the rising edge of `clk`"
                 );
-                self.registers.push(Register { data: optional("D")?, output: optional("Q")? });
+                self.registers
+                    .push(ModuleRegister { data: optional("D")?, output: optional("Q")? });
             }
             "$mem_v2" => self.add_memory(cell, clock)?,
             _ => {
                 let signed = |name| number(parameter(name)).is_ok_and(|signed| signed == 1);
-                self.cells.push(Cell {
+                self.cells.push(ModuleCell {
                     what: What::Cell {
                         kind: kind.to_owned(),
                         signed: [signed("A_SIGNED"), signed("B_SIGNED")],
@@ -154,7 +155,7 @@ impl Module {
         Ok(())
     }
 
-    fn add_memory(&mut self, cell: &Value, clock: &Bits) -> Result<()> {
+    fn add_memory(&mut self, cell: &Value, clock: &Connection) -> Result<()> {
         let parameter = |name: &str| number(&cell["parameters"][name]);
         let connection = |name: &str| bits(&cell["connections"][name]);
         let (width, places) = (parameter("WIDTH")?, parameter("ABITS")?);
@@ -163,7 +164,8 @@ impl Module {
         let clocked = cell["parameters"]["RD_CLK_ENABLE"].as_str().unwrap_or("1");
         ensure!(!clocked.contains('1'), "it is read by a clocked port");
         ensure!(parameter("OFFSET")? == 0, "it does not begin at address 0");
-        let part = |all: &Bits, at: usize, width: usize| all[at * width..(at + 1) * width].to_vec();
+        let part =
+            |all: &Connection, at: usize, width: usize| all[at * width..(at + 1) * width].to_vec();
         let contents = if writes == 0 { words(cell, width)? } else { Vec::new() };
         let memory = self.memories.len();
         let mut ports = Vec::new();
@@ -173,9 +175,9 @@ impl Module {
                 _ => What::Read(Read { memory, port }),
             };
             ports.push(Read { memory, port });
-            self.cells.push(Cell {
+            self.cells.push(ModuleCell {
                 what,
-                inputs: [part(&addresses, port, places), Bits::new(), Bits::new()],
+                inputs: [part(&addresses, port, places), Connection::new(), Connection::new()],
                 output: part(&read, port, width),
             });
         }
@@ -201,7 +203,7 @@ impl Module {
 
     /// Puts each cell after the cells whose output it reads.
     fn order(&mut self) -> Result<()> {
-        let all = |cell: &Cell| cell.inputs.iter().flatten().copied().collect::<Bits>();
+        let all = |cell: &ModuleCell| cell.inputs.iter().flatten().copied().collect::<Connection>();
         let registers = self.registers.iter().map(|it| (&it.output, &it.data));
         let ports = self.inputs.iter().chain(&self.outputs).map(|(_, bits)| (bits, bits));
         let used = registers.chain(ports).flat_map(|(a, b)| a.iter().chain(b)).copied();
@@ -255,7 +257,7 @@ impl Module {
     }
 
     /// Returns the contents of registers at power-up, which are unknown.
-    pub fn power_up(&self, terms: &mut Terms) -> Held {
+    pub fn power_up(&self, terms: &mut VectorTerms) -> RegisterContents {
         self.registers.iter().map(|it| unknown(terms, it.output.len())).collect()
     }
 
@@ -265,12 +267,12 @@ impl Module {
     /// Fails if a cell is not known here, or wider than terms are.
     pub fn settle(
         &self,
-        terms: &mut Terms,
-        held: &Held,
-        mut input: impl FnMut(&mut Terms, &str, u32) -> Id,
-        mut read: impl FnMut(&mut Terms, Read) -> Vec<Id>,
-    ) -> Result<Values> {
-        let mut values = Values::new(self.wires);
+        terms: &mut VectorTerms,
+        held: &RegisterContents,
+        mut input: impl FnMut(&mut VectorTerms, &str, u32) -> VectorTermId,
+        mut read: impl FnMut(&mut VectorTerms, Read) -> Vec<VectorTermId>,
+    ) -> Result<WireValues> {
+        let mut values = WireValues::new(self.wires);
         for (name, bits) in &self.inputs {
             ensure!(bits.len() <= MAX_WIDTH as usize, "the port `{name}` has more than 64 bits");
             let id = input(terms, name, bits.len() as u32);
@@ -296,12 +298,16 @@ impl Module {
     }
 
     /// Returns the rising edge.
-    pub fn edge(&self, terms: &mut Terms, values: &Values) -> Held {
+    pub fn edge(&self, terms: &mut VectorTerms, values: &WireValues) -> RegisterContents {
         self.registers.iter().map(|it| values.columns(terms, &it.data)).collect()
     }
 
     /// Returns the outputs by name.
-    pub fn shown(&self, terms: &mut Terms, values: &Values) -> HashMap<String, Id> {
+    pub fn shown(
+        &self,
+        terms: &mut VectorTerms,
+        values: &WireValues,
+    ) -> HashMap<String, VectorTermId> {
         let outputs = self.outputs.iter();
         outputs.map(|(name, bits)| (name.clone(), values.word(terms, bits))).collect()
     }
@@ -309,25 +315,25 @@ impl Module {
 
 impl Memory {
     /// Returns any word: a new unknown.
-    pub fn any(&self, terms: &mut Terms) -> Vec<Id> {
+    pub fn any(&self, terms: &mut VectorTerms) -> Vec<VectorTermId> {
         unknown(terms, self.width)
     }
 
     /// Returns the values that are written.
-    pub fn written(&self, terms: &mut Terms, values: &Values) -> Vec<Id> {
+    pub fn written(&self, terms: &mut VectorTerms, values: &WireValues) -> Vec<VectorTermId> {
         values.columns(terms, &self.write.data)
     }
 
     /// Returns the addresses of the write port and of each read port, and the enable of the write port.
-    pub fn control(&self, terms: &mut Terms, values: &Values) -> Vec<Id> {
+    pub fn control(&self, terms: &mut VectorTerms, values: &WireValues) -> Vec<VectorTermId> {
         let write = values.columns(terms, &self.write.enable);
         let addresses = [&self.write.address].into_iter().chain(&self.addresses);
-        let addresses: Vec<Id> = addresses.map(|bits| values.word(terms, bits)).collect();
+        let addresses: Vec<VectorTermId> = addresses.map(|bits| values.word(terms, bits)).collect();
         addresses.into_iter().chain(write).collect()
     }
 }
 
-fn unknown(terms: &mut Terms, width: usize) -> Vec<Id> {
+fn unknown(terms: &mut VectorTerms, width: usize) -> Vec<VectorTermId> {
     let columns = (0..width).step_by(MAX_WIDTH as usize);
     columns.map(|at| terms.unknown((width - at).min(MAX_WIDTH as usize) as u32)).collect()
 }

@@ -8,7 +8,7 @@ use glint_rtl::netlist::{Design, Interpreter, NetId, Role};
 const MOST_CLOCKS: usize = 8192;
 
 /// A pipeline and its sequential core, with the operands and outputs that both have.
-pub struct Pair<'a> {
+pub struct DesignPair<'a> {
     pub sequential: &'a Design,
     pub pipeline: &'a Design,
     /// The operands by name.
@@ -19,7 +19,7 @@ pub struct Pair<'a> {
     pub latency: usize,
 }
 
-impl<'a> Pair<'a> {
+impl<'a> DesignPair<'a> {
     /// Pairs the cores, by the operands and the outputs that they have in common.
     ///
     /// # Errors

@@ -9,16 +9,16 @@ use anyhow::{Context, Result, bail};
 use super::Open;
 use super::facts;
 use super::symbolic::Product;
-use super::term::{ADDRESS, Id, Term, Terms};
+use super::term::{ADDRESS, VectorTerm, VectorTermId, VectorTerms};
 use glint_tools::transient::Directory;
 use glint_tools::{LimitReached, Tool};
 
 /// The solver's answer on terms that are asked to be 1 together.
-pub enum Outcome {
+pub enum SolverAnswer {
     /// The terms are never all 1.
     Unsatisfiable,
     /// The terms are all 1 for these values of unknowns, as far as products and memories are not known.
-    Satisfiable(Vec<(Id, u64)>),
+    Satisfiable(Vec<(VectorTermId, u64)>),
     /// Neither.
     Undecided(Open),
 }
@@ -48,11 +48,11 @@ impl<'a> Solver<'a> {
     /// Fails if the solver does not do its work.
     pub fn ask(
         &mut self,
-        terms: &mut Terms,
-        wanted: &[Id],
+        terms: &mut VectorTerms,
+        wanted: &[VectorTermId],
         products: &[Product],
         parts: bool,
-    ) -> Result<Outcome> {
+    ) -> Result<SolverAnswer> {
         self.asked += 1;
         let facts = facts::about(terms, wanted, products, parts);
         let script = script(terms, wanted, &facts);
@@ -61,24 +61,26 @@ impl<'a> Solver<'a> {
         let left = self.end.saturating_duration_since(Instant::now());
         let run = match self.tool.run(["question.smt2"], self.dir.path(), left) {
             Ok(run) => run,
-            Err(error) if error.is::<LimitReached>() => return Ok(Outcome::Undecided(Open::Limit)),
+            Err(error) if error.is::<LimitReached>() => {
+                return Ok(SolverAnswer::Undecided(Open::Limit));
+            }
             Err(error) => return Err(error),
         };
         match run.output.lines().next().map(str::trim) {
-            Some("unsat") => Ok(Outcome::Unsatisfiable),
-            Some("sat") => Ok(Outcome::Satisfiable(values(terms, &run.output))),
-            Some("unknown") => Ok(Outcome::Undecided(Open::Unknown)),
+            Some("unsat") => Ok(SolverAnswer::Unsatisfiable),
+            Some("sat") => Ok(SolverAnswer::Satisfiable(values(terms, &run.output))),
+            Some("unknown") => Ok(SolverAnswer::Undecided(Open::Unknown)),
             _ => bail!("`{}` does not answer: {}", self.tool, run.output.trim()),
         }
     }
 }
 
-fn name(id: Id) -> String {
+fn name(id: VectorTermId) -> String {
     format!("t{}", id.number())
 }
 
 /// Returns the question as SMT-LIB 2.
-fn script(terms: &Terms, wanted: &[Id], facts: &[Id]) -> String {
+fn script(terms: &VectorTerms, wanted: &[VectorTermId], facts: &[VectorTermId]) -> String {
     let cone = terms.cone(wanted.iter().chain(facts).copied());
     let mut text = String::from(
         "(set-logic QF_UFBV)\n(declare-fun product ((_ BitVec 64) (_ BitVec 64)) (_ BitVec 64))\n",
@@ -87,7 +89,7 @@ fn script(terms: &Terms, wanted: &[Id], facts: &[Id]) -> String {
     let mut unknowns = String::new();
     for id in cone {
         let width = terms.width(id);
-        if let Term::Word { memory, .. } = *terms.term(id)
+        if let VectorTerm::Word { memory, .. } = *terms.term(id)
             && !declared[memory]
         {
             declared[memory] = true;
@@ -96,14 +98,14 @@ fn script(terms: &Terms, wanted: &[Id], facts: &[Id]) -> String {
                 "(declare-fun word{memory} ((_ BitVec {ADDRESS})) (_ BitVec {width}))"
             );
         }
-        if let Term::Unknown(_) = terms.term(id) {
+        if let VectorTerm::Unknown(_) = terms.term(id) {
             let _ = writeln!(text, "(declare-const {} (_ BitVec {width}))", name(id));
             let _ = write!(unknowns, " {}", name(id));
             continue;
         }
         let said = expression(terms, id);
         let _ = writeln!(text, "(define-fun {} () (_ BitVec {width}) {said})", name(id));
-        if let Term::Product(a, b) = *terms.term(id) {
+        if let VectorTerm::Product(a, b) = *terms.term(id) {
             let _ = writeln!(
                 text,
                 "(assert (= (product {0} {1}) (product {1} {0})))",
@@ -122,7 +124,7 @@ fn script(terms: &Terms, wanted: &[Id], facts: &[Id]) -> String {
     text
 }
 
-fn expression(terms: &Terms, id: Id) -> String {
+fn expression(terms: &VectorTerms, id: VectorTermId) -> String {
     let width = terms.width(id);
     let call = |function: &str| {
         let operands = terms.term(id).operands();
@@ -131,34 +133,34 @@ fn expression(terms: &Terms, id: Id) -> String {
     };
     let truth = |function: &str| format!("(ite {} #b1 #b0)", call(function));
     match *terms.term(id) {
-        Term::Unknown(_) => name(id),
-        Term::Constant(bits) => format!("(_ bv{bits} {width})"),
-        Term::Not(_) => call("bvnot"),
-        Term::And(..) => call("bvand"),
-        Term::Or(..) => call("bvor"),
-        Term::Xor(..) => call("bvxor"),
-        Term::Add(..) => call("bvadd"),
-        Term::Sub(..) => call("bvsub"),
-        Term::Product(..) => call("product"),
-        Term::Equal(..) => truth("="),
-        Term::Less(..) => truth("bvult"),
-        Term::SignedLess(..) => truth("bvslt"),
-        Term::Choice(condition, a, b) => {
+        VectorTerm::Unknown(_) => name(id),
+        VectorTerm::Constant(bits) => format!("(_ bv{bits} {width})"),
+        VectorTerm::Not(_) => call("bvnot"),
+        VectorTerm::And(..) => call("bvand"),
+        VectorTerm::Or(..) => call("bvor"),
+        VectorTerm::Xor(..) => call("bvxor"),
+        VectorTerm::Add(..) => call("bvadd"),
+        VectorTerm::Sub(..) => call("bvsub"),
+        VectorTerm::Product(..) => call("product"),
+        VectorTerm::Equal(..) => truth("="),
+        VectorTerm::Less(..) => truth("bvult"),
+        VectorTerm::SignedLess(..) => truth("bvslt"),
+        VectorTerm::Choice(condition, a, b) => {
             format!("(ite (= {} #b1) {} {})", name(condition), name(a), name(b))
         }
-        Term::Slice { of, low } => {
+        VectorTerm::Slice { of, low } => {
             format!("((_ extract {} {low}) {})", low + width - 1, name(of))
         }
-        Term::Join(..) => call("concat"),
-        Term::SignExtend(a) => {
+        VectorTerm::Join(..) => call("concat"),
+        VectorTerm::SignExtend(a) => {
             format!("((_ sign_extend {}) {})", width - terms.width(a), name(a))
         }
-        Term::Word { memory, .. } => call(&format!("word{memory}")),
+        VectorTerm::Word { memory, .. } => call(&format!("word{memory}")),
     }
 }
 
 /// Returns the values that the solver gives to unknowns: `((t1 #x0f) (t2 #b1))`.
-fn values(terms: &Terms, output: &str) -> Vec<(Id, u64)> {
+fn values(terms: &VectorTerms, output: &str) -> Vec<(VectorTermId, u64)> {
     let mut words = output.split(|c: char| c.is_whitespace() || c == '(' || c == ')');
     let mut values = Vec::new();
     while let Some(word) = words.next() {

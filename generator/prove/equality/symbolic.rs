@@ -1,6 +1,6 @@
 //! Executes a design clock by clock on terms: operands are unknowns, and every net is an expression of them.
 
-use super::term::{ADDRESS, Id, Term, Terms};
+use super::term::{ADDRESS, VectorTerm, VectorTermId, VectorTerms};
 use glint_base::fixed::MAX_WIDTH;
 use glint_base::interval::Interval;
 use glint_rtl::netlist::{Design, Driver, NetId, Op, Role};
@@ -9,21 +9,22 @@ use glint_rtl::netlist::{Design, Driver, NetId, Op, Role};
 /// factor is shown to keep to it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Product {
-    pub factors: [Id; 2],
+    pub factors: [VectorTermId; 2],
     pub ranges: [Interval; 2],
 }
 
 /// The contents of registers and synchronous memories between two clocks.
 #[derive(Clone)]
-pub struct State {
-    pub registers: Vec<Id>,
-    words: Vec<Id>,
+pub struct SymbolicState {
+    pub registers: Vec<VectorTermId>,
+    words: Vec<VectorTermId>,
 }
 
-impl State {
+impl SymbolicState {
     /// Replaces a condition, one bit, by `value` in the terms of the state.
-    pub fn assume(&mut self, terms: &mut Terms, condition: Id, value: bool) {
-        let mut all: Vec<Id> = self.registers.iter().chain(&self.words).copied().collect();
+    pub fn assume(&mut self, terms: &mut VectorTerms, condition: VectorTermId, value: bool) {
+        let mut all: Vec<VectorTermId> =
+            self.registers.iter().chain(&self.words).copied().collect();
         terms.assuming(condition, value, &mut all);
         self.words = all.split_off(self.registers.len());
         self.registers = all;
@@ -40,7 +41,7 @@ pub struct Execution<'a> {
 }
 
 impl<'a> Execution<'a> {
-    pub fn new(terms: &mut Terms, design: &'a Design) -> Self {
+    pub fn new(terms: &mut VectorTerms, design: &'a Design) -> Self {
         Self {
             design,
             order: design.levelise().unwrap_or_default(),
@@ -50,22 +51,22 @@ impl<'a> Execution<'a> {
     }
 
     /// Returns the state at power-up, which is unknown.
-    pub fn power_up(&self, terms: &mut Terms) -> State {
+    pub fn power_up(&self, terms: &mut VectorTerms) -> SymbolicState {
         let design = self.design;
         let registers = design.registers.iter().map(|it| terms.unknown(design.width(it.q)));
         let registers = registers.collect();
         let words = design.roms.iter().map(|rom| terms.unknown(design.width(rom.data))).collect();
-        State { registers, words }
+        SymbolicState { registers, words }
     }
 
     /// Returns the term of every net, with these inputs; the products among them are added to `products`.
     pub fn settle(
         &self,
-        terms: &mut Terms,
-        state: &State,
-        mut input: impl FnMut(&mut Terms, NetId, Role) -> Id,
+        terms: &mut VectorTerms,
+        state: &SymbolicState,
+        mut input: impl FnMut(&mut VectorTerms, NetId, Role) -> VectorTermId,
         products: &mut Vec<Product>,
-    ) -> Vec<Id> {
+    ) -> Vec<VectorTermId> {
         let design = self.design;
         let nothing = terms.constant(0, 1);
         let mut values = vec![nothing; design.nets.len()];
@@ -91,7 +92,12 @@ impl<'a> Execution<'a> {
     }
 
     /// Returns the rising edge.
-    pub fn edge(&self, terms: &mut Terms, state: &State, values: &[Id]) -> State {
+    pub fn edge(
+        &self,
+        terms: &mut VectorTerms,
+        state: &SymbolicState,
+        values: &[VectorTermId],
+    ) -> SymbolicState {
         let design = self.design;
         let of = |net: NetId| values[net.index()];
         let reset = design.port(|role| role == Role::Reset).map(|port| of(port.net));
@@ -119,25 +125,25 @@ impl<'a> Execution<'a> {
         next
     }
 
-    fn word(&self, terms: &mut Terms, rom: usize, values: &[Id]) -> Id {
+    fn word(&self, terms: &mut VectorTerms, rom: usize, values: &[VectorTermId]) -> VectorTermId {
         let width = self.design.width(self.design.roms[rom].data);
         let address = values[self.design.roms[rom].address.index()];
         let address = terms.resized(address, ADDRESS);
-        terms.make(Term::Word { memory: self.memories[rom], address }, width)
+        terms.make(VectorTerm::Word { memory: self.memories[rom], address }, width)
     }
 
     /// Returns the result of a cell as [`Op`] documents it.
     fn cell(
         &self,
-        terms: &mut Terms,
+        terms: &mut VectorTerms,
         op: &Op,
         width: u32,
-        values: &[Id],
+        values: &[VectorTermId],
         products: &mut Vec<Product>,
-    ) -> Id {
+    ) -> VectorTermId {
         let of = |net: &NetId| values[net.index()];
         let is_signed = |net: &NetId| self.design.net(*net).format.signed;
-        let extended = |terms: &mut Terms, net: &NetId, width: u32| {
+        let extended = |terms: &mut VectorTerms, net: &NetId, width: u32| {
             if is_signed(net) {
                 terms.sign_extended(of(net), width)
             } else {
@@ -151,25 +157,25 @@ impl<'a> Execution<'a> {
             Op::Concat(parts) => {
                 let joined = parts.iter().map(of).reduce(|upper, lower| {
                     let width = terms.width(upper) + terms.width(lower);
-                    terms.make(Term::Join(upper, lower), width)
+                    terms.make(VectorTerm::Join(upper, lower), width)
                 });
                 joined.unwrap_or_else(|| terms.constant(0, width))
             }
             Op::Not(a) => terms.not(of(a)),
-            Op::And(a, b) => terms.make(Term::And(of(a), of(b)), width),
-            Op::Or(a, b) => terms.make(Term::Or(of(a), of(b)), width),
-            Op::Xor(a, b) => terms.make(Term::Xor(of(a), of(b)), width),
+            Op::And(a, b) => terms.make(VectorTerm::And(of(a), of(b)), width),
+            Op::Or(a, b) => terms.make(VectorTerm::Or(of(a), of(b)), width),
+            Op::Xor(a, b) => terms.make(VectorTerm::Xor(of(a), of(b)), width),
             Op::Add { a, b, carry } => {
-                let sum = terms.make(Term::Add(of(a), of(b)), width);
+                let sum = terms.make(VectorTerm::Add(of(a), of(b)), width);
                 match carry {
                     None => sum,
                     Some(carry) => {
                         let carry = terms.resized(of(carry), width);
-                        terms.make(Term::Add(sum, carry), width)
+                        terms.make(VectorTerm::Add(sum, carry), width)
                     }
                 }
             }
-            Op::Sub(a, b) => terms.make(Term::Sub(of(a), of(b)), width),
+            Op::Sub(a, b) => terms.make(VectorTerm::Sub(of(a), of(b)), width),
             Op::Mul(a, b) => {
                 let factors = [a, b].map(|net| extended(terms, net, MAX_WIDTH));
                 let ranges = [a, b].map(|net| self.design.net(*net).range);
@@ -177,12 +183,12 @@ impl<'a> Execution<'a> {
                 if !products.contains(&product) {
                     products.push(product);
                 }
-                let product = terms.make(Term::Product(factors[0], factors[1]), MAX_WIDTH);
+                let product = terms.make(VectorTerm::Product(factors[0], factors[1]), MAX_WIDTH);
                 terms.slice(product, 0, width)
             }
             Op::Equal(a, b) => terms.equal(of(a), of(b)),
-            Op::Less(a, b) if is_signed(a) => terms.make(Term::SignedLess(of(a), of(b)), 1),
-            Op::Less(a, b) => terms.make(Term::Less(of(a), of(b)), 1),
+            Op::Less(a, b) if is_signed(a) => terms.make(VectorTerm::SignedLess(of(a), of(b)), 1),
+            Op::Less(a, b) => terms.make(VectorTerm::Less(of(a), of(b)), 1),
             Op::Any(a) => {
                 let zero = terms.constant(0, terms.width(of(a)));
                 let none = terms.equal(of(a), zero);

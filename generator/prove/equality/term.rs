@@ -8,11 +8,11 @@ use std::collections::HashMap;
 use glint_base::cone;
 use glint_base::fixed::{MAX_WIDTH, mask};
 
-/// A term of some [`Terms`].
+/// A term of some [`VectorTerms`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Id(u32);
+pub struct VectorTermId(u32);
 
-impl Id {
+impl VectorTermId {
     /// Returns its number among all terms.
     pub fn number(self) -> u32 {
         self.0
@@ -21,41 +21,41 @@ impl Id {
 
 /// A term. Operands have the width of the result unless the variant says otherwise.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
-pub enum Term {
+pub enum VectorTerm {
     /// Any value, the same wherever the number is.
     Unknown(u32),
     Constant(u64),
-    Not(Id),
-    And(Id, Id),
-    Or(Id, Id),
-    Xor(Id, Id),
+    Not(VectorTermId),
+    And(VectorTermId, VectorTermId),
+    Or(VectorTermId, VectorTermId),
+    Xor(VectorTermId, VectorTermId),
     /// Sum modulo 2^width.
-    Add(Id, Id),
+    Add(VectorTermId, VectorTermId),
     /// Difference modulo 2^width.
-    Sub(Id, Id),
+    Sub(VectorTermId, VectorTermId),
     /// Product modulo 2^64 of 64 bits.
-    Product(Id, Id),
+    Product(VectorTermId, VectorTermId),
     /// One bit: two terms of one width are equal.
-    Equal(Id, Id),
+    Equal(VectorTermId, VectorTermId),
     /// One bit: the first of two terms of one width is less, unsigned.
-    Less(Id, Id),
+    Less(VectorTermId, VectorTermId),
     /// One bit: the same, two's complement.
-    SignedLess(Id, Id),
+    SignedLess(VectorTermId, VectorTermId),
     /// The second if the first, one bit, is 1; else the third.
-    Choice(Id, Id, Id),
+    Choice(VectorTermId, VectorTermId, VectorTermId),
     /// Bits of a term from `low` up, as many as the result has.
     Slice {
-        of: Id,
+        of: VectorTermId,
         low: u32,
     },
     /// The first above the second.
-    Join(Id, Id),
+    Join(VectorTermId, VectorTermId),
     /// A narrower term with copies of its top bit above it.
-    SignExtend(Id),
+    SignExtend(VectorTermId),
     /// A word of a memory; 0 beyond its contents. The address has [`ADDRESS`] bits.
     Word {
         memory: usize,
-        address: Id,
+        address: VectorTermId,
     },
 }
 
@@ -64,19 +64,19 @@ pub const ADDRESS: u32 = 32;
 
 /// Terms, each made once, after its operands.
 #[derive(Default)]
-pub struct Terms {
-    nodes: Vec<(Term, u32)>,
-    known: HashMap<(Term, u32), Id>,
+pub struct VectorTerms {
+    nodes: Vec<(VectorTerm, u32)>,
+    known: HashMap<(VectorTerm, u32), VectorTermId>,
     unknowns: u32,
     /// The contents of memories, each once.
     pub memories: Vec<Vec<u64>>,
     /// The word beyond the contents, by memory and address.
-    beyond: HashMap<(usize, Id), Id>,
+    beyond: HashMap<(usize, VectorTermId), VectorTermId>,
 }
 
-impl Term {
+impl VectorTerm {
     /// Returns its operands, in order of writing.
-    fn operands_mut(&mut self) -> Vec<&mut Id> {
+    fn operands_mut(&mut self) -> Vec<&mut VectorTermId> {
         match self {
             Self::Unknown(_) | Self::Constant(_) => Vec::new(),
             Self::Not(a) | Self::Slice { of: a, .. } | Self::SignExtend(a) => vec![a],
@@ -96,7 +96,7 @@ impl Term {
     }
 
     /// Returns its operands, in order of writing.
-    pub fn operands(&self) -> Vec<Id> {
+    pub fn operands(&self) -> Vec<VectorTermId> {
         self.clone().operands_mut().into_iter().map(|id| *id).collect()
     }
 }
@@ -107,42 +107,46 @@ fn signed(bits: u64, width: u32) -> i64 {
     (bits << drop) as i64 >> drop
 }
 
-impl Terms {
-    pub fn term(&self, id: Id) -> &Term {
+impl VectorTerms {
+    pub fn term(&self, id: VectorTermId) -> &VectorTerm {
         &self.nodes[id.0 as usize].0
     }
 
-    pub fn width(&self, id: Id) -> u32 {
+    pub fn width(&self, id: VectorTermId) -> u32 {
         self.nodes[id.0 as usize].1
     }
 
     /// Returns the term of a number.
-    pub fn numbered(&self, number: u32) -> Option<Id> {
-        ((number as usize) < self.nodes.len()).then_some(Id(number))
+    pub fn numbered(&self, number: u32) -> Option<VectorTermId> {
+        ((number as usize) < self.nodes.len()).then_some(VectorTermId(number))
     }
 
-    pub fn constant_of(&self, id: Id) -> Option<u64> {
+    pub fn constant_of(&self, id: VectorTermId) -> Option<u64> {
         match *self.term(id) {
-            Term::Constant(bits) => Some(bits),
+            VectorTerm::Constant(bits) => Some(bits),
             _ => None,
         }
     }
 
     /// Returns all terms that these need, themselves too, each after its operands.
-    pub fn cone(&self, roots: impl IntoIterator<Item = Id>) -> Vec<Id> {
-        let index = |id: Id| id.0 as usize;
+    pub fn cone(&self, roots: impl IntoIterator<Item = VectorTermId>) -> Vec<VectorTermId> {
+        let index = |id: VectorTermId| id.0 as usize;
         let operands = |at: usize| self.nodes[at].0.operands().into_iter().map(index);
         let live = cone::needed(self.nodes.len(), roots.into_iter().map(index), operands);
-        (0..live.len()).filter(|&at| live[at]).map(|at| Id(at as u32)).collect()
+        (0..live.len()).filter(|&at| live[at]).map(|at| VectorTermId(at as u32)).collect()
     }
 
     /// Returns the value of each term of a cone, for values of the unknowns by their numbers.
-    pub fn values(&self, cone: &[Id], unknown: impl Fn(u32) -> u64) -> HashMap<Id, u64> {
+    pub fn values(
+        &self,
+        cone: &[VectorTermId],
+        unknown: impl Fn(u32) -> u64,
+    ) -> HashMap<VectorTermId, u64> {
         let mut values = HashMap::new();
         for &id in cone {
             let (term, width) = &self.nodes[id.0 as usize];
             let value = match term {
-                Term::Unknown(number) => unknown(*number) & mask(*width),
+                VectorTerm::Unknown(number) => unknown(*number) & mask(*width),
                 term => self.evaluate(term, *width, |operand| values[&operand]),
             };
             values.insert(id, value);
@@ -151,13 +155,13 @@ impl Terms {
     }
 
     /// Returns a new unknown.
-    pub fn unknown(&mut self, width: u32) -> Id {
+    pub fn unknown(&mut self, width: u32) -> VectorTermId {
         self.unknowns += 1;
-        self.insert(Term::Unknown(self.unknowns - 1), width)
+        self.insert(VectorTerm::Unknown(self.unknowns - 1), width)
     }
 
-    pub fn constant(&mut self, bits: u64, width: u32) -> Id {
-        self.insert(Term::Constant(bits & mask(width)), width)
+    pub fn constant(&mut self, bits: u64, width: u32) -> VectorTermId {
+        self.insert(VectorTerm::Constant(bits & mask(width)), width)
     }
 
     /// Returns the number of a memory with these contents.
@@ -170,7 +174,7 @@ impl Terms {
     }
 
     /// Returns a word that a memory does not have: any, the same for the same address.
-    pub fn beyond(&mut self, memory: usize, address: Id, width: u32) -> Id {
+    pub fn beyond(&mut self, memory: usize, address: VectorTermId, width: u32) -> VectorTermId {
         if let Some(&word) = self.beyond.get(&(memory, address)) {
             return word;
         }
@@ -180,60 +184,69 @@ impl Terms {
     }
 
     /// Extends a term with zeros above it, or cuts it: to this width.
-    pub fn resized(&mut self, id: Id, width: u32) -> Id {
+    pub fn resized(&mut self, id: VectorTermId, width: u32) -> VectorTermId {
         let own = self.width(id);
         if width <= own {
             return self.slice(id, 0, width);
         }
         let zeros = self.constant(0, width - own);
-        self.make(Term::Join(zeros, id), width)
+        self.make(VectorTerm::Join(zeros, id), width)
     }
 
     /// Extends a term with copies of its sign bit above it.
-    pub fn sign_extended(&mut self, id: Id, width: u32) -> Id {
-        if self.width(id) == width { id } else { self.make(Term::SignExtend(id), width) }
+    pub fn sign_extended(&mut self, id: VectorTermId, width: u32) -> VectorTermId {
+        if self.width(id) == width { id } else { self.make(VectorTerm::SignExtend(id), width) }
     }
 
-    pub fn slice(&mut self, of: Id, low: u32, width: u32) -> Id {
-        self.make(Term::Slice { of, low }, width)
+    pub fn slice(&mut self, of: VectorTermId, low: u32, width: u32) -> VectorTermId {
+        self.make(VectorTerm::Slice { of, low }, width)
     }
 
     /// Replaces the low bits of a term.
-    pub fn with_low(&mut self, id: Id, low: Id) -> Id {
+    pub fn with_low(&mut self, id: VectorTermId, low: VectorTermId) -> VectorTermId {
         let (width, at) = (self.width(id), self.width(low));
         if at == width {
             return low;
         }
         let upper = self.slice(id, at, width - at);
-        self.make(Term::Join(upper, low), width)
+        self.make(VectorTerm::Join(upper, low), width)
     }
 
-    pub fn equal(&mut self, a: Id, b: Id) -> Id {
-        self.make(Term::Equal(a, b), 1)
+    pub fn equal(&mut self, a: VectorTermId, b: VectorTermId) -> VectorTermId {
+        self.make(VectorTerm::Equal(a, b), 1)
     }
 
-    pub fn not(&mut self, a: Id) -> Id {
-        self.make(Term::Not(a), self.width(a))
+    pub fn not(&mut self, a: VectorTermId) -> VectorTermId {
+        self.make(VectorTerm::Not(a), self.width(a))
     }
 
-    pub fn choice(&mut self, condition: Id, then: Id, otherwise: Id) -> Id {
-        self.make(Term::Choice(condition, then, otherwise), self.width(then))
+    pub fn choice(
+        &mut self,
+        condition: VectorTermId,
+        then: VectorTermId,
+        otherwise: VectorTermId,
+    ) -> VectorTermId {
+        self.make(VectorTerm::Choice(condition, then, otherwise), self.width(then))
     }
 
     /// Returns whether there is such a term.
-    pub fn has(&self, term: &Term, width: u32) -> bool {
+    pub fn has(&self, term: &VectorTerm, width: u32) -> bool {
         self.known.contains_key(&(ordered(term.clone()), width))
     }
 
     /// Replaces a condition, one bit, by a value in all of the terms.
-    pub fn assuming(&mut self, condition: Id, value: bool, terms: &mut [Id]) {
+    pub fn assuming(&mut self, condition: VectorTermId, value: bool, terms: &mut [VectorTermId]) {
         let constant = self.constant(value.into(), 1);
         self.replace(&HashMap::from([(condition, constant)]), terms);
     }
 
     /// Replaces some terms by others wherever `terms` contain them. The replacements themselves are not searched.
-    pub fn replace(&mut self, by: &HashMap<Id, Id>, terms: &mut [Id]) {
-        let mut new: HashMap<Id, Id> = HashMap::new();
+    pub fn replace(
+        &mut self,
+        by: &HashMap<VectorTermId, VectorTermId>,
+        terms: &mut [VectorTermId],
+    ) {
+        let mut new: HashMap<VectorTermId, VectorTermId> = HashMap::new();
         for id in self.cone(terms.iter().copied()) {
             let (term, width) = self.nodes[id.0 as usize].clone();
             let rebuilt = if let Some(&other) = by.get(&id) {
@@ -249,11 +262,11 @@ impl Terms {
     }
 
     /// Returns a term, in the form that all that are the same by simple rules have.
-    pub fn make(&mut self, term: Term, width: u32) -> Id {
-        let constants: Option<HashMap<Id, u64>> =
+    pub fn make(&mut self, term: VectorTerm, width: u32) -> VectorTermId {
+        let constants: Option<HashMap<VectorTermId, u64>> =
             term.operands().into_iter().map(|id| Some((id, self.constant_of(id)?))).collect();
         if let Some(values) = constants
-            && !matches!(term, Term::Unknown(_))
+            && !matches!(term, VectorTerm::Unknown(_))
         {
             let bits = self.evaluate(&term, width, |id| values[&id]);
             return self.constant(bits, width);
@@ -264,35 +277,37 @@ impl Terms {
         }
     }
 
-    fn insert(&mut self, term: Term, width: u32) -> Id {
+    fn insert(&mut self, term: VectorTerm, width: u32) -> VectorTermId {
         debug_assert!((1..=MAX_WIDTH).contains(&width));
         let nodes = &mut self.nodes;
         *self.known.entry((term.clone(), width)).or_insert_with(|| {
             nodes.push((term, width));
-            Id(nodes.len() as u32 - 1)
+            VectorTermId(nodes.len() as u32 - 1)
         })
     }
 
-    fn evaluate(&self, term: &Term, width: u32, of: impl Fn(Id) -> u64) -> u64 {
-        let wide = |id: Id| self.width(id);
+    fn evaluate(&self, term: &VectorTerm, width: u32, of: impl Fn(VectorTermId) -> u64) -> u64 {
+        let wide = |id: VectorTermId| self.width(id);
         let bits = match *term {
-            Term::Unknown(_) => unreachable!("an unknown has no operands"),
-            Term::Constant(bits) => bits,
-            Term::Not(a) => !of(a),
-            Term::And(a, b) => of(a) & of(b),
-            Term::Or(a, b) => of(a) | of(b),
-            Term::Xor(a, b) => of(a) ^ of(b),
-            Term::Add(a, b) => of(a).wrapping_add(of(b)),
-            Term::Sub(a, b) => of(a).wrapping_sub(of(b)),
-            Term::Product(a, b) => of(a).wrapping_mul(of(b)),
-            Term::Equal(a, b) => u64::from(of(a) == of(b)),
-            Term::Less(a, b) => u64::from(of(a) < of(b)),
-            Term::SignedLess(a, b) => u64::from(signed(of(a), wide(a)) < signed(of(b), wide(b))),
-            Term::Choice(condition, a, b) => of(if of(condition) == 1 { a } else { b }),
-            Term::Slice { of: a, low } => of(a) >> low,
-            Term::Join(a, b) => of(a) << wide(b) | of(b),
-            Term::SignExtend(a) => signed(of(a), wide(a)) as u64,
-            Term::Word { memory, address } => {
+            VectorTerm::Unknown(_) => unreachable!("an unknown has no operands"),
+            VectorTerm::Constant(bits) => bits,
+            VectorTerm::Not(a) => !of(a),
+            VectorTerm::And(a, b) => of(a) & of(b),
+            VectorTerm::Or(a, b) => of(a) | of(b),
+            VectorTerm::Xor(a, b) => of(a) ^ of(b),
+            VectorTerm::Add(a, b) => of(a).wrapping_add(of(b)),
+            VectorTerm::Sub(a, b) => of(a).wrapping_sub(of(b)),
+            VectorTerm::Product(a, b) => of(a).wrapping_mul(of(b)),
+            VectorTerm::Equal(a, b) => u64::from(of(a) == of(b)),
+            VectorTerm::Less(a, b) => u64::from(of(a) < of(b)),
+            VectorTerm::SignedLess(a, b) => {
+                u64::from(signed(of(a), wide(a)) < signed(of(b), wide(b)))
+            }
+            VectorTerm::Choice(condition, a, b) => of(if of(condition) == 1 { a } else { b }),
+            VectorTerm::Slice { of: a, low } => of(a) >> low,
+            VectorTerm::Join(a, b) => of(a) << wide(b) | of(b),
+            VectorTerm::SignExtend(a) => signed(of(a), wide(a)) as u64,
+            VectorTerm::Word { memory, address } => {
                 let word = usize::try_from(of(address)).ok();
                 word.and_then(|at| self.memories[memory].get(at)).copied().unwrap_or(0)
             }
@@ -301,17 +316,17 @@ impl Terms {
     }
 
     /// Returns a simpler term of the same value, if there is one.
-    fn simpler(&mut self, term: &Term, width: u32) -> Option<Id> {
+    fn simpler(&mut self, term: &VectorTerm, width: u32) -> Option<VectorTermId> {
         let ones = mask(width);
         match *term {
-            Term::Not(a) => match *self.term(a) {
-                Term::Not(inner) => Some(inner),
+            VectorTerm::Not(a) => match *self.term(a) {
+                VectorTerm::Not(inner) => Some(inner),
                 _ => None,
             },
-            Term::And(a, b) | Term::Or(a, b) | Term::Xor(a, b) => {
+            VectorTerm::And(a, b) | VectorTerm::Or(a, b) | VectorTerm::Xor(a, b) => {
                 if a == b {
                     return match term {
-                        Term::Xor(..) => Some(self.constant(0, width)),
+                        VectorTerm::Xor(..) => Some(self.constant(0, width)),
                         _ => Some(a),
                     };
                 }
@@ -321,30 +336,30 @@ impl Terms {
                     _ => return None,
                 };
                 match term {
-                    Term::And(..) if value == 0 => Some(self.constant(0, width)),
-                    Term::And(..) if value == ones => Some(other),
-                    Term::Or(..) if value == ones => Some(self.constant(ones, width)),
-                    Term::Or(..) | Term::Xor(..) if value == 0 => Some(other),
-                    Term::Xor(..) if value == ones => Some(self.not(other)),
+                    VectorTerm::And(..) if value == 0 => Some(self.constant(0, width)),
+                    VectorTerm::And(..) if value == ones => Some(other),
+                    VectorTerm::Or(..) if value == ones => Some(self.constant(ones, width)),
+                    VectorTerm::Or(..) | VectorTerm::Xor(..) if value == 0 => Some(other),
+                    VectorTerm::Xor(..) if value == ones => Some(self.not(other)),
                     _ => None,
                 }
             }
-            Term::Add(a, b) => match (self.constant_of(a), self.constant_of(b)) {
+            VectorTerm::Add(a, b) => match (self.constant_of(a), self.constant_of(b)) {
                 (Some(0), _) => Some(b),
                 (_, Some(0)) => Some(a),
                 (Some(1), _) if width == 1 => Some(self.not(b)),
                 (_, Some(1)) if width == 1 => Some(self.not(a)),
-                _ if self.zeros(a) > self.zeros(b) => self.passed_by(b, a, width, Term::Add),
-                _ => self.passed_by(a, b, width, Term::Add),
+                _ if self.zeros(a) > self.zeros(b) => self.passed_by(b, a, width, VectorTerm::Add),
+                _ => self.passed_by(a, b, width, VectorTerm::Add),
             },
-            Term::Sub(a, b) if a == b => Some(self.constant(0, width)),
-            Term::Sub(a, b) => match self.constant_of(b) {
+            VectorTerm::Sub(a, b) if a == b => Some(self.constant(0, width)),
+            VectorTerm::Sub(a, b) => match self.constant_of(b) {
                 Some(0) => Some(a),
                 Some(1) if width == 1 => Some(self.not(a)),
-                _ => self.passed_by(a, b, width, Term::Sub),
+                _ => self.passed_by(a, b, width, VectorTerm::Sub),
             },
-            Term::Equal(a, b) if a == b => Some(self.constant(1, 1)),
-            Term::Equal(a, b) if self.width(a) == 1 => {
+            VectorTerm::Equal(a, b) if a == b => Some(self.constant(1, 1)),
+            VectorTerm::Equal(a, b) if self.width(a) == 1 => {
                 match (self.constant_of(a), self.constant_of(b)) {
                     (Some(1), _) => Some(b),
                     (_, Some(1)) => Some(a),
@@ -353,20 +368,22 @@ impl Terms {
                     _ => None,
                 }
             }
-            Term::Less(a, b) | Term::SignedLess(a, b) if a == b => Some(self.constant(0, 1)),
-            Term::Product(a, b) => {
+            VectorTerm::Less(a, b) | VectorTerm::SignedLess(a, b) if a == b => {
+                Some(self.constant(0, 1))
+            }
+            VectorTerm::Product(a, b) => {
                 let zero = [a, b].into_iter().find(|&it| self.constant_of(it) == Some(0));
                 let one = self.constant_of(a) == Some(1);
                 zero.or(one.then_some(b)).or((self.constant_of(b) == Some(1)).then_some(a))
             }
-            Term::Choice(condition, a, b) => {
+            VectorTerm::Choice(condition, a, b) => {
                 if a == b {
                     return Some(a);
                 }
                 if let Some(value) = self.constant_of(condition) {
                     return Some(if value == 1 { a } else { b });
                 }
-                if let Term::Not(inner) = *self.term(condition) {
+                if let VectorTerm::Not(inner) = *self.term(condition) {
                     return Some(self.choice(inner, b, a));
                 }
                 match (width, self.constant_of(a), self.constant_of(b)) {
@@ -375,18 +392,20 @@ impl Terms {
                     _ => None,
                 }
             }
-            Term::Slice { of, low } => self.simpler_slice(of, low, width),
-            Term::Join(a, b) => self.simpler_join(a, b, width),
-            Term::SignExtend(a) => match *self.term(a) {
-                Term::SignExtend(inner) => Some(self.sign_extended(inner, width)),
-                Term::Join(top, _) if self.constant_of(top) == Some(0) => {
+            VectorTerm::Slice { of, low } => self.simpler_slice(of, low, width),
+            VectorTerm::Join(a, b) => self.simpler_join(a, b, width),
+            VectorTerm::SignExtend(a) => match *self.term(a) {
+                VectorTerm::SignExtend(inner) => Some(self.sign_extended(inner, width)),
+                VectorTerm::Join(top, _) if self.constant_of(top) == Some(0) => {
                     Some(self.resized(a, width))
                 }
                 _ => None,
             },
-            Term::Word { memory, address } => {
+            VectorTerm::Word { memory, address } => {
                 let bits = match *self.term(address) {
-                    Term::Join(top, rest) if self.constant_of(top) == Some(0) => self.width(rest),
+                    VectorTerm::Join(top, rest) if self.constant_of(top) == Some(0) => {
+                        self.width(rest)
+                    }
                     _ => ADDRESS,
                 };
                 let words = &self.memories[memory];
@@ -401,7 +420,13 @@ impl Terms {
 
     /// Returns a sum or a difference for which the lowest bits of `b` are 0: the bits of `a` below them pass by the
     /// adder.
-    fn passed_by(&mut self, a: Id, b: Id, width: u32, op: fn(Id, Id) -> Term) -> Option<Id> {
+    fn passed_by(
+        &mut self,
+        a: VectorTermId,
+        b: VectorTermId,
+        width: u32,
+        op: fn(VectorTermId, VectorTermId) -> VectorTerm,
+    ) -> Option<VectorTermId> {
         let low = self.zeros(b);
         if low == 0 || low >= width {
             return None;
@@ -410,14 +435,14 @@ impl Terms {
         let lower = self.slice(a, 0, low);
         let (a, b) = (self.slice(a, low, upper), self.slice(b, low, upper));
         let upper = self.make(op(a, b), upper);
-        Some(self.make(Term::Join(upper, lower), width))
+        Some(self.make(VectorTerm::Join(upper, lower), width))
     }
 
     /// Returns how many of the lowest bits are known to be 0.
-    fn zeros(&self, id: Id) -> u32 {
+    fn zeros(&self, id: VectorTermId) -> u32 {
         match *self.term(id) {
-            Term::Constant(bits) => bits.trailing_zeros().min(self.width(id)),
-            Term::Join(upper, lower) => match self.zeros(lower) {
+            VectorTerm::Constant(bits) => bits.trailing_zeros().min(self.width(id)),
+            VectorTerm::Join(upper, lower) => match self.zeros(lower) {
                 all if all == self.width(lower) => all + self.zeros(upper),
                 some => some,
             },
@@ -425,14 +450,14 @@ impl Terms {
         }
     }
 
-    fn simpler_slice(&mut self, of: Id, low: u32, width: u32) -> Option<Id> {
+    fn simpler_slice(&mut self, of: VectorTermId, low: u32, width: u32) -> Option<VectorTermId> {
         let whole = self.width(of);
         if low == 0 && width == whole {
             return Some(of);
         }
         match *self.term(of) {
-            Term::Slice { of, low: inner } => Some(self.slice(of, low + inner, width)),
-            Term::Join(a, b) => {
+            VectorTerm::Slice { of, low: inner } => Some(self.slice(of, low + inner, width)),
+            VectorTerm::Join(a, b) => {
                 let at = self.width(b);
                 if low >= at {
                     return Some(self.slice(a, low - at, width));
@@ -442,9 +467,9 @@ impl Terms {
                 }
                 let (upper, lower) =
                     (self.slice(a, 0, low + width - at), self.slice(b, low, at - low));
-                Some(self.make(Term::Join(upper, lower), width))
+                Some(self.make(VectorTerm::Join(upper, lower), width))
             }
-            Term::SignExtend(a) => {
+            VectorTerm::SignExtend(a) => {
                 let own = self.width(a);
                 if low + width <= own {
                     return Some(self.slice(a, low, width));
@@ -455,11 +480,11 @@ impl Terms {
                 })
             }
             // The low bits of a sum are the sum of the low bits.
-            ref sum @ (Term::Add(..) | Term::Sub(..)) if low == 0 => {
+            ref sum @ (VectorTerm::Add(..) | VectorTerm::Sub(..)) if low == 0 => {
                 let low_bits = renamed(&sum.clone(), |id| self.slice(id, 0, width));
                 Some(self.make(low_bits, width))
             }
-            Term::Not(a) => {
+            VectorTerm::Not(a) => {
                 let a = self.slice(a, low, width);
                 Some(self.not(a))
             }
@@ -467,18 +492,26 @@ impl Terms {
         }
     }
 
-    fn simpler_join(&mut self, a: Id, b: Id, width: u32) -> Option<Id> {
-        if let Term::Join(upper, lower) = *self.term(a) {
+    fn simpler_join(
+        &mut self,
+        a: VectorTermId,
+        b: VectorTermId,
+        width: u32,
+    ) -> Option<VectorTermId> {
+        if let VectorTerm::Join(upper, lower) = *self.term(a) {
             let rest = self.width(lower) + self.width(b);
-            let rest = self.make(Term::Join(lower, b), rest);
-            return Some(self.make(Term::Join(upper, rest), width));
+            let rest = self.make(VectorTerm::Join(lower, b), rest);
+            return Some(self.make(VectorTerm::Join(upper, rest), width));
         }
-        let joined = |terms: &mut Self, a: Id, b: Id| match (terms.term(a), terms.term(b)) {
-            (&Term::Constant(upper), &Term::Constant(lower)) => {
+        let joined = |terms: &mut Self, a: VectorTermId, b: VectorTermId| match (
+            terms.term(a),
+            terms.term(b),
+        ) {
+            (&VectorTerm::Constant(upper), &VectorTerm::Constant(lower)) => {
                 let at = terms.width(b);
                 Some(terms.constant(upper << at | lower, terms.width(a) + at))
             }
-            (&Term::Slice { of, low: upper }, &Term::Slice { of: other, low })
+            (&VectorTerm::Slice { of, low: upper }, &VectorTerm::Slice { of: other, low })
                 if of == other && upper == low + terms.width(b) =>
             {
                 Some(terms.slice(of, low, terms.width(a) + terms.width(b)))
@@ -488,23 +521,23 @@ impl Terms {
         if let Some(both) = joined(self, a, b) {
             return Some(both);
         }
-        if let Term::Join(first, rest) = *self.term(b)
+        if let VectorTerm::Join(first, rest) = *self.term(b)
             && let Some(both) = joined(self, a, first)
         {
-            return Some(self.make(Term::Join(both, rest), width));
+            return Some(self.make(VectorTerm::Join(both, rest), width));
         }
         None
     }
 }
 
 /// Brings the operands of a term that does not depend on their order into one order.
-fn ordered(mut term: Term) -> Term {
-    if let Term::And(a, b)
-    | Term::Or(a, b)
-    | Term::Xor(a, b)
-    | Term::Add(a, b)
-    | Term::Product(a, b)
-    | Term::Equal(a, b) = &mut term
+fn ordered(mut term: VectorTerm) -> VectorTerm {
+    if let VectorTerm::And(a, b)
+    | VectorTerm::Or(a, b)
+    | VectorTerm::Xor(a, b)
+    | VectorTerm::Add(a, b)
+    | VectorTerm::Product(a, b)
+    | VectorTerm::Equal(a, b) = &mut term
         && a > b
     {
         std::mem::swap(a, b);
@@ -513,7 +546,7 @@ fn ordered(mut term: Term) -> Term {
 }
 
 /// Returns the term with other operands.
-fn renamed(term: &Term, mut of: impl FnMut(Id) -> Id) -> Term {
+fn renamed(term: &VectorTerm, mut of: impl FnMut(VectorTermId) -> VectorTermId) -> VectorTerm {
     let mut term = term.clone();
     term.operands_mut().into_iter().for_each(|id| *id = of(*id));
     term

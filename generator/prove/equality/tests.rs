@@ -5,7 +5,7 @@ use rand_chacha::rand_core::{RngCore, SeedableRng};
 
 use super::facts;
 use super::symbolic::Product;
-use super::term::{ADDRESS, Id, Term, Terms};
+use super::term::{ADDRESS, VectorTerm, VectorTermId, VectorTerms};
 use glint_base::fixed::mask;
 
 /// Unknowns of each term and some rounds of values for them.
@@ -28,9 +28,9 @@ fn simpler_terms_have_the_values_of_those_that_were_asked_for() {
     let mut random = ChaCha8Rng::seed_from_u64(3);
     for _ in 0..60 {
         let values = unknowns(&mut random);
-        let mut terms = Terms::default();
+        let mut terms = VectorTerms::default();
         // Each term with its value.
-        let mut made: Vec<(Id, u64)> = Vec::new();
+        let mut made: Vec<(VectorTermId, u64)> = Vec::new();
         for value in &values[..6] {
             let width = 1 + random.next_u32() % 12;
             made.push((terms.unknown(width), value & mask(width)));
@@ -44,28 +44,28 @@ fn simpler_terms_have_the_values_of_those_that_were_asked_for() {
             let (b, y) = (terms.resized(b, width), y & mask(width));
             let (bit, z) = (terms.slice(c, 0, 1), z & 1);
             let (term, width, value) = match random.next_u32() % 13 {
-                0 => (Term::Not(a), width, !x),
-                1 => (Term::And(a, b), width, x & y),
-                2 => (Term::Or(a, b), width, x | y),
-                3 => (Term::Xor(a, b), width, x ^ y),
-                4 => (Term::Add(a, b), width, x.wrapping_add(y)),
-                5 => (Term::Sub(a, b), width, x.wrapping_sub(y)),
-                6 => (Term::Equal(a, b), 1, u64::from(x == y)),
-                7 => (Term::Less(a, b), 1, u64::from(x < y)),
+                0 => (VectorTerm::Not(a), width, !x),
+                1 => (VectorTerm::And(a, b), width, x & y),
+                2 => (VectorTerm::Or(a, b), width, x | y),
+                3 => (VectorTerm::Xor(a, b), width, x ^ y),
+                4 => (VectorTerm::Add(a, b), width, x.wrapping_add(y)),
+                5 => (VectorTerm::Sub(a, b), width, x.wrapping_sub(y)),
+                6 => (VectorTerm::Equal(a, b), 1, u64::from(x == y)),
+                7 => (VectorTerm::Less(a, b), 1, u64::from(x < y)),
                 8 => {
                     let less = signed(x, width) < signed(y, width);
-                    (Term::SignedLess(a, b), 1, u64::from(less))
+                    (VectorTerm::SignedLess(a, b), 1, u64::from(less))
                 }
-                9 => (Term::Choice(bit, a, b), width, if z == 1 { x } else { y }),
+                9 => (VectorTerm::Choice(bit, a, b), width, if z == 1 { x } else { y }),
                 10 => {
                     let low = random.next_u32() % width;
                     let bits = 1 + random.next_u32() % (width - low);
-                    (Term::Slice { of: a, low }, bits, x >> low)
+                    (VectorTerm::Slice { of: a, low }, bits, x >> low)
                 }
-                11 if width <= 32 => (Term::Join(a, b), 2 * width, x << width | y),
-                _ => (Term::SignExtend(a), (width + 3).min(64), signed(x, width) as u64),
+                11 if width <= 32 => (VectorTerm::Join(a, b), 2 * width, x << width | y),
+                _ => (VectorTerm::SignExtend(a), (width + 3).min(64), signed(x, width) as u64),
             };
-            if matches!(term, Term::SignExtend(_)) && width == terms.width(a) {
+            if matches!(term, VectorTerm::SignExtend(_)) && width == terms.width(a) {
                 continue;
             }
             made.push((terms.make(term, width), value & mask(width)));
@@ -84,10 +84,10 @@ fn facts_hold_whatever_the_operands_are() {
     let mut random = ChaCha8Rng::seed_from_u64(5);
     let mut seen = [0; 2];
     for round in 0..200 {
-        let mut terms = Terms::default();
+        let mut terms = VectorTerms::default();
         let mut products = Vec::new();
-        let mut roots: Vec<Id> = Vec::new();
-        let factors: Vec<Id> = (0..3)
+        let mut roots: Vec<VectorTermId> = Vec::new();
+        let factors: Vec<VectorTermId> = (0..3)
             .map(|_| {
                 let width = 4 + random.next_u32() % 28;
                 let low = random.next_u32() % 12 % width;
@@ -96,8 +96,8 @@ fn facts_hold_whatever_the_operands_are() {
                 if low > 0 && width < 31 {
                     // The first row of the rest of a square.
                     let (rest, zero) = (terms.slice(whole, 0, low), terms.constant(0, 1));
-                    let below = terms.make(Term::Join(zero, rest), low + 1);
-                    let between = terms.make(Term::Join(bits, below), width + 1);
+                    let below = terms.make(VectorTerm::Join(zero, rest), low + 1);
+                    let between = terms.make(VectorTerm::Join(bits, below), width + 1);
                     let (bit, none) = (terms.slice(rest, 0, 1), terms.constant(0, width + 1));
                     roots.push(terms.choice(bit, between, none));
                 }
@@ -112,14 +112,14 @@ fn facts_hold_whatever_the_operands_are() {
             let ranges = [random.next_u32() % 5000, random.next_u32() % 5000];
             let ranges = ranges.map(|most| (-i128::from(most % 7), i128::from(most)));
             products.push(Product { factors, ranges });
-            roots.push(terms.make(Term::Product(factors[0], factors[1]), 64));
+            roots.push(terms.make(VectorTerm::Product(factors[0], factors[1]), 64));
         }
         for words in [3, 40] {
             let words: Vec<u64> = (0..words).map(|_| random.next_u64() & mask(9) & !6).collect();
             let memory = terms.memory(&words);
             let address = terms.unknown(6);
             let address = terms.resized(address, ADDRESS);
-            roots.push(terms.make(Term::Word { memory, address }, 9));
+            roots.push(terms.make(VectorTerm::Word { memory, address }, 9));
         }
         for parts in [false, true] {
             let facts = facts::about(&mut terms, &roots, &products, parts);

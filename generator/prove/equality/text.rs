@@ -14,12 +14,12 @@ use anyhow::{Context, Result, bail, ensure};
 use serde_json::Value;
 
 use super::Open;
-use super::cells::Values;
-use super::module::{Held, Memory, Module, Read};
-use super::solver::{Outcome, Solver};
+use super::cells::WireValues;
+use super::module::{Memory, Module, Read, RegisterContents};
+use super::solver::{Solver, SolverAnswer};
 use super::split_products::samples;
 use super::symbolic::{Execution, Product};
-use super::term::{Id, Term, Terms};
+use super::term::{VectorTerm, VectorTermId, VectorTerms};
 use glint_base::fixed::mask;
 use glint_rtl::netlist::{Design, Role};
 use glint_tools::Tool;
@@ -77,13 +77,13 @@ pub fn compare_text(
         Ok(read) => read,
         Err(error) => return Ok(TextVerdict::Unread(format!("{error:#}"))),
     };
-    let mut comparison = Comparison {
+    let mut comparison = TextComparison {
         design,
         module: &module,
         roles: &roles,
         delays: &delays,
         latency,
-        terms: Terms::default(),
+        terms: VectorTerms::default(),
         inputs: HashMap::new(),
         products: Vec::new(),
         solver: Solver::new(solver, limit)?,
@@ -179,17 +179,17 @@ fn constants(
     rst_n: u64,
     known: &HashMap<usize, u64>,
 ) -> Result<Constants> {
-    let mut terms = Terms::default();
+    let mut terms = VectorTerms::default();
     let mut held = module.power_up(&mut terms);
     for (&at, &bits) in known {
         held[at] = vec![terms.constant(bits, terms.width(held[at][0]))];
     }
-    let input = |terms: &mut Terms, name: &str, width: u32| match roles.get(name) {
+    let input = |terms: &mut VectorTerms, name: &str, width: u32| match roles.get(name) {
         Some(Role::Reset) => terms.constant(rst_n, width),
         Some(Role::OutReady) if rst_n == 1 => terms.constant(1, width),
         _ => terms.unknown(width),
     };
-    let any = |terms: &mut Terms, read: Read| module.memories[read.memory].any(terms);
+    let any = |terms: &mut VectorTerms, read: Read| module.memories[read.memory].any(terms);
     let values = module.settle(&mut terms, &held, input, any)?;
     let next = module.edge(&mut terms, &values);
     let next = next.iter().enumerate().filter_map(|(at, columns)| match columns[..] {
@@ -200,7 +200,7 @@ fn constants(
     let control = |memory: &Memory| {
         let ports = memory.control(&mut terms, &values);
         let addresses = 1 + memory.reads.len();
-        let ones = |&id: &Id| terms.constant_of(id) == Some(mask(terms.width(id)));
+        let ones = |&id: &VectorTermId| terms.constant_of(id) == Some(mask(terms.width(id)));
         let written = ports[addresses..].iter().all(ones);
         let constant = ports[..addresses].iter().map(|&id| terms.constant_of(id));
         constant.collect::<Option<Vec<u64>>>().filter(|_| written)
@@ -209,15 +209,15 @@ fn constants(
     Ok((next, control))
 }
 
-struct Comparison<'p> {
+struct TextComparison<'p> {
     design: &'p Design,
     module: &'p Module,
     roles: &'p Roles,
     delays: &'p [Vec<usize>],
     latency: usize,
-    terms: Terms,
+    terms: VectorTerms,
     /// The values of the inputs, by name and clock.
-    inputs: HashMap<(String, usize), Id>,
+    inputs: HashMap<(String, usize), VectorTermId>,
     products: Vec<Product>,
     solver: Solver<'p>,
     proof: TextProof,
@@ -225,13 +225,13 @@ struct Comparison<'p> {
 
 /// Returns the term of an input in a clock. Operands come with a point, and all other inputs belong to the handshake.
 fn input(
-    terms: &mut Terms,
-    inputs: &mut HashMap<(String, usize), Id>,
+    terms: &mut VectorTerms,
+    inputs: &mut HashMap<(String, usize), VectorTermId>,
     name: &str,
     role: Option<Role>,
     width: u32,
     clock: usize,
-) -> Id {
+) -> VectorTermId {
     match role {
         Some(Role::Reset | Role::OutReady) => terms.constant(1, width),
         Some(Role::InValid) if clock == 0 => terms.constant(1, width),
@@ -239,7 +239,7 @@ fn input(
     }
 }
 
-impl Comparison<'_> {
+impl TextComparison<'_> {
     /// Shows that a clock in which `in_ready` is low changes nothing, and one in which it is high is one in which
     /// `out_ready` is.
     fn stays(&mut self) -> Result<()> {
@@ -249,10 +249,12 @@ impl Comparison<'_> {
         }
         let module = self.module;
         let held = module.power_up(&mut self.terms);
-        let mut reads: HashMap<Read, Vec<Id>> = HashMap::new();
-        let mut clock = |it: &mut Self, out_ready: Option<u64>| -> Result<(Values, Held)> {
+        let mut reads: HashMap<Read, Vec<VectorTermId>> = HashMap::new();
+        let mut clock = |it: &mut Self,
+                         out_ready: Option<u64>|
+         -> Result<(WireValues, RegisterContents)> {
             let (roles, inputs) = (it.roles, &mut it.inputs);
-            let input = |terms: &mut Terms, name: &str, width: u32| match roles.get(name) {
+            let input = |terms: &mut VectorTerms, name: &str, width: u32| match roles.get(name) {
                 Some(Role::Reset) => terms.constant(1, width),
                 Some(Role::OutReady) if out_ready.is_some() => terms.constant(1, width),
                 // Of no clock of the point.
@@ -260,7 +262,7 @@ impl Comparison<'_> {
                     .entry((name.to_owned(), usize::MAX))
                     .or_insert_with(|| terms.unknown(width)),
             };
-            let read = |terms: &mut Terms, read: Read| {
+            let read = |terms: &mut VectorTerms, read: Read| {
                 let any = || module.memories[read.memory].any(terms);
                 reads.entry(read).or_insert_with(any).clone()
             };
@@ -315,13 +317,13 @@ impl Comparison<'_> {
         let nets = self.netlist();
         let module = self.module;
         let mut held = module.power_up(&mut self.terms);
-        let mut written: Vec<Vec<Vec<Id>>> = Vec::new();
+        let mut written: Vec<Vec<Vec<VectorTermId>>> = Vec::new();
         for clock in 0..=self.latency {
             let (roles, inputs, delays) = (self.roles, &mut self.inputs, self.delays);
-            let input = |terms: &mut Terms, name: &str, width: u32| {
+            let input = |terms: &mut VectorTerms, name: &str, width: u32| {
                 input(terms, inputs, name, roles.get(name).copied(), width, clock)
             };
-            let read = |terms: &mut Terms, read: Read| {
+            let read = |terms: &mut VectorTerms, read: Read| {
                 let before = clock.checked_sub(delays[read.memory][read.port]);
                 match before {
                     Some(before) => written[before][read.memory].clone(),
@@ -341,7 +343,7 @@ impl Comparison<'_> {
     }
 
     /// Returns the term of every net of the netlist in each clock of a point.
-    fn netlist(&mut self) -> Vec<Vec<Id>> {
+    fn netlist(&mut self) -> Vec<Vec<VectorTermId>> {
         let design = self.design;
         let execution = Execution::new(&mut self.terms, design);
         let mut state = execution.power_up(&mut self.terms);
@@ -364,25 +366,25 @@ impl Comparison<'_> {
     }
 
     /// Replaces the terms that registers of the text hold by equal terms of the netlist.
-    fn register(&mut self, held: &mut Held, nets: &[Id]) -> Result<()> {
-        let known: HashSet<Id> = nets.iter().copied().collect();
+    fn register(&mut self, held: &mut RegisterContents, nets: &[VectorTermId]) -> Result<()> {
+        let known: HashSet<VectorTermId> = nets.iter().copied().collect();
         let cone = self.terms.cone(held.iter().flatten().chain(nets).copied());
         // A term that does not depend on the point is of no use.
-        let mut ours: HashSet<Id> =
+        let mut ours: HashSet<VectorTermId> =
             self.inputs.iter().filter(|((_, clock), _)| *clock == 0).map(|(_, id)| *id).collect();
         for &id in &cone {
             if self.terms.term(id).operands().iter().any(|it| ours.contains(it)) {
                 ours.insert(id);
             }
         }
-        let is_open = |it: &Id| ours.contains(it) && !known.contains(it);
+        let is_open = |it: &VectorTermId| ours.contains(it) && !known.contains(it);
         let all = held.iter().flatten().filter(|it| ours.contains(it));
         self.proof.registers += all.filter(|it| known.contains(it)).count();
         if !held.iter().flatten().any(is_open) {
             return Ok(());
         }
-        let values: Vec<HashMap<Id, u64>> = samples(&self.terms, &cone).collect();
-        let key = |terms: &Terms, id: Id| {
+        let values: Vec<HashMap<VectorTermId, u64>> = samples(&self.terms, &cone).collect();
+        let key = |terms: &VectorTerms, id: VectorTermId| {
             let values: Vec<u64> = values.iter().map(|values| values[&id]).collect();
             (terms.width(id), values)
         };
@@ -396,7 +398,7 @@ impl Comparison<'_> {
             let Some(&net) = alike.get(&key(&self.terms, *column)) else { continue };
             let equal = self.terms.equal(*column, net);
             let differ = self.terms.not(equal);
-            if let Outcome::Unsatisfiable = self.ask(&[differ])? {
+            if let SolverAnswer::Unsatisfiable = self.ask(&[differ])? {
                 *column = net;
                 self.proof.registers += 1;
             }
@@ -404,7 +406,7 @@ impl Comparison<'_> {
         Ok(())
     }
 
-    fn results(&mut self, values: &Values, nets: &[Id]) -> Result<()> {
+    fn results(&mut self, values: &WireValues, nets: &[VectorTermId]) -> Result<()> {
         let shown = self.module.shown(&mut self.terms, values);
         for port in self.design.outputs().filter(|port| port.role != Role::InReady) {
             let name = &self.design.net(port.net).name;
@@ -419,9 +421,9 @@ impl Comparison<'_> {
     /// Ends the comparison unless two terms are equal whenever a bit has a value.
     fn must_equal(
         &mut self,
-        condition: Option<(Id, bool)>,
-        one: Id,
-        other: Id,
+        condition: Option<(VectorTermId, bool)>,
+        one: VectorTermId,
+        other: VectorTermId,
         what: &str,
     ) -> Result<()> {
         ensure!(self.terms.width(one) == self.terms.width(other), "{what} has another width");
@@ -441,9 +443,9 @@ impl Comparison<'_> {
             return ended(TextVerdict::Different(difference));
         }
         match self.ask(&wanted)? {
-            Outcome::Unsatisfiable => Ok(()),
-            Outcome::Undecided(open) => ended(TextVerdict::Open(open)),
-            Outcome::Satisfiable(found) => {
+            SolverAnswer::Unsatisfiable => Ok(()),
+            SolverAnswer::Undecided(open) => ended(TextVerdict::Open(open)),
+            SolverAnswer::Satisfiable(found) => {
                 let found = found.into_iter().collect();
                 match self.difference(&wanted, both, what, &found) {
                     Some(difference) => ended(TextVerdict::Different(difference)),
@@ -453,9 +455,9 @@ impl Comparison<'_> {
         }
     }
 
-    fn ask(&mut self, wanted: &[Id]) -> Result<Outcome> {
+    fn ask(&mut self, wanted: &[VectorTermId]) -> Result<SolverAnswer> {
         match self.solver.ask(&mut self.terms, wanted, &self.products, false)? {
-            Outcome::Unsatisfiable => Ok(Outcome::Unsatisfiable),
+            SolverAnswer::Unsatisfiable => Ok(SolverAnswer::Unsatisfiable),
             _ => self.solver.ask(&mut self.terms, wanted, &self.products, true),
         }
     }
@@ -464,14 +466,14 @@ impl Comparison<'_> {
     /// values and the values that the solver `found`.
     fn difference(
         &self,
-        wanted: &[Id],
-        [one, other]: [Id; 2],
+        wanted: &[VectorTermId],
+        [one, other]: [VectorTermId; 2],
         what: &str,
-        found: &HashMap<Id, u64>,
+        found: &HashMap<VectorTermId, u64>,
     ) -> Option<String> {
         let cone = self.terms.cone(wanted.iter().copied().chain([one, other]));
-        let number = |&id: &Id| match *self.terms.term(id) {
-            Term::Unknown(number) => Some((number, found.get(&id).copied())),
+        let number = |&id: &VectorTermId| match *self.terms.term(id) {
+            VectorTerm::Unknown(number) => Some((number, found.get(&id).copied())),
             _ => None,
         };
         let found: HashMap<u32, Option<u64>> = cone.iter().filter_map(number).collect();

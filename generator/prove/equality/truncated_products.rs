@@ -6,11 +6,11 @@
 
 use anyhow::Result;
 
-use super::Comparison;
+use super::PipelineComparison;
 use super::facts::{extended, shifted};
-use super::solver::Outcome;
+use super::solver::SolverAnswer;
 use super::split_products::agree;
-use super::term::{Id, Term};
+use super::term::{VectorTerm, VectorTermId};
 use glint_base::fixed::MAX_WIDTH;
 
 /// The relation of a factor to a factor of the pipeline: they are the same, or the lowest bits of the first, in this
@@ -21,16 +21,16 @@ enum Factor {
     Lowest(u32),
 }
 
-impl Comparison<'_> {
+impl PipelineComparison<'_> {
     /// Notes how the products of a cone follow from the products of the pipeline.
-    pub(super) fn divide_by_lowest(&mut self, wanted: &[Id]) -> Result<()> {
+    pub(super) fn divide_by_lowest(&mut self, wanted: &[VectorTermId]) -> Result<()> {
         for id in self.terms.cone(wanted.iter().copied()) {
-            let Term::Product(a, b) = *self.terms.term(id) else { continue };
+            let VectorTerm::Product(a, b) = *self.terms.term(id) else { continue };
             if self.divided.contains_key(&id) || self.parts.binary_search(&id).is_ok() {
                 continue;
             }
             for part in self.parts.clone() {
-                let Term::Product(c, d) = *self.terms.term(part) else { continue };
+                let VectorTerm::Product(c, d) = *self.terms.term(part) else { continue };
                 if self.by_parts([a, b], [c, d])? || self.by_parts([a, b], [d, c])? {
                     break;
                 }
@@ -41,7 +41,7 @@ impl Comparison<'_> {
 
     /// Notes how a product follows from a product of the pipeline, if its factors are made of the factors of that
     /// product. Returns whether they are.
-    fn by_parts(&mut self, [a, b]: [Id; 2], [c, d]: [Id; 2]) -> Result<bool> {
+    fn by_parts(&mut self, [a, b]: [VectorTermId; 2], [c, d]: [VectorTermId; 2]) -> Result<bool> {
         let (Some(first), Some(second)) = (self.made(a, c)?, self.made(b, d)?) else {
             return Ok(false);
         };
@@ -50,7 +50,7 @@ impl Comparison<'_> {
         Ok(true)
     }
 
-    fn made(&mut self, factor: Id, of: Id) -> Result<Option<Factor>> {
+    fn made(&mut self, factor: VectorTermId, of: VectorTermId) -> Result<Option<Factor>> {
         if self.same(factor, of)? {
             return Ok(Some(Factor::Same));
         }
@@ -61,7 +61,7 @@ impl Comparison<'_> {
     }
 
     /// Returns whether two terms of one width are equal for all operands.
-    fn same(&mut self, one: Id, other: Id) -> Result<bool> {
+    fn same(&mut self, one: VectorTermId, other: VectorTermId) -> Result<bool> {
         if one == other || !agree(&self.terms, one, other) {
             return Ok(one == other);
         }
@@ -69,15 +69,21 @@ impl Comparison<'_> {
         let mut differ = [self.terms.not(equal)];
         self.terms.replace(&self.divided, &mut differ);
         let said = self.solver.ask(&mut self.terms, &differ, &self.products, false)?;
-        Ok(matches!(said, Outcome::Unsatisfiable))
+        Ok(matches!(said, SolverAnswer::Unsatisfiable))
     }
 
     /// Notes how the product of `factor` and `other` follows from the product of `part` and `other`. They are equal,
     /// or they differ by the product of the bits above and `other`, which is a product by 0, 1 or -1.
-    fn note(&mut self, factor: Id, part: Id, made: Factor, other: Id) {
+    fn note(
+        &mut self,
+        factor: VectorTermId,
+        part: VectorTermId,
+        made: Factor,
+        other: VectorTermId,
+    ) {
         let terms = &mut self.terms;
-        let product = terms.make(Term::Product(factor, other), MAX_WIDTH);
-        let lower = terms.make(Term::Product(part, other), MAX_WIDTH);
+        let product = terms.make(VectorTerm::Product(factor, other), MAX_WIDTH);
+        let lower = terms.make(VectorTerm::Product(part, other), MAX_WIDTH);
         if lower == product {
             return;
         }
@@ -86,9 +92,9 @@ impl Comparison<'_> {
             Factor::Lowest(places) => {
                 let upper = terms.slice(factor, places, MAX_WIDTH - places);
                 let upper = terms.sign_extended(upper, MAX_WIDTH);
-                let upper = terms.make(Term::Product(upper, other), MAX_WIDTH);
+                let upper = terms.make(VectorTerm::Product(upper, other), MAX_WIDTH);
                 let upper = shifted(terms, upper, places);
-                terms.make(Term::Add(lower, upper), MAX_WIDTH)
+                terms.make(VectorTerm::Add(lower, upper), MAX_WIDTH)
             }
         }];
         terms.replace(&self.divided, &mut sum);

@@ -12,11 +12,11 @@ use glint_rtl::sim::Simulator;
 const PLACES: usize = 6;
 
 /// Raw values of operands, by name.
-pub(super) type Operands = Vec<(String, i64)>;
+pub(super) type OperandValues = Vec<(String, i64)>;
 
 /// A place in a test.
 #[derive(Clone)]
-pub(super) struct Place {
+pub(super) struct TestPlace {
     /// The seed of the stream.
     pub(super) seed: u64,
     /// The results in it up to there.
@@ -27,21 +27,21 @@ pub(super) struct Place {
 
 /// For each ROM and word, the first places at which it is read.
 pub(super) struct Coverage {
-    places: Vec<Vec<Vec<Place>>>,
+    places: Vec<Vec<Vec<TestPlace>>>,
     /// The operand registers.
     operands: Vec<NetId>,
 }
 
 /// The places of one stream.
-struct Watch<'a> {
+struct PlaceWatch<'a> {
     seed: u64,
     /// For each ROM its address, and the word of the latest clock.
     addresses: Vec<(NetId, u64)>,
     operands: &'a [NetId],
-    places: Vec<Vec<Vec<Place>>>,
+    places: Vec<Vec<Vec<TestPlace>>>,
 }
 
-impl<'a> Watch<'a> {
+impl<'a> PlaceWatch<'a> {
     fn new(design: &Design, operands: &'a [NetId], seed: u64) -> Self {
         let roms = design.roms.iter();
         Self {
@@ -63,7 +63,7 @@ impl<'a> Watch<'a> {
                 && places.last().is_none_or(|latest| latest.points < points)
             {
                 let operands = self.operands.iter();
-                places.push(Place {
+                places.push(TestPlace {
                     seed: self.seed,
                     points,
                     operands: operands.map(|&net| simulator.value(net)).collect(),
@@ -85,10 +85,10 @@ impl Coverage {
             .filter(|register| register.kind == RegisterKind::Operand)
             .map(|register| register.q)
             .collect();
-        let begin = |seed| Watch::new(design, &operands, seed);
-        let streams = lockstep.watch(points, begin, Watch::note)?;
+        let begin = |seed| PlaceWatch::new(design, &operands, seed);
+        let streams = lockstep.watch(points, begin, PlaceWatch::note)?;
         let roms = design.roms.iter();
-        let mut all: Vec<Vec<Vec<Place>>> =
+        let mut all: Vec<Vec<Vec<TestPlace>>> =
             roms.map(|rom| vec![Vec::new(); rom.words.len()]).collect();
         for stream in streams {
             let words = all.iter_mut().flatten().zip(stream.places.into_iter().flatten());
@@ -101,7 +101,7 @@ impl Coverage {
     }
 
     /// Returns the places at which a word is read.
-    pub(super) fn places(&self, rom: RomId, word: usize) -> &[Place] {
+    pub(super) fn places(&self, rom: RomId, word: usize) -> &[TestPlace] {
         &self.places[rom.index()][word]
     }
 
@@ -111,7 +111,7 @@ impl Coverage {
         design: &Design,
         rom: RomId,
         word: usize,
-    ) -> impl Iterator<Item = Operands> {
+    ) -> impl Iterator<Item = OperandValues> {
         self.places(rom, word).iter().map(|place| {
             let operands = self.operands.iter().zip(&place.operands);
             let raw = operands.filter_map(|(&net, &bits)| {

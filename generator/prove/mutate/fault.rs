@@ -21,7 +21,7 @@ const NEIGHBOURS: usize = 256;
 
 /// The change of a bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Bit {
+pub enum BitChange {
     /// It is always 0.
     Stuck0,
     /// It is always 1.
@@ -30,7 +30,7 @@ pub enum Bit {
     Inverted,
 }
 
-impl Bit {
+impl BitChange {
     /// All that can be done to a bit.
     pub const ALL: [Self; 3] = [Self::Stuck0, Self::Stuck1, Self::Inverted];
 
@@ -48,7 +48,7 @@ impl Bit {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Site {
     /// A bit of a net.
-    Bit(NetId, u32, Bit),
+    Bit(NetId, u32, BitChange),
     /// Another driver of a net that is no state.
     Driver(NetId, Driver),
     /// A register that takes its data always (`true`) or never.
@@ -61,7 +61,7 @@ pub enum Site {
 
 /// One fault.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Fault {
+pub struct NetlistFault {
     /// Made of the names in the design: `adder15[3]:stuck-at-0`. No two faults of a design have the same.
     pub id: String,
     /// The kind of the fault.
@@ -72,7 +72,7 @@ pub struct Fault {
 
 /// The faults of a design.
 #[derive(Clone, Debug, Default)]
-pub struct Faults(Vec<Fault>);
+pub struct Faults(Vec<NetlistFault>);
 
 impl Faults {
     /// Lists all faults, but of large ROMs a sample that is always the same.
@@ -112,7 +112,7 @@ impl Faults {
     }
 
     /// Returns the faults in an order that stays the same.
-    pub fn iter(&self) -> impl Iterator<Item = &Fault> {
+    pub fn iter(&self) -> impl Iterator<Item = &NetlistFault> {
         self.0.iter()
     }
 
@@ -127,12 +127,12 @@ impl Faults {
     }
 
     /// Returns the fault of that id.
-    pub fn find(&self, id: &str) -> Option<&Fault> {
+    pub fn find(&self, id: &str) -> Option<&NetlistFault> {
         self.0.iter().find(|fault| fault.id == id)
     }
 
     fn add(&mut self, id: String, kind: FaultKind, site: Site) {
-        self.0.push(Fault { id, kind, site });
+        self.0.push(NetlistFault { id, kind, site });
     }
 
     /// Adds the faults of the bits of a net. A constant, which is at fault as a whole, and another name of a net have
@@ -143,11 +143,11 @@ impl Faults {
             return;
         }
         for bit in 0..net.format.width() {
-            for how in Bit::ALL {
+            for how in BitChange::ALL {
                 let (name, kind) = match how {
-                    Bit::Stuck0 => ("stuck-at-0", FaultKind::StuckAt0),
-                    Bit::Stuck1 => ("stuck-at-1", FaultKind::StuckAt1),
-                    Bit::Inverted => ("inverted", FaultKind::Inverted),
+                    BitChange::Stuck0 => ("stuck-at-0", FaultKind::StuckAt0),
+                    BitChange::Stuck1 => ("stuck-at-1", FaultKind::StuckAt1),
+                    BitChange::Inverted => ("inverted", FaultKind::Inverted),
                 };
                 let id_text = format!("{}[{bit}]:{name}", net.name);
                 self.add(id_text, kind, Site::Bit(id, bit, how));

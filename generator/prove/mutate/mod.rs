@@ -23,10 +23,10 @@ mod verdict;
 mod verilog;
 mod witness_search;
 
-pub use fault::{Bit, Fault, Faults, Site};
+pub use fault::{BitChange, Faults, NetlistFault, Site};
 pub use kind::FaultKind;
 pub use run::run;
 pub use score::{GOAL_MEMORY, GOAL_TEXT, Score, Share, TOLERATED, Tally, TextScore};
 pub use unreachable::unreached;
-pub use verdict::{Detector, Difference, Found, How, Verdict};
-pub use verilog::{ShippedBench, Text, TextFault, TextFound, TextVerdict};
+pub use verdict::{Detector, FaultResult, How, MutantVerdict, SignalDifference};
+pub use verilog::{ShippedBench, TextFault, TextFaultResult, TextMutantVerdict, VerilogText};

@@ -6,8 +6,8 @@
 
 use anyhow::Result;
 
-use super::coverage::{Operands, operand_of};
-use super::verdict::Difference;
+use super::coverage::{OperandValues, operand_of};
+use super::verdict::SignalDifference;
 use glint_core::core::Core;
 use glint_core::cosim::exhaustive::Clocks;
 use glint_rtl::netlist::{Design, Driver, RegisterKind, RomId};
@@ -28,7 +28,7 @@ pub(super) const MOST_BITS: u32 = 22;
 pub(super) const NARROW: u32 = 16;
 
 /// Returns the operand whose register addresses a ROM, held at a word.
-pub(super) fn addressing(core: &Core, rom: RomId, word: usize) -> Option<Operands> {
+pub(super) fn addressing(core: &Core, rom: RomId, word: usize) -> Option<OperandValues> {
     let design = &core.design;
     let net = design.net(design.rom(rom).address);
     let Driver::Register(id) = net.driver else {
@@ -42,20 +42,28 @@ pub(super) fn addressing(core: &Core, rom: RomId, word: usize) -> Option<Operand
 ///
 /// # Errors
 /// Fails if the mutant cannot be simulated.
-pub(super) fn drawn(core: &Core, mutant: &Design, held: Operands) -> Result<Option<Difference>> {
+pub(super) fn drawn(
+    core: &Core,
+    mutant: &Design,
+    held: OperandValues,
+) -> Result<Option<SignalDifference>> {
     let lockstep = core.lockstep_of(mutant, SEED)?.holding(&held);
     let mismatch = lockstep.run(POINTS, &|_| ())?.mismatch;
-    Ok(mismatch.map(|mismatch| Difference { held, mismatch }))
+    Ok(mismatch.map(|mismatch| SignalDifference { held, mismatch }))
 }
 
 /// Runs a few points at which all operands are held.
 ///
 /// # Errors
 /// Fails if the mutant cannot be simulated.
-pub(super) fn alone(core: &Core, mutant: &Design, held: Operands) -> Result<Option<Difference>> {
+pub(super) fn alone(
+    core: &Core,
+    mutant: &Design,
+    held: OperandValues,
+) -> Result<Option<SignalDifference>> {
     let lockstep = core.lockstep_of(mutant, SEED)?.holding(&held);
     let mismatch = lockstep.run_alone(FEW_POINTS)?.mismatch;
-    Ok(mismatch.map(|mismatch| Difference { held, mismatch }))
+    Ok(mismatch.map(|mismatch| SignalDifference { held, mismatch }))
 }
 
 /// The result of a run through the other operands that determine `f`.
@@ -65,7 +73,7 @@ pub(super) enum Tried {
     /// All of them, and no register and no output differs on any clock.
     All,
     /// With these operands something does.
-    Differs(Operands),
+    Differs(OperandValues),
 }
 
 /// Tries all values of the operands that determine `f` while these are held, if they have at most `most_bits` bits.
@@ -75,7 +83,7 @@ pub(super) enum Tried {
 pub(super) fn all(
     core: &Core,
     mutant: &Design,
-    mut held: Operands,
+    mut held: OperandValues,
     most_bits: u32,
 ) -> Result<Tried> {
     let contract = core.contract.as_ref();

@@ -2,11 +2,11 @@
 
 use std::borrow::Cow;
 
-use super::fault::{Bit, Fault, Site};
+use super::fault::{BitChange, NetlistFault, Site};
 use glint_rtl::netlist::microcode;
 use glint_rtl::netlist::{Design, Driver, Net, NetId, Op, RegId, RomId};
 
-impl Fault {
+impl NetlistFault {
     /// Returns the design with this fault.
     ///
     /// It is a design for simulation and emission: its nets keep the intervals of the fault-free design.
@@ -49,20 +49,20 @@ fn add(design: &mut Design, like: NetId, suffix: &str, driver: Driver) -> NetId 
 }
 
 /// Returns a new net that carries `sound` with a bit at fault, as a driver.
-fn at_fault(design: &mut Design, sound: NetId, bit: u32, how: Bit) -> Driver {
+fn at_fault(design: &mut Design, sound: NetId, bit: u32, how: BitChange) -> Driver {
     let ones = match how {
-        Bit::Stuck0 => glint_base::fixed::mask(design.width(sound)) & !(1 << bit),
-        Bit::Stuck1 | Bit::Inverted => 1 << bit,
+        BitChange::Stuck0 => glint_base::fixed::mask(design.width(sound)) & !(1 << bit),
+        BitChange::Stuck1 | BitChange::Inverted => 1 << bit,
     };
     let ones = add(design, sound, "fault", Driver::Constant(ones));
     Driver::Op(match how {
-        Bit::Stuck0 => Op::And(sound, ones),
-        Bit::Stuck1 => Op::Or(sound, ones),
-        Bit::Inverted => Op::Xor(sound, ones),
+        BitChange::Stuck0 => Op::And(sound, ones),
+        BitChange::Stuck1 => Op::Or(sound, ones),
+        BitChange::Inverted => Op::Xor(sound, ones),
     })
 }
 
-fn plant_bit(design: &mut Design, net: NetId, bit: u32, how: Bit) {
+fn plant_bit(design: &mut Design, net: NetId, bit: u32, how: BitChange) {
     match design.net(net).driver.clone() {
         // The register of that name is compared, so the value that it takes is at fault.
         Driver::Register(id) => {

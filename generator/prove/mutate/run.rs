@@ -5,13 +5,13 @@ use std::sync::OnceLock;
 use anyhow::{Context, Result};
 use rayon::prelude::*;
 
-use super::coverage::{Coverage, Operands, Place};
-use super::fault::{Fault, Site};
+use super::coverage::{Coverage, OperandValues, TestPlace};
+use super::fault::{NetlistFault, Site};
 use super::pinned_operands::{self, Tried};
 use super::plant;
 use super::proof::Prover;
 use super::shipped::Shipped;
-use super::verdict::{Detector, Difference, Found, How, Verdict};
+use super::verdict::{Detector, FaultResult, How, MutantVerdict, SignalDifference};
 use super::witness_search::PointSearch;
 use glint_core::core::{self, Core};
 use glint_core::cosim::{Lockstep, Mismatch};
@@ -32,9 +32,9 @@ const BEYOND_SEED: u64 = 2;
 /// Fails if a mutant cannot be simulated.
 pub fn run<'f>(
     core: &Core,
-    faults: impl IntoIterator<Item = &'f Fault>,
+    faults: impl IntoIterator<Item = &'f NetlistFault>,
     progress: &(dyn Fn() + Sync),
-) -> Result<Vec<Found>> {
+) -> Result<Vec<FaultResult>> {
     let lockstep = core.lockstep(core::TEST_SEED)?;
     let sound = plant::bare(&core.design);
     let pipeline = sound.pipeline.as_ref();
@@ -51,7 +51,7 @@ pub fn run<'f>(
         shipped: Shipped::of(core)?,
         latency: core.design.pipeline.as_ref().map_or(0, |it| it.stages.len() as u64),
     };
-    let faults: Vec<&Fault> = faults.into_iter().collect();
+    let faults: Vec<&NetlistFault> = faults.into_iter().collect();
     faults
         .into_par_iter()
         .map(|fault| {
@@ -79,22 +79,22 @@ struct Bench<'a> {
 }
 
 impl Bench<'_> {
-    fn found(&self, fault: &Fault) -> Result<Found> {
+    fn found(&self, fault: &NetlistFault) -> Result<FaultResult> {
         let mutant = fault.planted(&self.sound);
         let verdict = self.verdict(fault, &mutant)?;
         // A fault that changes nothing that is compared changes no output.
         let shipped =
-            !matches!(verdict, Verdict::Equivalent(_)) && self.shipped.notices(&mutant)?;
-        Ok(Found { fault: fault.clone(), verdict, shipped })
+            !matches!(verdict, MutantVerdict::Equivalent(_)) && self.shipped.notices(&mutant)?;
+        Ok(FaultResult { fault: fault.clone(), verdict, shipped })
     }
 
-    fn verdict(&self, fault: &Fault, mutant: &Design) -> Result<Verdict> {
+    fn verdict(&self, fault: &NetlistFault, mutant: &Design) -> Result<MutantVerdict> {
         if let Some(mismatch) = self.first_look(mutant, &fault.site)? {
             return Ok(caught(mismatch));
         }
         let prover = self.prover.as_ref();
         if let Some(how) = prover.and_then(|prover| prover.proves(&fault.site)) {
-            return Ok(Verdict::Equivalent(how));
+            return Ok(MutantVerdict::Equivalent(how));
         }
         let word = self.words(&fault.site);
         if word.is_none() || !self.places(&fault.site).is_empty() {
@@ -110,13 +110,14 @@ impl Bench<'_> {
     }
 
     /// Searches for a point of a pipeline that differs beside the pipeline without a fault.
-    fn searched(&self, mutant: &Design) -> Result<Verdict> {
+    fn searched(&self, mutant: &Design) -> Result<MutantVerdict> {
         let Some(beside) = &self.beside else {
-            return Ok(Verdict::Undecided);
+            return Ok(MutantVerdict::Undecided);
         };
         let found =
             beside.search(mutant, |held| pinned_operands::alone(self.core, mutant, held))?;
-        Ok(found.map_or(Verdict::Undecided, |it| Verdict::Caught(Detector::Directed, it)))
+        Ok(found
+            .map_or(MutantVerdict::Undecided, |it| MutantVerdict::Caught(Detector::Directed, it)))
     }
 
     /// Returns the beginning of the default test, or of its streams that read words at fault: there it shows, if anywhere.
@@ -140,8 +141,13 @@ impl Bench<'_> {
     }
 
     /// Runs a mutant with operands held at the words at fault.
-    fn directed(&self, mutant: &Design, rom: RomId, words: &[(usize, u64)]) -> Result<Verdict> {
-        let directed = |difference| Verdict::Caught(Detector::Directed, difference);
+    fn directed(
+        &self,
+        mutant: &Design,
+        rom: RomId,
+        words: &[(usize, u64)],
+    ) -> Result<MutantVerdict> {
+        let directed = |difference| MutantVerdict::Caught(Detector::Directed, difference);
         let mut all_tried = true;
         for &(word, _) in words {
             let addressing = pinned_operands::addressing(self.core, rom, word);
@@ -151,7 +157,7 @@ impl Bench<'_> {
                 }
             }
             if let Some(mismatch) = self.beyond_shows(mutant, rom, word)? {
-                return Ok(directed(Difference { held: Vec::new(), mismatch }));
+                return Ok(directed(SignalDifference { held: Vec::new(), mismatch }));
             }
             let tried = match addressing {
                 Some(held) => {
@@ -160,7 +166,7 @@ impl Bench<'_> {
                 None => pinned_operands::all(
                     self.core,
                     mutant,
-                    Operands::new(),
+                    OperandValues::new(),
                     pinned_operands::NARROW,
                 )?,
             };
@@ -169,18 +175,22 @@ impl Bench<'_> {
                 Tried::Nothing => all_tried = false,
                 Tried::Differs(held) => {
                     let shown = pinned_operands::drawn(self.core, mutant, held)?;
-                    return Ok(shown.map_or(Verdict::Undecided, directed));
+                    return Ok(shown.map_or(MutantVerdict::Undecided, directed));
                 }
             }
         }
-        Ok(if all_tried { Verdict::Equivalent(How::Operands) } else { Verdict::Undecided })
+        Ok(if all_tried {
+            MutantVerdict::Equivalent(How::Operands)
+        } else {
+            MutantVerdict::Undecided
+        })
     }
 
     /// Returns the control operands of computations that read a word. They come from the default test, or else from a
     /// longer one.
-    fn readings(&self, rom: RomId, word: usize) -> Result<Vec<Operands>> {
+    fn readings(&self, rom: RomId, word: usize) -> Result<Vec<OperandValues>> {
         let design = &self.sound;
-        let mut readings: Vec<Operands> = self.tested.operands(design, rom, word).collect();
+        let mut readings: Vec<OperandValues> = self.tested.operands(design, rom, word).collect();
         if readings.is_empty() {
             readings = self.beyond()?.operands(design, rom, word).collect();
         }
@@ -202,8 +212,8 @@ impl Bench<'_> {
     }
 
     /// Returns the streams that read words, each up to the end of the computation after the one that does.
-    fn ends<'p>(&self, places: impl IntoIterator<Item = &'p Place>) -> Vec<(u64, u64)> {
-        let end = |place: &Place| (place.seed, place.points + 2 + self.latency);
+    fn ends<'p>(&self, places: impl IntoIterator<Item = &'p TestPlace>) -> Vec<(u64, u64)> {
+        let end = |place: &TestPlace| (place.seed, place.points + 2 + self.latency);
         places.into_iter().map(end).collect()
     }
 
@@ -240,7 +250,7 @@ impl Bench<'_> {
 }
 
 /// Returns the verdict on a fault that the default test notices.
-fn caught(mismatch: Mismatch) -> Verdict {
+fn caught(mismatch: Mismatch) -> MutantVerdict {
     let held = Vec::new();
-    Verdict::Caught(Detector::Cosim, Difference { held, mismatch })
+    MutantVerdict::Caught(Detector::Cosim, SignalDifference { held, mismatch })
 }

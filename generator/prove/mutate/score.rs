@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::kind::FaultKind;
-use super::verdict::{Detector, Found, How, Verdict};
-use super::verilog::{ShippedBench, TextFault, TextFound, TextVerdict};
+use super::verdict::{Detector, FaultResult, How, MutantVerdict};
+use super::verilog::{ShippedBench, TextFault, TextFaultResult, TextMutantVerdict};
 
 /// The largest share of the faults that may be undecided.
 pub const TOLERATED: f64 = 0.01;
@@ -52,14 +52,14 @@ pub struct Tally {
 }
 
 impl Tally {
-    fn add(&mut self, found: &Found) {
+    fn add(&mut self, found: &FaultResult) {
         self.planted += 1;
         self.shipped += usize::from(found.shipped);
         self.missed += usize::from(found.is_missed());
         match &found.verdict {
-            Verdict::Caught(check, _) => *self.caught.entry(*check).or_default() += 1,
-            Verdict::Equivalent(how) => *self.equivalent.entry(*how).or_default() += 1,
-            Verdict::Undecided => self.undecided += 1,
+            MutantVerdict::Caught(check, _) => *self.caught.entry(*check).or_default() += 1,
+            MutantVerdict::Equivalent(how) => *self.equivalent.entry(*how).or_default() += 1,
+            MutantVerdict::Undecided => self.undecided += 1,
         }
     }
 
@@ -97,13 +97,13 @@ pub struct Score {
 
 impl Score {
     /// Adds up.
-    pub fn of(found: &[Found]) -> Self {
+    pub fn of(found: &[FaultResult]) -> Self {
         let mut score = Self::default();
         for one in found {
-            let Found { fault, verdict, .. } = one;
+            let FaultResult { fault, verdict, .. } = one;
             score.all.add(one);
             score.kinds.entry(fault.kind).or_default().add(one);
-            if *verdict == Verdict::Undecided {
+            if *verdict == MutantVerdict::Undecided {
                 score.undecided.push(fault.id.clone());
             }
         }
@@ -142,16 +142,16 @@ pub struct TextScore {
 
 impl TextScore {
     /// Adds up the findings about `faults`, which `found` gives in the same order.
-    pub fn of(faults: &[TextFault], found: &[TextFound]) -> Self {
+    pub fn of(faults: &[TextFault], found: &[TextFaultResult]) -> Self {
         let mut score = Self::default();
         for (fault, found) in faults.iter().zip(found) {
             let id = || fault.id.clone();
             score.planted += 1;
             match found.verdict {
-                TextVerdict::Lint => score.lint += 1,
-                TextVerdict::Bench => score.bench += 1,
-                TextVerdict::Equivalent => score.equivalent += 1,
-                TextVerdict::Undecided => score.undecided.push(id()),
+                TextMutantVerdict::Lint => score.lint += 1,
+                TextMutantVerdict::Bench => score.bench += 1,
+                TextMutantVerdict::Equivalent => score.equivalent += 1,
+                TextMutantVerdict::Undecided => score.undecided.push(id()),
             }
             match found.shipped {
                 ShippedBench::Refused | ShippedBench::Silent => continue,

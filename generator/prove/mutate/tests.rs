@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::proof::Prover;
 use super::shipped::Shipped;
-use super::{Detector, Fault, FaultKind, Faults, How, Verdict, plant, run, unreached};
+use super::{Detector, FaultKind, Faults, How, MutantVerdict, NetlistFault, plant, run, unreached};
 use glint_base::fixed::Format;
 use glint_config as config;
 use glint_core::core::{Core, TEST_SEED};
@@ -75,7 +75,7 @@ fn no_proof_of_what_shows() {
 fn what_is_never_reached_is_never_noticed() {
     let core = core("configs/reduced/schlick.toml");
     let faults = Faults::of(&core.design);
-    let faults: Vec<&Fault> = faults.iter().collect();
+    let faults: Vec<&NetlistFault> = faults.iter().collect();
     let unreached = unreached(&core, &faults).unwrap();
     assert!(unreached.len() * 4 < faults.len(), "{} of {}", unreached.len(), faults.len());
     for fault in &unreached {
@@ -86,13 +86,13 @@ fn what_is_never_reached_is_never_noticed() {
     // A bit that is inverted shows wherever it is looked at.
     assert!(unreached.iter().all(|fault| fault.kind != FaultKind::Inverted));
     // The signal that says that the device runs is 0 and is 1.
-    let stuck = |fault: &&&Fault| fault.id.starts_with("run[0]:stuck");
+    let stuck = |fault: &&&NetlistFault| fault.id.starts_with("run[0]:stuck");
     assert!(faults.iter().any(|fault| stuck(&fault)), "no such fault");
     assert_eq!(unreached.iter().filter(stuck).count(), 0);
 }
 
 /// Returns the verdict on a fault.
-fn verdict(core: &Core, id: &str) -> Verdict {
+fn verdict(core: &Core, id: &str) -> MutantVerdict {
     let faults = Faults::of(&core.design);
     let fault = faults.iter().find(|fault| fault.id == id);
     run(core, fault, &|| ()).unwrap().remove(0).verdict
@@ -103,7 +103,7 @@ fn verdict(core: &Core, id: &str) -> Verdict {
 fn a_point_is_searched_for_that_shows_a_fault() {
     let core = core("configs/cosine_power_pipelined.toml");
     let verdict = verdict(&core, "cos_gamma_reg_s0[5]:stuck-at-0");
-    let Verdict::Caught(Detector::Directed, difference) = verdict else {
+    let MutantVerdict::Caught(Detector::Directed, difference) = verdict else {
         panic!("{verdict:?}");
     };
     assert!(difference.held.contains(&("cos_gamma".to_owned(), 1 << 5)), "{difference:?}");
@@ -115,9 +115,9 @@ fn lower_bits_do_not_decide_a_comparison() {
     let core = core("configs/lyon_pipelined.toml");
     assert_eq!(
         verdict(&core, "beta_distance_s6[15]:inverted"),
-        Verdict::Equivalent(How::Induction)
+        MutantVerdict::Equivalent(How::Induction)
     );
-    assert!(matches!(verdict(&core, "beta_distance_s6[16]:inverted"), Verdict::Caught(..)));
+    assert!(matches!(verdict(&core, "beta_distance_s6[16]:inverted"), MutantVerdict::Caught(..)));
 }
 
 /// Whether a number is below 0 its sign says alone, though 0 ends in nothing but zeros.
@@ -146,6 +146,9 @@ fn the_sign_decides_a_comparison_with_0() {
 fn a_remainder_does_not_grow_by_a_subtraction() {
     let core = core("configs/schlick_pipelined.toml");
     let id = "quotient_remainder_s4[25]";
-    assert_eq!(verdict(&core, &format!("{id}:stuck-at-0")), Verdict::Equivalent(How::Induction));
-    assert!(matches!(verdict(&core, &format!("{id}:stuck-at-1")), Verdict::Caught(..)));
+    assert_eq!(
+        verdict(&core, &format!("{id}:stuck-at-0")),
+        MutantVerdict::Equivalent(How::Induction)
+    );
+    assert!(matches!(verdict(&core, &format!("{id}:stuck-at-1")), MutantVerdict::Caught(..)));
 }

@@ -4,19 +4,19 @@
 use anyhow::Result;
 
 use super::coverage::Coverage;
-use super::fault::{Bit, Fault, Site};
+use super::fault::{BitChange, NetlistFault, Site};
 use glint_core::core::{Core, TEST_POINTS, TEST_SEED};
 use glint_rtl::netlist::NetId;
 use glint_rtl::sim::Simulator;
 
 /// The values that the bits of some nets have had.
-struct Watch<'a> {
+struct BitWatch<'a> {
     nets: &'a [NetId],
     /// For each net, the bits that were 0, and the bits that were 1.
     seen: Vec<[u64; 2]>,
 }
 
-impl Watch<'_> {
+impl BitWatch<'_> {
     fn note(&mut self, _: u64, simulator: &Simulator) {
         for (&net, [zero, one]) in self.nets.iter().zip(&mut self.seen) {
             let bits = simulator.value(net);
@@ -31,13 +31,13 @@ impl Watch<'_> {
 ///
 /// # Errors
 /// Fails if the design cannot be simulated.
-pub fn unreached<'f>(core: &Core, faults: &[&'f Fault]) -> Result<Vec<&'f Fault>> {
+pub fn unreached<'f>(core: &Core, faults: &[&'f NetlistFault]) -> Result<Vec<&'f NetlistFault>> {
     let lockstep = core.lockstep(TEST_SEED)?;
     // A register's value is seen after the edge; values that other nets show in between are not.
     let registers = core.design.registers.iter().map(|register| register.q);
     let nets: Vec<NetId> = registers.collect();
-    let begin = |_| Watch { nets: &nets, seen: vec![[0; 2]; nets.len()] };
-    let streams = lockstep.watch(TEST_POINTS, begin, Watch::note)?;
+    let begin = |_| BitWatch { nets: &nets, seen: vec![[0; 2]; nets.len()] };
+    let streams = lockstep.watch(TEST_POINTS, begin, BitWatch::note)?;
     let had = |net: NetId, value: usize, bit: u32| {
         let Some(at) = nets.iter().position(|&other| other == net) else {
             return true;
@@ -47,9 +47,9 @@ pub fn unreached<'f>(core: &Core, faults: &[&'f Fault]) -> Result<Vec<&'f Fault>
     let reads_words = faults.iter().any(|fault| matches!(fault.site, Site::Words(..)));
     let coverage =
         if reads_words { Some(Coverage::of(&core.design, &lockstep, TEST_POINTS)?) } else { None };
-    let is_unreached = |fault: &Fault| match &fault.site {
-        Site::Bit(net, bit, Bit::Stuck0) => !had(*net, 1, *bit),
-        Site::Bit(net, bit, Bit::Stuck1) => !had(*net, 0, *bit),
+    let is_unreached = |fault: &NetlistFault| match &fault.site {
+        Site::Bit(net, bit, BitChange::Stuck0) => !had(*net, 1, *bit),
+        Site::Bit(net, bit, BitChange::Stuck1) => !had(*net, 0, *bit),
         Site::Words(rom, words) => coverage
             .as_ref()
             .is_some_and(|it| words.iter().all(|(word, _)| it.places(*rom, *word).is_empty())),

@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use super::fault::Fault;
+use super::fault::NetlistFault;
 use glint_core::cosim::Mismatch;
 
 /// The check that notices a fault.
@@ -50,7 +50,7 @@ impl fmt::Display for How {
 
 /// The difference that a check showed.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Difference {
+pub struct SignalDifference {
     /// Operands that the stimulus held, by name, at raw values ([`glint_core::cosim::Lockstep::holding`]).
     pub held: Vec<(String, i64)>,
     /// The signal, on a clock.
@@ -59,9 +59,9 @@ pub struct Difference {
 
 /// The verdict on a mutant.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Verdict {
+pub enum MutantVerdict {
     /// A check differs, at this place.
-    Caught(Detector, Difference),
+    Caught(Detector, SignalDifference),
     /// Proved to change nothing that is compared.
     Equivalent(How),
     /// Neither caught nor proved equivalent.
@@ -70,18 +70,18 @@ pub enum Verdict {
 
 /// A fault and its verdict.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Found {
+pub struct FaultResult {
     /// The fault.
-    pub fault: Fault,
+    pub fault: NetlistFault,
     /// The verdict.
-    pub verdict: Verdict,
+    pub verdict: MutantVerdict,
     /// Whether the vectors of the shipped bench notice it, at the outputs alone.
     pub shipped: bool,
 }
 
-impl Found {
+impl FaultResult {
     /// Returns whether a check catches the fault and the vectors of the shipped bench do not.
     pub fn is_missed(&self) -> bool {
-        matches!(self.verdict, Verdict::Caught(..)) && !self.shipped
+        matches!(self.verdict, MutantVerdict::Caught(..)) && !self.shipped
     }
 }

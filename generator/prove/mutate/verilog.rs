@@ -22,7 +22,7 @@ use super::formal;
 use glint_core::core::{Core, TEST_SEED};
 use glint_core::package::{self, EmitInputs};
 use glint_tools::transient::Directory;
-use glint_tools::{BuiltBench, Simulator, Tool, Waveform};
+use glint_tools::{BuiltBench, Tool, VerilogSimulator, Waveform};
 
 /// Results of the longer bench, which runs if the shipped one notices nothing.
 const POINTS: u64 = 10_000;
@@ -47,7 +47,7 @@ pub struct TextFault {
 /// The verdict on a fault of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum TextVerdict {
+pub enum TextMutantVerdict {
     /// Icarus Verilog or Verilator refuses the text or warns of it.
     Lint,
     /// A bench fails.
@@ -73,9 +73,9 @@ pub enum ShippedBench {
 
 /// The result for a fault of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct TextFound {
+pub struct TextFaultResult {
     /// By all checks together.
-    pub verdict: TextVerdict,
+    pub verdict: TextMutantVerdict,
     /// By the shipped bench.
     pub shipped: ShippedBench,
 }
@@ -84,7 +84,7 @@ pub struct TextFound {
 const TOOLS: [&str; 4] = ["iverilog", "vvp", "verilator", "yosys"];
 
 /// Files by name, with which ones are modules of the device.
-pub struct Text {
+pub struct VerilogText {
     files: Vec<(String, String)>,
     /// A bench with more points, all at random, and its vectors: they take the place of the shipped ones.
     longer: Vec<(String, String)>,
@@ -93,15 +93,15 @@ pub struct Text {
 }
 
 /// A replacement of text, and its name. If the replacement equals the original text, there is no fault.
-struct Operator {
+struct TextOperator {
     kind: &'static str,
     pattern: Regex,
     with: fn(&regex::Captures<'_>) -> String,
 }
 
 /// The part of a line that is code and no declaration of a port or of a memory.
-static OPERATORS: LazyLock<Vec<Operator>> = LazyLock::new(|| {
-    let operator = |kind, pattern, with| Operator {
+static OPERATORS: LazyLock<Vec<TextOperator>> = LazyLock::new(|| {
+    let operator = |kind, pattern, with| TextOperator {
         kind,
         pattern: Regex::new(pattern).expect("a pattern of ours"),
         with,
@@ -167,7 +167,7 @@ static OPERATORS: LazyLock<Vec<Operator>> = LazyLock::new(|| {
     ]
 });
 
-impl Text {
+impl VerilogText {
     /// Collects the fault-free text of a configuration, with its shipped bench.
     ///
     /// # Errors
@@ -271,7 +271,7 @@ impl Text {
         faults: &[TextFault],
         limit: Duration,
         progress: &(dyn Fn() + Sync),
-    ) -> Result<Vec<TextFound>> {
+    ) -> Result<Vec<TextFaultResult>> {
         let verilator = Tool::find("verilator")?;
         let run = |fault: &TextFault| {
             let found = self.found(fault, &verilator, limit);
@@ -281,24 +281,29 @@ impl Text {
         faults.par_iter().map(run).collect()
     }
 
-    fn found(&self, fault: &TextFault, verilator: &Tool, limit: Duration) -> Result<TextFound> {
+    fn found(
+        &self,
+        fault: &TextFault,
+        verilator: &Tool,
+        limit: Duration,
+    ) -> Result<TextFaultResult> {
         let files = self.planted(fault);
         let is_linted = self.is_linted(&files, verilator, limit)?;
         let (shipped, bench) = self.benches(&files, limit)?;
         let verdict = match (shipped, bench) {
-            _ if is_linted => TextVerdict::Lint,
+            _ if is_linted => TextMutantVerdict::Lint,
             // A text that Icarus does not build is noticed in the same way as by lint.
-            (ShippedBench::Refused, _) => TextVerdict::Lint,
+            (ShippedBench::Refused, _) => TextMutantVerdict::Lint,
             (ShippedBench::Silent, Some(bench)) => {
                 if self.proves(&files, fault.file, bench.directory(), limit)? {
-                    TextVerdict::Equivalent
+                    TextMutantVerdict::Equivalent
                 } else {
-                    TextVerdict::Undecided
+                    TextMutantVerdict::Undecided
                 }
             }
-            _ => TextVerdict::Bench,
+            _ => TextMutantVerdict::Bench,
         };
-        Ok(TextFound { verdict, shipped })
+        Ok(TextFaultResult { verdict, shipped })
     }
 
     /// Returns whether lint refuses the modules or warns of them.
@@ -327,7 +332,7 @@ impl Text {
         limit: Duration,
     ) -> Result<(ShippedBench, Option<BuiltBench>)> {
         let build = |files: &[(String, String)]| {
-            BuiltBench::build(Simulator::Icarus, files, &self.top, Waveform::None, limit)
+            BuiltBench::build(VerilogSimulator::Icarus, files, &self.top, Waveform::None, limit)
         };
         // A bench that does not end, or ends without a verdict, does not pass either.
         let fails = |bench: &BuiltBench| !bench.run(limit).is_ok_and(|outcome| outcome.passed);

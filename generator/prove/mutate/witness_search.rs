@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use anyhow::{Context, Result};
 
-use super::coverage::Operands;
+use super::coverage::OperandValues;
 use glint_base::fixed::mask;
 use glint_core::cosim::Random;
 use glint_golden::{Contract, Operand};
@@ -40,21 +40,21 @@ pub(super) struct PointSearch {
     /// The operands of the contract with their places among the inputs.
     operands: Vec<(usize, Operand)>,
     /// From the operands to the results.
-    stages: Vec<Stage>,
+    stages: Vec<StageNets>,
     /// The clocks from a point to the next.
     interval: usize,
 }
 
 /// The nets of a stage.
 #[derive(Clone, Default)]
-struct Stage {
+struct StageNets {
     registers: Vec<NetId>,
     /// The nets that the golden model predicts.
     predicted: Vec<NetId>,
 }
 
 /// Raw values of the operands.
-type Point = Vec<i64>;
+type RawPoint = Vec<i64>;
 
 impl PointSearch {
     /// Prepares the search: finds the ports of the operands, and the registers and checkpoints of each stage.
@@ -72,7 +72,7 @@ impl PointSearch {
             let at = inputs.position(|port| sound.net(port.net).name == operand.name);
             Ok((at.with_context(|| format!("no operand `{}`", operand.name))?, operand.clone()))
         });
-        let mut stages = vec![Stage::default(); pipeline.stages.len() + 1];
+        let mut stages = vec![StageNets::default(); pipeline.stages.len() + 1];
         for register in sound.registers.iter().filter(|it| !pipeline.handshake.contains(&it.q)) {
             stages[pipeline.clock_of(register.q)].registers.push(register.q);
         }
@@ -102,16 +102,16 @@ impl PointSearch {
     pub(super) fn search<T>(
         &self,
         mutant: &Design,
-        confirm: impl Fn(Operands) -> Result<Option<T>>,
+        confirm: impl Fn(OperandValues) -> Result<Option<T>>,
     ) -> Result<Option<T>> {
         let mut sound = Machine::<LANES>::new(self.sound.clone());
         let mut mutant = Machine::<LANES>::new(Arc::new(Program::new(mutant)?));
         let mut random = Random::new(SEED);
         let mut inputs = vec![[0; LANES]; self.inputs];
-        let mut kept = Kept::default();
+        let mut kept = DeepestPoints::default();
         let mut tries = 0;
         // The points in the stages, by the clock in which they came.
-        let mut points = vec![vec![Point::new(); LANES]; self.stages.len()];
+        let mut points = vec![vec![RawPoint::new(); LANES]; self.stages.len()];
         for machine in [&mut sound, &mut mutant] {
             machine.update(false, Some(&inputs));
             machine.update(true, None);
@@ -151,7 +151,7 @@ impl PointSearch {
     }
 
     /// Draws a new point, or one that is kept with another value of one operand.
-    fn draw(&self, random: &mut Random, kept: &Kept, point: &mut Point) {
+    fn draw(&self, random: &mut Random, kept: &DeepestPoints, point: &mut RawPoint) {
         let parent = kept.any(random).filter(|_| !random.once_in(4));
         point.clear();
         if let Some(parent) = parent {
@@ -168,7 +168,7 @@ impl PointSearch {
         }
     }
 
-    fn named(&self, point: &Point) -> Operands {
+    fn named(&self, point: &RawPoint) -> OperandValues {
         let pairs = self.operands.iter().zip(point);
         pairs.map(|((_, operand), &raw)| (operand.name.clone(), raw)).collect()
     }
@@ -202,13 +202,13 @@ fn differing<'m>(
 
 /// The points that make registers differ in the latest stage so far.
 #[derive(Default)]
-struct Kept {
+struct DeepestPoints {
     depth: usize,
-    points: Vec<Point>,
+    points: Vec<RawPoint>,
 }
 
-impl Kept {
-    fn keep(&mut self, depth: usize, point: &Point, random: &mut Random) {
+impl DeepestPoints {
+    fn keep(&mut self, depth: usize, point: &RawPoint, random: &mut Random) {
         if depth < self.depth {
             return;
         }
@@ -223,7 +223,7 @@ impl Kept {
         }
     }
 
-    fn any(&self, random: &mut Random) -> Option<&Point> {
+    fn any(&self, random: &mut Random) -> Option<&RawPoint> {
         let at = random.below(self.points.len().max(1) as u64);
         self.points.get(at as usize)
     }

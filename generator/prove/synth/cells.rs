@@ -12,11 +12,11 @@ use anyhow::{Context, Result, bail};
 use super::harness::TOP;
 use super::netlist::{self, Netlist};
 use super::workspace::{self, HARNESS, Workspace};
-use super::{Subject, Target};
-use glint_show::figures::{Area, Figures, Step, rounded};
+use super::{SynthesisSubject, Target};
+use glint_show::figures::{Area, Figures, PathPoint, rounded};
 use glint_tools::Tool;
 use glint_tools::gates::cells::{LOAD, MAPPING};
-use glint_tools::sources::Sources;
+use glint_tools::sources::YosysSources;
 
 const DEVICE: &str = "OSU 0.18 µm, typical corner, before layout";
 const NETLIST: &str = "cells.v";
@@ -43,7 +43,7 @@ pub fn measure(
     yosys: &Tool,
     sta: &Tool,
     liberty: &Path,
-    subject: &Subject,
+    subject: &SynthesisSubject,
     done: &(dyn Fn() + Sync),
 ) -> Result<Figures> {
     let text = fs::read_to_string(liberty)
@@ -107,10 +107,10 @@ fn area(statistics: &str, gate: f64) -> Option<Area> {
 /// Returns the shortest period in nanoseconds, and the longest path.
 fn timing(
     sta: &Tool,
-    subject: &Subject,
-    sources: &Sources,
+    subject: &SynthesisSubject,
+    sources: &YosysSources,
     netlist: &Netlist,
-) -> Result<(f64, Vec<Step>)> {
+) -> Result<(f64, Vec<PathPoint>)> {
     // Longer than any path: the path's delay is this period minus the slack.
     const PERIOD: f64 = 1000.0;
     const SCRIPT: &str = "timing.tcl";
@@ -133,7 +133,7 @@ fn timing(
 }
 
 /// Returns the nets of the path, and the register at its end.
-fn steps(netlist: &Netlist, said: &str) -> Vec<Step> {
+fn steps(netlist: &Netlist, said: &str) -> Vec<PathPoint> {
     let mut points = Vec::new();
     let mut time = 0.0;
     for line in said.lines() {

@@ -6,9 +6,9 @@ use serde_json::Value;
 use super::netlist::{self, Netlist};
 use super::routes::routed;
 use super::workspace::Workspace;
-use super::{Subject, Target};
+use super::{SynthesisSubject, Target};
 use glint_base::target::{Chip, ECP5};
-use glint_show::figures::{Figures, Step};
+use glint_show::figures::{Figures, PathPoint};
 use glint_tools::Tool;
 
 /// Out of reach, so that the placer tries hardest, in MHz.
@@ -17,7 +17,7 @@ const GOAL: &str = "200";
 pub fn measure(
     yosys: &Tool,
     nextpnr: &Tool,
-    subject: &Subject,
+    subject: &SynthesisSubject,
     done: &(dyn Fn() + Sync),
 ) -> Result<Figures> {
     let workspace = Workspace::new(yosys, subject)?;
@@ -48,7 +48,7 @@ fn route(
     netlist: &Netlist,
     chip: &Chip,
     seed: u32,
-) -> Result<(f64, Vec<Step>)> {
+) -> Result<(f64, Vec<PathPoint>)> {
     let report = format!("seed{seed}.json");
     let options = format!(
         "--lpf-allow-unconstrained {} --speed 6 --freq {GOAL} --report {report}",
@@ -67,7 +67,7 @@ fn route(
 }
 
 /// Returns the longest path from the clock to the clock.
-fn steps(netlist: &Netlist, report: &Value, clock: &str) -> Vec<Step> {
+fn steps(netlist: &Netlist, report: &Value, clock: &str) -> Vec<PathPoint> {
     let paths = report["critical_paths"].as_array().into_iter().flatten();
     let path = paths.into_iter().find(|path| path["from"] == clock && path["to"] == clock);
     let pieces = path.and_then(|path| path["path"].as_array()).into_iter().flatten();

@@ -11,9 +11,9 @@ use serde_json::Value;
 use super::netlist::{self, Netlist};
 use super::routes::routed;
 use super::workspace::Workspace;
-use super::{Subject, Target};
+use super::{SynthesisSubject, Target};
 use glint_base::target::{Chip, ICE40};
-use glint_show::figures::{Figures, Step};
+use glint_show::figures::{Figures, PathPoint};
 use glint_tools::Tool;
 
 const DEVICE: &str = "iCE40 UP5K, SG48";
@@ -28,7 +28,7 @@ pub fn measure(
     yosys: &Tool,
     nextpnr: &Tool,
     icetime: &Tool,
-    subject: &Subject,
+    subject: &SynthesisSubject,
     done: &(dyn Fn() + Sync),
 ) -> Result<Figures> {
     let workspace = Workspace::new(yosys, subject)?;
@@ -62,11 +62,11 @@ fn is_pure(parameter: &str, value: &Value) -> bool {
 fn route(
     nextpnr: &Tool,
     icetime: &Tool,
-    subject: &Subject,
+    subject: &SynthesisSubject,
     workspace: &Workspace,
     netlist: &Netlist,
     seed: u32,
-) -> Result<(f64, Vec<Step>)> {
+) -> Result<(f64, Vec<PathPoint>)> {
     let (bits, timing) = (format!("seed{seed}.asc"), format!("seed{seed}.json"));
     let placed = format!("placed{seed}.json");
     let options = format!(
@@ -86,7 +86,7 @@ fn route(
 
 /// Returns the longest path. icetime often calls a net by the next one that has a name, so cells are looked up by
 /// their place.
-fn steps(netlist: &Netlist, path: &Value, placed: &Value) -> Vec<Step> {
+fn steps(netlist: &Netlist, path: &Value, placed: &Value) -> Vec<PathPoint> {
     let outputs = outputs(placed);
     let points = path[0].as_array().into_iter().flatten();
     netlist::path(points.filter_map(|point| {

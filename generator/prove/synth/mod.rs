@@ -24,7 +24,7 @@ use glint_core::package;
 use glint_rtl::netlist::Design;
 use glint_show::evidence::hardware::Synthesis;
 pub use glint_show::figures::{
-    Area, DIRECTORY, Figures, Frequency, Rate, Record, Step, TARGETS, Target, tools,
+    Area, DIRECTORY, Figures, Frequency, PathPoint, Rate, SynthesisRecord, TARGETS, Target, tools,
 };
 use glint_tools::Tool;
 use glint_tools::gates::cells::MAPPING;
@@ -41,7 +41,7 @@ pub struct Flow {
 }
 
 /// The subject and the method of a measurement.
-pub struct Subject<'a> {
+pub struct SynthesisSubject<'a> {
     /// The core.
     pub design: &'a Design,
     /// Its Verilog and ROM contents, pairs of a plain name and contents.
@@ -86,7 +86,7 @@ impl Flow {
     }
 
     /// Tells a measurement from others: the sources, the tools and the number of seeds. SHA-256 in hexadecimal.
-    pub fn digest(&self, subject: &Subject) -> String {
+    pub fn digest(&self, subject: &SynthesisSubject) -> String {
         let mut text = format!("{} {} {}\n", self.target, subject.seeds, env!("CARGO_PKG_VERSION"));
         text += &self.versions.join("\n");
         if self.target == Target::Osu018 {
@@ -111,7 +111,7 @@ impl Flow {
     ///
     /// # Errors
     /// Fails if a tool fails, takes longer than its limit, or does not report a figure.
-    pub fn measure(&self, subject: &Subject, done: &(dyn Fn() + Sync)) -> Result<Figures> {
+    pub fn measure(&self, subject: &SynthesisSubject, done: &(dyn Fn() + Sync)) -> Result<Figures> {
         let measured = match (self.target, self.others.as_slice()) {
             (Target::Ice40, [nextpnr, icetime]) => {
                 ice40::measure(&self.yosys, nextpnr, icetime, subject, done)
@@ -140,7 +140,12 @@ fn version(tool: &Tool) -> Result<String> {
 }
 
 /// Returns the area alone.
-fn area(target: Target, yosys: &Tool, subject: &Subject, done: &dyn Fn()) -> Result<Figures> {
+fn area(
+    target: Target,
+    yosys: &Tool,
+    subject: &SynthesisSubject,
+    done: &dyn Fn(),
+) -> Result<Figures> {
     let family = target.family().context("Yosys knows no such family")?;
     let usage = synthesise(yosys, subject.files, &subject.design.name, family, subject.limit)?;
     done();

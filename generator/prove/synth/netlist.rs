@@ -7,7 +7,7 @@ use serde_json::{Map, Value};
 
 use super::harness::{CORE, TOP};
 use glint_rtl::netlist::{Design, Driver, Op};
-use glint_show::figures::{Step, rounded};
+use glint_show::figures::{PathPoint, rounded};
 
 /// The flat netlist of a core in its harness.
 pub struct Netlist {
@@ -103,13 +103,13 @@ impl Netlist {
 }
 
 /// Returns a path, from pairs of a name and the time in nanoseconds at which it settles: each name once in a row, at its last time.
-pub fn path(points: impl IntoIterator<Item = (String, f64)>) -> Vec<Step> {
-    let mut steps: Vec<Step> = Vec::new();
+pub fn path(points: impl IntoIterator<Item = (String, f64)>) -> Vec<PathPoint> {
+    let mut steps: Vec<PathPoint> = Vec::new();
     for (name, ns) in points {
         let ns = rounded(ns);
         match steps.last_mut() {
             Some(last) if last.name == name => last.ns = ns,
-            _ => steps.push(Step { name, ns }),
+            _ => steps.push(PathPoint { name, ns }),
         }
     }
     steps

@@ -3,7 +3,7 @@
 use anyhow::{Context, Result};
 use rayon::prelude::*;
 
-use super::{Figures, Step, Subject};
+use super::{Figures, PathPoint, SynthesisSubject};
 
 /// Puts the results of `route` with each seed into `figures`: a frequency in MHz and the longest path. It does
 /// nothing if `figures` has a reason why the core cannot be timed.
@@ -12,9 +12,9 @@ use super::{Figures, Step, Subject};
 /// Fails if a run fails; the message has its seed.
 pub fn routed(
     figures: Figures,
-    subject: &Subject,
+    subject: &SynthesisSubject,
     done: &(dyn Fn() + Sync),
-    route: impl Fn(u32) -> Result<(f64, Vec<Step>)> + Sync,
+    route: impl Fn(u32) -> Result<(f64, Vec<PathPoint>)> + Sync,
 ) -> Result<Figures> {
     let possible = figures.untimed.is_none();
     let runs = (1..=subject.seeds).into_par_iter().filter_map(|seed| {

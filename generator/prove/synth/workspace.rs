@@ -4,15 +4,15 @@ use anyhow::{Context, Result};
 
 use super::harness::{self, TOP};
 use super::netlist::Netlist;
-use super::{Subject, Target};
+use super::{SynthesisSubject, Target};
 use glint_tools::Tool;
-use glint_tools::sources::Sources;
+use glint_tools::sources::YosysSources;
 use glint_tools::synthesis::{self, STATISTICS_COMMAND, Usage};
 
 /// The directory of the core's sources and its harness.
 pub struct Workspace<'a> {
-    pub sources: Sources<'a>,
-    subject: &'a Subject<'a>,
+    pub sources: YosysSources<'a>,
+    subject: &'a SynthesisSubject<'a>,
 }
 
 /// The file with the harness, which is not read with the core.
@@ -25,8 +25,8 @@ impl<'a> Workspace<'a> {
     ///
     /// # Errors
     /// Fails if the sources cannot be written.
-    pub fn new(yosys: &'a Tool, subject: &'a Subject<'a>) -> Result<Self> {
-        let sources = Sources::new(yosys, subject.files, subject.limit)?;
+    pub fn new(yosys: &'a Tool, subject: &'a SynthesisSubject<'a>) -> Result<Self> {
+        let sources = YosysSources::new(yosys, subject.files, subject.limit)?;
         sources.write(HARNESS, &harness::harness(subject.design)?)?;
         Ok(Self { sources, subject })
     }
@@ -46,7 +46,7 @@ impl<'a> Workspace<'a> {
     /// which is left in the file [`NETLIST`].
     ///
     /// # Errors
-    /// Fails if [`Sources::run`] fails.
+    /// Fails if [`YosysSources::run`] fails.
     pub fn synthesise(&self, target: Target) -> Result<(Usage, Netlist)> {
         let family = target.family().context("Yosys knows no such family")?;
         let top = &self.subject.design.name;

@@ -22,7 +22,7 @@ use glint_golden::Bound;
 pub use model::{Cost, Features};
 use search::Search;
 pub use search::{Answer, Candidate};
-use space::Space;
+use space::SearchSpace;
 
 use crate::synth::Target;
 
@@ -70,7 +70,7 @@ pub enum Objective {
 
 /// The goal of a search.
 #[derive(Clone, Debug)]
-pub struct Goal {
+pub struct TuningGoal {
     /// The largest error.
     pub error: f64,
     /// The unit of the error.
@@ -106,7 +106,7 @@ pub fn tune(
     device: &Device,
     base: &Config,
     fixed: &[&str],
-    goal: &Goal,
+    goal: &TuningGoal,
     progress: &(dyn Fn(usize) + Sync),
 ) -> Result<Answer> {
     let before = AtomicUsize::new(0);
@@ -137,7 +137,7 @@ pub fn tune(
 }
 
 /// Returns the pipelines that could have the rate, and no more multipliers than are allowed, the longest interval first.
-fn pipelines(base: &Config, fixed: &[&str], goal: &Goal) -> Vec<Config> {
+fn pipelines(base: &Config, fixed: &[&str], goal: &TuningGoal) -> Vec<Config> {
     let Some(family) =
         goal.target.family().filter(|_| goal.rate.is_some() || goal.most_dsps.is_some())
     else {
@@ -170,13 +170,13 @@ fn of_architecture(
     device: &Device,
     base: &Config,
     fixed: &[&str],
-    goal: &Goal,
+    goal: &TuningGoal,
     progress: &(dyn Fn(usize) + Sync),
 ) -> Result<Answer> {
     let slower =
         goal.rate.is_some() || goal.most_dsps.is_some() || goal.objective == Objective::Dsps;
     let run = |slower| -> Result<Answer> {
-        let space = Space::new(device, base, fixed, slower)?;
+        let space = SearchSpace::new(device, base, fixed, slower)?;
         Search::new(device, &space, goal, progress).run(base)
     };
     let of_device = || format!("`{}` cannot be tuned", device.name);
@@ -198,8 +198,8 @@ pub fn exhaustive(
     device: &Device,
     base: &Config,
     values: &[(&str, Vec<glint_config::Value>)],
-    goal: &Goal,
+    goal: &TuningGoal,
 ) -> Result<Option<Candidate>> {
-    let space = Space::new(device, base, &[], true)?;
+    let space = SearchSpace::new(device, base, &[], true)?;
     Search::new(device, &space, goal, &|_| ()).exhaustive(base, values)
 }

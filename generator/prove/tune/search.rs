@@ -9,8 +9,8 @@ use anyhow::{Context, Result, bail};
 use rayon::prelude::*;
 
 use super::model::Cost;
-use super::space::Space;
-use super::{ErrorUnit, Goal, Objective};
+use super::space::SearchSpace;
+use super::{ErrorUnit, Objective, TuningGoal};
 use glint_config::{Config, Value};
 use glint_core::registry::Device;
 use glint_golden::{Bound, Term};
@@ -56,8 +56,8 @@ pub struct Answer {
 /// A search in progress. `seen` keeps the candidates by the text of their configurations: `None` is no device.
 pub struct Search<'a> {
     device: &'a Device,
-    space: &'a Space,
-    goal: &'a Goal,
+    space: &'a SearchSpace,
+    goal: &'a TuningGoal,
     progress: &'a (dyn Fn(usize) + Sync),
     seen: Mutex<BTreeMap<String, Option<Candidate>>>,
 }
@@ -65,8 +65,8 @@ pub struct Search<'a> {
 impl<'a> Search<'a> {
     pub fn new(
         device: &'a Device,
-        space: &'a Space,
-        goal: &'a Goal,
+        space: &'a SearchSpace,
+        goal: &'a TuningGoal,
         progress: &'a (dyn Fn(usize) + Sync),
     ) -> Self {
         Self { device, space, goal, progress, seen: Mutex::default() }
@@ -265,7 +265,7 @@ impl<'a> Search<'a> {
     }
 }
 
-impl Goal {
+impl TuningGoal {
     fn error(&self, candidate: &Candidate) -> f64 {
         self.unit.of(&candidate.bound)
     }

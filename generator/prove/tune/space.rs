@@ -19,15 +19,15 @@ const STATEMENT: [&str; 2] = ["domain", "function"];
 const POINTS: u32 = 600;
 
 /// The free keys of a device.
-pub struct Space {
+pub struct SearchSpace {
     schema: Schema,
     free: Vec<&'static str>,
-    outside: Outside,
+    outside: CoreInterface,
     /// Whether microinstructions may be added.
     slower: bool,
 }
 
-impl Space {
+impl SearchSpace {
     /// Finds the keys of `base` that change neither ports nor formula, and add no microinstructions unless `slower`,
     /// without those in `fixed`.
     ///
@@ -36,7 +36,7 @@ impl Space {
     pub fn new(device: &Device, base: &Config, fixed: &[&str], slower: bool) -> Result<Self> {
         let schema = (device.schema)();
         let design = device.design(base).context("this configuration makes no design")?;
-        let outside = Outside::new(&design, (device.contract)(base).as_ref());
+        let outside = CoreInterface::new(&design, (device.contract)(base).as_ref());
         let mut space = Self { schema, free: Vec::new(), outside, slower };
         let is_free = |key: &&Key| {
             let values = alternatives(key, base.value(key.name));
@@ -125,14 +125,14 @@ fn with(schema: &Schema, config: &Config, values: &[(&'static str, Value)]) -> O
 
 /// The interface of a core: its ports, its microinstructions, each at least a clock of a point, and its
 /// formula at some points.
-struct Outside {
+struct CoreInterface {
     ports: Vec<String>,
     microinstructions: usize,
     points: Vec<Vec<i64>>,
     formula: Vec<[f64; 2]>,
 }
 
-impl Outside {
+impl CoreInterface {
     fn new(design: &Design, contract: &dyn Contract) -> Self {
         let (drawn, mut random) = (Points::new(contract), Random::new(1));
         let points: Vec<Vec<i64>> = (0..POINTS).map(|_| drawn.of_domain(&mut random)).collect();

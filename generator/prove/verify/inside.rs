@@ -4,13 +4,13 @@ use std::ops::ControlFlow;
 
 use anyhow::Result;
 
-use super::{Check, Finding, Subject, Verdict};
-use crate::mutate::{self, Fault, Faults, Score};
+use super::{Check, CheckSubject, CheckVerdict, Finding};
+use crate::mutate::{self, Faults, NetlistFault, Score};
 use glint_base::input;
 use glint_base::program::Program;
 use glint_base::text::{counted, grouped};
 use glint_core::core::{TEST_POINTS, TEST_SEED};
-use glint_core::cosim::exhaustive::{Job, Proof, Record as Recorded, Shard, State};
+use glint_core::cosim::exhaustive::{Job, Proof, Record, Shard, State};
 use glint_golden::{Contract, Sweep};
 
 /// Results that lock-step compares, and with full effort.
@@ -36,7 +36,7 @@ pub const DESIGN: Check = Check {
     run: |subject, _, _| {
         let (design, bound) = (&subject.core.design, subject.core.contract.bound());
         let finding = Finding::new(
-            Verdict::Proved,
+            CheckVerdict::Proved,
             "all nets, registers, ROMs and microinstructions",
             format!(
                 "{}, {}, {} and {} obey the rules. {}",
@@ -73,11 +73,11 @@ pub const LOCKSTEP: Check = Check {
     run: |subject, _, progress| lockstep(subject, progress),
 };
 
-fn points(subject: &Subject<'_>) -> u64 {
+fn points(subject: &CheckSubject<'_>) -> u64 {
     POINTS[usize::from(subject.effort.full)]
 }
 
-fn lockstep(subject: &Subject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Result<Finding> {
+fn lockstep(subject: &CheckSubject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Result<Finding> {
     let outcome = subject.core.lockstep(TEST_SEED)?.run(points(subject), progress)?;
     let bound = subject.core.contract.bound();
     let worst = outcome.worst.as_ref().map_or_else(String::new, |worst| {
@@ -92,7 +92,7 @@ fn lockstep(subject: &Subject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Result<Fi
         Some(_) => "resets, bubbles and stalls",
     };
     Ok(Finding::new(
-        Verdict::Passed,
+        CheckVerdict::Passed,
         format!(
             "{} results in {} clocks, with {stimulus} (seed {TEST_SEED})",
             grouped(outcome.points),
@@ -125,28 +125,28 @@ pub const CONTRACT: Check = Check {
     run: |subject, _, progress| contract(subject, progress),
 };
 
-fn evaluations(subject: &Subject<'_>) -> u64 {
+fn evaluations(subject: &CheckSubject<'_>) -> u64 {
     let job = Job::new(subject.core.contract.as_ref());
     job.f.count() + job.colours.count()
 }
 
-fn is_short(subject: &Subject<'_>, evaluations: u64) -> bool {
+fn is_short(subject: &CheckSubject<'_>, evaluations: u64) -> bool {
     subject.effort.full || evaluations <= EVALUATIONS
 }
 
 /// Returns the record of a long proof, if there is one.
-fn record(subject: &Subject<'_>) -> Result<Option<Recorded>> {
+fn record(subject: &CheckSubject<'_>) -> Result<Option<Record>> {
     let (core, digest) = (subject.core, subject.core.contract_digest());
-    Recorded::find(subject.proofs, &digest, core.contract.as_ref())
+    Record::find(subject.proofs, &digest, core.contract.as_ref())
 }
 
 /// Returns the whole proof. If the proof is long, it returns the proof's record, checked again in part.
-fn contract(subject: &Subject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Result<Finding> {
+fn contract(subject: &CheckSubject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Result<Finding> {
     let contract = subject.core.contract.as_ref();
     if !contract.bound().is_stated() {
         let why =
             format!("The contract states no bound: `{Program} certify` finds one where it can.");
-        return Ok(Finding::without(Verdict::NotApplicable, &why));
+        return Ok(Finding::without(CheckVerdict::NotApplicable, &why));
     }
     let all = evaluations(subject);
     if !is_short(subject, all) {
@@ -170,19 +170,15 @@ fn contract(subject: &Subject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Result<Fi
 }
 
 /// Returns a sweep that leaves something out proves nothing.
-fn of_sweep(sweep: &Sweep) -> Verdict {
-    if sweep.omits.is_empty() { Verdict::Proved } else { Verdict::Passed }
+fn of_sweep(sweep: &Sweep) -> CheckVerdict {
+    if sweep.omits.is_empty() { CheckVerdict::Proved } else { CheckVerdict::Passed }
 }
 
 fn domain(job: &Job<'_>) -> String {
     format!("{}: {}", job.words(), job.f.sweep().words())
 }
 
-fn recorded(
-    record: &Recorded,
-    contract: &dyn Contract,
-    progress: &(dyn Fn(u64) + Sync),
-) -> Finding {
+fn recorded(record: &Record, contract: &dyn Contract, progress: &(dyn Fn(u64) + Sync)) -> Finding {
     let job = Job::of_sweep(contract, record.sweep(contract));
     let (again, failures) = record.recheck(contract, AGAIN, progress);
     let path = record.path.display().to_string().replace('\\', "/");
@@ -199,7 +195,7 @@ fn recorded(
     Finding { record: Some(path), ..finding }.open(job.f.sweep().omits.clone())
 }
 
-fn without_record(subject: &Subject<'_>, evaluations: u64) -> Finding {
+fn without_record(subject: &CheckSubject<'_>, evaluations: u64) -> Finding {
     let without_tools = if subject.effort.without_tools { " --without-tools" } else { "" };
     let why = format!(
         "It has {} evaluations, and in `{}` there is no record of them for this configuration.",
@@ -207,7 +203,7 @@ fn without_record(subject: &Subject<'_>, evaluations: u64) -> Finding {
         subject.proofs.display(),
     );
     let command = format!("{Program} verify {} --full{without_tools}", input::label(subject.path));
-    Finding { complete_with: Some(command), ..Finding::without(Verdict::NotRun, why) }
+    Finding { complete_with: Some(command), ..Finding::without(CheckVerdict::NotRun, why) }
 }
 
 /// Every combination of operands.
@@ -224,7 +220,7 @@ pub const CLOCKS: Check = Check {
     run: |subject, _, progress| {
         let clocks = subject.core.clocks()?;
         if clocks.count() == 0 {
-            return Ok(Finding::without(Verdict::NotApplicable, clocks.omits()));
+            return Ok(Finding::without(CheckVerdict::NotApplicable, clocks.omits()));
         }
         let differs = clocks.check((0..clocks.blocks()).collect(), progress)?;
         let failures = match differs {
@@ -232,7 +228,7 @@ pub const CLOCKS: Check = Check {
             None => Vec::new(),
         };
         Ok(Finding::new(
-            Verdict::Proved,
+            CheckVerdict::Proved,
             format!("{} combinations of {} operand bits", grouped(clocks.count()), clocks.bits()),
             "Every register and output equals the golden model on every clock.",
         )
@@ -255,7 +251,7 @@ pub const MUTATION: Check = Check {
     run: |subject, _, progress| {
         if subject.core.design.pipeline.is_some() {
             let why = format!("Of a pipeline this check plants none; `{Program} mutate` does.");
-            return Ok(Finding::without(Verdict::NotApplicable, &why));
+            return Ok(Finding::without(CheckVerdict::NotApplicable, &why));
         }
         let (faults, all_faults) = faults(subject);
         let found = mutate::run(subject.core, faults.iter(), &|| progress(1))?;
@@ -278,12 +274,13 @@ pub const MUTATION: Check = Check {
             100.0 * all.of_shipped().value()
         );
         if score.holds() {
-            let finding = Finding::new(Verdict::Passed, domain, words);
+            let finding = Finding::new(CheckVerdict::Passed, domain, words);
             return Ok(finding.open(open));
         }
         // The fault-free design passes the same test: that too little is noticed speaks of the test.
-        let unnoticed = found.iter().filter(|found| found.verdict == mutate::Verdict::Undecided);
-        let unnoticed: Vec<&Fault> = unnoticed.map(|found| &found.fault).collect();
+        let unnoticed =
+            found.iter().filter(|found| found.verdict == mutate::MutantVerdict::Undecided);
+        let unnoticed: Vec<&NetlistFault> = unnoticed.map(|found| &found.fault).collect();
         let unreached = mutate::unreached(subject.core, &unnoticed)?;
         let ids: Vec<String> = unreached.iter().map(|fault| fault.id.clone()).collect();
         let words = format!(
@@ -296,12 +293,12 @@ pub const MUTATION: Check = Check {
                     format!("To {} of them its stimulus never comes: {}. ", ids.len(), named(&ids)),
             }
         );
-        Ok(Finding::new(Verdict::Undecided, domain, words).open(open))
+        Ok(Finding::new(CheckVerdict::Undecided, domain, words).open(open))
     },
 };
 
 /// Returns the faults to plant, and how many there are in all.
-fn faults(subject: &Subject<'_>) -> (Faults, usize) {
+fn faults(subject: &CheckSubject<'_>) -> (Faults, usize) {
     let mut faults = Faults::of(&subject.core.design);
     let all = faults.len();
     if !subject.effort.full {

@@ -25,7 +25,7 @@ use glint_core::package::{self, OutputFile};
 use glint_tools::{LimitReached, Tool};
 
 /// A configuration to be verified.
-pub struct Subject<'a> {
+pub struct CheckSubject<'a> {
     /// The path on the command line.
     pub path: &'a str,
     /// The configuration and its design.
@@ -37,7 +37,7 @@ pub struct Subject<'a> {
     files: OnceLock<Vec<OutputFile>>,
 }
 
-impl<'a> Subject<'a> {
+impl<'a> CheckSubject<'a> {
     /// Prepares the checks of a core. No check has run yet.
     pub fn new(path: &'a str, core: &'a Core, effort: Effort, proofs: &'a Path) -> Self {
         Self { path, core, effort, proofs, files: OnceLock::new() }
@@ -85,7 +85,7 @@ pub struct Effort {
 /// The verdict of a check.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Verdict {
+pub enum CheckVerdict {
     /// It holds for everything in the domain.
     Proved,
     /// It held wherever it was tried.
@@ -107,7 +107,7 @@ pub enum Verdict {
     NotApplicable,
 }
 
-impl Verdict {
+impl CheckVerdict {
     /// Returns the verdict for people.
     pub fn words(self) -> &'static str {
         match self {
@@ -140,7 +140,7 @@ impl Verdict {
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Finding {
     /// The verdict.
-    pub verdict: Verdict,
+    pub verdict: CheckVerdict,
     /// The domain of the finding: operands, clocks, faults.
     pub domain: String,
     /// The outcome in a sentence or two.
@@ -160,18 +160,18 @@ pub struct Finding {
 
 impl Finding {
     /// Makes the finding of a verdict on a domain.
-    fn new(verdict: Verdict, domain: impl Into<String>, words: impl Into<String>) -> Self {
+    fn new(verdict: CheckVerdict, domain: impl Into<String>, words: impl Into<String>) -> Self {
         Self { domain: domain.into(), ..Self::without(verdict, words) }
     }
 
     /// Makes the finding of a check that has nothing to say here.
-    fn without(verdict: Verdict, why: impl Into<String>) -> Self {
+    fn without(verdict: CheckVerdict, why: impl Into<String>) -> Self {
         Self { verdict, words: why.into(), ..Self::default() }
     }
 
     /// Adds failures; the verdict is one of failure if there are any.
     fn failures(self, failures: Vec<String>) -> Self {
-        let verdict = if failures.is_empty() { self.verdict } else { Verdict::Failed };
+        let verdict = if failures.is_empty() { self.verdict } else { CheckVerdict::Failed };
         Self { verdict, failures, ..self }
     }
 
@@ -181,7 +181,7 @@ impl Finding {
 }
 
 /// The function that runs a check, with its tools; it tells the steps that are done.
-type Run = fn(&Subject<'_>, &[Tool], &(dyn Fn(u64) + Sync)) -> Result<Finding>;
+type CheckFunction = fn(&CheckSubject<'_>, &[Tool], &(dyn Fn(u64) + Sync)) -> Result<Finding>;
 
 /// One question about a configuration.
 pub struct Check {
@@ -196,8 +196,8 @@ pub struct Check {
     /// The tools outside Glint that it runs.
     tools: &'static [&'static str],
     /// How many steps its progress has.
-    steps: fn(&Subject<'_>) -> u64,
-    run: Run,
+    steps: fn(&CheckSubject<'_>) -> u64,
+    run: CheckFunction,
 }
 
 /// All checks. The checks that need nothing but Glint come first.
@@ -227,25 +227,25 @@ impl Check {
     }
 
     /// Returns the steps that its progress will have.
-    pub fn steps(&self, subject: &Subject<'_>) -> u64 {
+    pub fn steps(&self, subject: &CheckSubject<'_>) -> u64 {
         (self.steps)(subject)
     }
 
     /// Runs it. A tool that is missing, or that does not do its work, is a finding too.
-    pub fn run(&self, subject: &Subject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Answer {
+    pub fn run(&self, subject: &CheckSubject<'_>, progress: &(dyn Fn(u64) + Sync)) -> CheckAnswer {
         let begin = Instant::now();
         let (tools, finding) = self.find(subject, progress);
         self.answer(tools, finding, begin.elapsed())
     }
 
     /// Returns the answer of a check that is not run on purpose.
-    pub fn left_out(&self, why: &str) -> Answer {
-        let finding = Finding::without(Verdict::LeftOut, why);
+    pub fn left_out(&self, why: &str) -> CheckAnswer {
+        let finding = Finding::without(CheckVerdict::LeftOut, why);
         self.answer(Vec::new(), finding, Duration::ZERO)
     }
 
-    fn answer(&self, tools: Vec<String>, finding: Finding, took: Duration) -> Answer {
-        Answer {
+    fn answer(&self, tools: Vec<String>, finding: Finding, took: Duration) -> CheckAnswer {
+        CheckAnswer {
             check: self.id,
             title: self.title,
             question: self.question,
@@ -258,14 +258,14 @@ impl Check {
 
     fn find(
         &self,
-        subject: &Subject<'_>,
+        subject: &CheckSubject<'_>,
         progress: &(dyn Fn(u64) + Sync),
     ) -> (Vec<String>, Finding) {
         let tools: Result<Vec<Tool>> = self.tools.iter().map(|name| Tool::find(name)).collect();
         let tools = match tools {
             Ok(tools) => tools,
             Err(missing) => {
-                let why = Finding::without(Verdict::NotRun, format!("{missing:#}"));
+                let why = Finding::without(CheckVerdict::NotRun, format!("{missing:#}"));
                 return (Vec::new(), why);
             }
         };
@@ -277,7 +277,7 @@ impl Check {
             .and_then(|()| (self.run)(subject, &tools, progress))
             .unwrap_or_else(|error| match error.downcast_ref::<LimitReached>() {
                 // A tool that was stopped has found no failure.
-                Some(_) => Finding::without(Verdict::LimitReached, format!("{error:#}")),
+                Some(_) => Finding::without(CheckVerdict::LimitReached, format!("{error:#}")),
                 None => Finding::default().failures(vec![format!("{error:#}")]),
             });
         (versions, finding)
@@ -286,7 +286,7 @@ impl Check {
 
 /// A check and its finding.
 #[derive(Clone, Debug, Serialize)]
-pub struct Answer {
+pub struct CheckAnswer {
     /// [`Check::id`].
     pub check: &'static str,
     /// [`Check::title`].
@@ -330,7 +330,7 @@ pub enum Conclusion {
 
 impl Conclusion {
     /// Returns the conclusion from some answers.
-    pub fn of(answers: &[Answer]) -> Self {
+    pub fn of(answers: &[CheckAnswer]) -> Self {
         let verdicts = answers.iter().map(|answer| answer.finding.verdict.conclusion());
         verdicts.max().unwrap_or(Self::Incomplete)
     }
@@ -348,7 +348,7 @@ impl Conclusion {
 
 /// The record of one configuration, written to `<name>.json`.
 #[derive(Clone, Debug, Serialize)]
-pub struct Record {
+pub struct VerificationRecord {
     /// The version of Glint.
     pub glint: &'static str,
     /// The path of the configuration on the command line.
@@ -367,14 +367,14 @@ pub struct Record {
     /// The conclusion of all checks.
     pub conclusion: Conclusion,
     /// The number of checks with each verdict.
-    pub counts: BTreeMap<Verdict, usize>,
+    pub counts: BTreeMap<CheckVerdict, usize>,
     /// In the order in which they were run.
-    pub checks: Vec<Answer>,
+    pub checks: Vec<CheckAnswer>,
 }
 
-impl Record {
+impl VerificationRecord {
     /// Makes the record of the answers of all checks.
-    pub fn new(subject: &Subject<'_>, checks: Vec<Answer>) -> Self {
+    pub fn new(subject: &CheckSubject<'_>, checks: Vec<CheckAnswer>) -> Self {
         let mut counts = BTreeMap::new();
         let of_text = |file: &&OutputFile| [".v", ".mem"].iter().any(|it| file.path.ends_with(it));
         let files = subject.files().unwrap_or_default().iter().filter(of_text);

@@ -8,8 +8,8 @@ use std::time::Duration;
 use anyhow::{Context, Result, ensure};
 use rayon::prelude::*;
 
-use super::{Check, Finding, Subject, Verdict};
-use crate::certify::{self, Outcome, statements};
+use super::{Check, CheckSubject, CheckVerdict, Finding};
+use crate::certify::{self, ProofOutcome, statements};
 use crate::equality;
 use glint_base::input;
 use glint_base::program::Program;
@@ -21,7 +21,9 @@ use glint_tools::gates;
 use glint_tools::gates::cells::{LIBERTY, Start};
 use glint_tools::synthesis::synthesise;
 use glint_tools::transient::Directory;
-use glint_tools::{Limits, PROOF_LIMITS, Simulator, Tool, elaborate, lint, prove, run_bench};
+use glint_tools::{
+    Limits, PROOF_LIMITS, Tool, VerilogSimulator, elaborate, lint, prove, run_bench,
+};
 
 /// Results of a bench, and with full effort.
 const POINTS: [u64; 2] = [200, 20_000];
@@ -57,7 +59,7 @@ pub const CERTIFICATE: Check = Check {
         if design.pipeline.is_some() {
             let why =
                 "It is made of a microprogram: see the sequential core of the same description.";
-            return Ok(Finding::without(Verdict::NotApplicable, why));
+            return Ok(Finding::without(CheckVerdict::NotApplicable, why));
         }
         let own = if subject.effort.full { subject.effort.time_limit } else { STATEMENT };
         let limit = own.min(subject.effort.time_limit);
@@ -65,16 +67,16 @@ pub const CERTIFICATE: Check = Check {
             Ok(statements) => statements,
             Err(step) => {
                 let why = format!("Gappa is not asked: {step}.");
-                return Ok(Finding::without(Verdict::Unconfirmed, why));
+                return Ok(Finding::without(CheckVerdict::Unconfirmed, why));
             }
         };
         let outcome = |statement| (statement, certify::prove(&tools[0], None, statement, limit));
         let empty = AtomicUsize::new(0);
-        let open = |(_, outcome): &(_, Result<Outcome>)| {
-            if let Ok(Outcome::Proved(_, certify::Subject::Nothing)) = outcome {
+        let open = |(_, outcome): &(_, Result<ProofOutcome>)| {
+            if let Ok(ProofOutcome::Proved(_, certify::ProofSubject::Nothing)) = outcome {
                 empty.fetch_add(1, Ordering::Relaxed);
             }
-            !matches!(outcome, Ok(Outcome::Proved(..)))
+            !matches!(outcome, Ok(ProofOutcome::Proved(..)))
         };
         // The first that is open ends it, whichever is done first.
         if let Some((statement, outcome)) = statements.par_iter().map(outcome).find_first(open) {
@@ -86,10 +88,10 @@ pub const CERTIFICATE: Check = Check {
                 limit.as_secs(),
                 statements.len()
             );
-            return Ok(Finding::without(Verdict::Unconfirmed, why));
+            return Ok(Finding::without(CheckVerdict::Unconfirmed, why));
         }
         Ok(Finding::new(
-            Verdict::Proved,
+            CheckVerdict::Proved,
             "all operands of the domain",
             format!(
                 "Gappa proves {} statements{}: an output differs from its formula by {:.3} units at most.",
@@ -121,7 +123,7 @@ pub const RECOMPUTATION: Check = Check {
             Ok(files) => files,
             Err(error) if error.is::<package::Unfit>() => {
                 let why = "It is asked of contracts that are a formula of one operand.";
-                return Ok(Finding::without(Verdict::NotApplicable, why));
+                return Ok(Finding::without(CheckVerdict::NotApplicable, why));
             }
             Err(error) => return Err(error),
         };
@@ -134,7 +136,7 @@ pub const RECOMPUTATION: Check = Check {
                 "{} operands take minutes or more: `--full` has them, as far as `--time-limit` goes.",
                 grouped(last.abs_diff(first) + 1)
             );
-            return Ok(Finding::without(Verdict::LeftOut, why));
+            return Ok(Finding::without(CheckVerdict::LeftOut, why));
         }
         let compile = |source| {
             let arguments = ["-std=c99", "-O2", "-o", "recompute", source, "-lmpfr", "-lgmp"];
@@ -145,7 +147,7 @@ pub const RECOMPUTATION: Check = Check {
             .context("cannot write a program for the C compiler")?;
         if !compile("probe.c")?.status.success() {
             let why = "MPFR is not installed for the C compiler: package libmpfr-dev, say";
-            return Ok(Finding::without(Verdict::NotRun, why));
+            return Ok(Finding::without(CheckVerdict::NotRun, why));
         }
         let compiled = compile(&source)?;
         ensure!(compiled.status.success(), "`{source}`: {}", compiled.output.trim());
@@ -162,7 +164,7 @@ pub const RECOMPUTATION: Check = Check {
                 "{}: MPFR does not tell on which side of a jump they are.",
                 said.join("; ")
             );
-            return Ok(Finding::without(Verdict::Unconfirmed, &why));
+            return Ok(Finding::without(CheckVerdict::Unconfirmed, &why));
         }
         let said = run.output.lines().last().unwrap_or_default().to_owned();
         let holds = run.status.success() && said.ends_with(" holds");
@@ -172,7 +174,7 @@ pub const RECOMPUTATION: Check = Check {
             "every operand: {} = {} to {}",
             operand.name, operand.domain.0, operand.domain.1
         );
-        Ok(Finding::new(Verdict::Proved, domain, format!("{said}.")).failures(failures).open(
+        Ok(Finding::new(CheckVerdict::Proved, domain, format!("{said}.")).failures(failures).open(
             "The model in C is made of the netlist, which other checks compare with the Verilog.",
         ))
     },
@@ -190,13 +192,13 @@ pub const EQUALITY: Check = Check {
         let (core, effort) = (subject.core, subject.effort);
         if core.design.pipeline.is_none() {
             let why = "It is the sequential core.";
-            return Ok(Finding::without(Verdict::NotApplicable, why));
+            return Ok(Finding::without(CheckVerdict::NotApplicable, why));
         }
         let sequential = core.device.sequential(&core.config)?;
         let limit = if effort.full { effort.time_limit } else { EQUAL.min(effort.time_limit) };
         Ok(match equality::compare(&sequential, &core.design, &tools[0], limit)? {
             equality::Verdict::Equal(proof) => Finding::new(
-                Verdict::Proved,
+                CheckVerdict::Proved,
                 "every point: all bits of all operands",
                 format!(
                     "{} and {} of the core on its way to them are equal, whatever {} and the words of memories are.",
@@ -226,14 +228,14 @@ pub const TEXT: Check = Check {
         let (core, effort) = (subject.core, subject.effort);
         if core.design.pipeline.is_none() {
             let why = "It is asked of pipelines; the Verilog of a microprogram is simulated.";
-            return Ok(Finding::without(Verdict::NotApplicable, why));
+            return Ok(Finding::without(CheckVerdict::NotApplicable, why));
         }
         let limit = if effort.full { effort.time_limit } else { EQUAL.min(effort.time_limit) };
         let text =
             elaborate(&tools[0], &subject.sources("")?, &core.config.name, effort.time_limit)?;
         Ok(match equality::compare_text(&core.design, &text, &tools[1], limit)? {
             equality::TextVerdict::Equal(proof) => Finding::new(
-                Verdict::Proved,
+                CheckVerdict::Proved,
                 "every point, stalls too, from any state of registers, valid bits and memories after a reset",
                 format!(
                     "{} of the text equal those of the netlist{}; the check above has the netlist.",
@@ -252,17 +254,17 @@ pub const TEXT: Check = Check {
                 Finding::default().failures(vec![difference])
             }
             equality::TextVerdict::Open(open) => undecided(subject, open, limit),
-            equality::TextVerdict::Unread(why) => Finding::without(Verdict::Undecided, format!("{why}.")),
+            equality::TextVerdict::Unread(why) => Finding::without(CheckVerdict::Undecided, format!("{why}.")),
         })
     },
 };
 
 /// Returns the finding if the solver proves nothing and no differing point is found.
-fn undecided(subject: &Subject<'_>, open: equality::Open, limit: Duration) -> Finding {
+fn undecided(subject: &CheckSubject<'_>, open: equality::Open, limit: Duration) -> Finding {
     let limit = limit.as_secs();
     match open {
         equality::Open::Unknown => Finding::without(
-            Verdict::Undecided,
+            CheckVerdict::Undecided,
             "Unknown: z3 gives up or proposes values of products that there are not, and no point was found that differs.",
         ),
         equality::Open::Limit => Finding {
@@ -272,7 +274,7 @@ fn undecided(subject: &Subject<'_>, open: equality::Open, limit: Duration) -> Fi
                 limit.saturating_mul(10)
             )),
             ..Finding::without(
-                Verdict::LimitReached,
+                CheckVerdict::LimitReached,
                 format!("z3 has no proof within {limit} s, and no point was found that differs."),
             )
         },
@@ -310,7 +312,7 @@ pub const LINT: Check = Check {
             }
         }
         Ok(Finding::new(
-            Verdict::Passed,
+            CheckVerdict::Passed,
             sources.join(", "),
             "Neither Icarus Verilog nor Verilator has a remark.",
         )
@@ -326,7 +328,7 @@ pub const ICARUS: Check = Check {
     reads: "the Verilog and memory files of the core, and the shipped bench with other points",
     tools: &["iverilog", "vvp"],
     steps: |_| 1,
-    run: |subject, _, _| bench(subject, Simulator::Icarus),
+    run: |subject, _, _| bench(subject, VerilogSimulator::Icarus),
 };
 
 /// The emitted Verilog in Verilator.
@@ -337,10 +339,10 @@ pub const VERILATOR: Check = Check {
     reads: "the Verilog and memory files of the core, and the shipped bench with other points",
     tools: &["verilator"],
     steps: |_| 1,
-    run: |subject, _, _| bench(subject, Simulator::Verilator),
+    run: |subject, _, _| bench(subject, VerilogSimulator::Verilator),
 };
 
-fn bench(subject: &Subject<'_>, simulator: Simulator) -> Result<Finding> {
+fn bench(subject: &CheckSubject<'_>, simulator: VerilogSimulator) -> Result<Finding> {
     let (core, effort) = (subject.core, subject.effort);
     let points = POINTS[usize::from(effort.full)];
     let vectors = core.vectors(points, BENCH_SEED)?;
@@ -355,7 +357,7 @@ fn bench(subject: &Subject<'_>, simulator: Simulator) -> Result<Finding> {
         }
     }
     Ok(Finding::new(
-        Verdict::Passed,
+        CheckVerdict::Passed,
         format!("{} results in {} clocks (seed {BENCH_SEED})", grouped(points), grouped(clocks)),
         "Every output is right on every clock.",
     )
@@ -386,7 +388,7 @@ pub const SYNTHESIS: Check = Check {
             })
             .collect::<Result<_>>()?;
         Ok(Finding::new(
-            Verdict::Passed,
+            CheckVerdict::Passed,
             "before placement",
             format!("It takes {}.", taken.join("; ")),
         ))
@@ -423,7 +425,7 @@ pub const FORMAL: Check = Check {
         let files: Vec<String> =
             proofs.iter().map(|module| format!("{module}_formal.sv")).collect();
         Ok(Finding::new(
-            Verdict::Proved,
+            CheckVerdict::Proved,
             "all inputs, any state, any number of clocks",
             format!("The properties of {} are proved by k-induction.", files.join(", ")),
         )
@@ -450,7 +452,7 @@ pub const COCOTB: Check = Check {
                  system: `python3 -m venv env`, `env/bin/pip install cocotb=={COCOTB_VERSION}`, and env/bin first on PATH",
                 python.path().display()
             );
-            return Ok(Finding::without(Verdict::NotRun, why));
+            return Ok(Finding::without(CheckVerdict::NotRun, why));
         }
         let dir = written(subject)?;
         let name = &subject.core.config.name;
@@ -468,7 +470,7 @@ pub const COCOTB: Check = Check {
         }
         let benches: Vec<&str> = benches.into_iter().map(String::as_str).collect();
         Ok(Finding::new(
-            Verdict::Passed,
+            CheckVerdict::Passed,
             format!("{}, with cocotb {}", benches.join(", "), version.output.trim()),
             verdicts.join("; "),
         )
@@ -478,7 +480,7 @@ pub const COCOTB: Check = Check {
 };
 
 /// Writes everything that is emitted into a directory of its own.
-fn written(subject: &Subject<'_>) -> Result<Directory> {
+fn written(subject: &CheckSubject<'_>) -> Result<Directory> {
     directory_of(subject.files()?.iter().chain([&package::driver()]))
 }
 
@@ -516,7 +518,8 @@ pub const GATES: Check = Check {
                 let names: Vec<String> = rtl.iter().map(|(name, _)| name.clone()).collect();
                 let netlist = gates::netlist(&tools[0], &rtl, name, family, limit)?;
                 let files = gates::bench(&tools[0], sources.clone(), &names, netlist, family)?;
-                let outcome = run_bench(Simulator::Icarus, &files, &format!("{name}_tb"), limit)?;
+                let outcome =
+                    run_bench(VerilogSimulator::Icarus, &files, &format!("{name}_tb"), limit)?;
                 progress(1);
                 let failure = || format!("{}: {}", family.title, outcome.transcript.trim());
                 Ok((!outcome.passed).then(failure))
@@ -532,7 +535,8 @@ pub const GATES: Check = Check {
             for &start in Start::of(subject.core.design.pipeline.is_some()) {
                 let models = gates::cells::models(start)?;
                 let files = gates::around(sources.clone(), &names, netlist.clone(), models);
-                let outcome = run_bench(Simulator::Icarus, &files, &format!("{name}_tb"), limit)?;
+                let outcome =
+                    run_bench(VerilogSimulator::Icarus, &files, &format!("{name}_tb"), limit)?;
                 if !outcome.passed {
                     failures.push(format!("cells, {start:?}: {}", outcome.transcript.trim()));
                 }
@@ -541,7 +545,7 @@ pub const GATES: Check = Check {
         progress(1);
         let cells = if cells { ", and of cells of 0.18 µm" } else { "" };
         Ok(Finding::new(
-            Verdict::Passed,
+            CheckVerdict::Passed,
             format!(
                 "{} results in {} clocks (seed {BENCH_SEED}) of the netlists for {}{cells}",
                 grouped(GATE_POINTS),

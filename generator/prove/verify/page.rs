@@ -6,7 +6,7 @@ use glint_show::pages::markup::html;
 use serde::Serialize;
 use serde_json::json;
 
-use super::{Answer, CheckTime, Record};
+use super::{CheckAnswer, CheckTime, VerificationRecord};
 
 /// The mark of a page that Glint wrote: nothing else is overwritten.
 pub const MARKER: &str = "<meta name=\"generator\" content=\"glint verify\">";
@@ -14,16 +14,16 @@ pub const MARKER: &str = "<meta name=\"generator\" content=\"glint verify\">";
 #[glint_base::template::template("verification.html")]
 struct Page<'a> {
     marker: &'static str,
-    record: &'a Record,
+    record: &'a VerificationRecord,
     class: String,
     counts: Vec<(String, &'static str, usize)>,
-    checks: Vec<View<'a>>,
+    checks: Vec<CheckView<'a>>,
     timings: Vec<(&'static str, String)>,
 }
 
 /// A check with its texts as HTML.
-struct View<'a> {
-    answer: &'a Answer,
+struct CheckView<'a> {
+    answer: &'a CheckAnswer,
     class: String,
     question: String,
     domain: String,
@@ -33,8 +33,8 @@ struct View<'a> {
     tools: String,
 }
 
-impl<'a> View<'a> {
-    fn new(answer: &'a Answer) -> Self {
+impl<'a> CheckView<'a> {
+    fn new(answer: &'a CheckAnswer) -> Self {
         let finding = &answer.finding;
         Self {
             class: class(finding.verdict),
@@ -53,7 +53,7 @@ impl<'a> View<'a> {
 ///
 /// # Errors
 /// Fails if the template fails.
-pub fn page(record: &Record, timings: &[CheckTime]) -> Result<String> {
+pub fn page(record: &VerificationRecord, timings: &[CheckTime]) -> Result<String> {
     let counts = record.counts.iter();
     let checks = record.checks.iter();
     let page = Page {
@@ -61,7 +61,7 @@ pub fn page(record: &Record, timings: &[CheckTime]) -> Result<String> {
         record,
         class: class(record.conclusion),
         counts: counts.map(|(&it, &count)| (class(it), it.words(), count)).collect(),
-        checks: checks.clone().map(View::new).collect(),
+        checks: checks.clone().map(CheckView::new).collect(),
         timings: checks
             .zip(timings)
             .map(|(answer, timing)| (answer.title, format!("{:.1}", timing.seconds)))

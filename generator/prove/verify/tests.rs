@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::Duration;
 
-use super::{CHECKS, Conclusion, Effort, Finding, Record, Subject, Verdict};
+use super::{CHECKS, CheckSubject, CheckVerdict, Conclusion, Effort, Finding, VerificationRecord};
 use glint_config as config;
 use glint_core::core::Core;
 use glint_core::registry::Registry;
@@ -18,15 +18,15 @@ fn core() -> Core {
 }
 
 /// Runs the checks that need nothing but Glint.
-fn verified(core: &Core) -> Record {
+fn verified(core: &Core) -> VerificationRecord {
     let effort = Effort { full: false, without_tools: true, time_limit: Duration::from_secs(1) };
-    let subject = Subject::new("core.toml", core, effort, Path::new("records/proofs"));
+    let subject = CheckSubject::new("core.toml", core, effort, Path::new("records/proofs"));
     let checks = CHECKS.iter().filter(|check| !check.is_outside());
     let answers = checks.map(|check| check.run(&subject, &|_| ())).collect();
-    Record::new(&subject, answers)
+    VerificationRecord::new(&subject, answers)
 }
 
-fn finding<'a>(record: &'a Record, check: &str) -> &'a Finding {
+fn finding<'a>(record: &'a VerificationRecord, check: &str) -> &'a Finding {
     let answer = record.checks.iter().find(|answer| answer.check == check);
     &answer.expect("a check").finding
 }
@@ -36,16 +36,16 @@ fn the_worst_verdict_decides() {
     let answer =
         |verdict| CHECKS[0].answer(Vec::new(), Finding::without(verdict, ""), Duration::ZERO);
     for (verdict, conclusion) in [
-        (Verdict::Passed, Conclusion::Verified),
-        (Verdict::NotApplicable, Conclusion::Verified),
-        (Verdict::Unconfirmed, Conclusion::Verified),
-        (Verdict::LeftOut, Conclusion::InPart),
-        (Verdict::Undecided, Conclusion::Incomplete),
-        (Verdict::LimitReached, Conclusion::Incomplete),
-        (Verdict::NotRun, Conclusion::Incomplete),
-        (Verdict::Failed, Conclusion::Failed),
+        (CheckVerdict::Passed, Conclusion::Verified),
+        (CheckVerdict::NotApplicable, Conclusion::Verified),
+        (CheckVerdict::Unconfirmed, Conclusion::Verified),
+        (CheckVerdict::LeftOut, Conclusion::InPart),
+        (CheckVerdict::Undecided, Conclusion::Incomplete),
+        (CheckVerdict::LimitReached, Conclusion::Incomplete),
+        (CheckVerdict::NotRun, Conclusion::Incomplete),
+        (CheckVerdict::Failed, Conclusion::Failed),
     ] {
-        let both = [answer(Verdict::Proved), answer(verdict)];
+        let both = [answer(CheckVerdict::Proved), answer(verdict)];
         assert_eq!(Conclusion::of(&both), conclusion, "{verdict:?}");
     }
 }
@@ -62,7 +62,7 @@ fn a_fault_in_the_design_fails_the_lockstep() {
     let record = verified(&core);
     assert_eq!(record.conclusion, Conclusion::Failed);
     let lockstep = finding(&record, "lockstep");
-    assert_eq!(lockstep.verdict, Verdict::Failed);
+    assert_eq!(lockstep.verdict, CheckVerdict::Failed);
     // Its reproducer: seed, clock, microinstruction, signal, both values.
     for part in [
         "seed ",
@@ -74,5 +74,5 @@ fn a_fault_in_the_design_fails_the_lockstep() {
         assert!(lockstep.failures[0].contains(part), "{:?}", lockstep.failures);
     }
     // Its sweep leaves values of cos_dgamma out.
-    assert_eq!(finding(&record, "contract").verdict, Verdict::Passed);
+    assert_eq!(finding(&record, "contract").verdict, CheckVerdict::Passed);
 }

@@ -5,7 +5,7 @@ use serde::Serialize;
 /// How an axis is divided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Scale {
+pub enum AxisScale {
     /// Evenly.
     Linear,
     /// By powers of ten; values that are not positive have no place on it.
@@ -18,7 +18,7 @@ pub struct ChartAxis {
     /// The quantity, with the unit.
     pub label: String,
     /// How it is divided.
-    pub scale: Scale,
+    pub scale: AxisScale,
     /// The range that is plotted. Values outside are cut off in the plot, not in the figures.
     pub range: (f64, f64),
 }
@@ -26,20 +26,20 @@ pub struct ChartAxis {
 impl ChartAxis {
     /// Makes an evenly divided axis.
     pub fn linear(label: &str, low: f64, high: f64) -> Self {
-        Self { label: label.to_owned(), scale: Scale::Linear, range: (low, high) }
+        Self { label: label.to_owned(), scale: AxisScale::Linear, range: (low, high) }
     }
 
     /// Makes an axis of powers of ten.
     pub fn logarithmic(label: &str, low: f64, high: f64) -> Self {
-        Self { scale: Scale::Logarithmic, ..Self::linear(label, low, high) }
+        Self { scale: AxisScale::Logarithmic, ..Self::linear(label, low, high) }
     }
 
     /// Returns the place of a value: the value itself, or its power of ten. Returns `None` if it has no place.
     pub fn place(&self, value: f64) -> Option<f64> {
         let place = match self.scale {
-            Scale::Linear => value,
-            Scale::Logarithmic if value > 0.0 => libm::log10(value),
-            Scale::Logarithmic => return None,
+            AxisScale::Linear => value,
+            AxisScale::Logarithmic if value > 0.0 => libm::log10(value),
+            AxisScale::Logarithmic => return None,
         };
         place.is_finite().then_some(place)
     }

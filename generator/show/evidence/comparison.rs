@@ -104,28 +104,28 @@ pub fn clocks_per_point(design: &Design, contract: &dyn Contract, n: f64) -> Res
 
 /// The widths of the operands of a multiplier, the wider one first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Multiplier {
+pub struct MultiplierSize {
     /// Bits of the wider operand.
     pub first: u32,
     /// Bits of the other.
     pub second: u32,
 }
 
-impl fmt::Display for Multiplier {
+impl fmt::Display for MultiplierSize {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}x{}", self.first, self.second)
     }
 }
 
 /// Returns the multipliers of a design, the largest first.
-pub fn multipliers(design: &Design) -> Vec<Multiplier> {
-    let mut found: Vec<Multiplier> = design
+pub fn multipliers(design: &Design) -> Vec<MultiplierSize> {
+    let mut found: Vec<MultiplierSize> = design
         .nets
         .iter()
         .filter_map(|net| match net.driver {
             Driver::Op(Op::Mul(a, b)) => {
                 let (a, b) = (design.width(a), design.width(b));
-                Some(Multiplier { first: a.max(b), second: a.min(b) })
+                Some(MultiplierSize { first: a.max(b), second: a.min(b) })
             }
             _ => None,
         })
@@ -225,7 +225,8 @@ mod tests {
             Vec::new()
         });
         // A sign bit each.
-        let sizes: Vec<String> = multipliers(&design).iter().map(Multiplier::to_string).collect();
+        let sizes: Vec<String> =
+            multipliers(&design).iter().map(MultiplierSize::to_string).collect();
         assert_eq!(sizes, ["9x5", "4x4"]);
     }
 }

@@ -14,7 +14,7 @@ pub const DIRECTORY: &str = "records/synthesis";
 
 /// A configuration with all that was measured of it, `<name>.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Record<F = Figures> {
+pub struct SynthesisRecord<F = Figures> {
     /// The version of Glint.
     pub glint: String,
     /// The file of the configuration.
@@ -31,7 +31,7 @@ pub struct Record<F = Figures> {
     pub targets: Vec<F>,
 }
 
-impl Record {
+impl SynthesisRecord {
     /// Returns the record of a core, among all in a directory. Returns `None` if there is no such record, or no such
     /// directory. Files that are no records are ignored.
     ///

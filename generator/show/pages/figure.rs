@@ -4,7 +4,7 @@ use anyhow::Result;
 use rayon::prelude::*;
 
 use super::plots;
-use crate::evidence::chart::{Chart, Scale};
+use crate::evidence::chart::{AxisScale, Chart};
 
 /// The rows of the table beside a plot.
 const ROWS: usize = 11;
@@ -53,11 +53,11 @@ fn figure<'a>(chart: &'a Chart, source: &'a str) -> Result<Figure<'a>> {
 }
 
 /// Returns a value in a table: errors on a logarithmic axis keep their magnitude.
-fn cell(value: f64, scale: Scale) -> String {
+fn cell(value: f64, scale: AxisScale) -> String {
     match scale {
         _ if value.is_nan() => "\u{2013}".to_owned(),
-        Scale::Logarithmic => scientific(value),
-        Scale::Linear => format!("{value:.4}").replace('-', "\u{2212}"),
+        AxisScale::Logarithmic => scientific(value),
+        AxisScale::Linear => format!("{value:.4}").replace('-', "\u{2212}"),
     }
 }
 

@@ -31,7 +31,7 @@ const GREEK: [(&str, &str); 12] = [
 /// Returns `math` elements with the signs between them, between which a line may end; `None` for a text that is not
 /// understood.
 pub fn mathml(text: &str) -> Option<String> {
-    let mut reader = Reader { tokens: tokens(text)?, at: 0 };
+    let mut reader = FormulaReader { tokens: tokens(text)?, at: 0 };
     let mut clauses = String::new();
     loop {
         let clause = reader.clause()?;
@@ -75,12 +75,12 @@ fn tokens(text: &str) -> Option<Vec<&str>> {
 }
 
 /// A part of a formula: its MathML, and the MathML without the parentheses around it, if it has some.
-struct Part {
+struct FormulaPart {
     mathml: String,
     inside: Option<String>,
 }
 
-impl Part {
+impl FormulaPart {
     fn new(mathml: String) -> Self {
         Self { mathml, inside: None }
     }
@@ -91,12 +91,12 @@ impl Part {
     }
 }
 
-struct Reader<'a> {
+struct FormulaReader<'a> {
     tokens: Vec<&'a str>,
     at: usize,
 }
 
-impl<'a> Reader<'a> {
+impl<'a> FormulaReader<'a> {
     fn peek(&self) -> Option<&'a str> {
         self.tokens.get(self.at).copied()
     }
@@ -173,7 +173,7 @@ impl<'a> Reader<'a> {
         let mut product = self.power()?;
         while let Some(sign) = self.sign(&["*", "/"]) {
             let factor = self.power()?;
-            product = Part::new(match sign {
+            product = FormulaPart::new(match sign {
                 "*" => format!("{}<mo>⋅</mo>{}", product.mathml, factor.mathml),
                 _ => format!("<mfrac>{}{}</mfrac>", product.bare(), factor.bare()),
             });
@@ -181,14 +181,14 @@ impl<'a> Reader<'a> {
         Some(product.mathml)
     }
 
-    fn power(&mut self) -> Option<Part> {
+    fn power(&mut self) -> Option<FormulaPart> {
         let name = self.peek().filter(|name| FUNCTIONS.contains(name));
         let Some(name) = name else {
             let base = self.atom()?;
             return Some(match self.sign(&["^"]) {
                 Some(_) => {
                     let exponent = self.atom()?.bare();
-                    Part::new(format!("<msup><mrow>{}</mrow>{exponent}</msup>", base.mathml))
+                    FormulaPart::new(format!("<msup><mrow>{}</mrow>{exponent}</msup>", base.mathml))
                 }
                 None => base,
             });
@@ -213,15 +213,15 @@ impl<'a> Reader<'a> {
             None => format!("<mi>{name}</mi>"),
         };
         let argument = match argument {
-            Part { inside: Some(inside), .. } if single => {
+            FormulaPart { inside: Some(inside), .. } if single => {
                 format!("<mspace width=\"0.17em\"/>{inside}")
             }
             part => part.mathml,
         };
-        Some(Part::new(format!("{name}<mo>&#x2061;</mo>{argument}")))
+        Some(FormulaPart::new(format!("{name}<mo>&#x2061;</mo>{argument}")))
     }
 
-    fn atom(&mut self) -> Option<Part> {
+    fn atom(&mut self) -> Option<FormulaPart> {
         let token = self.peek()?;
         if token == "(" {
             return self.parentheses();
@@ -231,25 +231,25 @@ impl<'a> Reader<'a> {
             return Some(single);
         }
         let argument = self.parentheses()?;
-        Some(Part::new(match token {
+        Some(FormulaPart::new(match token {
             "sqrt" => format!("<msqrt>{}</msqrt>", argument.bare()),
             _ => format!("{}<mo>&#x2061;</mo>{}", single.mathml, argument.mathml),
         }))
     }
 
     /// Returns a number or a name.
-    fn single(&mut self) -> Option<Part> {
+    fn single(&mut self) -> Option<FormulaPart> {
         let token = self.next()?;
         let first = token.chars().next()?;
         if first.is_ascii_digit() {
-            return Some(Part::new(format!("<mn>{token}</mn>")));
+            return Some(FormulaPart::new(format!("<mn>{token}</mn>")));
         }
         let is_name = first.is_ascii_alphabetic() && !PROSE.contains(&token);
-        is_name.then(|| Part::new(name(token)))
+        is_name.then(|| FormulaPart::new(name(token)))
     }
 
     /// Returns one expression in parentheses, or several with commas between.
-    fn parentheses(&mut self) -> Option<Part> {
+    fn parentheses(&mut self) -> Option<FormulaPart> {
         self.sign(&["("])?;
         let mut inside = self.sum()?;
         while self.sign(&[","]).is_some() {
@@ -265,7 +265,7 @@ impl<'a> Reader<'a> {
             false => format!("<mo>{sign}</mo>"),
         };
         let mathml = format!("<mrow>{}{inside}{}</mrow>", around("("), around(")"));
-        Some(Part { mathml, inside: Some(inside) })
+        Some(FormulaPart { mathml, inside: Some(inside) })
     }
 }
 

@@ -5,7 +5,7 @@ use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use crate::evidence::chart::{Chart, ChartAxis, Scale};
+use crate::evidence::chart::{AxisScale, Chart, ChartAxis};
 
 /// Lines that the style sheet can tell apart, by colour and by dashes.
 pub const STYLES: usize = 10;
@@ -44,12 +44,12 @@ pub fn svg(chart: &Chart) -> Result<String> {
 }
 
 /// An axis as the library takes it: the places of values, with lines and labels at our ticks.
-struct Places {
+struct AxisPlaces {
     range: std::ops::Range<f64>,
     ticks: Vec<f64>,
 }
 
-impl Places {
+impl AxisPlaces {
     fn new(axis: &ChartAxis) -> Result<Self> {
         let end = |value| {
             axis.place(value)
@@ -62,7 +62,7 @@ impl Places {
     }
 }
 
-impl Ranged for Places {
+impl Ranged for AxisPlaces {
     type FormatOption = DefaultFormatting;
     type ValueType = f64;
 
@@ -88,12 +88,12 @@ fn draw(chart: &Chart, text: &mut String) -> Result<(), Box<dyn std::error::Erro
         .margin_bottom(4 * FINE)
         .x_label_area_size(44 * FINE)
         .y_label_area_size(58 * FINE)
-        .build_cartesian_2d(Places::new(&chart.x)?, Places::new(&chart.y)?)?;
+        .build_cartesian_2d(AxisPlaces::new(&chart.x)?, AxisPlaces::new(&chart.y)?)?;
     // The library's sizes are larger than the SVG's by a quarter.
     let font = ("sans-serif", 16 * FINE).into_font().color(&INK);
     let label = |axis: &ChartAxis, place: f64| match axis.scale {
-        Scale::Linear => number(place),
-        Scale::Logarithmic => number(libm::pow(10.0, place)),
+        AxisScale::Linear => number(place),
+        AxisScale::Logarithmic => number(libm::pow(10.0, place)),
     };
     plane
         .configure_mesh()
@@ -205,7 +205,7 @@ fn runs(chart: &Chart, values: &[f64]) -> Vec<Vec<(f64, f64)>> {
 fn ticks(axis: &ChartAxis) -> Vec<f64> {
     let (low, high) = axis.range;
     match axis.scale {
-        Scale::Linear => {
+        AxisScale::Linear => {
             let coarse = (high - low) / 5.0;
             let decade = libm::pow(10.0, libm::floor(libm::log10(coarse)));
             let step = [1.0, 2.0, 2.5, 5.0, 10.0]
@@ -216,7 +216,7 @@ fn ticks(axis: &ChartAxis) -> Vec<f64> {
             let (first, last) = (libm::ceil(low / step), libm::floor(high / step + 1e-9));
             (0..=(last - first) as u32).map(|at| (first + f64::from(at)) * step).collect()
         }
-        Scale::Logarithmic => {
+        AxisScale::Logarithmic => {
             let (first, last) = (libm::log10(low), libm::log10(high));
             // Few decades have room for steps in between.
             let steps: &[f64] = if last - first < 3.0 { &[1.0, 2.0, 5.0] } else { &[1.0] };

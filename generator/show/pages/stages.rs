@@ -1,13 +1,13 @@
 //! Tabulates the stages of a pipeline, and the products that its shared multipliers compute in each slot.
 
-use super::account::{Table, code};
+use super::account::{TextTable, code};
 use glint_rtl::netlist::{Design, Pipeline};
 
 /// Returns the product that each shared multiplier computes in each slot. Returns `None` if no multiplier is shared.
-pub fn reservations(pipeline: &Pipeline) -> Option<Table> {
+pub fn reservations(pipeline: &Pipeline) -> Option<TextTable> {
     let slots = (0..pipeline.interval).map(|slot| format!("slot {slot}"));
     let headings: Vec<String> = ["multiplier".to_owned()].into_iter().chain(slots).collect();
-    let mut table = Table::of(&headings.join(" | "));
+    let mut table = TextTable::of(&headings.join(" | "));
     for unit in &pipeline.units {
         let serves = unit.serves.iter().map(|it| it.as_deref().map_or("–".to_owned(), code));
         table.row([code(&unit.name)].into_iter().chain(serves));
@@ -16,8 +16,8 @@ pub fn reservations(pipeline: &Pipeline) -> Option<Table> {
 }
 
 /// Returns the stages with their microinstructions, values, time and registers.
-pub fn table(design: &Design, pipeline: &Pipeline) -> Table {
-    let mut table = Table::of(
+pub fn table(design: &Design, pipeline: &Pipeline) -> TextTable {
+    let mut table = TextTable::of(
         "stage: | microinstructions | logic, ns: | slack, ns: | register bits: | in delay lines: | computes",
     );
     for (number, stage) in pipeline.stages.iter().enumerate() {

@@ -25,7 +25,7 @@ pub use camera::View;
 pub use height::Relief;
 pub use mesh::{CREASE, Mesh};
 pub use operands::{Feed, Point, exponents, walks_lines};
-pub use picture::{Difference, Picture};
+pub use picture::{Picture, PictureDifference};
 pub use scene::{BACKGROUND, BuiltIn, COLOUR, Light, Object, Scene, Shape};
 pub use shade::{Material, point};
 pub use vector::Vector;
@@ -87,7 +87,7 @@ pub struct Rendered {
     /// The points among these whose dγ was beyond the domain of the device, and was shortened to it.
     pub beyond: u64,
     /// Beside Blinn's function, if that was wanted.
-    pub comparison: Option<Comparison>,
+    pub comparison: Option<PictureComparison>,
 }
 
 impl Rendered {
@@ -108,11 +108,11 @@ impl Rendered {
 
 /// The device against formulas in f64.
 #[derive(Clone, Debug)]
-pub struct Comparison {
+pub struct PictureComparison {
     /// The picture with cosⁿγ.
     pub exact: Picture,
     /// Between the two.
-    pub difference: Difference,
+    pub difference: PictureDifference,
     /// The largest error of an output against the device's own formula, in output units.
     pub units: f64,
 }
@@ -353,8 +353,8 @@ impl Portions<'_> {
     }
 
     fn finish(self, compare: bool) -> Rendered {
-        let comparison = compare.then(|| Comparison {
-            difference: Difference::new(&self.picture, &self.exact, &self.shown),
+        let comparison = compare.then(|| PictureComparison {
+            difference: PictureDifference::new(&self.picture, &self.exact, &self.shown),
             exact: self.exact,
             units: self.units,
         });

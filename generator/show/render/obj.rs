@@ -15,7 +15,7 @@ use super::vector::Vector;
 /// Fails with the number of the line if a number is not one or not finite, or if a face has less than three corners
 /// or a corner that does not exist. Fails without it if [`Mesh::new`] fails.
 pub fn parse(text: &str, crease: f64) -> Result<Mesh> {
-    let mut read = Reader::default();
+    let mut read = ObjReader::default();
     for (number, line) in text.lines().enumerate() {
         read.line(line).with_context(|| format!("line {}", number + 1))?;
     }
@@ -23,14 +23,14 @@ pub fn parse(text: &str, crease: f64) -> Result<Mesh> {
 }
 
 #[derive(Default)]
-struct Reader {
+struct ObjReader {
     positions: Vec<Vector>,
     normals: Vec<Vector>,
     textures: Vec<[f64; 2]>,
     triangles: Vec<[RawCorner; 3]>,
 }
 
-impl Reader {
+impl ObjReader {
     fn line(&mut self, line: &str) -> Result<()> {
         let line = line.split('#').next().unwrap_or(line);
         let mut words = line.split_whitespace();

@@ -6,7 +6,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use anyhow::{Result, bail, ensure};
 
-use super::setup::Line;
+use super::setup::LineParameters;
 use super::vector::Vector;
 use glint_base::fixed::{Format, Overflow, Rounding, exp2, nearest};
 use glint_base::program::Program;
@@ -47,7 +47,7 @@ pub struct Surface {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Quantity {
+enum OperandMeaning {
     CosGamma,
     CosDgamma,
     DgammaNegative,
@@ -70,63 +70,63 @@ enum Quantity {
     Given(f64),
 }
 
-impl Quantity {
+impl OperandMeaning {
     fn is_colour(self) -> bool {
         matches!(self, Self::Colour(_) | Self::Amplitude)
     }
 }
 
 /// Every name that is understood of a device that computes a point.
-const OF_POINTS: [(&str, Quantity); 11] = [
-    ("cos_gamma", Quantity::CosGamma),
-    ("exponent", Quantity::Exponent),
-    ("shift", Quantity::Shift),
-    ("cos_dgamma", Quantity::CosDgamma),
-    ("dgamma_negative", Quantity::DgammaNegative),
-    ("dx", Quantity::Difference(0)),
-    ("dy", Quantity::Difference(1)),
-    ("dz", Quantity::Difference(2)),
-    ("red", Quantity::Colour(0)),
-    ("green", Quantity::Colour(1)),
-    ("blue", Quantity::Colour(2)),
+const OF_POINTS: [(&str, OperandMeaning); 11] = [
+    ("cos_gamma", OperandMeaning::CosGamma),
+    ("exponent", OperandMeaning::Exponent),
+    ("shift", OperandMeaning::Shift),
+    ("cos_dgamma", OperandMeaning::CosDgamma),
+    ("dgamma_negative", OperandMeaning::DgammaNegative),
+    ("dx", OperandMeaning::Difference(0)),
+    ("dy", OperandMeaning::Difference(1)),
+    ("dz", OperandMeaning::Difference(2)),
+    ("red", OperandMeaning::Colour(0)),
+    ("green", OperandMeaning::Colour(1)),
+    ("blue", OperandMeaning::Colour(2)),
 ];
 
 /// And of one that computes all of the light.
-const OF_SURFACES: [(&str, Quantity); 19] = [
-    ("nx", Quantity::Normal(0)),
-    ("ny", Quantity::Normal(1)),
-    ("nz", Quantity::Normal(2)),
-    ("lx", Quantity::Light(0)),
-    ("ly", Quantity::Light(1)),
-    ("lz", Quantity::Light(2)),
-    ("hx", Quantity::Half(0)),
-    ("hy", Quantity::Half(1)),
-    ("hz", Quantity::Half(2)),
-    ("exponent", Quantity::Exponent),
-    ("ambient_red", Quantity::Ambient(0)),
-    ("ambient_green", Quantity::Ambient(1)),
-    ("ambient_blue", Quantity::Ambient(2)),
-    ("diffuse_red", Quantity::Diffuse(0)),
-    ("diffuse_green", Quantity::Diffuse(1)),
-    ("diffuse_blue", Quantity::Diffuse(2)),
-    ("specular_red", Quantity::Specular(0)),
-    ("specular_green", Quantity::Specular(1)),
-    ("specular_blue", Quantity::Specular(2)),
+const OF_SURFACES: [(&str, OperandMeaning); 19] = [
+    ("nx", OperandMeaning::Normal(0)),
+    ("ny", OperandMeaning::Normal(1)),
+    ("nz", OperandMeaning::Normal(2)),
+    ("lx", OperandMeaning::Light(0)),
+    ("ly", OperandMeaning::Light(1)),
+    ("lz", OperandMeaning::Light(2)),
+    ("hx", OperandMeaning::Half(0)),
+    ("hy", OperandMeaning::Half(1)),
+    ("hz", OperandMeaning::Half(2)),
+    ("exponent", OperandMeaning::Exponent),
+    ("ambient_red", OperandMeaning::Ambient(0)),
+    ("ambient_green", OperandMeaning::Ambient(1)),
+    ("ambient_blue", OperandMeaning::Ambient(2)),
+    ("diffuse_red", OperandMeaning::Diffuse(0)),
+    ("diffuse_green", OperandMeaning::Diffuse(1)),
+    ("diffuse_blue", OperandMeaning::Diffuse(2)),
+    ("specular_red", OperandMeaning::Specular(0)),
+    ("specular_green", OperandMeaning::Specular(1)),
+    ("specular_blue", OperandMeaning::Specular(2)),
 ];
 
 /// And of one that walks a line of points, for a colour at a time.
-const OF_LINES: [(&str, Quantity); 5] = [
-    ("zeta_start", Quantity::ZetaStart),
-    ("delta_zeta", Quantity::DeltaZeta),
-    ("exponent", Quantity::Exponent),
-    ("length", Quantity::Length),
-    ("amplitude", Quantity::Amplitude),
+const OF_LINES: [(&str, OperandMeaning); 5] = [
+    ("zeta_start", OperandMeaning::ZetaStart),
+    ("delta_zeta", OperandMeaning::DeltaZeta),
+    ("exponent", OperandMeaning::Exponent),
+    ("length", OperandMeaning::Length),
+    ("amplitude", OperandMeaning::Amplitude),
 ];
 
 /// The operands of a device, each with the quantity that it takes.
 #[derive(Clone, Debug)]
 pub struct Feed {
-    operands: Vec<(Quantity, Format, (i64, i64))>,
+    operands: Vec<(OperandMeaning, Format, (i64, i64))>,
     /// For red, green and blue the place of its output.
     channels: [usize; 3],
     /// For red, green and blue, the factor that makes an output 255 at full colour.
@@ -165,7 +165,7 @@ impl Feed {
     /// Fails as [`Feed::new`] does, if the device does not have a given operand, or if a value is beyond its domain.
     pub fn with(device: &str, contract: &dyn Contract, given: &[(String, f64)]) -> Result<Self> {
         let surfaces = contract.operands().iter().any(|it| it.name == OF_SURFACES[10].0);
-        let names: &[(&str, Quantity)] = match (walks_lines(contract), surfaces) {
+        let names: &[(&str, OperandMeaning)] = match (walks_lines(contract), surfaces) {
             (true, _) => &OF_LINES,
             (false, true) => &OF_SURFACES,
             (false, false) => &OF_POINTS,
@@ -203,11 +203,11 @@ impl Feed {
         if walks_lines(contract) {
             for (name, quantity) in OF_LINES {
                 ensure!(
-                    quantity == Quantity::Exponent || feed.find(quantity).is_some(),
+                    quantity == OperandMeaning::Exponent || feed.find(quantity).is_some(),
                     "the device `{device}` walks a line, but has no operand `{name}`"
                 );
             }
-            let length = feed.find(Quantity::Length).map(|(_, _, (_, most))| most);
+            let length = feed.find(OperandMeaning::Length).map(|(_, _, (_, most))| most);
             feed.longest = length.map(|most| usize::try_from(most).unwrap_or(0));
         }
         let control = contract.operands().iter().filter(|operand| !operand.colour);
@@ -224,8 +224,8 @@ impl Feed {
                 continue;
             }
             let wanted = match feed.longest {
-                None => Quantity::Colour(channel),
-                Some(_) => Quantity::Amplitude,
+                None => OperandMeaning::Colour(channel),
+                Some(_) => OperandMeaning::Amplitude,
             };
             let mut places = feed.operands.iter();
             let at = places.position(|(quantity, ..)| *quantity == wanted);
@@ -254,12 +254,12 @@ impl Feed {
 
     /// Returns whether the device takes dγ, and so the smooth normal's angle.
     pub fn takes_deviation(&self) -> bool {
-        self.takes(Quantity::CosDgamma)
+        self.takes(OperandMeaning::CosDgamma)
     }
 
     /// Returns whether n, or its logarithm, is an operand.
     pub fn takes_exponent(&self) -> bool {
-        self.takes(Quantity::Exponent) || self.takes(Quantity::Shift)
+        self.takes(OperandMeaning::Exponent) || self.takes(OperandMeaning::Shift)
     }
 
     /// Returns the first of some operands, not yet quantised, that is beyond its domain. The cosine of a surface that faces away
@@ -267,7 +267,9 @@ impl Feed {
     pub fn outside(&self, values: &[f64]) -> Option<usize> {
         let mut operands = self.operands.iter().zip(values);
         operands.position(|(&(quantity, format, domain), &value)| match quantity {
-            Quantity::CosGamma | Quantity::ZetaStart | Quantity::DeltaZeta => false,
+            OperandMeaning::CosGamma | OperandMeaning::ZetaStart | OperandMeaning::DeltaZeta => {
+                false
+            }
             _ => {
                 (format.to_f64(i128::from(number(value, format, domain))) - value).abs()
                     >= format.to_f64(1)
@@ -280,11 +282,11 @@ impl Feed {
         self.longest
     }
 
-    fn takes(&self, quantity: Quantity) -> bool {
+    fn takes(&self, quantity: OperandMeaning) -> bool {
         self.find(quantity).is_some()
     }
 
-    fn find(&self, wanted: Quantity) -> Option<(Quantity, Format, (i64, i64))> {
+    fn find(&self, wanted: OperandMeaning) -> Option<(OperandMeaning, Format, (i64, i64))> {
         let mut operands = self.operands.iter();
         operands.find(|operand| operand.0 == wanted).copied()
     }
@@ -293,26 +295,29 @@ impl Feed {
     pub fn values<'a>(&'a self, point: &'a Point, exponent: u32) -> impl Iterator<Item = f64> + 'a {
         let split = self.takes_deviation();
         self.operands.iter().map(move |&(quantity, format, (_, high))| match quantity {
-            Quantity::CosGamma if split => point.cos_gamma,
-            Quantity::CosGamma => point.cos_shaded,
-            Quantity::CosDgamma => point.cos_dgamma,
-            Quantity::DgammaNegative => f64::from(u8::from(point.dgamma_negative)),
-            Quantity::Exponent => f64::from(exponent),
-            Quantity::Shift => libm::log2(f64::from(exponent)).round(),
-            Quantity::Difference(axis) => point.difference.0[axis],
+            OperandMeaning::CosGamma if split => point.cos_gamma,
+            OperandMeaning::CosGamma => point.cos_shaded,
+            OperandMeaning::CosDgamma => point.cos_dgamma,
+            OperandMeaning::DgammaNegative => f64::from(u8::from(point.dgamma_negative)),
+            OperandMeaning::Exponent => f64::from(exponent),
+            OperandMeaning::Shift => libm::log2(f64::from(exponent)).round(),
+            OperandMeaning::Difference(axis) => point.difference.0[axis],
             // From 0 to the largest, which is full colour.
-            Quantity::Colour(channel) => point.colour.0[channel] * format.to_f64(i128::from(high)),
-            Quantity::Normal(axis) => point.surface.normal.0[axis],
-            Quantity::Light(axis) => point.surface.light.0[axis],
-            Quantity::Half(axis) => point.surface.half.0[axis],
-            Quantity::Ambient(at) => point.surface.ambient.0[at] * format.to_f64(high.into()),
-            Quantity::Diffuse(at) => point.surface.diffuse.0[at] * format.to_f64(high.into()),
-            Quantity::Specular(at) => point.colour.0[at] * format.to_f64(high.into()),
-            Quantity::Given(value) => value,
-            // Not of a point.
-            Quantity::Amplitude | Quantity::ZetaStart | Quantity::DeltaZeta | Quantity::Length => {
-                0.0
+            OperandMeaning::Colour(channel) => {
+                point.colour.0[channel] * format.to_f64(i128::from(high))
             }
+            OperandMeaning::Normal(axis) => point.surface.normal.0[axis],
+            OperandMeaning::Light(axis) => point.surface.light.0[axis],
+            OperandMeaning::Half(axis) => point.surface.half.0[axis],
+            OperandMeaning::Ambient(at) => point.surface.ambient.0[at] * format.to_f64(high.into()),
+            OperandMeaning::Diffuse(at) => point.surface.diffuse.0[at] * format.to_f64(high.into()),
+            OperandMeaning::Specular(at) => point.colour.0[at] * format.to_f64(high.into()),
+            OperandMeaning::Given(value) => value,
+            // Not of a point.
+            OperandMeaning::Amplitude
+            | OperandMeaning::ZetaStart
+            | OperandMeaning::DeltaZeta
+            | OperandMeaning::Length => 0.0,
         })
     }
 
@@ -328,33 +333,34 @@ impl Feed {
             .zip(self.values(point, exponent))
             .map(|(&(_, format, domain), value)| number(value, format, domain));
         let beyond = self.operands.iter().any(|(quantity, format, (low, _))| {
-            *quantity == Quantity::CosDgamma && format.quantise(point.cos_dgamma) < i128::from(*low)
+            *quantity == OperandMeaning::CosDgamma
+                && format.quantise(point.cos_dgamma) < i128::from(*low)
         });
         (raw, beyond)
     }
 
     /// Returns the amplitude of full light.
     pub fn full(&self) -> f64 {
-        let full = self.find(Quantity::Amplitude);
+        let full = self.find(OperandMeaning::Amplitude);
         full.map_or(0.0, |(_, format, (_, most))| format.to_f64(i128::from(most)))
     }
 
     /// Returns the factor by which the host multiplies a line's angles: √(n/2), or 1 if the device takes n as an
     /// operand.
-    fn stretch(&self, line: &Line) -> f64 {
-        if self.takes(Quantity::Exponent) { 1.0 } else { line.stretch() }
+    fn stretch(&self, line: &LineParameters) -> f64 {
+        if self.takes(OperandMeaning::Exponent) { 1.0 } else { line.stretch() }
     }
 
     /// Returns the operands of a line before they are quantised, each in its own unit.
-    pub fn line_values<'a>(&'a self, line: &'a Line) -> impl Iterator<Item = f64> + 'a {
+    pub fn line_values<'a>(&'a self, line: &'a LineParameters) -> impl Iterator<Item = f64> + 'a {
         let stretch = self.stretch(line);
         self.operands.iter().map(move |(quantity, ..)| match quantity {
-            Quantity::ZetaStart => line.zeta_start * stretch / FRAC_PI_2,
-            Quantity::DeltaZeta => line.delta_zeta * stretch / FRAC_PI_2,
-            Quantity::Exponent => f64::from(line.exponent),
-            Quantity::Length => f64::from(line.length),
-            Quantity::Amplitude => line.amplitude,
-            Quantity::Given(value) => *value,
+            OperandMeaning::ZetaStart => line.zeta_start * stretch / FRAC_PI_2,
+            OperandMeaning::DeltaZeta => line.delta_zeta * stretch / FRAC_PI_2,
+            OperandMeaning::Exponent => f64::from(line.exponent),
+            OperandMeaning::Length => f64::from(line.length),
+            OperandMeaning::Amplitude => line.amplitude,
+            OperandMeaning::Given(value) => *value,
             // Not of a line.
             _ => 0.0,
         })
@@ -364,9 +370,9 @@ impl Feed {
     ///
     /// # Errors
     /// Fails if a device without an exponent has no room for an angle times √(n/2).
-    pub fn line(&self, line: &Line) -> Result<Vec<i64>> {
-        if let Some((_, format, _)) = self.find(Quantity::ZetaStart)
-            && !self.takes(Quantity::Exponent)
+    pub fn line(&self, line: &LineParameters) -> Result<Vec<i64>> {
+        if let Some((_, format, _)) = self.find(OperandMeaning::ZetaStart)
+            && !self.takes(OperandMeaning::Exponent)
         {
             // A right angle is kept for the errors that rounding may add along the line.
             let room = exp2(format.int) - 1.0;
@@ -380,7 +386,7 @@ impl Feed {
             }
         }
         let raw = |(&(quantity, format, domain), value)| match quantity {
-            Quantity::ZetaStart | Quantity::DeltaZeta => raw_angle(value, format),
+            OperandMeaning::ZetaStart | OperandMeaning::DeltaZeta => raw_angle(value, format),
             _ => number(value, format, domain),
         };
         Ok(self.operands.iter().zip(self.line_values(line)).map(raw).collect())
@@ -408,7 +414,7 @@ fn raw_angle(right_angles: f64, format: Format) -> i64 {
 }
 
 /// Returns an operand that is the same at every point.
-fn fixed(operand: &Operand, value: f64) -> Result<Quantity> {
+fn fixed(operand: &Operand, value: f64) -> Result<OperandMeaning> {
     let name = &operand.name;
     let [low, high] =
         [operand.domain.0, operand.domain.1].map(|raw| operand.format.to_f64(i128::from(raw)));
@@ -417,12 +423,12 @@ fn fixed(operand: &Operand, value: f64) -> Result<Quantity> {
         (low..=high).contains(&value),
         "--operand {name}={value}: its domain is {low} to {high}"
     );
-    Ok(Quantity::Given(value))
+    Ok(OperandMeaning::Given(value))
 }
 
 /// Returns the quantity that an operand takes. In a unit with several lights, only one is lit: vectors to the others
 /// are zero.
-fn quantity(operand: &Operand, names: &[(&str, Quantity)]) -> Option<Quantity> {
+fn quantity(operand: &Operand, names: &[(&str, OperandMeaning)]) -> Option<OperandMeaning> {
     let of = |wanted: &str| {
         let mut names = names.iter();
         names.find(|(name, quantity)| wanted == *name && operand.colour == quantity.is_colour())
@@ -430,7 +436,9 @@ fn quantity(operand: &Operand, names: &[(&str, Quantity)]) -> Option<Quantity> {
     let first = operand.name.trim_end_matches(|it: char| it.is_ascii_digit());
     match (of(&operand.name), of(first)) {
         (Some((_, quantity)), _) => Some(*quantity),
-        (None, Some((_, Quantity::Light(_) | Quantity::Half(_)))) => Some(Quantity::Given(0.0)),
+        (None, Some((_, OperandMeaning::Light(_) | OperandMeaning::Half(_)))) => {
+            Some(OperandMeaning::Given(0.0))
+        }
         _ => None,
     }
 }

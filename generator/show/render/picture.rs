@@ -98,18 +98,18 @@ pub fn pixel(colour: Vector) -> [u8; 3] {
 
 /// How two pictures differ.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Difference {
+pub struct PictureDifference {
     /// The largest difference of a channel, in levels of 255.
     pub largest: u8,
     /// The peak signal-to-noise ratio in decibels, over the pixels of the things; none when they are equal.
     pub psnr: Option<f64>,
-    /// The factor of the differences in [`Difference::picture`], which makes them visible.
+    /// The factor of the differences in [`PictureDifference::picture`], which makes them visible.
     pub gain: u8,
     /// The absolute differences.
     pub picture: Picture,
 }
 
-impl Difference {
+impl PictureDifference {
     /// Compares two pictures of one size; `shown` says of each pixel whether it shows a thing.
     pub fn new(a: &Picture, b: &Picture, shown: &[bool]) -> Self {
         let pairs = a.pixels.iter().zip(&b.pixels);
@@ -159,12 +159,12 @@ mod tests {
     fn differences_are_measured_over_what_is_shown() {
         let a = picture([[10, 0, 255], [0; 3]]);
         let b = picture([[0, 30, 255], [0; 3]]);
-        let difference = Difference::new(&a, &b, &[true, false]);
+        let difference = PictureDifference::new(&a, &b, &[true, false]);
         assert_eq!((difference.largest, difference.gain), (30, 8));
         assert_eq!(difference.picture.pixels, [[80, 240, 0], [0; 3]]);
         // 10·log₁₀(255²·3/1000).
         assert!((difference.psnr.unwrap() - 22.901_6).abs() < 1e-3);
-        assert_eq!(Difference::new(&a, &a, &[true, true]).psnr, None);
+        assert_eq!(PictureDifference::new(&a, &a, &[true, true]).psnr, None);
     }
 
     #[test]

@@ -69,7 +69,7 @@ pub struct Shaded {
 }
 
 /// A point of a surface.
-struct Surface {
+struct SurfacePoint {
     colour: Vector,
     smooth: Vector,
     perturbed: Vector,
@@ -78,7 +78,7 @@ struct Surface {
     toward_eye: Vector,
 }
 
-impl Surface {
+impl SurfacePoint {
     /// Returns whether a light falls on the surface. The device knows nothing about surfaces in their own shadow.
     fn is_lit(&self, light: &Light) -> bool {
         self.smooth.dot(light.direction) > 0.0
@@ -111,7 +111,7 @@ impl Shader<'_> {
                 // A line has a point more than intervals.
                 let most = self.feed.longest().map_or(run.len(), |longest| longest + 1);
                 for part in run.chunks(most) {
-                    let surfaces: Vec<Surface> = (column..)
+                    let surfaces: Vec<SurfacePoint> = (column..)
                         .zip(part)
                         .map(|(column, hit)| self.surface(hit, ray(column)))
                         .collect();
@@ -128,7 +128,7 @@ impl Shader<'_> {
     }
 
     /// Shades samples beside each other on one triangle or ball.
-    fn surfaces(&self, surfaces: &[Surface], shaded: &mut Shaded) -> Result<()> {
+    fn surfaces(&self, surfaces: &[SurfacePoint], shaded: &mut Shaded) -> Result<()> {
         let lines = match self.feed.longest() {
             None => Vec::new(),
             Some(_) => self.lines(surfaces, &mut shaded.points)?,
@@ -192,7 +192,7 @@ impl Shader<'_> {
     /// blue. A light that falls on none of the samples has no line.
     ///
     /// The host's set-up is the set-up of seed 000, from normals and half vectors at both ends.
-    fn lines(&self, surfaces: &[Surface], points: &mut Points) -> Result<Vec<[usize; 3]>> {
+    fn lines(&self, surfaces: &[SurfacePoint], points: &mut Points) -> Result<Vec<[usize; 3]>> {
         let (Some(first), Some(last)) = (surfaces.first(), surfaces.last()) else {
             return Ok(Vec::new());
         };
@@ -216,13 +216,13 @@ impl Shader<'_> {
         Ok(firsts)
     }
 
-    fn surface(&self, hit: &Hit, ray: Vector) -> Surface {
+    fn surface(&self, hit: &Hit, ray: Vector) -> SurfacePoint {
         let object = &self.scene.objects[hit.object as usize];
         let along = self.camera.outward(ray);
         let place = self.camera.eye() + along * hit.depth;
         let toward_eye = (-along).unit().unwrap_or_default();
         let [smooth, perturbed, interpolated] = self.normals(object, hit, place, toward_eye);
-        Surface { colour: object.colour, smooth, perturbed, interpolated, toward_eye }
+        SurfacePoint { colour: object.colour, smooth, perturbed, interpolated, toward_eye }
     }
 
     /// Returns the normals of the smooth and of the perturbed surface, both toward the eye, and the latter as it was interpolated.

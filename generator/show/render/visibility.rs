@@ -79,13 +79,13 @@ pub struct Visibility<'a> {
     corners: Vec<Vec<Vector>>,
     balls: Vec<(u32, Vector, f64)>,
     /// For each band of rows, the candidates that may be seen there: object, triangle, columns.
-    bands: Vec<Vec<Candidate>>,
+    bands: Vec<Vec<CandidateSurface>>,
     /// The least distance at which a surface is seen.
     near: f64,
 }
 
 #[derive(Clone, Copy)]
-struct Candidate {
+struct CandidateSurface {
     object: u32,
     triangle: u32,
     columns: (u32, u32),
@@ -125,7 +125,7 @@ impl<'a> Visibility<'a> {
         let Shape::Mesh(mesh) = &self.scene.objects[object as usize].shape else {
             return;
         };
-        let candidates: Vec<Option<Candidate>> = (0..mesh.triangles.len() as u32)
+        let candidates: Vec<Option<CandidateSurface>> = (0..mesh.triangles.len() as u32)
             .into_par_iter()
             .map(|triangle| self.candidate(object, triangle))
             .collect();
@@ -146,7 +146,7 @@ impl<'a> Visibility<'a> {
     }
 
     /// Returns the rows and columns in which a triangle may be seen, if there are any.
-    fn candidate(&self, object: u32, triangle: u32) -> Option<Candidate> {
+    fn candidate(&self, object: u32, triangle: u32) -> Option<CandidateSurface> {
         let corners = self.corners(object, triangle);
         let distances = corners.map(|corner| -corner.0[2]);
         if distances.iter().all(|&distance| distance <= self.near) {
@@ -173,7 +173,7 @@ impl<'a> Visibility<'a> {
             // It reaches behind the eye: it may be seen anywhere.
             ((0, width as u32), (0, height as u32))
         };
-        (columns.0 < columns.1 && rows.0 < rows.1).then_some(Candidate {
+        (columns.0 < columns.1 && rows.0 < rows.1).then_some(CandidateSurface {
             object,
             triangle,
             columns,

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use anyhow::{Context, Result};
 
-use super::super::sources::Sources;
+use super::super::sources::YosysSources;
 use crate::Tool;
 
 /// The library of Oklahoma State University for 0.18 µm, at the path in Debian's `qflow-tech-osu018`.
@@ -54,7 +54,7 @@ pub fn netlist(
     files.push(("cells.constr".to_owned(), LOAD.to_owned()));
     let commands =
         format!("synth -flatten -top {top}; {MAPPING}; write_verilog -noattr -noexpr {NETLIST}");
-    let sources = Sources::new(yosys, &files, limit)?;
+    let sources = YosysSources::new(yosys, &files, limit)?;
     sources.run(&commands)?;
     sources.text(NETLIST)
 }

@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use anyhow::{Context, Result, bail};
 
-use super::sources::Sources;
+use super::sources::YosysSources;
 use crate::Tool;
 use glint_base::target::Family;
 
@@ -32,7 +32,7 @@ pub fn netlist(
     limit: Duration,
 ) -> Result<String> {
     const NETLIST: &str = "netlist.v";
-    let sources = Sources::new(yosys, files, limit)?;
+    let sources = YosysSources::new(yosys, files, limit)?;
     sources.run(&format!("{}; write_verilog -noattr {NETLIST}", family.script(top)))?;
     sources.text(NETLIST)
 }

@@ -6,7 +6,7 @@ use crate::common::Sure;
 use crate::common::cores::{Emitted, configuration_between, write};
 use crate::common::files::{read, replaced, root};
 use crate::common::tools::{LIMIT, benched, ran, tool};
-use glint::tools::Simulator;
+use glint::tools::VerilogSimulator;
 use rayon::prelude::*;
 
 const PACKAGE: &str = "[package]\nmemories = \"inline\"\nlitex = true\n";
@@ -43,7 +43,7 @@ fn litex_builds_systems_that_compute() {
     .into_par_iter()
     .for_each(|(name, keys, face)| {
         let files = system(name, keys, face);
-        let outcome = benched(Simulator::Icarus, &files, "tb");
+        let outcome = benched(VerilogSimulator::Icarus, &files, "tb");
         assert!(outcome.passed, "{name}, {face}: {}", outcome.transcript);
         // Before it Icarus warns of the processor's memory, which the program does not fill.
         assert!(outcome.transcript.contains("PASS: 12 points"), "{}", outcome.transcript);
@@ -71,6 +71,6 @@ fn a_faulty_core_is_noticed_in_litex() {
     let datapath = files.iter_mut().find(|(name, _)| name.ends_with("_datapath.v"));
     let (_, text) = datapath.expect("a datapath");
     *text = replaced(text, "assign red_out = ", "assign red_out = 1 ^ ");
-    let outcome = benched(Simulator::Icarus, &files, "tb");
+    let outcome = benched(VerilogSimulator::Icarus, &files, "tb");
     assert!(!outcome.passed, "{}", outcome.transcript);
 }

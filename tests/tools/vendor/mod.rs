@@ -12,7 +12,7 @@ use crate::common::tools::{
     LIMIT, assert_bench_passes, assert_files_are_clean, benched, ran, tool, yosys,
 };
 use glint::core::Core;
-use glint::tools::Simulator;
+use glint::tools::VerilogSimulator;
 use rayon::prelude::*;
 
 /// Configurations with ROM contents in the Verilog that the test runs by default.
@@ -183,7 +183,7 @@ fn rom_contents_in_the_verilog_are_those_of_the_files() {
         let with_files = Emitted::new(&configuration_with(&path, ""), 300, 1);
         let mut bench = with_files.simulated();
         bench.retain(|(name, _)| with_files.rtl().iter().all(|(other, _)| other != name));
-        for simulator in [Simulator::Icarus, Simulator::Verilator] {
+        for simulator in [VerilogSimulator::Icarus, VerilogSimulator::Verilator] {
             let files: Vec<_> = rtl.iter().chain(&bench).cloned().collect();
             assert_bench_passes(simulator, &files, &with_files.bench());
         }
@@ -191,7 +191,7 @@ fn rom_contents_in_the_verilog_are_those_of_the_files() {
         // A wrong word is noticed.
         let wrong = wrong_word(&rtl);
         let files: Vec<_> = wrong.into_iter().chain(bench).collect();
-        let outcome = benched(Simulator::Icarus, &files, &with_files.bench());
+        let outcome = benched(VerilogSimulator::Icarus, &files, &with_files.bench());
         assert!(!outcome.passed, "{name}");
     });
 }

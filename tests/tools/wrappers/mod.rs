@@ -11,7 +11,7 @@ use crate::common::tools::{LIMIT, assert_bench_passes, assert_lint_clean, ran, t
 use crate::faults::{Fault, faults};
 use glint::core::Core;
 use glint::package::driver;
-use glint::tools::{Simulator, prove};
+use glint::tools::{VerilogSimulator, prove};
 use rayon::prelude::*;
 
 /// Bits of tuser in these tests.
@@ -135,7 +135,7 @@ fn shipped_benches_pass_on_padded_streams() {
     ["cosine_power", "quad_cosine", "cosine_power_pipelined"].par_iter().for_each(|name| {
         let core = configuration_between(&format!("configs/{name}.toml"), PADDED);
         let emitted = Emitted::new(&core, 200, 1);
-        for simulator in [Simulator::Icarus, Simulator::Verilator] {
+        for simulator in [VerilogSimulator::Icarus, VerilogSimulator::Verilator] {
             assert_bench_passes(simulator, &emitted.simulated(), &format!("{name}_axis_tb"));
         }
         let dir = emitted.tree();

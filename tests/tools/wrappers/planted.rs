@@ -9,8 +9,8 @@ use crate::common::Sure;
 use crate::common::cores::{Files, configuration_between, write};
 use crate::common::sample::sampled;
 use crate::common::tools::{LIMIT, tool, verilog_files};
-use glint::mutate::{Text, TextFault};
-use glint::tools::{Simulator, lint, prove, run_bench};
+use glint::mutate::{TextFault, VerilogText};
+use glint::tools::{VerilogSimulator, lint, prove, run_bench};
 use rayon::prelude::*;
 
 /// Faults of each configuration that are planted by default.
@@ -32,7 +32,7 @@ fn planted_faults_are_noticed() {
         ("quad_cosine", STREAM.to_owned()),
     ] {
         let core = configuration_between(&format!("configs/{name}.toml"), &keys);
-        let text = Text::of_wrappers(&core).sure_of(name);
+        let text = VerilogText::of_wrappers(&core).sure_of(name);
         let is_harmless = |fault: &TextFault| {
             HARMLESS.lines().any(|line| line.split(' ').next() == Some(fault.id.as_str()))
         };
@@ -64,7 +64,8 @@ fn is_noticed(name: &str, files: &Files) -> bool {
         told.map_or(true, |told| !told.is_empty())
     };
     let fails = |top: &String| {
-        let outcome = run_bench(Simulator::Icarus, &simulated, &format!("{top}_tb"), PATIENCE);
+        let outcome =
+            run_bench(VerilogSimulator::Icarus, &simulated, &format!("{top}_tb"), PATIENCE);
         !outcome.is_ok_and(|outcome| outcome.passed)
     };
     tops().any(warns)
@@ -93,13 +94,13 @@ fn benches_pass_without_a_fault() {
         ("quad_cosine", STREAM.to_owned()),
     ] {
         let core = configuration_between(&format!("configs/{name}.toml"), &keys);
-        let text = Text::of_wrappers(&core).sure_of(name);
+        let text = VerilogText::of_wrappers(&core).sure_of(name);
         let files: Files =
             text.files().iter().filter(|(file, _)| !file.ends_with(".sv")).cloned().collect();
         for top in ["_axis", "_axil", "_wb"] {
             let top = format!("{name}{top}_tb");
             if files.iter().any(|(file, _)| *file == format!("{top}.v")) {
-                for simulator in [Simulator::Icarus, Simulator::Verilator] {
+                for simulator in [VerilogSimulator::Icarus, VerilogSimulator::Verilator] {
                     crate::common::tools::assert_bench_passes(simulator, &files, &top);
                 }
             }

@@ -4,21 +4,21 @@ use anyhow::Result;
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::{Arguments, Entry};
-use crate::{Output, failure, say, tables};
+use super::{Arguments, ComparisonEntry};
+use crate::{OutputOptions, failure, say, tables};
 use glint_base::program::Program;
 use glint_base::target::FAMILIES;
 use glint_base::text;
 use glint_golden::contract;
 use glint_prove::synth::{Frequency, Rate, TARGETS, Target, tools};
-use glint_show::evidence::comparison::{ANGLES, ANGLES_PER_DEGREE, Accuracy, Multiplier};
+use glint_show::evidence::comparison::{ANGLES, ANGLES_PER_DEGREE, Accuracy, MultiplierSize};
 use glint_tools::synthesis::Usage;
 
 /// Prints everything in the form that was asked for.
 pub fn show(
-    output: Output,
+    output: OutputOptions,
     arguments: &Arguments,
-    entries: &[Entry],
+    entries: &[ComparisonEntry],
     notes: &[String],
     failures: &[String],
 ) -> Result<()> {
@@ -47,7 +47,7 @@ pub fn show(
 
 /// Returns a sentence about the operands at which the errors of a device are computed, if the device has more
 /// operands than the angle and n. Returns `None` for all other devices.
-fn at_rest(entry: &Entry) -> Option<String> {
+fn at_rest(entry: &ComparisonEntry) -> Option<String> {
     let contract = entry.core.contract.as_ref();
     let control = contract.operands().iter().filter(|operand| !operand.colour);
     let is_other = |name: &str| ![contract::COSINE, contract::EXPONENT].contains(&name);
@@ -79,7 +79,7 @@ fn errors(accuracy: &Accuracy) -> impl Iterator<Item = f64> {
     [whole, formula, operands, fixed_point].into_iter().flat_map(|it| [it.largest, it.mean])
 }
 
-fn print_errors(arguments: &Arguments, entries: &[Entry]) {
+fn print_errors(arguments: &Arguments, entries: &[ComparisonEntry]) {
     say!(
         "Errors of f against cos^n gamma for n = {}, over gamma = 0 to 90 degrees in steps of {}:",
         arguments.exponent,
@@ -106,7 +106,7 @@ fn print_errors(arguments: &Arguments, entries: &[Entry]) {
     tables::print_line("");
 }
 
-fn print_hardware(entries: &[Entry]) {
+fn print_hardware(entries: &[ComparisonEntry]) {
     let synthesised = entries.iter().any(|entry| !entry.usage.is_empty());
     let mut headings = "device | clocks a point: | ROM bits: | multipliers;1".to_owned();
     for family in FAMILIES.iter().filter(|_| synthesised) {
@@ -138,7 +138,7 @@ fn print_hardware(entries: &[Entry]) {
 }
 
 /// Returns the usage of all families, with `unknown` for a usage that is not known.
-fn taken(entry: &Entry, unknown: &str) -> Vec<String> {
+fn taken(entry: &ComparisonEntry, unknown: &str) -> Vec<String> {
     let of = |at: usize| entry.usage.get(at).and_then(|usage| usage.as_ref().ok());
     let families = (0..FAMILIES.len()).flat_map(|at| match of(at) {
         Some(usage) => numbers(usage).map(|(_, number)| number.to_string()),
@@ -148,14 +148,14 @@ fn taken(entry: &Entry, unknown: &str) -> Vec<String> {
 }
 
 /// Returns the targets for which a frequency was measured, with the core's rate there.
-fn speeds(entry: &Entry) -> impl Iterator<Item = (Target, Frequency, Rate)> {
+fn speeds(entry: &ComparisonEntry) -> impl Iterator<Item = (Target, Frequency, Rate)> {
     let figures = entry.record.iter().flat_map(|record| &record.targets);
     figures.filter_map(|it| {
         Some((it.target, it.frequency?, Rate::new(it, entry.figures.clocks_per_point)?))
     })
 }
 
-fn print_speed(entries: &[Entry]) {
+fn print_speed(entries: &[ComparisonEntry]) {
     if entries.iter().all(|entry| entry.record.is_none()) {
         return;
     }
@@ -194,7 +194,7 @@ fn clocks(clocks: f64) -> String {
 }
 
 /// Writes the sizes of multipliers, as `21x10, 3 of 10x8`.
-fn sizes(multipliers: &[Multiplier]) -> String {
+fn sizes(multipliers: &[MultiplierSize]) -> String {
     let alike = multipliers.chunk_by(|a, b| a == b);
     let texts: Vec<String> = alike
         .map(|alike| match alike {
@@ -211,7 +211,7 @@ fn numbers(usage: &Usage) -> [(&'static str, u64); 3] {
 }
 
 /// Returns the heading, then a row for each entry. A value that is not known is empty.
-fn as_csv(arguments: &Arguments, entries: &[Entry]) -> Vec<Vec<String>> {
+fn as_csv(arguments: &Arguments, entries: &[ComparisonEntry]) -> Vec<Vec<String>> {
     let synthesised = entries.iter().any(|entry| !entry.usage.is_empty());
     let mut heading: Vec<String> = ["name", "device", "exponent"].map(str::to_owned).to_vec();
     for name in ["error", "formula", "operands", "fixed_point"] {
@@ -231,7 +231,7 @@ fn as_csv(arguments: &Arguments, entries: &[Entry]) -> Vec<Vec<String>> {
             heading.extend(["mhz", "million_points_per_second"].map(|it| format!("{target}_{it}")));
         }
     }
-    let row = |entry: &Entry| {
+    let row = |entry: &ComparisonEntry| {
         let mut row = vec![
             entry.label.clone(),
             entry.core.device.name.to_owned(),
@@ -273,7 +273,12 @@ struct Speed {
     rate: Rate,
 }
 
-fn as_json(arguments: &Arguments, entries: &[Entry], notes: &[String], failed: &[String]) -> Value {
+fn as_json(
+    arguments: &Arguments,
+    entries: &[ComparisonEntry],
+    notes: &[String],
+    failed: &[String],
+) -> Value {
     let entries: Vec<Value> = entries.iter().map(entry_json).collect();
     let problems: Vec<Value> = failed.iter().map(|failure| failure::problem(failure)).collect();
     json!({
@@ -286,7 +291,7 @@ fn as_json(arguments: &Arguments, entries: &[Entry], notes: &[String], failed: &
     })
 }
 
-fn entry_json(entry: &Entry) -> Value {
+fn entry_json(entry: &ComparisonEntry) -> Value {
     let core = &entry.core;
     let schema = (core.device.schema)();
     let multipliers = entry.figures.multipliers.iter();

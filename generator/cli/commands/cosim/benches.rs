@@ -8,10 +8,10 @@ use super::Arguments;
 use crate::commands::Loaded;
 use crate::commands::mismatch::{first_clock, waveform_of};
 use crate::failure;
-use crate::{Output, destination, progress, say, tables, wrong_usage};
+use crate::{OutputOptions, destination, progress, say, tables, wrong_usage};
 use glint_base::program::Program;
 use glint_core::package;
-use glint_tools::{BenchDifference, BenchOutcome, Simulator, bench_waveform, run_bench};
+use glint_tools::{BenchDifference, BenchOutcome, VerilogSimulator, bench_waveform, run_bench};
 
 /// Points when an external simulator runs.
 const POINTS: u64 = 200;
@@ -20,14 +20,14 @@ const POINTS: u64 = 200;
 const MOST_POINTS: u64 = 1_000_000;
 
 /// The outcome of a bench.
-struct Run {
+struct BenchRun {
     clocks: usize,
     outcome: BenchOutcome,
-    mismatch: Option<Mismatch>,
+    mismatch: Option<BenchMismatch>,
 }
 
 /// The first difference of a bench, with the means to see it again.
-struct Mismatch {
+struct BenchMismatch {
     difference: BenchDifference,
     /// The waveform, if it could be written.
     vcd: Option<String>,
@@ -41,10 +41,10 @@ struct Mismatch {
 /// # Errors
 /// Fails for wrong usage, or if the simulator is missing, refuses a bench, or does not end in time.
 pub fn benches(
-    output: Output,
+    output: OutputOptions,
     loaded: &[Loaded],
     arguments: &Arguments,
-    which: Simulator,
+    which: VerilogSimulator,
 ) -> Result<bool> {
     if arguments.vcd.is_some() {
         wrong_usage!("--vcd is for the built-in simulator");
@@ -54,7 +54,7 @@ pub fn benches(
         wrong_usage!("--points {points}: an external simulator takes at most {MOST_POINTS}");
     }
     let bar = progress::bar(output, loaded.len() as u64, "benches run");
-    let runs: Vec<Run> = loaded
+    let runs: Vec<BenchRun> = loaded
         .par_iter()
         .map(|one| {
             let run = bench(one, which, points, arguments);
@@ -75,7 +75,12 @@ pub fn benches(
 }
 
 /// Runs the emitted bench in an external simulator. Golden model and built-in simulator agree on the expected values.
-fn bench(one: &Loaded, which: Simulator, points: u64, arguments: &Arguments) -> Result<Run> {
+fn bench(
+    one: &Loaded,
+    which: VerilogSimulator,
+    points: u64,
+    arguments: &Arguments,
+) -> Result<BenchRun> {
     let vectors = one.core.vectors(points, arguments.seed)?;
     let clocks = vectors.inputs.len();
     let files = package::sources(one.files(vectors)?);
@@ -91,7 +96,7 @@ fn bench(one: &Loaded, which: Simulator, points: u64, arguments: &Arguments) -> 
             // The difference is worth more than its waveform.
             failure::warn(&format!("{}: no waveform: {error:#}", one.path));
         }
-        Mismatch {
+        BenchMismatch {
             difference,
             vcd: written.is_ok().then(|| path.display().to_string()),
             from,
@@ -103,7 +108,7 @@ fn bench(one: &Loaded, which: Simulator, points: u64, arguments: &Arguments) -> 
             ),
         }
     });
-    Ok(Run { clocks, outcome, mismatch })
+    Ok(BenchRun { clocks, outcome, mismatch })
 }
 
 /// Returns the simulator as the command line names it.
@@ -111,7 +116,7 @@ fn name(arguments: &Arguments) -> String {
     format!("{:?}", arguments.simulator).to_lowercase()
 }
 
-fn print(one: &Loaded, run: &Run, points: u64, seed: u64, which: Simulator) {
+fn print(one: &Loaded, run: &BenchRun, points: u64, seed: u64, which: VerilogSimulator) {
     let passed = run.outcome.passed;
     let verdict = if passed { "holds" } else { "FAILS" };
     say!("{}: {points} points, {} clocks: {verdict}", one.path, run.clocks);
@@ -132,7 +137,7 @@ fn print(one: &Loaded, run: &Run, points: u64, seed: u64, which: Simulator) {
     say!("  {window}again: {}", mismatch.command);
 }
 
-fn as_json(one: &Loaded, run: &Run, points: u64, arguments: &Arguments) -> Value {
+fn as_json(one: &Loaded, run: &BenchRun, points: u64, arguments: &Arguments) -> Value {
     let mismatch = run.mismatch.as_ref().map(|mismatch| {
         let difference = &mismatch.difference;
         json!({

@@ -12,7 +12,7 @@ use indicatif::HumanDuration;
 use super::Arguments;
 use crate::commands::load;
 use crate::interrupt::Deferred;
-use crate::{Output, destination, progress, say, wrong_usage};
+use crate::{OutputOptions, destination, progress, say, wrong_usage};
 use glint_base::{input, text};
 use glint_core::cosim::exhaustive::{Job, Shard, State, kept};
 use glint_core::registry::Registry;
@@ -29,7 +29,7 @@ const CORES: [u32; 3] = [1, 16, 1000];
 
 /// Runs `glint cosim --exhaustive`: the factored proof of the accuracy contract. It also runs every combination of
 /// operands clock by clock, if they are not too many.
-pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     if arguments.resume.is_some() && loaded.len() != 1 {
         wrong_usage!("--resume is for one configuration; here are {}", loaded.len());
@@ -73,7 +73,12 @@ pub fn read(path: &Path) -> Result<Option<State>> {
 }
 
 /// Goes on to the end of the shard, keeping the state in `file`.
-fn prove(output: Output, job: &Job<'_>, state: &mut State, file: Option<&Path>) -> Result<()> {
+fn prove(
+    output: OutputOptions,
+    job: &Job<'_>,
+    state: &mut State,
+    file: Option<&Path>,
+) -> Result<()> {
     let save = |state: &State| -> Result<()> {
         match file {
             Some(path) => destination::replace(path, kept::to_text(state)?.as_bytes()),

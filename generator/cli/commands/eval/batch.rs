@@ -9,12 +9,12 @@ use serde_json::{Map, Value, json};
 use super::operands;
 use crate::commands::setup::REAL;
 use crate::commands::{Loaded, rows};
-use crate::{Output, failure, tables};
+use crate::{OutputOptions, failure, tables};
 use glint_golden::Contract;
 
 /// The result of a point. Its room is used again for the next.
 #[derive(Default)]
-struct Row {
+struct PointResult {
     operands: Vec<i64>,
     /// Its number in the line, of a device that walks lines.
     point: Option<u64>,
@@ -27,12 +27,17 @@ struct Row {
 
 /// Computes every row of a CSV file with the golden model's arithmetic and in f64. For a line, it computes every
 /// point. `given` holds for all rows.
-pub fn batch(output: Output, one: &Loaded, given: &[Option<i64>], path: &Path) -> Result<bool> {
+pub fn batch(
+    output: OutputOptions,
+    one: &Loaded,
+    given: &[Option<i64>],
+    path: &Path,
+) -> Result<bool> {
     let contract = one.core.contract.as_ref();
     let (mut text, mut json) = (headings(contract), Vec::new());
-    let mut row = Row::default();
+    let mut row = PointResult::default();
     let mut missing = Vec::new();
-    let mut shown = |row: &Row| match output.json {
+    let mut shown = |row: &PointResult| match output.json {
         true => json.push(as_json(contract, row)),
         false => append(contract, row, &mut text),
     };
@@ -103,8 +108,8 @@ fn points(
     given: &[Option<i64>],
     columns: &[Option<usize>],
     record: &csv::StringRecord,
-    row: &mut Row,
-    shown: &mut impl FnMut(&Row),
+    row: &mut PointResult,
+    shown: &mut impl FnMut(&PointResult),
 ) -> Result<(), String> {
     let known = contract.operands();
     let mut given = given.to_vec();
@@ -161,7 +166,7 @@ fn headings(contract: &dyn Contract) -> String {
 }
 
 /// Appends a row of numbers as CSV. No number needs a quote.
-fn append(contract: &dyn Contract, row: &Row, text: &mut String) {
+fn append(contract: &dyn Contract, row: &PointResult, text: &mut String) {
     for (operand, &raw) in contract.operands().iter().zip(&row.operands) {
         decimal(operand.format.to_f64(raw.into()), text);
     }
@@ -192,7 +197,7 @@ fn decimal(value: f64, text: &mut String) {
     write!(text, "{value},").expect("a text takes all that is written");
 }
 
-fn as_json(contract: &dyn Contract, row: &Row) -> Value {
+fn as_json(contract: &dyn Contract, row: &PointResult) -> Value {
     let operands = contract.operands().iter().zip(&row.operands);
     let operands: Map<String, Value> =
         operands.map(|(operand, raw)| (operand.name.clone(), json!(raw))).collect();

@@ -18,7 +18,7 @@ const FOLDER: &str = ".glint";
 pub struct Cache(PathBuf);
 
 #[derive(Serialize, Deserialize)]
-struct Entry {
+struct CacheEntry {
     glint: String,
     digest: String,
     figures: Figures,
@@ -38,13 +38,13 @@ impl Cache {
     /// Returns the figures of a measurement with this digest.
     pub fn find(&self, core: &Core, target: Target, digest: &str) -> Option<Figures> {
         let text = fs::read_to_string(self.file(core, target)).ok()?;
-        let entry: Entry = serde_json::from_str(&text).ok()?;
+        let entry: CacheEntry = serde_json::from_str(&text).ok()?;
         (entry.digest == digest).then_some(entry.figures)
     }
 
     /// Keeps figures, if the folder can be written: a cache that cannot be kept is no error.
     pub fn keep(&self, core: &Core, digest: &str, figures: &Figures) {
-        let entry = Entry {
+        let entry = CacheEntry {
             glint: env!("CARGO_PKG_VERSION").to_owned(),
             digest: digest.to_owned(),
             figures: figures.clone(),

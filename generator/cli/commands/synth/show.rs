@@ -3,7 +3,7 @@
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::{Measured, Recorded};
+use super::{FigureRecord, Measurement};
 use crate::say;
 use crate::tables;
 use glint_prove::synth::{Figures, Rate, tools};
@@ -11,7 +11,7 @@ use glint_prove::synth::{Figures, Rate, tools};
 /// The cell without a figure.
 const NONE: &str = "–";
 
-pub fn print(measured: &[Measured], notes: &[String]) {
+pub fn print(measured: &[Measurement], notes: &[String]) {
     let rows =
         measured.iter().flat_map(|one| one.figures.iter().map(move |figures| row(one, figures)));
     tables::print(
@@ -48,7 +48,7 @@ pub fn in_a_line(figures: &Figures) -> String {
     format!("{}: {}", figures.target.title(), parts.join(", "))
 }
 
-fn row(one: &Measured, figures: &Figures) -> Vec<String> {
+fn row(one: &Measurement, figures: &Figures) -> Vec<String> {
     let (area, frequency) = (&figures.area, figures.frequency);
     let known = |text: Option<String>| text.unwrap_or_else(|| NONE.to_owned());
     let count = |number: Option<u64>| known(number.map(|it| it.to_string()));
@@ -80,12 +80,12 @@ fn row(one: &Measured, figures: &Figures) -> Vec<String> {
 #[derive(Serialize)]
 struct Told<'a> {
     #[serde(flatten)]
-    recorded: Recorded<'a>,
+    recorded: FigureRecord<'a>,
     #[serde(flatten)]
     rate: Option<Rate>,
 }
 
-pub fn as_json(measured: &[Measured], notes: &[String]) {
+pub fn as_json(measured: &[Measurement], notes: &[String]) {
     let all = measured.iter().map(|one| {
         let targets = one.figures.iter().map(|figures| {
             json!(Told { recorded: one.recorded(figures), rate: one.rate(figures) })

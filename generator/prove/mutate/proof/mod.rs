@@ -14,7 +14,7 @@ mod step;
 mod window;
 
 use pairs::Pairs;
-use step::{Order, State, count, following};
+use step::{Order, PairState, count, following};
 use window::Windows;
 
 use super::fault::Site;
@@ -59,7 +59,7 @@ impl<'a> Prover<'a> {
         let order = Order::of(design)?;
         let following: Vec<_> = (0..length).map(|at| following(design, at)).collect();
         // At power-up everything that is held is 0, in microinstruction 0.
-        let mut held: Vec<Option<State>> = vec![None; length];
+        let mut held: Vec<Option<PairState>> = vec![None; length];
         held[0] = Some(order.held().map(|net| Pairs::constant(0, design.width(net))).collect());
         let mut todo = vec![0];
         while let Some(at) = todo.pop() {
@@ -104,10 +104,10 @@ impl<'a> Prover<'a> {
             }
             _ => {}
         }
-        let held = |nets: &Vec<Pairs>| -> State {
+        let held = |nets: &Vec<Pairs>| -> PairState {
             self.order.held().map(|net| nets[net.index()]).collect()
         };
-        let mut states: Vec<State> = self.nets.iter().map(held).collect();
+        let mut states: Vec<PairState> = self.nets.iter().map(held).collect();
         let mut todo: Vec<usize> = (0..states.len()).collect();
         while let Some(at) = todo.pop() {
             let fault = Some((site, &self.nets[at][..]));
@@ -137,6 +137,6 @@ impl<'a> Prover<'a> {
 }
 
 /// Joins two states: each bit may be as in either.
-fn join(one: &State, other: &State) -> State {
+fn join(one: &PairState, other: &PairState) -> PairState {
     one.iter().zip(other).map(|(one, other)| one.or(*other)).collect()
 }

@@ -2,7 +2,7 @@
 
 use std::array::from_fn;
 
-use crate::mutate::fault::Bit;
+use crate::mutate::fault::BitChange;
 use glint_base::fixed::mask;
 use glint_base::interval::Interval;
 use glint_rtl::netlist::{Design, Driver, NetId, Op};
@@ -61,7 +61,7 @@ impl Pairs {
     }
 
     /// Puts a bit of the mutant at fault.
-    pub(super) fn at_fault(self, bit: u32, how: Bit) -> Self {
+    pub(super) fn at_fault(self, bit: u32, how: BitChange) -> Self {
         let of_bit = self.cut(0, 1 << bit).0;
         let mut pairs = self.cut(0, !(1 << bit)).0;
         for (pair, bits) in of_bit.into_iter().enumerate() {

@@ -8,7 +8,7 @@ use glint_base::interval::Interval;
 use glint_rtl::netlist::{Design, Driver, NetId, Op, RegId, RomId};
 
 /// The contents of registers and synchronous ROMs between two clocks.
-pub(super) type State = Vec<Pairs>;
+pub(super) type PairState = Vec<Pairs>;
 
 /// A design as it is evaluated.
 pub(super) struct Order<'a> {
@@ -59,14 +59,19 @@ impl<'a> Order<'a> {
         Some(Self { design, same: same(design, &order), order, counter, in_all_slots, words })
     }
 
-    /// Returns the nets of a [`State`]: first the nets of the registers, then the nets of the ROMs.
+    /// Returns the nets of a [`PairState`]: first the nets of the registers, then the nets of the ROMs.
     pub(super) fn held(&self) -> impl Iterator<Item = NetId> {
         let registers = self.design.registers.iter().map(|register| register.q);
         registers.chain(self.design.roms.iter().map(|rom| rom.data))
     }
 
     /// Returns the pairs of all nets in a microinstruction, for the fault-free design or for the mutant beside it.
-    pub(super) fn settle(&self, at: usize, state: &State, fault: Option<Injected>) -> Vec<Pairs> {
+    pub(super) fn settle(
+        &self,
+        at: usize,
+        state: &PairState,
+        fault: Option<Injected>,
+    ) -> Vec<Pairs> {
         let design = self.design;
         let mut nets = vec![Pairs::constant(0, 0); design.nets.len()];
         let mut intervals = vec![(0, 0); design.nets.len()];
@@ -182,7 +187,7 @@ impl<'a> Order<'a> {
     }
 
     /// Returns the state after the clock.
-    pub(super) fn next(&self, nets: &[Pairs], fault: Option<Injected>) -> State {
+    pub(super) fn next(&self, nets: &[Pairs], fault: Option<Injected>) -> PairState {
         let design = self.design;
         let of = |net: NetId| nets[net.index()];
         let one = Pairs::constant(1, 1);

@@ -21,10 +21,10 @@ use glint_rtl::netlist::{Design, Driver, NetId, Op, RomId, eval};
 const LANES: usize = 128;
 
 /// A net in all lanes.
-type Lanes = [u64; LANES];
+type NetLanes = [u64; LANES];
 
 /// The lanes of nets, by their numbers; for a mutant, only its own nets have lanes.
-type Values = Vec<Option<Box<Lanes>>>;
+type LanesByNet = Vec<Option<Box<NetLanes>>>;
 
 /// The most combinations that are tried, as a power of two.
 const BITS: u32 = 22;
@@ -206,7 +206,7 @@ impl<'a> Windows<'a> {
         wanted: &BTreeSet<NetId>,
         affected: &BTreeSet<NetId>,
         fault: Option<(NetId, &Site)>,
-        holds: impl Fn(&Values, &Values, usize) -> bool + Sync,
+        holds: impl Fn(&LanesByNet, &LanesByNet, usize) -> bool + Sync,
     ) -> Option<bool> {
         // The words at fault are all that the net brings that matters.
         let words = match fault {
@@ -295,9 +295,9 @@ impl<'a> Windows<'a> {
         &self,
         net: NetId,
         driver: &Driver,
-        sound: &Values,
-        mutant: Option<&Values>,
-    ) -> Lanes {
+        sound: &LanesByNet,
+        mutant: Option<&LanesByNet>,
+    ) -> NetLanes {
         let of = |net: NetId| of(sound, mutant, net);
         match driver {
             Driver::Constant(bits) => [*bits; LANES],
@@ -312,7 +312,7 @@ impl<'a> Windows<'a> {
 }
 
 /// Keeps the lanes of a net.
-fn put(values: &mut Values, net: NetId, lanes: Lanes) {
+fn put(values: &mut LanesByNet, net: NetId, lanes: NetLanes) {
     match &mut values[net.index()] {
         Some(held) => **held = lanes,
         empty => *empty = Some(Box::new(lanes)),
@@ -320,7 +320,7 @@ fn put(values: &mut Values, net: NetId, lanes: Lanes) {
 }
 
 /// Returns the lanes of a net: the mutant's own lanes if it has them, else the lanes of the fault-free design.
-fn of<'v>(sound: &'v Values, mutant: Option<&'v Values>, net: NetId) -> &'v Lanes {
+fn of<'v>(sound: &'v LanesByNet, mutant: Option<&'v LanesByNet>, net: NetId) -> &'v NetLanes {
     let own = mutant.and_then(|mutant| mutant[net.index()].as_deref());
     own.or(sound[net.index()].as_deref()).expect("a net stands behind its operands")
 }

@@ -16,7 +16,7 @@ use glint_core::package::{LineClocks, Linear, Quantity, Surroundings, Timing, Wo
 use glint_golden::{Bound, Contract, Values};
 use glint_rtl::netlist::{Design, Pipeline};
 use glint_rtl::verilog::naming::Naming;
-pub use table::{Align, Column, Table, code};
+pub use table::{Align, Column, TextTable, code};
 
 /// The heading of the column with the source's numbers.
 const NUMBER: &str = "no.";
@@ -132,8 +132,9 @@ fn number(number: Option<u16>) -> String {
 }
 
 /// Returns the ports; a strobe is in the row of its operand.
-pub fn ports(design: &Design) -> Table {
-    let mut table = Table::of("port | no.: | direction | role | format | written by | what it is");
+pub fn ports(design: &Design) -> TextTable {
+    let mut table =
+        TextTable::of("port | no.: | direction | role | format | written by | what it is");
     let ports = facts::ports(design);
     // A strobe is in the row of its operand.
     for port in ports.iter().filter(|port| port.role != "strobe") {
@@ -165,9 +166,9 @@ pub fn ports(design: &Design) -> Table {
 }
 
 /// Returns the ROMs, including the ROM of the microprogram.
-pub fn roms(design: &Design, config: &Config) -> Table {
+pub fn roms(design: &Design, config: &Config) -> TextTable {
     let naming = Naming::new(design).styled(Surroundings::new(config, None).style);
-    let mut table = Table::of("ROM | no.: | words × bits: | bits: | reads | file | an entry");
+    let mut table = TextTable::of("ROM | no.: | words × bits: | bits: | reads | file | an entry");
     for rom in facts::roms(design, &naming) {
         let reads = if rom.synchronous { "on the clock" } else { "at once" };
         table.row([
@@ -190,8 +191,8 @@ fn lines(lines: &[u16]) -> String {
 }
 
 /// Returns the fields of the control word.
-pub fn fields(design: &Design) -> Table {
-    let mut table = Table::of("field | lines | bits | controls");
+pub fn fields(design: &Design) -> TextTable {
+    let mut table = TextTable::of("field | lines | bits | controls");
     for field in facts::fields(design) {
         let width = field.width as usize;
         let controls = match field.kind {
@@ -216,14 +217,14 @@ pub fn fields(design: &Design) -> Table {
 }
 
 /// Returns the microprogram as the patents print theirs: a row for each microinstruction, a column for each line.
-pub fn microprogram(design: &Design) -> Table {
+pub fn microprogram(design: &Design) -> TextTable {
     let fields = facts::fields(design);
     let heading = |field: &facts::Field| match field.lines {
         [] => code(field.name),
         numbers => lines(numbers),
     };
     let headings: String = fields.iter().map(|field| heading(field) + " | ").collect();
-    let mut table = Table::of(&format!("address: | {headings}what it does | then"));
+    let mut table = TextTable::of(&format!("address: | {headings}what it does | then"));
     for microinstruction in facts::microprogram(design) {
         let mut cells = vec![microinstruction.address.to_string()];
         for (field, (_, value)) in fields.iter().zip(&microinstruction.fields) {
@@ -248,8 +249,8 @@ pub fn microprogram(design: &Design) -> Table {
 }
 
 /// Tabulates in which clock after `start` each event of the handshake is.
-pub fn clocks(timing: &Timing, line: Option<&LineClocks>) -> Table {
-    let mut table = Table::of("event | clock:");
+pub fn clocks(timing: &Timing, line: Option<&LineClocks>) -> TextTable {
+    let mut table = TextTable::of("event | clock:");
     let mut row = |event: &str, clock: Option<u32>, of_line: Option<Linear>| {
         let formula = || line.zip(of_line).map(|(line, clocks)| clocks.text(&code(&line.length)));
         let clock = clock.map(|clock| clock.to_string()).or_else(formula);
@@ -278,8 +279,8 @@ pub fn handshake(pipeline: &Pipeline) -> &'static str {
 }
 
 /// Tabulates how many clocks after a pipeline takes a point each event is.
-pub fn pipeline_clocks(pipeline: &Pipeline) -> Table {
-    let mut table = Table::of("event | clock:");
+pub fn pipeline_clocks(pipeline: &Pipeline) -> TextTable {
+    let mut table = TextTable::of("event | clock:");
     table.row(["the next point is taken".to_owned(), "1".to_owned()]);
     let latency = pipeline.stages.len().to_string();
     table.row(["the results are on the outputs".to_owned(), latency]);
@@ -287,8 +288,8 @@ pub fn pipeline_clocks(pipeline: &Pipeline) -> Table {
 }
 
 /// Returns the terms of a bound.
-pub fn terms(bound: &Bound) -> Table {
-    let mut table = Table::of("key | units: | what rounds or approximates");
+pub fn terms(bound: &Bound) -> TextTable {
+    let mut table = TextTable::of("key | units: | what rounds or approximates");
     for term in &bound.terms {
         table.row([code(term.key), rounded_up(term.units, 3), term.what.to_owned()]);
     }
@@ -296,8 +297,8 @@ pub fn terms(bound: &Bound) -> Table {
 }
 
 /// Returns the operands, and for which values of them the contract is stated.
-pub fn domain(design: &Design, contract: &dyn Contract) -> Table {
-    let mut table = Table::of("operand | format | from: | to: | what it is");
+pub fn domain(design: &Design, contract: &dyn Contract) -> TextTable {
+    let mut table = TextTable::of("operand | format | from: | to: | what it is");
     for operand in contract.operands() {
         let value = |raw: i64| short(operand.format.to_f64(i128::from(raw)));
         table.row([
@@ -316,8 +317,8 @@ pub fn domain(design: &Design, contract: &dyn Contract) -> Table {
 }
 
 /// Returns the worked example beside the formula.
-pub fn example(contract: &dyn Contract, example: &WorkedExample) -> Table {
-    let mut table = Table::of("port | integer: | value: | formula in f64:");
+pub fn example(contract: &dyn Contract, example: &WorkedExample) -> TextTable {
+    let mut table = TextTable::of("port | integer: | value: | formula in f64:");
     let mut row = |quantity: &Quantity, formula: String, of: String| {
         let name = code(&quantity.name) + &of;
         table.row([name, quantity.raw.to_string(), short(quantity.value), formula]);
@@ -342,8 +343,8 @@ pub fn example(contract: &dyn Contract, example: &WorkedExample) -> Table {
 }
 
 /// Returns the keys of the device, and the keys that every device shares if they are not at their defaults.
-pub fn keys(schema: &Schema, config: &Config) -> Table {
-    let mut table = Table::of("key | value | accepts | what it governs");
+pub fn keys(schema: &Schema, config: &Config) -> TextTable {
+    let mut table = TextTable::of("key | value | accepts | what it governs");
     let changed = |key: &&Key| *config.value(key.name) != key.default;
     for key in schema.keys.iter().chain(shared_keys().iter().filter(changed)) {
         let [now, default] = [config.value(key.name), &key.default].map(|it| shortened(it.toml()));

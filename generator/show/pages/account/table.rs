@@ -20,14 +20,14 @@ pub struct Column {
 
 /// A table; its cells are plain text with names in backquotes.
 #[derive(Clone, Debug)]
-pub struct Table {
+pub struct TextTable {
     /// From the left.
     pub columns: Vec<Column>,
     /// From the top, with a cell for each column.
     pub rows: Vec<Vec<String>>,
 }
 
-impl Table {
+impl TextTable {
     /// Makes a table with these headings, which bars part, yet without rows; the cells below a heading with a colon behind it
     /// are numbers.
     pub fn of(headings: &str) -> Self {
@@ -73,7 +73,7 @@ mod tests {
 
     #[test]
     fn an_empty_column_goes() {
-        let mut table = Table::of("no.: | name");
+        let mut table = TextTable::of("no.: | name");
         table.row([String::new(), code("a")]);
         let table = table.without_empty("no.");
         assert_eq!(table.columns.len(), 1);

@@ -1,8 +1,8 @@
 //! Tabulates the record of `glint synth` for the datasheet: area, frequency, rate and critical path on each target.
 
 use super::table::TableView;
-use crate::figures::{Figures, Frequency, Rate, Record};
-use crate::pages::account::Table;
+use crate::figures::{Figures, Frequency, Rate, SynthesisRecord};
+use crate::pages::account::TextTable;
 
 /// The cell of a target without such a thing, or without a measurement.
 const NONE: &str = "–";
@@ -19,10 +19,10 @@ pub struct RecordView {
 
 impl RecordView {
     /// Makes the tables of a record. The first row is that of `target`, if there is one.
-    pub fn new(record: &Record, target: Option<&str>) -> Self {
+    pub fn new(record: &SynthesisRecord, target: Option<&str>) -> Self {
         let mut measured: Vec<&Figures> = record.targets.iter().collect();
         measured.sort_by_key(|figures| Some(figures.target.name()) != target);
-        let mut table = Table::of(
+        let mut table = TextTable::of(
             "target | LUT: | DSP: | RAM: | FF: | gates: | MHz: | M points/s: | k/s per LUT: | M/s per DSP:",
         );
         table.rows = measured.iter().map(|it| row(it, record.clocks_per_point)).collect();
@@ -41,7 +41,7 @@ impl RecordView {
 /// Returns the frequency and the rate on an FPGA, for a reader in a hurry: on `target` if it was measured, and else on the FPGA
 /// with the most points a second.
 pub fn leading<'r>(
-    record: &'r Record,
+    record: &'r SynthesisRecord,
     target: Option<&str>,
 ) -> Option<(&'r Figures, Frequency, Rate)> {
     let on_fpgas = record.targets.iter().filter(|it| it.area.luts.is_some());

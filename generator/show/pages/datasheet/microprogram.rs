@@ -11,7 +11,7 @@ pub struct Microprogram {
     /// The fields of the control word, from the top bits.
     pub fields: Vec<FieldView>,
     /// The microinstructions, from address 0.
-    pub rows: Vec<Row>,
+    pub rows: Vec<MicroinstructionRow>,
 }
 
 /// A field.
@@ -23,7 +23,7 @@ pub struct FieldView {
 }
 
 /// A microinstruction.
-pub struct Row {
+pub struct MicroinstructionRow {
     /// Its number.
     pub address: usize,
     /// The name of the operation.
@@ -58,7 +58,7 @@ impl Microprogram {
             numbered,
             fields: fields.collect(),
             rows: microprogram
-                .map(|(address, (it, then))| Row {
+                .map(|(address, (it, then))| MicroinstructionRow {
                     address,
                     name: it.name.clone(),
                     bits: bits(design, &it.values),

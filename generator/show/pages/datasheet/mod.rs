@@ -42,7 +42,7 @@ pub struct Subject<'a> {
     /// The record of the core's exhaustive check, if there is one.
     pub proof: Option<Record>,
     /// The measurements of `glint synth`, if there is a record.
-    pub figures: Option<figures::Record>,
+    pub figures: Option<figures::SynthesisRecord>,
     /// The tool that synthesises the core if there is no record. Without the tool, the page says how to synthesise
     /// it.
     pub synthesis: Option<&'a dyn Synthesis>,
@@ -57,7 +57,7 @@ pub struct Datasheet {
 }
 
 /// The results of a page that take work.
-struct Measured {
+struct DatasheetResults {
     timing: Timing,
     example: WorkedExample,
     line: Option<LineClocks>,
@@ -66,12 +66,12 @@ struct Measured {
     /// The charts of a function of one operand over its domain.
     over_domain: Vec<Chart>,
     /// None of a device that a picture has not the operands for.
-    highlight: Option<Highlight>,
+    highlight: Option<HighlightPicture>,
     synthesis: Option<(String, Vec<FamilyUsage>)>,
 }
 
 /// A picture through the golden model, beside Blinn's in f64 and their difference.
-struct Highlight {
+struct HighlightPicture {
     /// Through the device, beside Blinn's function, and the difference.
     png: Vec<u8>,
     /// Through the device alone.
@@ -110,7 +110,7 @@ pub fn datasheet(subject: &Subject, done: &(dyn Fn() + Sync)) -> Result<Datashee
     };
     let (synthesis, pictures) = rayon::join(synthesis, pictures);
     let (highlight, curves) = pictures?;
-    let measured = Measured {
+    let measured = DatasheetResults {
         timing: core.timing()?,
         example: core.example()?,
         line: core.line()?,
@@ -133,7 +133,7 @@ pub fn timing_diagram(core: &Core) -> Result<(String, String)> {
 }
 
 /// Returns a ball in the light that pictures have by default.
-fn highlight(core: &Core) -> Result<Highlight> {
+fn highlight(core: &Core) -> Result<HighlightPicture> {
     let contract = core.contract.as_ref();
     let exponent = render::usual_exponent(contract);
     let settings = Settings {
@@ -153,7 +153,7 @@ fn highlight(core: &Core) -> Result<Highlight> {
     let mut engine = Golden(core.contract.as_ref());
     let rendered = render::render(core, &mut engine, &scene, &settings, &mut |_| ())?;
     let difference = rendered.comparison.as_ref().map(|comparison| &comparison.difference);
-    Ok(Highlight {
+    Ok(HighlightPicture {
         png: rendered.whole(core.device.name).png()?,
         ball: rendered.picture.png()?,
         exponent,

@@ -9,10 +9,10 @@ use glint_base::template::Template;
 use super::measured::{self, RecordView};
 use super::microprogram::Microprogram;
 use super::table::TableView;
-use super::{Measured, Subject, timing};
+use super::{DatasheetResults, Subject, timing};
 use crate::evidence::advice;
 use crate::evidence::chart::Chart;
-use crate::evidence::comparison::{self, Multiplier};
+use crate::evidence::comparison::{self, MultiplierSize};
 use crate::evidence::hardware::FamilyUsage;
 use crate::pages::account::{self, PageInputs, blocks, short};
 use crate::pages::diagram;
@@ -40,7 +40,7 @@ struct Page<'a> {
     ports: TableView,
     domain: TableView,
     example: TableView,
-    program: Program,
+    program: ControlSection,
     roms: Option<TableView>,
     clocks: TableView,
     throughput: String,
@@ -64,7 +64,7 @@ struct Page<'a> {
 }
 
 /// The control of a computation.
-enum Program {
+enum ControlSection {
     Microprogram {
         microprogram: Microprogram,
         fields: TableView,
@@ -78,7 +78,7 @@ enum Program {
     },
 }
 
-impl Program {
+impl ControlSection {
     fn new(design: &Design) -> Self {
         match &design.pipeline {
             None => Self::Microprogram {
@@ -118,7 +118,7 @@ struct HighlightView {
 ///
 /// # Errors
 /// Fails if a chart cannot be plotted, or if a template cannot be printed.
-pub fn page(subject: &Subject, measured: &Measured) -> Result<String> {
+pub fn page(subject: &Subject, measured: &DatasheetResults) -> Result<String> {
     let core = subject.core;
     let path = &input::label(subject.path);
     let design = &core.design;
@@ -154,7 +154,7 @@ pub fn page(subject: &Subject, measured: &Measured) -> Result<String> {
         ports: TableView::new("Ports", &account::ports(design)),
         domain: TableView::new("Domain of the operands", &account::domain(design, contract)),
         example: TableView::new("A worked example", &account::example(contract, &measured.example)),
-        program: Program::new(design),
+        program: ControlSection::new(design),
         roms: (!design.roms.is_empty())
             .then(|| TableView::new("ROMs", &account::roms(design, &core.config))),
         clocks: TableView::new(
@@ -206,7 +206,7 @@ pub fn page(subject: &Subject, measured: &Measured) -> Result<String> {
 }
 
 /// Returns the figures at a glance.
-fn glance(subject: &Subject, measured: &Measured) -> Vec<(&'static str, String)> {
+fn glance(subject: &Subject, measured: &DatasheetResults) -> Vec<(&'static str, String)> {
     let design = &subject.core.design;
     let contract = subject.core.contract.as_ref();
     let clocks = |clocks: Option<u32>| clocks.map_or("by data".to_owned(), |it| it.to_string());
@@ -280,7 +280,7 @@ fn first_usage<'u>(usage: &'u [FamilyUsage], target: Option<&str>) -> Option<&'u
 fn multipliers(design: &Design) -> String {
     let all = comparison::multipliers(design);
     let sizes = all.chunk_by(|a, b| a == b).map(|alike| {
-        let Multiplier { first, second } = alike[0];
+        let MultiplierSize { first, second } = alike[0];
         match alike.len() {
             1 => format!("{first}\u{a0}×\u{a0}{second}"),
             count => format!("{count}\u{a0}of {first}\u{a0}×\u{a0}{second}"),

@@ -1,6 +1,6 @@
 //! Prepares tables for HTML.
 
-use crate::pages::account::{Align, Table};
+use crate::pages::account::{Align, TextTable};
 use crate::pages::markup::html;
 
 /// The width of a phone, in characters of a table; a wider one is shown there a row below the other.
@@ -30,7 +30,7 @@ pub struct CellView {
 
 impl TableView {
     /// Prepares a table of plain text with names in backquotes.
-    pub fn new(label: &'static str, table: &Table) -> Self {
+    pub fn new(label: &'static str, table: &TextTable) -> Self {
         let class = |align| match align {
             Align::Left => "",
             Align::Right => "number",
@@ -70,7 +70,7 @@ mod tests {
 
     #[test]
     fn what_is_wider_than_a_phone_stacks() {
-        let mut table = Table::of("`key` | units:");
+        let mut table = TextTable::of("`key` | units:");
         table.row(["`a`", "1.5"].map(str::to_owned));
         assert!(!TableView::new("narrow", &table).stacks);
         table.row(["`b`", "a sentence of more than thirty signs"].map(str::to_owned));

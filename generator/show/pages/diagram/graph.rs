@@ -8,18 +8,18 @@ use crate::pages::account::format_text;
 use glint_rtl::netlist::{Design, Driver, FieldId, NetId, Role, Sequence};
 
 /// Boxes and the wires between them.
-pub struct Graph {
+pub struct DiagramGraph {
     /// Ports, blocks, and the control unit.
-    pub boxes: Vec<Node>,
+    pub boxes: Vec<DiagramBox>,
     /// From the output of a box to another's input, one for each input.
-    pub wires: Vec<Wire>,
+    pub wires: Vec<DiagramWire>,
     /// The number of stages; 0 without a pipeline.
     pub stages: usize,
 }
 
 /// A box of the diagram.
 #[derive(Default)]
-pub struct Node {
+pub struct DiagramBox {
     /// How it is drawn.
     pub form: BoxForm,
     /// In the source's figure.
@@ -56,18 +56,18 @@ pub enum BoxForm {
 
 /// A wire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Wire {
+pub struct DiagramWire {
     /// The box that drives it.
     pub from: usize,
     /// The box that takes it.
     pub to: usize,
 }
 
-impl Graph {
+impl DiagramGraph {
     /// Makes the graph of a design.
     pub fn new(design: &Design) -> Self {
         let stages = design.pipeline.as_ref().map_or(0, |pipeline| pipeline.stages.len());
-        let mut builder = Builder {
+        let mut builder = GraphBuilder {
             design,
             blocks: Blocks::new(design, true),
             graph: Self { boxes: Vec::new(), wires: Vec::new(), stages },
@@ -94,23 +94,23 @@ fn is_field(design: &Design, net: NetId) -> bool {
     matches!(design.net(net).driver, Driver::Field(_))
 }
 
-struct Builder<'a> {
+struct GraphBuilder<'a> {
     design: &'a Design,
     blocks: Blocks<'a>,
-    graph: Graph,
+    graph: DiagramGraph,
     /// The box whose output a net is.
     driver: HashMap<NetId, usize>,
 }
 
-impl<'a> Builder<'a> {
-    fn add(&mut self, added: Node) -> usize {
+impl<'a> GraphBuilder<'a> {
+    fn add(&mut self, added: DiagramBox) -> usize {
         self.graph.boxes.push(added);
         self.graph.boxes.len() - 1
     }
 
     fn wire(&mut self, net: NetId, to: usize) {
         if let Some(&from) = self.driver.get(&net) {
-            self.graph.wires.push(Wire { from, to });
+            self.graph.wires.push(DiagramWire { from, to });
         }
     }
 
@@ -122,21 +122,21 @@ impl<'a> Builder<'a> {
             return self.wire(net, to);
         }
         let (format, name) = (format_text(self.design.net(net).format), self.blocks.name(net));
-        let from = self.add(Node {
+        let from = self.add(DiagramBox {
             form: BoxForm::Block(BlockKind::Constant),
             title: titled(&format!("the constant {name}"), &format, &self.design.net(net).doc),
             name,
             stage: self.graph.boxes[to].stage,
-            ..Node::default()
+            ..DiagramBox::default()
         });
-        self.graph.wires.push(Wire { from, to });
+        self.graph.wires.push(DiagramWire { from, to });
     }
 
     /// Adds an empty box to each stage without a block: it has a place too.
     fn fill(&mut self) {
         for stage in 0..self.graph.stages {
             if self.graph.boxes.iter().all(|it| it.stage != Some(stage)) {
-                self.add(Node { stage: Some(stage), ..Node::default() });
+                self.add(DiagramBox { stage: Some(stage), ..DiagramBox::default() });
             }
         }
     }
@@ -144,13 +144,13 @@ impl<'a> Builder<'a> {
     fn port(&mut self, net: NetId, form: BoxForm) -> usize {
         let found = self.design.net(net);
         let format = format_text(found.format);
-        self.add(Node {
+        self.add(DiagramBox {
             form,
             number: found.block,
             name: found.name.clone(),
             title: titled(&found.name, &format, &found.doc),
             caption: self.held(format, net, 0),
-            ..Node::default()
+            ..DiagramBox::default()
         })
     }
 
@@ -190,7 +190,9 @@ impl<'a> Builder<'a> {
             };
             match (source, control) {
                 (Some(net), _) => self.wire(net, at),
-                (None, Some(control)) => self.graph.wires.push(Wire { from: control, to: at }),
+                (None, Some(control)) => {
+                    self.graph.wires.push(DiagramWire { from: control, to: at })
+                }
                 (None, None) => {}
             }
         }
@@ -200,14 +202,14 @@ impl<'a> Builder<'a> {
         let control = &self.design.control;
         let rom = self.design.rom(control.rom);
         let (words, width) = (control.microprogram.len(), self.design.width(rom.data));
-        let at = self.add(Node {
+        let at = self.add(DiagramBox {
             form: BoxForm::Control,
             number: rom.block,
             name: "control unit".to_owned(),
             caption: format!("{words} words × {width} bits"),
             title: "Control unit: sequencer and control ROM; its lines control the blocks"
                 .to_owned(),
-            ..Node::default()
+            ..DiagramBox::default()
         });
         let start = self.design.port(|role| role == Role::Start);
         if let Some(start) = start {
@@ -241,7 +243,7 @@ impl<'a> Builder<'a> {
             if let [_, _, ..] = block.aliases[..] {
                 doc = format!("{doc} ({})", block.aliases.join(", "));
             }
-            let at = self.add(Node {
+            let at = self.add(DiagramBox {
                 form: BoxForm::Block(block.kind),
                 number: block.number,
                 name: block.name.clone(),

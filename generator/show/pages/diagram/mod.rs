@@ -15,9 +15,9 @@ use anyhow::Result;
 use crate::pages::account::blocks::BlockKind;
 use crate::pages::drawing::{Drawing, Item, text_width};
 use glint_rtl::netlist::{Design, Pipeline, Stage};
-use graph::{BoxForm, Graph, Node};
+use graph::{BoxForm, DiagramBox, DiagramGraph};
 use place::Placement;
-use route::{Body, LANE, Net, Routes};
+use route::{Body, LANE, Routes, WireRoute};
 
 /// The height of a line of text in a box.
 const LINE: i32 = 14;
@@ -51,7 +51,7 @@ const REGISTERS: f64 = 7.0;
 
 /// Draws the blocks of a design.
 pub fn drawing(design: &Design) -> Drawing {
-    let graph = Graph::new(design);
+    let graph = DiagramGraph::new(design);
     let back = place::back(&graph);
     let lanes = route::lanes(&graph, &back);
     let sizes: Vec<Sizes> =
@@ -118,7 +118,7 @@ struct Sizes {
 }
 
 impl Sizes {
-    fn new(graph: &Graph, at: usize, lanes: usize) -> Self {
+    fn new(graph: &DiagramGraph, at: usize, lanes: usize) -> Self {
         let one = &graph.boxes[at];
         let pins = graph.wires.iter().filter(|wire| wire.to == at).count();
         if one.form == BoxForm::Empty {
@@ -146,12 +146,12 @@ impl Sizes {
     }
 }
 
-fn is_port(one: &Node) -> bool {
+fn is_port(one: &DiagramBox) -> bool {
     matches!(one.form, BoxForm::Input | BoxForm::Output)
 }
 
 /// Returns the text of a box, with the class of each line; the lines that control it are the last.
-fn lines(one: &Node) -> Vec<(&'static str, String)> {
+fn lines(one: &DiagramBox) -> Vec<(&'static str, String)> {
     let head = match one.number {
         Some(number) => format!("{number} {}", one.name),
         None => one.name.clone(),
@@ -193,7 +193,13 @@ impl Page<'_> {
     }
 
     /// Draws the stages, with the registers that end each.
-    fn stages(&mut self, pipeline: &Pipeline, graph: &Graph, place: &Placement, routes: &Routes) {
+    fn stages(
+        &mut self,
+        pipeline: &Pipeline,
+        graph: &DiagramGraph,
+        place: &Placement,
+        routes: &Routes,
+    ) {
         let columns = |stage: usize| {
             let boxes = graph.boxes.iter().zip(&place.column);
             let columns = boxes.filter(move |(one, _)| one.stage == Some(stage));
@@ -229,7 +235,7 @@ impl Page<'_> {
         for (at, (class, line)) in (1..).zip(said) {
             self.items.push(Item::text(class, BORDER, top + 13 * at, line));
         }
-        let crossing = |net: &Net| {
+        let crossing = |net: &WireRoute| {
             let pieces = net.pieces.clone().into_iter();
             pieces.filter(|it| it.from.1 == it.to.1 && it.from.0 < ends[1] && ends[1] < it.to.0)
         };
@@ -242,7 +248,7 @@ impl Page<'_> {
         self.items.push(Item::Close);
     }
 
-    fn net(&mut self, net: &Net, driver: &Node) {
+    fn net(&mut self, net: &WireRoute, driver: &DiagramBox) {
         if net.pieces.is_empty() {
             return;
         }
@@ -264,7 +270,7 @@ impl Page<'_> {
         self.items.push(Item::Close);
     }
 
-    fn block(&mut self, one: &Node, left: f64, body: &Body) {
+    fn block(&mut self, one: &DiagramBox, left: f64, body: &Body) {
         if one.form == BoxForm::Empty {
             return;
         }

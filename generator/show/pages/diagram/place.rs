@@ -3,7 +3,7 @@
 use dagre::graph::{Graph as Layered, GraphOptions};
 use dagre::{EdgeLabel, LayoutOptions, NodeLabel, RankDir, Ranker, layout};
 
-use super::graph::{BoxForm, Graph, Wire};
+use super::graph::{BoxForm, DiagramGraph, DiagramWire};
 use crate::pages::account::blocks::BlockKind;
 
 /// Between boxes of a column.
@@ -39,7 +39,7 @@ pub struct Placement {
 impl Placement {
     /// Puts boxes of these `heights` into columns; `back` marks the wires that lead back, as [`back`] does. Among
     /// four layouts, it takes the one with the least height, which is the width of the page.
-    pub fn new(graph: &Graph, heights: &[f64], back: &[bool]) -> Self {
+    pub fn new(graph: &DiagramGraph, heights: &[f64], back: &[bool]) -> Self {
         let rankers = [Ranker::NetworkSimplex, Ranker::LongestPath];
         let variants = rankers.into_iter().flat_map(|it| [(it, false), (it, true)]);
         let placements =
@@ -58,7 +58,7 @@ impl Placement {
     /// Makes a layout by one way to rank boxes. With `handshake`, the outputs of the handshake are at the end;
     /// otherwise they are placed where there is room.
     fn variant(
-        graph: &Graph,
+        graph: &DiagramGraph,
         heights: &[f64],
         back: &[bool],
         ranker: Ranker,
@@ -83,7 +83,7 @@ impl Placement {
             let (from, to) = (graph.wires[wire].from, graph.wires[wire].to);
             let (from, to) = if back[wire] { (to, from) } else { (from, to) };
             // Several wires between two boxes go side by side.
-            let same = |other: &Wire| *other == graph.wires[wire];
+            let same = |other: &DiagramWire| *other == graph.wires[wire];
             let first = graph.wires.iter().position(same).unwrap_or(wire);
             (from.to_string(), to.to_string(), first.to_string())
         };
@@ -141,7 +141,7 @@ impl Placement {
 }
 
 /// Ties the boxes of each stage between two nodes that are not drawn, so that a column is in one stage.
-fn stages(graph: &Graph, layered: &mut Layered<NodeLabel, EdgeLabel>) {
+fn stages(graph: &DiagramGraph, layered: &mut Layered<NodeLabel, EdgeLabel>) {
     if graph.stages == 0 {
         return;
     }
@@ -166,14 +166,14 @@ fn stages(graph: &Graph, layered: &mut Layered<NodeLabel, EdgeLabel>) {
 }
 
 /// Returns whether an output is the control unit's.
-fn driven_by_control(graph: &Graph, output: usize) -> bool {
+fn driven_by_control(graph: &DiagramGraph, output: usize) -> bool {
     let mut drivers = graph.wires.iter().filter(|wire| wire.to == output);
     drivers.any(|wire| graph.boxes[wire.from].form == BoxForm::Control)
 }
 
 /// Marks the wires that lead back. In each loop, it is the wire into the mux that chooses among the most inputs, if
 /// the loop has one.
-pub fn back(graph: &Graph) -> Vec<bool> {
+pub fn back(graph: &DiagramGraph) -> Vec<bool> {
     let weight = |at: usize| match graph.boxes[at].form {
         BoxForm::Block(BlockKind::Mux(inputs)) if !graph.boxes[at].control.is_empty() => 2 + inputs,
         BoxForm::Block(BlockKind::Mux(_)) => 2,
@@ -190,7 +190,7 @@ pub fn back(graph: &Graph) -> Vec<bool> {
 }
 
 /// Returns whether there is a way from one box to another that does not lead back.
-fn reaches(graph: &Graph, back: &[bool], from: usize, to: usize) -> bool {
+fn reaches(graph: &DiagramGraph, back: &[bool], from: usize, to: usize) -> bool {
     let mut seen = vec![false; graph.boxes.len()];
     let mut pending = vec![from];
     while let Some(at) = pending.pop() {

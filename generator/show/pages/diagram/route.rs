@@ -3,7 +3,7 @@
 
 use std::collections::HashMap;
 
-use super::graph::Graph;
+use super::graph::DiagramGraph;
 use super::place::Placement;
 use super::tracks::{Side, Trunk, assign};
 
@@ -43,7 +43,7 @@ impl Body {
 
 /// A straight piece, horizontal or vertical.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Piece {
+pub struct WireSegment {
     /// One end.
     pub from: (f64, f64),
     /// The other.
@@ -52,9 +52,9 @@ pub struct Piece {
 
 /// The way of all wires that one box drives.
 #[derive(Clone, Debug, Default)]
-pub struct Net {
+pub struct WireRoute {
     /// In no order.
-    pub pieces: Vec<Piece>,
+    pub pieces: Vec<WireSegment>,
     /// The places at which three or more pieces meet.
     pub junctions: Vec<(f64, f64)>,
     /// The places at which arrows point into boxes.
@@ -66,7 +66,7 @@ pub struct Routes {
     /// The left edge of each box.
     pub left: Vec<f64>,
     /// By the box that drives it.
-    pub nets: Vec<Net>,
+    pub nets: Vec<WireRoute>,
     /// From left to right.
     pub width: f64,
     /// The beginning and the end of each column.
@@ -98,7 +98,7 @@ impl Routes {
 }
 
 /// Returns the boxes around which wires lead back, with the nets that do; each takes a [`LANE`].
-pub fn lanes(graph: &Graph, back: &[bool]) -> Vec<Vec<usize>> {
+pub fn lanes(graph: &DiagramGraph, back: &[bool]) -> Vec<Vec<usize>> {
     let mut lanes = vec![Vec::new(); graph.boxes.len()];
     for (wire, _) in graph.wires.iter().zip(back).filter(|(_, back)| **back) {
         for at in [wire.from, wire.to] {
@@ -112,7 +112,7 @@ pub fn lanes(graph: &Graph, back: &[bool]) -> Vec<Vec<usize>> {
 
 /// Routes the wires between boxes at the places of `placement`.
 pub fn routes(
-    graph: &Graph,
+    graph: &DiagramGraph,
     placement: &Placement,
     bodies: &[Body],
     lanes: &[Vec<usize>],
@@ -137,7 +137,7 @@ pub fn routes(
 }
 
 struct Router<'a> {
-    graph: &'a Graph,
+    graph: &'a DiagramGraph,
     placement: &'a Placement,
     bodies: &'a [Body],
     lanes: &'a [Vec<usize>],
@@ -273,7 +273,7 @@ impl Router<'_> {
             from + (to - from - self.bodies[at].width) / 2.0
         };
         let left: Vec<f64> = (0..self.bodies.len()).map(left).collect();
-        let mut nets = vec![Net::default(); self.bodies.len()];
+        let mut nets = vec![WireRoute::default(); self.bodies.len()];
         for (gap, trunks) in self.gaps.iter().enumerate() {
             for trunk in trunks {
                 nets[trunk.net].trunk(trunk, borders[gap]);
@@ -295,9 +295,9 @@ impl Router<'_> {
     }
 }
 
-impl Net {
+impl WireRoute {
     fn piece(&mut self, from: (f64, f64), to: (f64, f64)) {
-        let piece = Piece { from, to };
+        let piece = WireSegment { from, to };
         if from != to && !self.pieces.contains(&piece) {
             self.pieces.push(piece);
         }

@@ -20,7 +20,7 @@ struct Page<'a> {
     notes: Vec<String>,
     ports: String,
     numbering: &'static str,
-    program: Program,
+    program: ControlTables,
     roms: String,
     clocks: String,
     accuracy: String,
@@ -35,7 +35,7 @@ struct Page<'a> {
 }
 
 /// The control of a computation, as tables.
-enum Program {
+enum ControlTables {
     /// With the fate of writes while the device is busy.
     Microprogram {
         blocks: String,
@@ -50,7 +50,7 @@ enum Program {
     },
 }
 
-impl Program {
+impl ControlTables {
     fn new(design: &Design) -> Self {
         match &design.pipeline {
             None => Self::Microprogram {
@@ -84,7 +84,7 @@ pub fn page(design: &Design, inputs: &PageInputs) -> Result<String> {
         notes: about.paragraphs().map(prose).collect(),
         ports: table(&account::ports(design)),
         numbering: account::numbering(design),
-        program: Program::new(design),
+        program: ControlTables::new(design),
         roms: if design.roms.is_empty() {
             String::new()
         } else {

@@ -1,10 +1,10 @@
 //! Writes tables in Markdown, and escapes text that Markdown would take for something else.
 
-use crate::pages::account::{Align, Table};
+use crate::pages::account::{Align, TextTable};
 
 /// Returns the lines of a table, without the last newline. Its columns are padded, so that it reads well as text too; the last
 /// one is not.
-pub fn table(table: &Table) -> String {
+pub fn table(table: &TextTable) -> String {
     let headings: Vec<String> = table.columns.iter().map(|column| prose(&column.heading)).collect();
     let rows: Vec<Vec<String>> =
         table.rows.iter().map(|row| row.iter().map(|cell| prose(cell)).collect()).collect();
@@ -71,7 +71,7 @@ mod tests {
 
     #[test]
     fn a_table_is_padded_and_aligned() {
-        let mut table = Table::of("name | bits: | what");
+        let mut table = TextTable::of("name | bits: | what");
         table.row(["`a`", "10", "short"].map(str::to_owned));
         table.row(["`bcdef`", "7", "this is longer"].map(str::to_owned));
         let expected = "\

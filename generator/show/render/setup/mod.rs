@@ -3,7 +3,7 @@
 //! Along a line the half vector goes from H₁ to H₂ on a great circle while the normal goes from N₁ to N₂. The seed
 //! turns the second end so that the normals coincide: H₂′ is H₂ turned as N₂ is turned into N₁. The result is one
 //! half vector on the circle through H₁ and H₂′. The cosine of its angle to N₁ is `A·cos(ζ)`, with ζ growing evenly:
-//! [`Arc`]. So `I·k_s·cosⁿδ = C·cosⁿζ` with `C = I·k_s·Aⁿ`: [`Line`]. The raw operands are the operands of
+//! [`Arc`]. So `I·k_s·cosⁿδ = C·cosⁿζ` with `C = I·k_s·Aⁿ`: [`LineParameters`]. The raw operands are the operands of
 //! [`Feed::line`](super::Feed::line).
 //!
 //! `templates/setup.c` and `templates/setup.py` compute the same, in the same order.
@@ -161,8 +161,8 @@ impl Arc {
     }
 
     /// Returns the line of `length` intervals with the light `intensity` (I·k_s, in output units) and the exponent n.
-    pub fn line(&self, intensity: f64, exponent: u32, length: u32) -> Line {
-        Line {
+    pub fn line(&self, intensity: f64, exponent: u32, length: u32) -> LineParameters {
+        LineParameters {
             amplitude: intensity * libm::pow(self.peak.min(1.0), f64::from(exponent)),
             exponent,
             length,
@@ -210,7 +210,7 @@ fn angle(a: Vector, b: Vector) -> f64 {
 
 /// A line before it is quantised. Angles are in radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Line {
+pub struct LineParameters {
     /// C = I·k_s·Aⁿ, in output units.
     pub amplitude: f64,
     /// n.
@@ -223,7 +223,7 @@ pub struct Line {
     pub zeta_start: f64,
 }
 
-impl Line {
+impl LineParameters {
     /// Returns ζ of point number `index`.
     pub fn zeta(&self, index: u32) -> f64 {
         self.zeta_start + f64::from(index) * self.delta_zeta

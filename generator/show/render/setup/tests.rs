@@ -158,19 +158,19 @@ fn opposite_normals_and_half_vectors() {
 }
 
 /// Returns the raw operands for the default of `quad-cosine`.
-fn quad(line: &Line) -> Vec<i64> {
+fn quad(line: &LineParameters) -> Vec<i64> {
     let config = Config::defaults(&keys::quad_cosine::schema(), "line");
     operands(golden::quad_cosine::contract(&config).as_ref(), line).unwrap()
 }
 
 /// And for a configuration of `cosine-squared`.
-fn squared(keys: &str, line: &Line) -> anyhow::Result<Vec<i64>> {
+fn squared(keys: &str, line: &LineParameters) -> anyhow::Result<Vec<i64>> {
     let text = format!("device = \"cosine-squared\"\n{keys}");
     let config = config::parse("line.toml", &text, &[keys::cosine_squared::schema()]).unwrap();
     operands(golden::cosine_squared::contract(&config).as_ref(), line)
 }
 
-fn operands(contract: &dyn Contract, line: &Line) -> anyhow::Result<Vec<i64>> {
+fn operands(contract: &dyn Contract, line: &LineParameters) -> anyhow::Result<Vec<i64>> {
     Feed::new("line", contract).unwrap().line(line)
 }
 

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use crate::commands::Loaded;
 use crate::commands::mismatch::Reproducer;
-use crate::{Output, say};
+use crate::{OutputOptions, say};
 use glint_base::program::Program;
 use glint_base::text;
 use glint_core::cosim::exhaustive::{Difference, Job, Proof, Shard, State};
@@ -42,7 +42,7 @@ pub fn announce(one: &Loaded, job: &Job<'_>, state: &State) {
 /// # Errors
 /// Fails if the design cannot be simulated, or if the waveform of a difference cannot be written.
 pub fn report(
-    output: Output,
+    output: OutputOptions,
     one: &Loaded,
     job: &Job<'_>,
     state: &State,

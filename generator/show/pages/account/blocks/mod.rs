@@ -8,16 +8,16 @@ mod kind;
 
 use std::collections::BTreeSet;
 
-use super::{NUMBER, Table, code, format_text, short};
+use super::{NUMBER, TextTable, code, format_text, short};
 use glint_rtl::netlist::{Design, Driver, FieldId, NetId, Op, RegisterKind, Role};
 use groups::Groups;
 pub use kind::BlockKind;
 use kind::{ADDER, MULTIPLIER, operator};
 
 /// Returns the blocks in order of their number. Blocks without a number in the source follow.
-pub fn table(design: &Design) -> Table {
+pub fn table(design: &Design) -> TextTable {
     let blocks = Blocks::new(design, false);
-    let mut table = Table::of("no.: | block | kind | format | takes | what it is");
+    let mut table = TextTable::of("no.: | block | kind | format | takes | what it is");
     for block in blocks.all() {
         let list = |nets: &[NetId]| {
             let names: Vec<String> = nets.iter().map(|&net| code(&blocks.name(net))).collect();
