@@ -25,12 +25,12 @@ use std::sync::{Arc, LazyLock, Mutex};
 use rayon::prelude::*;
 
 use glint_base::fixed::{Format, exp2};
-use glint_formula::{Enclosure, Fault, Formula, RBig};
+use glint_formula::{Enclosure, Expression, Fault, RBig};
 
 pub use reduction::{Identity, Reduction, Restore, Rule};
 pub use samples::Samples;
 pub use search::Wish;
-pub use segments::{Layout, Place, Segments};
+pub use segments::{Layout, SegmentOffset, Segments};
 
 /// The coefficients of a polynomial of the largest degree.
 const MOST_SUMS: usize = 4;
@@ -60,7 +60,7 @@ glint_config::choices! {
 #[derive(Clone, Debug)]
 pub enum Curve {
     /// The values of a formula of the operand x.
-    Formula(Formula),
+    Formula(Expression),
     /// The values of the curve through samples.
     Samples(Samples),
 }
@@ -267,13 +267,13 @@ impl Piecewise {
     }
 
     /// Returns where a raw operand lies. Beyond the words that the domain reads it is the last.
-    pub fn place(&self, raw: i64) -> Place {
-        let Place { word, offset } = self.segments.place(self.number(raw));
-        Place { word: word.min(self.words.len() - 1), offset }
+    pub fn place(&self, raw: i64) -> SegmentOffset {
+        let SegmentOffset { word, offset } = self.segments.place(self.number(raw));
+        SegmentOffset { word: word.min(self.words.len() - 1), offset }
     }
 
     /// Returns the sum from coefficient k on, without cutting off upper bits. `above` is the sum from coefficient k + 1 on.
-    pub fn sum(&self, k: usize, place: Place, above: i64) -> i64 {
+    pub fn sum(&self, k: usize, place: SegmentOffset, above: i64) -> i64 {
         let coefficient = self.words[place.word][k];
         let Some(step) = self.steps.get(k) else { return coefficient };
         coefficient + step.product(above, place.offset, self.segments.rest())
@@ -351,15 +351,15 @@ impl Piecewise {
     }
 }
 
-type Found = Result<Arc<Piecewise>, Refusal>;
+type SearchResult = Result<Arc<Piecewise>, Refusal>;
 
 /// Returns the approximation of a function with the least cost, and with a proved bound. A search that was already made is
 /// not repeated.
 ///
 /// # Errors
 /// Fails if no approximation can be found and proved. The error says why.
-pub fn find(function: &Function, wish: Wish) -> Found {
-    static FOUND: LazyLock<Mutex<HashMap<String, Found>>> = LazyLock::new(Mutex::default);
+pub fn find(function: &Function, wish: Wish) -> SearchResult {
+    static FOUND: LazyLock<Mutex<HashMap<String, SearchResult>>> = LazyLock::new(Mutex::default);
     let key = format!("{function:?} {wish:?}");
     let known = || FOUND.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
     if let Some(found) = known().get(&key) {

@@ -1,7 +1,7 @@
 //! Searches for the degree, the segments, the coefficients and the widths of the cheapest approximation of a function.
 
 use super::reduction::KEY;
-use super::seen::Seen;
+use super::seen::AllowedResults;
 use super::table::{BITS_A_CELL, Table, Widths};
 use super::{
     Curve, Function, Identity, Layout, MOST_BITS, Piecewise, Reduction, Refusal, Segments,
@@ -102,7 +102,7 @@ fn attempt(function: &Function, wish: Wish) -> Result<Option<Piecewise>, Refusal
     let mut unproved = None;
     for stricter in STRICTER {
         let stricter = stricter * (function.error - 0.5);
-        let Some(seen) = Seen::new(function, stricter)? else { break };
+        let Some(seen) = AllowedResults::new(function, stricter)? else { break };
         let Some(found) = cheapest(&seen, wish) else { break };
         match found.prove(function) {
             Ok(bound) => return Ok(Some(Piecewise { bound, ..found })),
@@ -133,7 +133,7 @@ fn attempt_reduced(function: &Function, wish: Wish) -> Result<Option<Piecewise>,
     }
     for &(guard, wider) in variants(wish.identity) {
         let (reduction, inner) = Reduction::of(wish.identity, function, guard, wider)?;
-        let Some(seen) = Seen::reduced(function, &reduction, &inner)? else { continue };
+        let Some(seen) = AllowedResults::reduced(function, &reduction, &inner)? else { continue };
         if let Some(found) = cheapest(&seen, wish) {
             return found.prove(function).map(|bound| Some(Piecewise { bound, ..found }));
         }
@@ -142,7 +142,7 @@ fn attempt_reduced(function: &Function, wish: Wish) -> Result<Option<Piecewise>,
 }
 
 /// Gives the approximation of least cost that is right at every operand that is looked at.
-fn cheapest(seen: &Seen, wish: Wish) -> Option<Piecewise> {
+fn cheapest(seen: &AllowedResults, wish: Wish) -> Option<Piecewise> {
     let few = seen.thinned(CHOOSING);
     let mut found: Vec<(f64, Segments, Widths, Widths)> = Vec::new();
     let mut least = f64::INFINITY;
@@ -187,7 +187,7 @@ fn cheapest(seen: &Seen, wish: Wish) -> Option<Piecewise> {
 
 /// Returns the ways to cut the domain, into no more than `most` segments, that are fine enough for polynomials of the degree,
 /// before anything is rounded.
-fn cuts(seen: &Seen, degree: u32, layout: Option<Layout>, most: usize) -> Vec<Segments> {
+fn cuts(seen: &AllowedResults, degree: u32, layout: Option<Layout>, most: usize) -> Vec<Segments> {
     let possible = |cut: &Segments| {
         cut.words() <= most.min(1 << ADDRESS)
             && cut.octaves + cut.prefix + u32::from(degree > 0) <= seen.bits

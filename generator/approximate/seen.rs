@@ -15,7 +15,7 @@ const HELD_OF_MANY: u64 = 1 << 18;
 const BLOCK: usize = 1 << 16;
 
 /// The values of a function at the operands that the search looks at.
-pub(super) struct Seen<'f> {
+pub(super) struct AllowedResults<'f> {
     pub(super) function: &'f Function,
     pub(super) origin: i64,
     pub(super) bits: u32,
@@ -75,7 +75,7 @@ impl Function {
     }
 }
 
-impl<'f> Seen<'f> {
+impl<'f> AllowedResults<'f> {
     /// Evaluates the function; none if an operand has no result that is right. Where it does not look at every operand, less
     /// error is allowed by `stricter`.
     pub(super) fn new(function: &'f Function, stricter: f64) -> Result<Option<Self>, Refusal> {

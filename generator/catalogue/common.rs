@@ -28,7 +28,11 @@ pub struct Products<'d> {
 impl<'d> Products<'d> {
     /// Makes the operands, with the source's numbers where it has some.
     #[track_caller]
-    pub fn new(d: &'d Designer, keys: &keys::Colours, blocks: Option<[ChannelBlocks; 3]>) -> Self {
+    pub fn new(
+        d: &'d Designer,
+        keys: &keys::ColourKeys,
+        blocks: Option<[ChannelBlocks; 3]>,
+    ) -> Self {
         Self { colours: Colours::new(d, keys.bits as i32, blocks), in_turn: keys.in_turn() }
     }
 
@@ -54,7 +58,7 @@ impl<'d> Products<'d> {
 
 /// Returns the note on writes while the device is busy and on how long its outputs hold, where each colour has a
 /// multiplier of its own behind the register that `follow` names, until `until`.
-pub fn outputs_note(keys: &keys::Colours, follow: &str, until: &str) -> Note {
+pub fn outputs_note(keys: &keys::ColourKeys, follow: &str, until: &str) -> Note {
     if keys.in_turn() {
         return Topic::Writes.note(
             "Writes while busy are ignored. One multiplier multiplies f by the colours, one after the other, and the \

@@ -33,7 +33,7 @@ mod tests;
 use std::ops::{Index, IndexMut};
 use std::sync::Arc;
 
-pub use clocked::Clocked;
+pub use clocked::ClockedModel;
 pub use part::Part;
 
 use glint_base::fixed::Format;

@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, HashMap};
 
 use super::terms::{Id, Term, Terms};
 use glint_base::fixed::exp2;
-use glint_formula::{Comparison, Formula, Function, Kind, Literal, Operator};
+use glint_formula::{Comparison, Expression, Function, Kind, Literal, Operator};
 use glint_golden::Operand;
 
 /// A term for the formula under conditions: the terms `at_least` are not negative, and the terms `at_most` are not
@@ -93,7 +93,7 @@ pub fn word_variable(rom: &str, variable: &str) -> String {
 
 /// Notes by which power of two each operand is divided in the formula: the exponent if it is the same everywhere, or
 /// 0.
-pub fn divisors(formula: &Formula, found: &mut HashMap<String, Option<i32>>) {
+pub fn divisors(formula: &Expression, found: &mut HashMap<String, Option<i32>>) {
     let mut note = |name: &str, power: i32| {
         let all = found.entry(name.to_owned()).or_insert(Some(power));
         if *all != Some(power) {
@@ -112,7 +112,7 @@ pub fn divisors(formula: &Formula, found: &mut HashMap<String, Option<i32>>) {
 }
 
 /// Returns the operand that is divided by a power of two, and that power.
-fn quotient(formula: &Formula) -> Option<(&str, i32)> {
+fn quotient(formula: &Expression) -> Option<(&str, i32)> {
     let Kind::Binary(Operator::Div, a, b) = &formula.kind else { return None };
     let (Kind::Operand(name), Kind::Number(by)) = (&a.kind, &b.kind) else { return None };
     Some((name, power_of_two(by.nearest())?))
@@ -132,26 +132,28 @@ pub fn untranslated(function: Function) -> String {
 /// # Errors
 /// Fails if the formula has a part without a translation.
 pub fn branches(
-    formula: &Formula,
+    formula: &Expression,
     setting: &Setting,
     terms: &mut Terms,
 ) -> Result<Vec<Branch>, String> {
     // For two expressions: every way that both can go together, with the term of each.
-    let pairs =
-        |terms: &mut Terms, a: &Formula, b: &Formula| -> Result<Vec<(Branch, Id, Id)>, String> {
-            let (first, second) = (branches(a, setting, terms)?, branches(b, setting, terms)?);
-            let all = first.iter().flat_map(|one| second.iter().map(move |other| (one, other)));
-            let pairs =
-                all.filter_map(|(one, other)| Some((one.and(other)?, one.term, other.term)));
-            Ok(pairs.collect())
-        };
-    let operation = |terms: &mut Terms, a: &Formula, b: &Formula, make: fn(Id, Id) -> Term| {
-        let made = pairs(terms, a, b)?.into_iter().map(|(branch, left, right)| {
-            let term = folded(terms, make(left, right));
-            Branch { term, ..branch }
-        });
-        Ok(made.collect())
+    let pairs = |terms: &mut Terms,
+                 a: &Expression,
+                 b: &Expression|
+     -> Result<Vec<(Branch, Id, Id)>, String> {
+        let (first, second) = (branches(a, setting, terms)?, branches(b, setting, terms)?);
+        let all = first.iter().flat_map(|one| second.iter().map(move |other| (one, other)));
+        let pairs = all.filter_map(|(one, other)| Some((one.and(other)?, one.term, other.term)));
+        Ok(pairs.collect())
     };
+    let operation =
+        |terms: &mut Terms, a: &Expression, b: &Expression, make: fn(Id, Id) -> Term| {
+            let made = pairs(terms, a, b)?.into_iter().map(|(branch, left, right)| {
+                let term = folded(terms, make(left, right));
+                Branch { term, ..branch }
+            });
+            Ok(made.collect())
+        };
     let plain = |term: Id| vec![Branch { term, ..Branch::default() }];
     if let Some((name, power @ 1..)) = quotient(formula)
         && let Some((variable, divisor)) = setting.variables.get(name)
@@ -165,7 +167,7 @@ pub fn branches(
         Kind::Word(rom, place) => Ok(plain(word(rom, place, setting, terms)?)),
         Kind::Constant(name, _) => Err(format!("the constant `{name}` has no translation")),
         Kind::Unary(Function::Negate, a) => {
-            let zero = Formula::new(Kind::Number(Literal::zero()), formula.span.clone());
+            let zero = Expression::new(Kind::Number(Literal::zero()), formula.span.clone());
             operation(terms, &zero, a, Term::Sub)
         }
         Kind::Unary(function, _) => Err(untranslated(*function)),
@@ -224,7 +226,7 @@ pub fn branches(
 }
 
 /// Returns the word of a table: the number that it is wherever this case reads, or a variable.
-fn word(rom: &str, place: &Formula, setting: &Setting, terms: &mut Terms) -> Result<Id, String> {
+fn word(rom: &str, place: &Expression, setting: &Setting, terms: &mut Terms) -> Result<Id, String> {
     let words = setting.words.get(rom).ok_or_else(|| format!("there is no table `{rom}`"))?;
     let (name, range) = match &place.kind {
         Kind::Operand(name) => (name.as_str(), setting.ranges.get(name).copied()),
@@ -270,7 +272,7 @@ fn variable_of(
 }
 
 /// Returns the value of a formula that does not vary in this case.
-fn constant(formula: &Formula, setting: &Setting) -> Option<f64> {
+fn constant(formula: &Expression, setting: &Setting) -> Option<f64> {
     match &formula.kind {
         Kind::Number(literal) => Some(literal.nearest()),
         Kind::Operand(name) => {
@@ -282,7 +284,7 @@ fn constant(formula: &Formula, setting: &Setting) -> Option<f64> {
 
 /// Returns whether a comparison of an operand with a number holds for all values of this case, or for none.
 fn decided(comparison: &Comparison, setting: &Setting) -> Option<bool> {
-    let range = |formula: &Formula| match &formula.kind {
+    let range = |formula: &Expression| match &formula.kind {
         Kind::Number(literal) => Some((literal.nearest(), literal.nearest())),
         Kind::Operand(name) => setting.ranges.get(name).copied(),
         _ => None,

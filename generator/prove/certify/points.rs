@@ -12,7 +12,7 @@ use super::statement::Statements;
 use super::task::Task;
 use super::terms::{Id, Term, Terms};
 use glint_base::fixed::exp2;
-use glint_formula::Formula;
+use glint_formula::Expression;
 use glint_rtl::pipeline::{Cell, NodeId, Op};
 
 impl Task<'_> {
@@ -150,7 +150,7 @@ impl Task<'_> {
 }
 
 fn real_operand(name: &str, setting: &Setting, terms: &mut Terms) -> Result<Id, String> {
-    let branches = exact::branches(&Formula::operand(name), setting, terms)?;
+    let branches = exact::branches(&Expression::operand(name), setting, terms)?;
     Ok(branches[0].term)
 }
 

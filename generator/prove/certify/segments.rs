@@ -26,7 +26,7 @@ use super::statement::{Statement, Statements};
 use super::task::Task;
 use super::terms::{Id, Term, Terms, number};
 use glint_base::fixed::exp2;
-use glint_formula::{Enclosure, Formula, Function, Kind, Operator, parse};
+use glint_formula::{Enclosure, Expression, Function, Kind, Operator, parse};
 use glint_rtl::netlist::NetId;
 use glint_rtl::pipeline::{Cell, NodeId, Op, WalkRegister};
 
@@ -87,7 +87,7 @@ pub fn statements(task: &Task, walk: &[WalkRegister]) -> Result<Vec<Statement>, 
 }
 
 /// Returns x and k of cos(pi / 2 · x)ᵏ.
-fn lobe(formula: &Formula) -> Option<(&Formula, u32)> {
+fn lobe(formula: &Expression) -> Option<(&Expression, u32)> {
     let Kind::Binary(Operator::Power, base, exponent) = &formula.kind else { return None };
     let Kind::Unary(Function::Cos, angle) = &base.kind else { return None };
     let Kind::Number(literal) = &exponent.kind else { return None };
@@ -102,7 +102,7 @@ struct Walk {
     /// The angle of the first point.
     start: String,
     /// The angle as a point has it, as the formula of a point that is no first one says it: wrapped around.
-    wrapped: Formula,
+    wrapped: Expression,
 }
 
 impl Walk {
@@ -134,8 +134,8 @@ impl Walk {
 
     /// Returns the expression with [`POINT`] in place of the angle of a point, start + index·step, wrapped around. By
     /// induction, the walk's register holds this angle.
-    fn angle(&self, formula: &Formula) -> Formula {
-        formula.substitute(&self.wrapped, &Formula::operand(POINT), &formula.span)
+    fn angle(&self, formula: &Expression) -> Expression {
+        formula.substitute(&self.wrapped, &Expression::operand(POINT), &formula.span)
     }
 }
 
@@ -183,7 +183,7 @@ fn table(task: &Task) -> Result<Products, String> {
 }
 
 /// Returns the words of the table with the angles that read them, by address.
-fn words(task: &Task, table: NodeId, walk: &Walk, angle: &Formula) -> Result<Vec<Word>, String> {
+fn words(task: &Task, table: NodeId, walk: &Walk, angle: &Expression) -> Result<Vec<Word>, String> {
     let graph = task.graph();
     let Cell::Read { rom, address } = graph.node(table).cell else {
         return Err("there is no table".to_owned());
@@ -232,7 +232,7 @@ fn words(task: &Task, table: NodeId, walk: &Walk, angle: &Formula) -> Result<Vec
 
 /// Returns the enclosure of an angle if the angle of the point is in this range. Returns `None` if the angle depends
 /// on anything else.
-fn enclosed(angle: &Formula, (low, high): (f64, f64)) -> Option<Enclosure> {
+fn enclosed(angle: &Expression, (low, high): (f64, f64)) -> Option<Enclosure> {
     angle.enclose(&[(POINT, Enclosure::between(low, high))]).ok()
 }
 

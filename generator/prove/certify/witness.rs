@@ -11,7 +11,7 @@ use rand_chacha::rand_core::{RngCore, SeedableRng};
 
 use super::terms::{Direction, Id, Term, Terms, number};
 use glint_base::fixed::exp2;
-use glint_formula::{Formula, Function, Kind, Operator, parse};
+use glint_formula::{Expression, Function, Kind, Operator, parse};
 
 /// Points from which a descent begins.
 const STARTS: usize = 64;
@@ -190,7 +190,7 @@ fn expression(text: &str, terms: &mut Terms, names: &HashMap<String, Id>) -> Opt
     term(&parse(text).ok()?, terms, names)
 }
 
-fn term(formula: &Formula, terms: &mut Terms, names: &HashMap<String, Id>) -> Option<Id> {
+fn term(formula: &Expression, terms: &mut Terms, names: &HashMap<String, Id>) -> Option<Id> {
     let (make, a, b): (fn(Id, Id) -> Term, _, _) = match &formula.kind {
         Kind::Number(literal) => return Some(terms.number(literal.nearest())),
         // A script has names of its own alone.
