@@ -4,28 +4,28 @@ use glint_base::fixed::{Format, Rounding};
 use glint_keys::common as keys;
 use glint_rtl::blocks::colour::{ChannelBlocks, Colours};
 use glint_rtl::blocks::line::{LineBlocks, OperandBlocks};
-use glint_rtl::dsl::{Designer, Note, Operand, Signal, Step, Topic, end, step, valid};
+use glint_rtl::dsl::{Designer, InputOperand, Note, Signal, Step, Topic, end, step, valid};
 
 /// Returns the operand `cos_gamma`, limited to 0 … 1.0.
 #[track_caller]
-pub fn cosine<'d>(d: &'d Designer, keys: &keys::Cosine) -> Operand<'d> {
+pub fn cosine<'d>(d: &'d Designer, keys: &keys::Cosine) -> InputOperand<'d> {
     d.operand_clamped("cos_gamma", keys.format(), 0.0, 1.0)
         .doc("cosine of the angle between normal and half vector")
 }
 
 /// Returns the operand `exponent` with `bits` bits.
 #[track_caller]
-pub fn exponent(d: &Designer, bits: u32) -> Operand<'_> {
+pub fn exponent(d: &Designer, bits: u32) -> InputOperand<'_> {
     d.operand("exponent", Format::unsigned(bits as i32, 0)).doc("specular exponent n")
 }
 
 /// The colours with as many multipliers as the keys say.
-pub struct Products<'d> {
+pub struct ColourProducts<'d> {
     colours: Colours<'d>,
     in_turn: bool,
 }
 
-impl<'d> Products<'d> {
+impl<'d> ColourProducts<'d> {
     /// Makes the operands, with the source's numbers where it has some.
     #[track_caller]
     pub fn new(

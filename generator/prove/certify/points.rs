@@ -13,7 +13,7 @@ use super::task::Task;
 use super::terms::{Id, Term, Terms};
 use glint_base::fixed::exp2;
 use glint_formula::Expression;
-use glint_rtl::pipeline::{Cell, NodeId, Op};
+use glint_rtl::pipeline::{Cell, NodeId, NodeOp};
 
 impl Task<'_> {
     /// Returns the variable and the divisor of each operand. If the formula divides an operand by a power of two
@@ -136,7 +136,9 @@ impl Task<'_> {
                 let value = |raw: i128| raw as f64 * exp2(-scale);
                 presupposed.insert(id, (value(low), value(high)));
             }
-            if let (Cell::Op(Op::Less(a, b)), true) = (&self.graph().node(node).cell, low == high) {
+            if let (Cell::Op(NodeOp::Less(a, b)), true) =
+                (&self.graph().node(node).cell, low == high)
+            {
                 presupposed.extend(hardware.compared(terms, (*a, *b), low == 1));
             }
         }

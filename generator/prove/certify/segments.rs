@@ -28,7 +28,7 @@ use super::terms::{Id, Term, Terms, number};
 use glint_base::fixed::exp2;
 use glint_formula::{Enclosure, Expression, Function, Kind, Operator, parse};
 use glint_rtl::netlist::NetId;
-use glint_rtl::pipeline::{Cell, NodeId, Op, WalkRegister};
+use glint_rtl::pipeline::{Cell, NodeId, NodeOp, WalkRegister};
 
 /// The number of words in a script: Gappa's time grows with its square.
 const WORDS: usize = 8;
@@ -115,7 +115,7 @@ impl Walk {
             _ => None,
         };
         let [WalkRegister { first, before, next }] = *walk else { return Err(other()) };
-        let Cell::Op(Op::Add { a, b, carry: None }) = graph.node(next).cell else {
+        let Cell::Op(NodeOp::Add { a, b, carry: None }) = graph.node(next).cell else {
             return Err(other());
         };
         let step = if a == before { b } else { a };
@@ -163,8 +163,8 @@ fn table(task: &Task) -> Result<Products, String> {
         let node = graph.node(id);
         let is_open = |id: &NodeId| graph.node(*id).range.0 != graph.node(*id).range.1;
         let selects = match &node.cell {
-            Cell::Op(Op::Mux { select, .. }) => is_open(select),
-            Cell::Op(Op::Add { carry: Some(carry), .. }) => is_open(carry),
+            Cell::Op(NodeOp::Mux { select, .. }) => is_open(select),
+            Cell::Op(NodeOp::Add { carry: Some(carry), .. }) => is_open(carry),
             Cell::Operand(at) => {
                 let name = &task.design.net(task.unrolled.operands[*at]).name;
                 before.binary_search(&id).is_ok() || !colours.contains(name)

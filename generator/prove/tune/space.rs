@@ -3,7 +3,7 @@
 use anyhow::{Context, Result};
 
 use glint_config::{Config, Key, KeyKind, Schema, Value};
-use glint_core::cosim::{Points, Random};
+use glint_core::cosim::{PointSource, Random};
 use glint_core::registry::Device;
 use glint_golden::Contract;
 use glint_rtl::netlist::Design;
@@ -134,7 +134,7 @@ struct Outside {
 
 impl Outside {
     fn new(design: &Design, contract: &dyn Contract) -> Self {
-        let (drawn, mut random) = (Points::new(contract), Random::new(1));
+        let (drawn, mut random) = (PointSource::new(contract), Random::new(1));
         let points: Vec<Vec<i64>> = (0..POINTS).map(|_| drawn.of_domain(&mut random)).collect();
         Self {
             ports: ports(design),

@@ -14,7 +14,7 @@ use std::sync::Arc;
 use anyhow::Result;
 
 use super::measure::Measure;
-use super::outcome::Seen;
+use super::outcome::StreamRecord;
 use super::ports::Ports;
 use glint_golden::Model;
 use glint_golden::pipeline::Occupancy;
@@ -105,7 +105,7 @@ impl Pipe {
         inputs: &[u64],
         place: u64,
         measure: Option<&Measure>,
-        seen: &mut Seen,
+        seen: &mut StreamRecord,
     ) -> Result<()> {
         let rst_n = inputs[ports.reset] == 1;
         self.out_ready = ports.out_ready.is_none_or(|at| inputs[at] == 1);
