@@ -5,7 +5,7 @@
 //! [`super::Piecewise::prove`] compares the result of every operand of the whole domain with the formula. The search refuses
 //! a domain that is too large for that.
 
-use super::{Curve, Function, Outside, Refusal};
+use super::{Curve, Outside, Refusal, TargetFunction};
 use glint_base::fixed::{Format, exp2};
 use glint_formula::Function::Log2;
 use glint_formula::{Enclosure, Expression, Kind, RBig, parse};
@@ -171,10 +171,10 @@ impl Reduction {
     /// Fails if the formula does not look as if the identity holds, or if the domain does not suit the identity.
     pub(super) fn of(
         identity: Identity,
-        function: &Function,
+        function: &TargetFunction,
         guard: u32,
         wider: bool,
-    ) -> Result<(Self, Function), Refusal> {
+    ) -> Result<(Self, TargetFunction), Refusal> {
         let Curve::Formula(formula) = &function.curve else {
             return refused("samples have no identity", "\"none\"");
         };
@@ -199,7 +199,7 @@ impl Reduction {
             Rule::Size(_) if wider => function.domain.0.abs().max(function.domain.1),
             _ => (1 << bits) - 1,
         };
-        let inner = Function {
+        let inner = TargetFunction {
             curve: Curve::Formula(formula),
             domain: (0, last),
             operand: Format::unsigned(bits as i32 - fraction, fraction),
@@ -247,7 +247,7 @@ type ReductionResult = Result<(Rule, u32, (i32, String)), Refusal>;
 
 /// A function that is to be reduced.
 struct Whole<'f> {
-    function: &'f Function,
+    function: &'f TargetFunction,
     formula: &'f Expression,
     guard: u32,
 }
@@ -273,7 +273,8 @@ impl Whole<'_> {
     }
 
     fn size(&self, odd: bool, wider: bool) -> ReductionResult {
-        let Function { domain: (first, last), operand: Format { frac, .. }, .. } = *self.function;
+        let TargetFunction { domain: (first, last), operand: Format { frac, .. }, .. } =
+            *self.function;
         if first >= 0 || last < 0 {
             return refused("the domain is on one side of 0", "\"none\", or change function.from");
         }
@@ -297,7 +298,8 @@ impl Whole<'_> {
     }
 
     fn quadrants(&self) -> ReductionResult {
-        let Function { domain: (first, last), operand: Format { frac, .. }, .. } = *self.function;
+        let TargetFunction { domain: (first, last), operand: Format { frac, .. }, .. } =
+            *self.function;
         let count = last - first + 1;
         let quarter = count / 4;
         if count < 8 || !(count as u64).is_power_of_two() || first % quarter != 0 {
@@ -329,7 +331,7 @@ impl Whole<'_> {
     }
 
     fn octaves(&self) -> ReductionResult {
-        let Function { domain: (first, last), operand: format, .. } = *self.function;
+        let TargetFunction { domain: (first, last), operand: format, .. } = *self.function;
         if first < 0 || last < 8 || last.ilog2() < first.max(1).ilog2() + 2 {
             return refused("the domain has not three octaves above 0", "\"none\"");
         }
@@ -389,7 +391,8 @@ impl Whole<'_> {
     }
 
     fn exponent(&self) -> ReductionResult {
-        let Function { domain: (first, last), operand: Format { frac, .. }, .. } = *self.function;
+        let TargetFunction { domain: (first, last), operand: Format { frac, .. }, .. } =
+            *self.function;
         let value = |raw: f64| raw * exp2(-frac);
         let (from, to) = (value(first as f64), value(last as f64));
         let slope = (self.logarithm_at(to)? - self.logarithm_at(from)?) / (to - from);

@@ -4,7 +4,7 @@ use super::reduction::KEY;
 use super::seen::AllowedResults;
 use super::table::{BITS_A_CELL, Table, Widths};
 use super::{
-    Curve, Function, Identity, Layout, MOST_BITS, Piecewise, Reduction, Refusal, Segments,
+    Curve, Identity, Layout, MOST_BITS, Piecewise, Reduction, Refusal, Segments, TargetFunction,
 };
 use glint_base::fixed::MAX_WIDTH;
 
@@ -53,7 +53,7 @@ const NEAREST: [f64; 14] =
 /// # Errors
 /// Fails if the domain has too many operands, or if no approximation that keeps the error is found and proved. The error
 /// names a key and a remedy.
-pub(super) fn search(function: &Function, wish: Wish) -> Result<Piecewise, Refusal> {
+pub(super) fn search(function: &TargetFunction, wish: Wish) -> Result<Piecewise, Refusal> {
     let span = function.domain.1.abs_diff(function.domain.0);
     if span >> WIDEST != 0 {
         let bits = u64::BITS - span.leading_zeros();
@@ -72,7 +72,7 @@ pub(super) fn search(function: &Function, wish: Wish) -> Result<Piecewise, Refus
         return Ok(found);
     }
     let misses = |error: &f64| {
-        let larger = Function { error: *error, ..function.clone() };
+        let larger = TargetFunction { error: *error, ..function.clone() };
         *error <= function.error || !matches!(attempt(&larger, wish), Ok(Some(_)))
     };
     let reached = NEAREST.get(NEAREST.partition_point(misses));
@@ -95,7 +95,7 @@ pub(super) fn search(function: &Function, wish: Wish) -> Result<Piecewise, Refus
 }
 
 /// Gives the approximation of least cost, proved, if there is one.
-fn attempt(function: &Function, wish: Wish) -> Result<Option<Piecewise>, Refusal> {
+fn attempt(function: &TargetFunction, wish: Wish) -> Result<Option<Piecewise>, Refusal> {
     if wish.identity != Identity::None {
         return attempt_reduced(function, wish);
     }
@@ -126,7 +126,7 @@ fn variants(identity: Identity) -> &'static [(u32, bool)] {
 }
 
 /// Gives the first approximation, proved, that one of the [`variants`] of reduced operands has, if there is one.
-fn attempt_reduced(function: &Function, wish: Wish) -> Result<Option<Piecewise>, Refusal> {
+fn attempt_reduced(function: &TargetFunction, wish: Wish) -> Result<Option<Piecewise>, Refusal> {
     if function.is_wide() {
         let message = format!("the domain has more than 2^{MOST_BITS} operands to be computed");
         return Err(Refusal::new(KEY, message, "\"none\", or fewer operand.fraction bits"));

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::minimax::minimax;
 use super::seen::AllowedResults;
-use super::{MOST_SUMS, Piecewise, Segments, Step};
+use super::{HornerStep, MOST_SUMS, Piecewise, Segments};
 use glint_base::fixed::{Format, MAX_WIDTH, exp2};
 use glint_base::interval::Interval;
 
@@ -51,10 +51,10 @@ pub(super) struct Widths {
 
 impl Widths {
     /// Returns the cuts of the products; none if one would have to gain bits.
-    fn steps(&self) -> Option<Vec<Step>> {
+    fn steps(&self) -> Option<Vec<HornerStep>> {
         let of = |(k, &offset): (usize, &u32)| {
             let dropped = self.guard[k + 1] + offset as i32 - self.guard[k];
-            u32::try_from(dropped).ok().map(|dropped| Step { offset, dropped })
+            u32::try_from(dropped).ok().map(|dropped| HornerStep { offset, dropped })
         };
         self.offset.iter().enumerate().map(of).collect()
     }
@@ -264,7 +264,7 @@ impl<'s> Table<'s> {
     fn place(
         &self,
         piece: &CandidateSegment,
-        shape: (&Widths, &[Step]),
+        shape: (&Widths, &[HornerStep]),
         product: &[i64],
         coefficients: &mut Vec<i64>,
         k: usize,
@@ -299,7 +299,7 @@ impl<'s> Table<'s> {
         &self,
         piece: &CandidateSegment,
         above: &[i64],
-        steps: &[Step],
+        steps: &[HornerStep],
         guard: u32,
     ) -> Option<i64> {
         let (mut least, mut most) = (i64::MIN, i64::MAX);

@@ -5,7 +5,7 @@
 
 use std::ops::Range;
 
-use glint_approximate::{Layout, Piecewise, Step};
+use glint_approximate::{HornerStep, Layout, Piecewise};
 use glint_base::fixed::{Format, MAX_WIDTH, Overflow, Rounding};
 use glint_rtl::dsl::{Designer, OperandMux, Register, SharedProduct, Signal, StepSetting};
 
@@ -91,7 +91,7 @@ impl<'d, 'p> PolynomialDatapath<'d, 'p> {
     ) -> Self {
         let (address, offset) = place(d, prefix, number, it);
         let coefficients = table(d, prefix, address, it, tables);
-        let cut = |step: &Step| {
+        let cut = |step: &HornerStep| {
             let offset = offset.expect("a polynomial has an offset");
             let width = step.offset as i32;
             offset.bits(it.segments.rest() - step.offset, Format::signed(-1, width))

@@ -44,7 +44,7 @@ pub struct Piece {
 
 /// The table.
 #[derive(Clone, Debug)]
-pub struct Curve {
+pub struct SegmentedCurve {
     params: CurveParams,
     /// From the topmost range down: log₂ of a segment's length, and the index in `segments` that the range's prefix 0 would
     /// have.
@@ -54,7 +54,7 @@ pub struct Curve {
     pieces: Vec<Piece>,
 }
 
-impl Curve {
+impl SegmentedCurve {
     /// Returns the table of `function`, of u as an integer: increasing from 0 to 1.
     pub fn new(params: &CurveParams, function: impl Fn(f64) -> f64) -> Self {
         let mut curve = Self {
@@ -171,7 +171,7 @@ mod tests {
     }
 
     /// Makes the curve of the parabola with C = 4: one range, 4 … 15, in prefixes of four operands; a tail of one segment.
-    fn parabola(segments: &[u32], tail: u32) -> Curve {
+    fn parabola(segments: &[u32], tail: u32) -> SegmentedCurve {
         let params = CurveParams {
             operand_bits: 4,
             fraction: 8,
@@ -179,7 +179,7 @@ mod tests {
             segments: segments.to_vec(),
             tail,
         };
-        Curve::new(&params, lobe)
+        SegmentedCurve::new(&params, lobe)
     }
 
     #[test]

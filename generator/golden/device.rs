@@ -36,7 +36,7 @@
 //! assert_eq!((raw, exact), (vec![10], vec![[0.66015625; 2]]));
 //! ```
 
-use super::frame::{ClockedModel, Frame, Microinstruction, idle};
+use super::frame::{ClockedModel, Frame, FrameStep, idle};
 use super::{Bound, Contract, Model, Operand, Output, Sweep, Term};
 
 /// More clocks than any computation takes.
@@ -57,7 +57,7 @@ impl Frame {
     ///
     /// # Panics
     /// If there is no microinstruction.
-    pub fn device(self, program: impl IntoIterator<Item = Microinstruction>) -> Device {
+    pub fn device(self, program: impl IntoIterator<Item = FrameStep>) -> Device {
         let operands = self.operands().map(|(name, format, domain)| Operand {
             name: name.to_owned(),
             format,

@@ -2,7 +2,7 @@
 //!
 //! Operands are raw values with C fraction bits, 0 … 2^C; a sine is a raw u0.S.
 
-use super::curve::{self, Curve};
+use super::curve::{self, SegmentedCurve};
 use glint_base::fixed::exp2;
 
 /// How the table is organised.
@@ -62,7 +62,7 @@ enum SineTable {
     },
     /// A segmented table of u = 1.0 − x; the tail has an entry for each, so many of them.
     Segmented {
-        curve: Curve,
+        curve: SegmentedCurve,
         rest: i64,
     },
 }
@@ -86,7 +86,7 @@ impl Sine {
                     tail,
                 };
                 let sine = |u: f64| sine_of(operand, u as i64);
-                SineTable::Segmented { curve: Curve::new(&params, sine), rest: 1 << tail }
+                SineTable::Segmented { curve: SegmentedCurve::new(&params, sine), rest: 1 << tail }
             }
         };
         Self { operand_fraction: operand, fraction, table }

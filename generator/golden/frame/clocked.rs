@@ -3,7 +3,7 @@
 use std::mem;
 use std::sync::Arc;
 
-use super::{Does, Frame, Microinstruction, Next, Operand, Slot, State, Value, idle};
+use super::{Does, Frame, FrameOperand, FrameStep, Next, Slot, State, Value, idle};
 use crate::Model;
 use glint_base::fixed::mask;
 
@@ -13,8 +13,8 @@ const HANDSHAKE: [&str; 5] = ["valid", "busy", "done", "run", "word_address"];
 /// The constant part of a model.
 #[derive(Clone)]
 pub(super) struct ModelConstants {
-    pub(super) program: Vec<Microinstruction>,
-    pub(super) operands: Vec<Operand>,
+    pub(super) program: Vec<FrameStep>,
+    pub(super) operands: Vec<FrameOperand>,
     /// The outputs first.
     pub(super) shown: Vec<(Slot, u64)>,
     pub(super) outputs: usize,
@@ -57,7 +57,7 @@ impl Frame {
     ///
     /// # Panics
     /// If there is no microinstruction.
-    pub fn model(mut self, program: impl IntoIterator<Item = Microinstruction>) -> ClockedModel {
+    pub fn model(mut self, program: impl IntoIterator<Item = FrameStep>) -> ClockedModel {
         let program: Vec<_> = program.into_iter().collect();
         assert!(!program.is_empty(), "a device idles in its first microinstruction");
         // Of signals that differ in one clock the first is reported: one that a user of the device sees.
@@ -257,7 +257,7 @@ impl Model for ClockedModel {
 
 /// Returns the program with one microinstruction more after each that was to set `valid`; none where such a one goes on by a
 /// condition.
-fn taking(program: &[Microinstruction]) -> Option<Vec<Microinstruction>> {
+fn taking(program: &[FrameStep]) -> Option<Vec<FrameStep>> {
     let mut longer = Vec::new();
     for (at, here) in program.iter().enumerate() {
         let mut here = here.clone();
@@ -273,8 +273,8 @@ fn taking(program: &[Microinstruction]) -> Option<Vec<Microinstruction>> {
             return None;
         }
         let next = mem::replace(&mut here.next, Next::Following);
-        longer.push(Microinstruction { valid: false, takes_results: true, ..here });
-        longer.push(Microinstruction { next, ..idle().valid() });
+        longer.push(FrameStep { valid: false, takes_results: true, ..here });
+        longer.push(FrameStep { next, ..idle().valid() });
     }
     Some(longer)
 }

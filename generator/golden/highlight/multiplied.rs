@@ -1,6 +1,6 @@
 //! Makes the products of a reflectance f with the colour operands, for golden models and accuracy contracts.
 
-use crate::frame::{ClockedModel, Frame, Microinstruction, Slot, State, idle, step};
+use crate::frame::{ClockedModel, Frame, FrameStep, Slot, State, idle, step};
 use crate::narrow::Narrow;
 use crate::{Operand, Output};
 use glint_base::fixed::{Format, Rounding};
@@ -94,7 +94,7 @@ impl Products {
 
     /// Adds their operands and outputs to a clock model that has the raw f in a slot. Returns the microinstructions that make the
     /// products, before the one with the result; none where they are made at once.
-    pub fn slots(&self, frame: &mut Frame, f: Slot) -> Vec<Microinstruction> {
+    pub fn slots(&self, frame: &mut Frame, f: Slot) -> Vec<FrameStep> {
         let mut program = Vec::new();
         for (operand, output) in self.operands.iter().zip(&self.outputs) {
             let (colour, narrow) = (frame.operand(&operand.name, operand.format), self.narrow);
@@ -119,12 +119,7 @@ impl Products {
 
     /// Returns the device at power-up. The products of the value that `program` leaves in the slot `f` are made and shown in
     /// the last microinstruction.
-    pub fn behind(
-        &self,
-        mut frame: Frame,
-        f: Slot,
-        mut program: Vec<Microinstruction>,
-    ) -> ClockedModel {
+    pub fn behind(&self, mut frame: Frame, f: Slot, mut program: Vec<FrameStep>) -> ClockedModel {
         program.extend(self.slots(&mut frame, f));
         program.push(idle().valid().end());
         frame.model(program)

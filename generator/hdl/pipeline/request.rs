@@ -4,7 +4,7 @@
 
 use super::graph::NodeId;
 use super::interval;
-use super::schedule::{self, Refusal, Schedule, ScheduleProblem, Unreachable};
+use super::schedule::{self, Schedule, ScheduleProblem, ScheduleRefusal, Unreachable};
 use super::unroll::Unrolled;
 use super::{Goal, Options};
 use crate::netlist::{Design, decided_by_data, latest_done};
@@ -68,8 +68,8 @@ impl<'a> Request<'a> {
             Goal::ClockMhz(clock) => {
                 let schedule = problems.for_period(1000.0 / clock);
                 schedule.map_err(|refusal| match refusal {
-                    Refusal::Unreachable(limit) => self.too_fast(clock, interval, &limit),
-                    Refusal::Unsolved(why, at) => self.unsolved(&why, at),
+                    ScheduleRefusal::Unreachable(limit) => self.too_fast(clock, interval, &limit),
+                    ScheduleRefusal::Unsolved(why, at) => self.unsolved(&why, at),
                 })
             }
             Goal::Stages(stages) => self.in_stages(problems, stages),
@@ -91,8 +91,10 @@ impl<'a> Request<'a> {
             return Err(self.wrong_stages(message, format!("{most} or less"), limiting));
         }
         let schedule = problems.for_stages(stages).map_err(|refusal| match refusal {
-            Refusal::Unsolved(why, at) => self.unsolved(&why, at),
-            Refusal::Unreachable(it) => self.unsolved("no clock is slow enough", Some(it.limiting)),
+            ScheduleRefusal::Unsolved(why, at) => self.unsolved(&why, at),
+            ScheduleRefusal::Unreachable(it) => {
+                self.unsolved("no clock is slow enough", Some(it.limiting))
+            }
         })?;
         let least = schedule.latency;
         if least > stages {

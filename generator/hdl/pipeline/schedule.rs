@@ -36,7 +36,7 @@ pub struct Schedule {
 
 /// Why there is no schedule.
 #[derive(Clone, Debug)]
-pub enum Refusal {
+pub enum ScheduleRefusal {
     /// The clock cannot be met.
     Unreachable(Unreachable),
     /// The solver failed, or its solution breaks a constraint: the reason, and the node in the wrong stage.
@@ -245,9 +245,9 @@ impl<'a> ScheduleProblem<'a> {
     ///
     /// # Errors
     /// Fails if an operation takes longer than the period, or if the solver fails.
-    pub fn for_period(&self, period: f64) -> Result<Schedule, Refusal> {
+    pub fn for_period(&self, period: f64) -> Result<Schedule, ScheduleRefusal> {
         if let Some(unreachable) = self.fastest().filter(|it| it.period > period + 1e-9) {
-            return Err(Refusal::Unreachable(unreachable));
+            return Err(ScheduleRefusal::Unreachable(unreachable));
         }
         self.solve(period, 0)
     }
@@ -257,7 +257,7 @@ impl<'a> ScheduleProblem<'a> {
     ///
     /// # Errors
     /// Fails if the solver fails.
-    pub fn for_stages(&self, stages: usize) -> Result<Schedule, Refusal> {
+    pub fn for_stages(&self, stages: usize) -> Result<Schedule, ScheduleRefusal> {
         let fastest = self.fastest().map_or(0.0, |it| it.period);
         let fits = |period: f64| self.least_stages(period) <= stages;
         let all = self.delay.iter().chain(&self.setup).sum::<f64>();
@@ -415,13 +415,13 @@ impl<'a> ScheduleProblem<'a> {
         differences: &[StageDifference],
         stage: &[usize],
         latency: usize,
-    ) -> Result<(), Refusal> {
+    ) -> Result<(), ScheduleRefusal> {
         let name = |id: NodeId| &self.graph.node(id).label.name;
         for &id in &self.live {
             let (at, last) = (stage[id.index()], self.last_stage(id.index(), latency));
             if at > last {
                 let message = format!("`{}` stands in stage {at}, behind stage {last}", name(id));
-                return Err(Refusal::Unsolved(message, Some(id)));
+                return Err(ScheduleRefusal::Unsolved(message, Some(id)));
             }
         }
         for &(from, to, apart) in differences {
@@ -433,7 +433,7 @@ impl<'a> ScheduleProblem<'a> {
                     name(to),
                     name(from)
                 );
-                return Err(Refusal::Unsolved(message, Some(to)));
+                return Err(ScheduleRefusal::Unsolved(message, Some(to)));
             }
         }
         for kind in &self.kinds {
@@ -446,7 +446,7 @@ impl<'a> ScheduleProblem<'a> {
                         "`{}` is one product too many for {units} in slot {slot}",
                         name(id)
                     );
-                    return Err(Refusal::Unsolved(message, Some(id)));
+                    return Err(ScheduleRefusal::Unsolved(message, Some(id)));
                 }
             }
         }
@@ -454,7 +454,7 @@ impl<'a> ScheduleProblem<'a> {
     }
 
     /// Returns the schedule with the fewest register bits for a period, in no fewer stages than `least`.
-    fn solve(&self, period: f64, least: usize) -> Result<Schedule, Refusal> {
+    fn solve(&self, period: f64, least: usize) -> Result<Schedule, ScheduleRefusal> {
         let differences = self.differences(period);
         let taken = self.taken(&differences);
         let latency = least.max(self.latency(&differences, &taken));
@@ -504,7 +504,7 @@ impl<'a> ScheduleProblem<'a> {
                 problem.add_constraint(terms, ComparisonOp::Ge, 1.0 + self.apart(user) as f64);
             }
         }
-        let unsolved = |message: String| Refusal::Unsolved(message, None);
+        let unsolved = |message: String| ScheduleRefusal::Unsolved(message, None);
         let solution = match problem.solve().map_err(|error| unsolved(error.to_string()))? {
             SolveOutcome::Solution(solution) => solution,
             _ => return Err(unsolved("the linear program has no solution".to_owned())),
@@ -633,7 +633,7 @@ mod tests {
             let mut stage = schedule.stage.clone();
             stage[node.index()] = at;
             match problems.verify(&differences, &stage, schedule.latency) {
-                Err(Refusal::Unsolved(why, place)) => Some((why, place)),
+                Err(ScheduleRefusal::Unsolved(why, place)) => Some((why, place)),
                 _ => None,
             }
         };

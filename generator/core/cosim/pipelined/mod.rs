@@ -23,7 +23,7 @@ use reference::{Expected, Reference};
 
 /// A point on its way.
 #[derive(Clone, Debug)]
-struct Point {
+struct PipelinedPoint {
     /// Raw operands, in the order of the contract.
     operands: Vec<i64>,
     side: u64,
@@ -38,7 +38,7 @@ struct Point {
 pub(super) struct Pipe {
     columns: Arc<Vec<(Column, usize)>>,
     reference: Reference,
-    stages: Occupancy<Point>,
+    stages: Occupancy<PipelinedPoint>,
     out_ready: bool,
     /// Whether the offer of the latest clock was taken.
     pub(super) taken: bool,
@@ -117,7 +117,7 @@ impl Pipe {
             let patterns = ports.operands.iter().map(|port| inputs[port.data]);
             let expected = self.reference.point(patterns)?;
             let side = ports.side_in.map_or(0, |(at, _)| inputs[at]);
-            point = Some(Point { operands, side, expected, place, taken: seen.clocks });
+            point = Some(PipelinedPoint { operands, side, expected, place, taken: seen.clocks });
         }
         let Some(point) = self.stages.clock(rst_n, point, self.out_ready) else { return Ok(()) };
         seen.points += 1;
