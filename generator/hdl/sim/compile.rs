@@ -1,4 +1,4 @@
-//! Compiles a [`Design`] to a simulation [`CompiledDesign`].
+//! Compiles a [`Design`] to a [`CompiledDesign`], which the simulator runs.
 
 use std::collections::{HashMap, HashSet};
 

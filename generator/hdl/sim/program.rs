@@ -69,7 +69,7 @@ pub(super) enum Instruction {
     Choose { to: Slot, select: Slot, a: Slot, b: Slot },
     /// `a` when the bits of `of` from `low` up are all 0, else `b`.
     ChooseAny { to: Slot, of: Slot, low: u8, drop: u8, a: Slot, b: Slot },
-    /// `a` when the bits of `of` from `low` up are all 0, else other bits of it, placed as by `ValueSlot`.
+    /// `a` when the bits of `of` from `low` up are all 0, else other bits of it, placed as by `Place`.
     ChoosePlace {
         to: Slot,
         of: Slot,
